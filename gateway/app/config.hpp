@@ -1,0 +1,73 @@
+// The configuration as the gateway uses it: design section 5, checked and with defaults filled in.
+// Promises that every value is within its documented range and that names and numbers are unique.
+// Never holds JSON: config_loader makes it from a file.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/core/clock.hpp"
+#include "gateway/core/rational.hpp"
+#include "gateway/image/axis_image.hpp"
+#include "gateway/upstream/modbus_tcp/listener_settings.hpp"
+
+namespace axisgate::app {
+
+struct AxisLimits {
+  std::optional<Range> position;                            ///< register units
+  std::optional<std::int64_t> velocity;                     ///< 0.001 rpm
+  std::optional<std::int64_t> acceleration;                 ///< 0.1 rpm/s
+  std::optional<std::int64_t> torque;                       ///< 0.1 % of rated
+  std::optional<std::int64_t> quick_stop_deceleration_min;  ///< 0.1 rpm/s
+};
+
+struct AxisConfig {
+  AxisNumber number = 0;
+  std::string name;  ///< "axis 3" where none was given
+  Rational units_per_rev{10000};
+  bool inverted = false;
+  AxisLimits limits;
+  std::int64_t standstill_velocity = 1000;  ///< 0.001 rpm
+  std::optional<std::int16_t> homing_method;
+  Duration homing_timeout = std::chrono::seconds(60);
+  bool lease_configured = false;  ///< read and checked; not yet enforced by this version
+  std::string pointer;            ///< JSON pointer of the entry, for messages
+};
+
+struct DriveConfig {
+  std::string profile;  ///< a name in schemas/drives, or a path
+  std::uint8_t node = 1;
+  std::map<std::string, Rational> constants;
+  std::vector<AxisConfig> axes;
+  std::string pointer;
+};
+
+struct BusConfig {
+  std::string name;
+  std::string adapter;
+  std::string device;
+  std::uint32_t baud = 38400;
+  std::string parity = "none";
+  std::string rs485 = "auto";  ///< auto: direction control where the port offers it; off
+  bool cascade = false;        ///< Kinco 6510:0B = 1: every request comes back before its reply
+  Duration timeout{};
+  Duration min_gap{};
+  Duration settle{};
+  std::array<Duration, 3> poll{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
+                               std::chrono::milliseconds(1000)};  ///< fast, normal, slow
+  bool decode = false;
+  std::vector<DriveConfig> drives;
+  std::string pointer;
+};
+
+struct Config {
+  std::string file;
+  std::vector<modbus_tcp::ListenerSettings> modbus_tcp;
+  std::vector<BusConfig> buses;
+};
+
+}  // namespace axisgate::app

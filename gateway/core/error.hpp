@@ -1,0 +1,78 @@
+// Every way a request can end, and the one table that turns it into text, a Modbus exception and a command_result.
+// Promises that each code has exactly one row (a static assertion counts them) and that all faces say the same thing.
+// Never carries the drive's own code: that travels beside it as `Outcome::detail`.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace axisgate {
+
+enum class Errc : std::uint8_t {
+  ok,
+  // Refused before anything was sent: the request itself (design 3.3, outcome table).
+  illegal_function,   ///< function code this server does not have
+  not_supported,      ///< no such register, quantity or command on this drive, read-only, half of a 32-bit value
+  bad_value,          ///< outside limits, not representable, unknown command
+  role_forbidden,     ///< the client's role may not do this
+  state_unsuitable,   ///< the axis is in no state for it
+  busy,               ///< not now: moving where standstill is needed, mailbox busy, only while disabled
+  queue_full,         ///< a bound of the bus or of the axis is reached
+  superseded,         ///< replaced by a newer setpoint before it was sent
+  never_started,      ///< start deadline passed, nothing was sent
+  dropped_by_stop,    ///< dropped by a stop before it was sent
+  stopped_by_other,   ///< another client's stop ended it
+  still_in_setup,     ///< the axis is still in setup
+  identity_mismatch,  ///< the drive is not the configured one
+  not_owner,          ///< another client owns the axis
+  offline,            ///< bus down or axis offline: nothing was sent
+  no_path,            ///< this unit id or axis does not exist here
+  // Ends of what was sent.
+  refused_by_drive,  ///< the drive answered with an error; its code is the detail
+  timed_out,         ///< sent, no acknowledgement in time: outcome unknown
+  link_lost,         ///< sent, then the link or the drive was lost: outcome unknown
+  bad_reply,         ///< the reply does not fit the request (width, form)
+  not_reached,       ///< acknowledged, but the drive never showed the state that was asked for
+};
+inline constexpr int kErrcCount = static_cast<int>(Errc::not_reached) + 1;
+
+/// Register 25 (design 3.1).
+enum class CommandResult : std::uint8_t {
+  none = 0,
+  pending = 1,
+  done = 2,
+  refused_by_drive = 3,
+  outcome_unknown = 4,
+  superseded = 5,
+  never_started = 6,
+  not_owner = 7,
+  stopped_by_other = 8,
+  state_unsuitable = 9,
+};
+
+/// Modbus application protocol V1.1b3 section 7; 0 is no exception.
+enum class ModbusException : std::uint8_t {
+  none = 0x00,
+  illegal_function = 0x01,
+  illegal_data_address = 0x02,
+  illegal_data_value = 0x03,
+  server_device_failure = 0x04,
+  server_device_busy = 0x06,
+  gateway_path_unavailable = 0x0A,
+  gateway_target_failed = 0x0B,
+};
+
+/// `state_unsuitable` always carries this detail: CiA 301 abort code "because of the present device state".
+inline constexpr std::uint32_t kDetailDeviceState = 0x08000022;
+
+struct Outcome {
+  Errc code = Errc::ok;
+  std::uint32_t detail = 0;  ///< abort code, Modbus exception or the drive's own code; 0 where there is none
+  friend bool operator==(const Outcome&, const Outcome&) = default;
+};
+
+[[nodiscard]] std::string_view text(Errc code);
+[[nodiscard]] ModbusException modbus_exception(Errc code);
+[[nodiscard]] CommandResult command_result(Errc code);
+
+}  // namespace axisgate

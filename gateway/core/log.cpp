@@ -1,0 +1,33 @@
+#include "gateway/core/log.hpp"
+
+#include <array>
+#include <utility>
+
+#include "gateway/core/bytes.hpp"
+
+namespace axisgate {
+
+std::string_view text(LogLevel level) {
+  static constexpr std::array<std::string_view, 4> kNames{"error", "warning", "info", "debug"};
+  return kNames.at(static_cast<std::size_t>(level));
+}
+
+Log::Log(Sink sink, LogLevel most_detailed) : sink_(std::move(sink)), most_detailed_(most_detailed) {}
+
+void Log::write(LogLevel level, std::string_view source, std::string_view message) const {
+  if (wants(level)) sink_(level, source, message.substr(0, kMaxLogLine));
+}
+
+std::string hex_text(Bytes bytes) {
+  static constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string out;
+  out.reserve(bytes.size() * 3);
+  for (const Byte b : bytes) {
+    if (!out.empty()) out += ' ';
+    out += kDigits[b >> 4];
+    out += kDigits[b & 0x0F];
+  }
+  return out;
+}
+
+}  // namespace axisgate

@@ -1,0 +1,92 @@
+#include "gateway/core/rational.hpp"
+
+#include <limits>
+#include <stdexcept>
+
+namespace axisgate {
+namespace {
+
+Int128 gcd(Int128 a, Int128 b) {
+  while (b != 0) {
+    const Int128 rest = a % b;
+    a = b;
+    b = rest;
+  }
+  return a < 0 ? -a : a;
+}
+
+constexpr Int128 kMax = std::numeric_limits<std::int64_t>::max();
+constexpr Int128 kMin = std::numeric_limits<std::int64_t>::min();
+// 18 decimal digits always fit 64 bits.
+constexpr std::size_t kMaxDigits = 18;
+
+}  // namespace
+
+Rational::Rational(std::int64_t numerator, std::int64_t denominator) { *this = reduced(numerator, denominator); }
+
+Rational Rational::reduced(Int128 numerator, Int128 denominator) {
+  if (denominator == 0) throw std::overflow_error("division by zero in a unit conversion");
+  if (denominator < 0) {
+    numerator = -numerator;
+    denominator = -denominator;
+  }
+  const Int128 divisor = numerator == 0 ? denominator : gcd(numerator, denominator);
+  numerator /= divisor;
+  denominator /= divisor;
+  if (numerator > kMax || numerator < kMin || denominator > kMax)
+    throw std::overflow_error("a unit conversion needs more than 64 bits");
+  Rational out;
+  out.numerator_ = static_cast<std::int64_t>(numerator);
+  out.denominator_ = static_cast<std::int64_t>(denominator);
+  return out;
+}
+
+std::optional<Rational> Rational::parse(std::string_view decimal) {
+  bool negative = false;
+  if (!decimal.empty() && (decimal.front() == '-' || decimal.front() == '+')) {
+    negative = decimal.front() == '-';
+    decimal.remove_prefix(1);
+  }
+  std::int64_t digits = 0;
+  std::int64_t denominator = 1;
+  std::size_t count = 0;
+  bool fraction = false;
+  for (const char c : decimal) {
+    if (c == '.' && !fraction) {
+      fraction = true;
+    } else if (c >= '0' && c <= '9' && ++count <= kMaxDigits) {
+      digits = digits * 10 + (c - '0');
+      if (fraction) denominator *= 10;
+    } else {
+      return std::nullopt;
+    }
+  }
+  if (count == 0) return std::nullopt;
+  return Rational(negative ? -digits : digits, denominator);
+}
+
+Rational operator*(const Rational& a, const Rational& b) {
+  return Rational::reduced(static_cast<Int128>(a.numerator_) * b.numerator_,
+                           static_cast<Int128>(a.denominator_) * b.denominator_);
+}
+
+Rational operator/(const Rational& a, const Rational& b) {
+  return Rational::reduced(static_cast<Int128>(a.numerator_) * b.denominator_,
+                           static_cast<Int128>(a.denominator_) * b.numerator_);
+}
+
+std::optional<std::int64_t> Rational::scale(std::int64_t value) const {
+  const Int128 product = static_cast<Int128>(value) * numerator_;
+  Int128 quotient = product / denominator_;
+  const Int128 rest = product % denominator_;
+  const Int128 magnitude = rest < 0 ? -rest : rest;
+  if (magnitude * 2 >= denominator_) quotient += product < 0 ? -1 : 1;
+  if (quotient > kMax || quotient < kMin) return std::nullopt;
+  return static_cast<std::int64_t>(quotient);
+}
+
+double Rational::to_double() const {
+  return static_cast<double>(static_cast<long double>(numerator_) / static_cast<long double>(denominator_));
+}
+
+}  // namespace axisgate

@@ -1,0 +1,42 @@
+// An exact rational number for unit conversions, held in lowest terms.
+// Promises exact products and one rounding, half away from zero, at the very end; a result that does not fit is no value.
+// Never wraps and never goes through floating point, except to_double() for DDS, which gives the nearest double.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace axisgate {
+
+__extension__ using Int128 = __int128;
+
+class Rational {
+ public:
+  constexpr Rational() = default;
+  /// `denominator` not 0. Throws std::overflow_error where lowest terms do not fit 64 bits (start-up only).
+  Rational(std::int64_t numerator, std::int64_t denominator = 1);
+
+  /// "1.414", "-3", "0.5e3" is not taken: decimals only, as makers print them. No value where the text is none.
+  [[nodiscard]] static std::optional<Rational> parse(std::string_view decimal);
+
+  [[nodiscard]] std::int64_t numerator() const { return numerator_; }
+  [[nodiscard]] std::int64_t denominator() const { return denominator_; }
+
+  friend Rational operator*(const Rational& a, const Rational& b);
+  /// `b` not 0.
+  friend Rational operator/(const Rational& a, const Rational& b);
+  friend bool operator==(const Rational&, const Rational&) = default;
+
+  /// value * this, rounded half away from zero; no value where it does not fit 64 bits.
+  [[nodiscard]] std::optional<std::int64_t> scale(std::int64_t value) const;
+  [[nodiscard]] Rational inverse() const { return Rational(denominator_, numerator_); }
+  [[nodiscard]] double to_double() const;
+
+ private:
+  static Rational reduced(Int128 numerator, Int128 denominator);
+  std::int64_t numerator_ = 0;
+  std::int64_t denominator_ = 1;
+};
+
+}  // namespace axisgate

@@ -1,0 +1,206 @@
+// The model of one configured drive: its profile, resolved for the protocol it is spoken to with and for its axes' units.
+// Promises that everything in it was checked when the gateway started: addresses exist, ids are in range, factors are exact.
+// Never changes after that, and holds no state of the drive.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adapters/bus/order.hpp"
+#include "gateway/core/rational.hpp"
+#include "gateway/image/axis_image.hpp"
+#include "gateway/image/command.hpp"
+
+namespace axisgate::drive {
+
+/// Position in DriveModel::objects.
+using ObjectId = std::uint16_t;
+inline constexpr ObjectId kNoObject = 0xFFFF;
+inline constexpr std::size_t kMaxObjects = 1024;
+inline constexpr std::size_t kMaxSteps = 16;
+
+/// Poll classes of design section 5: 20, 100, 1000 ms by default, and once at bring-up (and after each write of it).
+enum class PollClass : std::uint8_t { fast, normal, slow, once };
+/// Whether a write wears out the drive's memory (profile key "nvm").
+enum class Nvm : std::uint8_t { no, unknown, yes };
+
+struct ObjectDef {
+  std::string name;                        ///< "statusword", "A.velocity"
+  bus::AxisSlot slot = bus::kNoAxis;       ///< whose it is; kNoAxis: the whole drive's
+  bus::ObjectAddress address;
+  std::uint8_t size = 2;                   ///< bytes: 1, 2 or 4
+  bool is_signed = false;
+  bool readable = true;
+  bool writable = false;
+  bool trigger = false;  ///< the write itself starts something: never skipped as unchanged, never repeated
+  Nvm nvm = Nvm::no;
+  /// The low `size` bytes as the number they stand for.
+  [[nodiscard]] std::int64_t number(std::uint32_t raw) const;
+  /// Smallest and largest number of this width and sign.
+  [[nodiscard]] Range range() const;
+};
+
+/// A field of bits of an object, put somewhere in a composed quantity (digital_inputs, vendor_error).
+struct BitField {
+  ObjectId object = kNoObject;
+  std::uint8_t from = 0;
+  std::uint8_t count = 1;
+  std::uint8_t to = 0;
+  bool inverted = false;
+};
+
+/// How one quantity of one axis is had from, and written to, this drive.
+struct Binding {
+  Quantity quantity{};
+  ObjectId object = kNoObject;  ///< kNoObject where the quantity is composed of bits
+  std::vector<BitField> bits;
+  /// raw = register value * raw_per_unit, sign of an inverted axis included.
+  Rational raw_per_unit{1};
+  PollClass poll = PollClass::normal;
+  bool writable = false;
+  Range limits;  ///< register units: profile, drive, width and axis limits together
+
+  /// Exact, rounded once, half away from zero; no value where it does not fit the register (design 2).
+  [[nodiscard]] std::optional<std::int64_t> to_register(std::int64_t raw) const;
+  /// No value where it does not fit the object.
+  [[nodiscard]] std::optional<std::int64_t> to_raw(std::int64_t value, const ObjectDef& object_def) const;
+};
+
+/// ((number & mask) compared with values); mask 0 means all bits.
+struct Condition {
+  enum class Test : std::uint8_t { equals, not_equals, in, not_in };
+  ObjectId object = kNoObject;
+  std::uint32_t mask = 0;
+  Test test = Test::equals;
+  std::vector<std::int64_t> values;
+  [[nodiscard]] bool holds(const ObjectDef& object_def, std::uint32_t raw) const;
+};
+
+/// One step of a command (profile key "commands"): at most kMaxSteps, no loops.
+struct Step {
+  enum class Verb : std::uint8_t {
+    write,    ///< `object` = value
+    wait,     ///< read `until.object` until `until` holds, at most `limit`
+    require,  ///< `until` must hold on a fresh read, else the command ends with `otherwise`
+  };
+  enum class Source : std::uint8_t { literal, quantity };
+  Verb verb = Verb::write;
+  ObjectId object = kNoObject;
+  Source source = Source::literal;
+  std::int64_t literal = 0;         ///< as the drive counts
+  Quantity quantity{};              ///< Source::quantity: what the client last asked for, or position_actual
+  Condition until;
+  Duration limit{};
+  bool optional = false;            ///< a wait that runs out is no failure
+  Errc otherwise = Errc::state_unsuitable;
+};
+using Steps = std::vector<Step>;
+
+/// How a command is carried out on this drive.
+struct CommandDef {
+  struct Variant {
+    std::vector<std::int16_t> modes;  ///< in these modes (unified numbers, negative: the drive's own)
+    Steps steps;
+  };
+  std::vector<Variant> variants;  ///< the first that names the mode in force
+  Steps steps;                    ///< in every other mode
+  bool quick_stop_otherwise = false;  ///< in every other mode quick_stop takes its place (halt only)
+  /// set_position: only the value 0 can be had (the drive's method makes the present position 0).
+  bool zero_only = false;
+};
+
+struct AlarmRow {
+  std::uint8_t word = 0;  ///< 0 first, 1 second fault word
+  std::uint8_t bit = 0;
+  std::uint16_t code = 0;  ///< CiA 402 603Fh
+  std::string text;
+  std::string remedy;
+};
+
+struct ObjectWrite {
+  ObjectId object = kNoObject;
+  std::int64_t raw = 0;
+  std::string why;
+};
+
+/// A setting that a person must decide: read at bring-up, reported, never changed but by `axisgate commission`.
+struct Check {
+  std::string name;
+  Condition bad;
+  AxisAlarm alarm{};
+  bus::AxisSlot slot = bus::kNoAxis;
+  std::string text;  ///< what is wrong and what it means
+  std::vector<ObjectWrite> remedy;
+};
+
+/// CiA 402 facts of a drive that is one: which bits of its statusword are not as the standard says.
+struct Cia402Facts {
+  bool setpoint_acknowledge = true;  ///< bit 12 tells in mode 1 that a set-point was taken
+  bool mode_display = true;          ///< false: the mode object itself is read back
+};
+
+struct AxisModel {
+  AxisNumber number = 0;
+  std::string name;
+  bool inverted = false;
+  std::int64_t standstill_velocity = 1000;  ///< 0.001 rpm
+  Duration homing_timeout = std::chrono::seconds(60);
+  std::optional<std::int16_t> homing_method;  ///< configured
+  bool configured_torque_limit = false;
+
+  std::vector<Binding> bindings;                            ///< supported quantities, in the order of their numbers
+  std::array<std::int16_t, kQuantityCount> binding_of{};    ///< position in `bindings`, -1: not supported
+  ObjectId statusword = kNoObject;
+  ObjectId controlword = kNoObject;
+  ObjectId mode = kNoObject;
+  ObjectId mode_display = kNoObject;  ///< the mode object itself where there is no display
+  std::array<ObjectId, 2> fault_words{kNoObject, kNoObject};
+  Cia402Facts cia402;
+  /// Unified mode -> what the drive calls it; absent: refused. In ascending order of the unified number.
+  std::vector<std::pair<std::int16_t, std::int64_t>> modes;
+  std::vector<std::int16_t> homing_methods;
+  std::optional<Condition> homed;
+  std::optional<Condition> homing_failed;
+  std::optional<Condition> moving;  ///< absent: velocity_actual above standstill_velocity
+  std::array<std::optional<CommandDef>, kLastCommand + 1> commands;
+  std::uint32_t supported = 0;
+  std::uint32_t writable = 0;
+  std::uint32_t supported_commands = 0;
+  std::uint16_t supported_modes = 0;
+
+  [[nodiscard]] const Binding* binding(Quantity q) const;
+  [[nodiscard]] const std::optional<CommandDef>& command(Command c) const {
+    return commands[static_cast<std::size_t>(c)];
+  }
+};
+
+/// What stands against a late reply after a timeout (design 7, point 4).
+struct FenceFacts {
+  std::vector<ObjectId> candidates;  ///< reads whose replies can be told from one another
+  Duration worst_reply = std::chrono::milliseconds(500);
+};
+
+struct DriveModel {
+  std::string profile;   ///< "kinco-jd"
+  std::string title;     ///< "Kinco JD"
+  std::string protocol;  ///< "kinco-serial"
+  std::uint8_t node = 1;
+  std::vector<ObjectDef> objects;
+  std::vector<AxisModel> axes;
+  std::vector<AlarmRow> alarms;  ///< in the order in which error_code looks for the first active one
+  std::vector<ObjectWrite> setup;
+  std::vector<Check> checks;
+  FenceFacts fence;
+  bool stops_by_itself = false;  ///< it notices a dead gateway on this protocol; else alarm no_comm_watchdog
+  /// A command that removes torque exists on the bus; else the gate rule of 3.4.
+  std::array<Duration, 3> poll_period{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
+                                      std::chrono::milliseconds(1000)};
+
+  [[nodiscard]] const ObjectDef& object(ObjectId id) const { return objects[id]; }
+  [[nodiscard]] ObjectId find(bus::ObjectAddress address) const;  ///< kNoObject where no object has it
+};
+
+}  // namespace axisgate::drive

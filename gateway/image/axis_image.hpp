@@ -1,0 +1,121 @@
+// The image of one axis: the newest sample of every quantity and the axis's states, as every face shows them.
+// Promises that what it shows as valid is valid, and that `sequence` steps once for each change a client could notice.
+// Never waits: a reader takes what is there. One thread writes and reads it, between two turns of the loop.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "gateway/core/clock.hpp"
+#include "gateway/core/error.hpp"
+#include "gateway/image/quantity.hpp"
+
+namespace axisgate {
+
+using AxisNumber = std::uint16_t;
+inline constexpr AxisNumber kMaxAxisNumber = 499;
+
+enum class LinkState : std::uint8_t { unknown = 0, setup = 1, online = 2, suspect = 3, offline = 4, link_down = 5 };
+enum class AxisState : std::uint8_t {
+  disabled = 0,
+  standstill = 1,
+  discrete_motion = 2,
+  continuous_motion = 3,
+  homing = 4,
+  stopping = 5,  ///< or stop-latched
+  error_stop = 6,
+};
+enum class MotionState : std::uint8_t { none = 0, active = 1, completed = 2, aborted = 3, failed = 4 };
+
+/// Register 34 (design 3.1).
+enum class AxisAlarm : std::uint8_t {
+  no_comm_watchdog = 0,
+  adopted_running = 1,
+  identity_mismatch = 2,
+  local_control = 3,
+  limit_inputs_open = 4,
+  not_homed = 5,
+  cannot_deenergise = 6,
+  stop_latched = 7,
+  duplicate_node = 8,
+  nvm_budget = 9,
+  clamped = 10,
+  stop_options = 11,
+};
+inline constexpr std::size_t kAxisAlarmCount = 12;
+[[nodiscard]] constexpr std::uint32_t bit(AxisAlarm alarm) { return 1U << static_cast<unsigned>(alarm); }
+[[nodiscard]] std::string_view text(AxisAlarm alarm);
+[[nodiscard]] std::string_view text(LinkState state);
+[[nodiscard]] std::string_view text(AxisState state);
+
+/// Discrete inputs 0..12 (design 3.1); bit 11, owned_by_me, is each client's own and never set here.
+enum class AxisInput : std::uint8_t {
+  online = 0,
+  ready = 1,
+  enabled = 2,
+  fault = 3,
+  warning = 4,
+  target_reached = 5,
+  homed = 6,
+  moving = 7,
+  limit_active = 8,
+  quick_stop_active = 9,
+  following_error = 10,
+  owned_by_me = 11,
+  stop_latched = 12,
+};
+inline constexpr std::size_t kAxisInputCount = 13;
+[[nodiscard]] constexpr std::uint16_t bit(AxisInput input) {
+  return static_cast<std::uint16_t>(1U << static_cast<unsigned>(input));
+}
+
+struct Sample {
+  std::int64_t value = 0;  ///< in register units
+  bool received = false;   ///< a value was received since the gateway's start and could be represented
+  bool valid = false;      ///< it is good now
+  Instant at = kLongAgo;   ///< when it was last confirmed
+};
+
+/// The result of the last group of an axis, for registers 25, 26 and 30.
+struct LatestResult {
+  CommandResult result = CommandResult::none;
+  std::uint32_t detail = 0;
+  std::uint16_t command_id = 0;
+  friend bool operator==(const LatestResult&, const LatestResult&) = default;
+};
+
+struct AxisImage {
+  // Fixed when the gateway starts.
+  AxisNumber number = 0;
+  std::string name;
+  std::uint8_t bus = 0;  ///< position of its bus in the configuration
+  std::uint32_t supported = 0;
+  std::uint32_t writable = 0;  ///< quantities of `supported` that can be written on this drive
+  std::uint32_t supported_commands = 0;
+  std::uint16_t supported_modes = 0;
+  /// Per quantity, what a write may carry: the axis's, profile's and drive's limits together, in register units.
+  std::array<Range, kQuantityCount> limits{};
+
+  // Changed by the drive alone, through AxisWriter's rules.
+  std::array<Sample, kQuantityCount> samples{};
+  LinkState link_state = LinkState::unknown;
+  AxisState axis_state = AxisState::disabled;
+  MotionState motion_state = MotionState::none;
+  std::uint16_t motion_id = 0;
+  std::uint32_t alarms = 0;
+  std::uint16_t inputs = 0;        ///< AxisInput bits
+  std::uint16_t level_coils = 0;   ///< coils 0, 3, 7 read back: bits 0 enabled, 3 halted, 7 velocity running
+  Instant oldest_cyclic = kLongAgo;  ///< when the oldest cyclic value was confirmed
+  LatestResult latest;
+  std::uint32_t sequence = 0;
+
+  [[nodiscard]] const Sample& operator[](Quantity q) const { return samples[static_cast<std::size_t>(q)]; }
+  [[nodiscard]] Sample& operator[](Quantity q) { return samples[static_cast<std::size_t>(q)]; }
+  [[nodiscard]] const Range& limit(Quantity q) const { return limits[static_cast<std::size_t>(q)]; }
+  [[nodiscard]] bool has(AxisInput input) const { return (inputs & bit(input)) != 0; }
+  [[nodiscard]] bool reachable() const { return link_state == LinkState::online || link_state == LinkState::suspect; }
+  [[nodiscard]] std::uint32_t valid_bits() const;
+};
+
+}  // namespace axisgate

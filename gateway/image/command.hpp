@@ -1,0 +1,86 @@
+// What a client can ask of an axis: the one-shot commands of design 3.4 and the group, all writes of one request together.
+// Promises that both faces, Modbus and DDS, ask in the same words.
+// Never holds raw drive values, but for the object mailbox.
+#pragma once
+
+#include <boost/container/static_vector.hpp>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "gateway/core/clock.hpp"
+#include "gateway/core/error.hpp"
+#include "gateway/image/axis_image.hpp"
+
+namespace axisgate {
+
+enum class Command : std::uint8_t {
+  none = 0,
+  enable = 1,
+  disable = 2,
+  quick_stop = 3,
+  halt = 4,
+  fault_reset = 5,
+  move_absolute = 6,
+  move_relative = 7,
+  run_velocity = 8,
+  run_torque = 9,
+  home = 10,
+  set_position = 11,
+  save_parameters = 12,
+  release = 13,
+  take_over = 14,
+  end_halt = 30,  ///< coil 3 going 1 -> 0; never a register value, never in supported_commands
+};
+inline constexpr std::uint16_t kLastCommand = 14;
+[[nodiscard]] std::string_view text(Command command);
+[[nodiscard]] constexpr bool is_stop(Command c) {
+  return c == Command::disable || c == Command::quick_stop || c == Command::halt;
+}
+
+enum class Role : std::uint8_t { none = 0, viewer = 1, operator_ = 2, engineer = 3 };
+[[nodiscard]] std::string_view text(Role role);
+
+/// One client of any face: a TCP connection, a host (listener option "client": "address"), a DDS writer. Never reused.
+using ClientId = std::uint64_t;
+
+/// The object mailbox (registers 80..88) and, later, FC 43/13.
+struct ObjectRequest {
+  bool write = false;
+  std::uint16_t index = 0;
+  std::uint8_t subindex = 0;
+  std::uint8_t size = 0;  ///< bytes: 1, 2 or 4
+  std::uint32_t data = 0;
+};
+
+struct Setpoint {
+  Quantity quantity;
+  std::int64_t value;  ///< in register units
+};
+
+/// All writes of one request to one axis. Run in this order: setpoints, mode, controlword, command, object.
+struct Group {
+  ClientId client = 0;
+  Role role = Role::viewer;
+  /// In register order; quantities but mode and controlword, each at most once.
+  boost::container::static_vector<Setpoint, kQuantityCount> setpoints;
+  std::optional<std::int16_t> mode;
+  std::optional<std::uint16_t> controlword;
+  /// The controlword stands alone in its request: only then do its stop bits count from a client that does not own the axis.
+  bool single_controlword = false;
+  Command command = Command::none;
+  /// Row 78; the axis keeps it (gateway's own, 0 at start).
+  std::optional<std::int32_t> set_position_value;
+  std::optional<ObjectRequest> object;
+  std::uint16_t command_id = 0;
+  Instant start_by = kNever;   ///< not begun by then: never_started
+  Instant answer_by = kNever;  ///< begun, not acknowledged by then: timed_out
+};
+
+struct GroupResult {
+  Outcome outcome;
+  std::uint32_t object_data = 0;  ///< of a mailbox read
+  std::uint8_t object_size = 0;
+};
+
+}  // namespace axisgate

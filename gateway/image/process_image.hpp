@@ -1,0 +1,82 @@
+// The process image: all axes, buses and the gateway itself, as every face reads them.
+// Promises that pointers to axes stay good for the gateway's life and that axes are found by number in constant time.
+// Never holds anything of a client.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gateway/image/axis_image.hpp"
+
+namespace axisgate {
+
+enum class GatewayState : std::uint8_t { starting = 0, running = 1, degraded = 2, stopping = 3 };
+
+/// Register 6 of the gateway block.
+enum class GatewayAlarm : std::uint8_t {
+  axis_offline = 0,
+  bus_down = 1,
+  drive_fault = 2,
+  identity_mismatch = 3,
+  no_comm_watchdog = 4,
+  check_failed = 5,
+  adopted_running = 6,
+  dds_process_down = 7,
+  configuration_changed = 8,
+  certificate_expires = 9,
+  event_loop_slow = 10,
+  nvm_budget = 11,
+  bus_overloaded = 12,
+};
+
+/// Registers 50000 + 100 * b; refreshed by the gateway before a request is answered.
+struct BusImage {
+  std::string name;
+  std::uint16_t link = 0;  ///< 0 down, 1 up, 2 suspect
+  std::uint16_t load_permille = 0;
+  std::uint16_t cycle_ms = 0;
+  std::uint16_t queue_depth = 0;
+  std::uint32_t requests = 0;
+  std::uint32_t replies = 0;
+  std::uint32_t timeouts = 0;
+  std::uint32_t bad_frames = 0;
+  std::uint32_t late_replies = 0;
+  std::uint32_t dropped_bytes = 0;
+  std::uint32_t refused = 0;
+  std::uint32_t coalesced = 0;
+  std::uint32_t superseded = 0;
+  std::uint32_t reconnects = 0;
+};
+
+struct GatewayImage {
+  GatewayState state = GatewayState::starting;
+  std::uint16_t axes_online = 0;
+  std::uint32_t uptime_s = 0;
+  std::uint16_t alarms = 0;
+};
+
+inline constexpr std::size_t kMaxBuses = 100;  ///< 50000 + 100 * b must stay below the overview at 60000
+
+class ProcessImage {
+ public:
+  /// Numbers are unique and within 1..499 (the configuration was checked).
+  AxisImage& add_axis(AxisNumber number, std::string name, std::uint8_t bus);
+  [[nodiscard]] AxisImage* find(AxisNumber number) const;
+  /// In the order of their numbers.
+  [[nodiscard]] const std::vector<std::unique_ptr<AxisImage>>& axes() const { return axes_; }
+
+  std::vector<BusImage> buses;  ///< in configuration order, at most kMaxBuses
+  GatewayImage gateway;
+
+  /// Bus and gateway rows are gathered only when somebody looks: the gateway installs how.
+  std::function<void()> refresh = [] {};
+
+ private:
+  std::vector<std::unique_ptr<AxisImage>> axes_;
+  std::array<AxisImage*, kMaxAxisNumber + 1> by_number_{};
+};
+
+}  // namespace axisgate
