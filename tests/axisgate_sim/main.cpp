@@ -1,0 +1,97 @@
+// axisgate-sim: simulated Kinco JD and MD drives on pseudo-terminals, for demos, tests and benchmarks.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <optional>
+
+#include "tests/axisgate_sim/run.hpp"
+
+using namespace axisgate::simulated;
+
+namespace {
+
+struct Options {
+  std::vector<std::string> lines;
+  std::vector<std::string> faults;
+  std::string control;
+  bool cascade = false;
+  bool rs485 = false;
+  bool factory_fresh = false;
+  double reply_delay_ms = 0;
+  double boot_ms = 1000;
+  double store_ms = 50;
+  std::uint32_t baud = 0;
+  std::uint64_t seed = 1;
+};
+
+Time milliseconds_of(double amount) { return Time{static_cast<std::int64_t>(amount * 1e6)}; }
+
+void describe_options(CLI::App& app, Options& options) {
+  app.footer(
+      "Example: axisgate-sim --line /tmp/lift:jd@1 --line /tmp/table:md@1,jd@2 --cascade --control /tmp/sim.sock\n"
+      "A drive may carry +fresh, +cascade, +home=FROM..TO and +limits=FROM..TO (counts of the motor): jd@1+fresh.\n"
+      "The control socket takes text lines: echo 'mute lift/1 on' | socat - UNIX:/tmp/sim.sock; 'help' lists them.");
+  app.add_option("--line", options.lines,
+                 "PATH:TYPE@STATION[,TYPE@STATION...], type jd or md; one pty each, linked at PATH")
+      ->required();
+  app.add_flag("--cascade", options.cascade,
+               "All drives have 6510:0B = 1 and return the host's frames, as several on one RS232 line always do");
+  app.add_flag("--rs485", options.rs485, "The lines are RS485 with Kinco's protocol (MD drives only)");
+  app.add_flag("--factory-fresh", options.factory_fresh,
+               "Drives as delivered: DIN1 and DIN3 block the bus, limits unwired");
+  app.add_option("--reply-delay-ms", options.reply_delay_ms, "Time a drive takes to answer")
+      ->check(CLI::Range(0.0, 60000.0));
+  app.add_option("--boot-ms", options.boot_ms, "Time a restarted drive is silent")->check(CLI::Range(0.0, 600000.0));
+  app.add_option("--store-ms", options.store_ms, "Time a store to the EEPROM takes")->check(CLI::Range(0.0, 600000.0));
+  app.add_option("--baud-timing", options.baud, "Let each byte take its time at this rate; 0: none")
+      ->check(CLI::Range(0, 1000000));
+  app.add_option("--seed", options.seed, "Seed of the faults' chances");
+  app.add_option("--fault", options.faults,
+                 "NAME@LINE/STATION[=RATE], for example mute@lift/1 or corrupt@table/2=0.01");
+  app.add_option("--control", options.control, "Path of a Unix socket that takes commands while the simulator runs");
+}
+
+void build(Simulator& simulator, Control& control, const Options& options) {
+  DriveOptions drive;
+  drive.cascade = options.cascade;
+  drive.factory_fresh = options.factory_fresh;
+  drive.boot_time = milliseconds_of(options.boot_ms);
+  drive.store_time = milliseconds_of(options.store_ms);
+  LineOptions line;
+  line.wiring = options.rs485 ? Wiring::rs485 : Wiring::rs232;
+  line.baud = options.baud;
+  line.reply_delay = milliseconds_of(options.reply_delay_ms);
+  std::uint64_t seed = options.seed;
+  for (const std::string& text : options.lines) {
+    LineSpec spec = parse_line_spec(text, drive);
+    // Several drives on RS232 are a chain, which works with 6510:0B = 1 in each of them only (JD 2.1).
+    const bool chain = spec.drives.size() > 1 && !options.rs485;
+    for (DriveOptions& one : spec.drives) one.cascade = one.cascade || chain;
+    simulator.add(spec, line, seed++);
+  }
+  for (const std::string& text : options.faults) control.set_fault(text);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Simulated Kinco JD and MD drives on pseudo-terminals, as their fact sheets describe them."};
+  Options options;
+  describe_options(app, options);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const Descriptor end_signals = block_end_signals();
+    Simulator simulator;
+    Control control(simulator);
+    std::optional<ControlSocket> socket;
+    build(simulator, control, options);
+    if (!options.control.empty()) {
+      socket.emplace(options.control, control);
+      std::cout << "control " << options.control << std::endl;
+    }
+    run(simulator, socket ? &*socket : nullptr, end_signals);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "axisgate-sim: " << error.what() << '\n';
+    return 1;
+  }
+}

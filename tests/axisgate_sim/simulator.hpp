@@ -1,0 +1,43 @@
+// The running simulator: its lines with their ptys, and the time that has passed since it began.
+// Promises that a line keeps its drives and their faults while it is unplugged; only the port is gone.
+// Never blocks and never waits: the poll loop does.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/axisgate_sim/line_spec.hpp"
+#include "tests/axisgate_sim/pty.hpp"
+#include "tests/simulated/serial_line.hpp"
+
+namespace axisgate::simulated {
+
+struct PortLine {
+  LineSpec spec;
+  std::unique_ptr<SerialLine> line;
+  std::unique_ptr<Pty> pty;  // none while unplugged
+};
+
+class Simulator {
+ public:
+  Time now() const;
+
+  // Throws std::invalid_argument or std::runtime_error.
+  void add(const LineSpec& spec, const LineOptions& options, std::uint64_t seed);
+  void plug(PortLine& line);  // prints the ready line
+  void unplug(PortLine& line);
+  PortLine* find(const std::string& name);
+  std::map<std::string, PortLine>& lines() { return lines_; }
+
+  // Moves all lines on to now, and tells when the next of them has something to do.
+  std::optional<Time> advance();
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::map<std::string, PortLine> lines_;
+};
+
+}  // namespace axisgate::simulated

@@ -1,0 +1,43 @@
+#include "tests/simulated/axis.hpp"
+
+#include <algorithm>
+
+namespace axisgate::simulated {
+namespace {
+
+FinePosition floor_divide(FinePosition value, FinePosition by) { return value / by - (value % by < 0 ? 1 : 0); }
+
+}  // namespace
+
+void Axis::step(Dec speed, bool position_loop, int direction) {
+  speed_ = speed;
+  demand_ += speed;
+  FinePosition wanted = physical_ + direction * (demand_ - actual_);
+  if (jammed_) wanted = physical_;
+  if (mechanics_.positive_stop) wanted = std::min(wanted, *mechanics_.positive_stop * fine_per_count);
+  if (mechanics_.negative_stop) wanted = std::max(wanted, *mechanics_.negative_stop * fine_per_count);
+
+  const FinePosition before = physical_;
+  actual_speed_ = direction * (wanted - before);
+  stalled_ = speed != 0 && actual_speed_ == 0;
+  physical_ = wanted;
+  actual_ += actual_speed_;
+  if (!position_loop) demand_ = actual_;
+
+  // An index pulse lies at index_offset + k revolutions. One is passed when the step crosses or reaches it.
+  index_passed_.reset();
+  const FinePosition offset = mechanics_.index_offset * fine_per_count;
+  const FinePosition turns_before = floor_divide(before - offset, revolution_);
+  const FinePosition turns_now = floor_divide(physical_ - offset, revolution_);
+  std::optional<FinePosition> index;
+  if (turns_now > turns_before) index = offset + turns_now * revolution_;
+  if (turns_now < turns_before) index = offset + turns_before * revolution_;
+  if (index && *index != before) index_passed_ = actual_ - direction * (physical_ - *index);
+}
+
+void Axis::redefine(FinePosition actual) {
+  demand_ += actual - actual_;
+  actual_ = actual;
+}
+
+}  // namespace axisgate::simulated

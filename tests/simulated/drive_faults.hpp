@@ -1,0 +1,67 @@
+// The fault switches of one drive on a line: each a probability per reply, and a number of next replies for tests.
+// Promises that a switch which is off draws no random number, so switching one fault on shifts no other draw before it.
+// Never touches the drive or the line; SerialLine asks it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "tests/simulated/random.hpp"
+#include "tests/simulated/time.hpp"
+
+namespace axisgate::simulated {
+
+enum class DriveFault : std::uint8_t {
+  mute,           // the request is neither seen nor answered
+  late,           // the reply comes `late_by` later
+  lose,           // the drive acts, the reply is lost
+  noise_before,   // random bytes before the reply
+  noise_after,    // random bytes after it
+  corrupt,        // one bit of the reply flips
+  split,          // the reply comes in two pieces, `split_gap` apart
+  duplicate,      // the reply comes twice
+  wrong_station,  // the reply names another station, with a right checksum
+  restart,        // the drive reboots on the request, before or after acting on it, and never answers it
+  babble,         // bursts of random bytes every `babble_period`, unasked
+};
+
+inline constexpr std::size_t drive_fault_count = 11;
+
+std::string_view name_of(DriveFault fault);
+std::optional<DriveFault> drive_fault_named(std::string_view name);
+
+class DriveFaults {
+ public:
+  Time late_by = std::chrono::milliseconds(300);
+  Time split_gap = std::chrono::milliseconds(3);
+  Time babble_period = std::chrono::milliseconds(10);
+  std::uint64_t longest_noise = 12;  // bytes
+
+  void set_rate(DriveFault fault, double probability) { switches_[number(fault)].rate = probability; }
+  void next(DriveFault fault, std::uint64_t times = 1) { switches_[number(fault)].next = times; }
+  bool armed(DriveFault fault) const { return switches_[number(fault)].rate > 0 || switches_[number(fault)].next > 0; }
+  void clear() { switches_ = {}; }
+
+  // Does this fault strike now? Uses up one of the `next` ones first.
+  bool strikes(DriveFault fault, Random& random) {
+    Switch& chosen = switches_[number(fault)];
+    if (chosen.next > 0) {
+      --chosen.next;
+      return true;
+    }
+    return random.chance(chosen.rate);
+  }
+
+ private:
+  struct Switch {
+    double rate = 0;
+    std::uint64_t next = 0;
+  };
+  static std::size_t number(DriveFault fault) { return static_cast<std::size_t>(fault); }
+
+  std::array<Switch, drive_fault_count> switches_{};
+};
+
+}  // namespace axisgate::simulated

@@ -1,0 +1,217 @@
+#include "tests/simulated/serial_line.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace axisgate::simulated {
+
+SerialLine::SerialLine(const LineOptions& options, Random random, Sink sink)
+    : options_(options), random_(random), sink_(std::move(sink)), journal_(options.journal_capacity) {}
+
+KincoDrive& SerialLine::add(const DriveOptions& options) {
+  const KincoModel& model = model_of(options.type);
+  if (options_.wiring == Wiring::rs485 && !model.rs485_speaks_this_protocol) {
+    throw std::invalid_argument("a Kinco " + std::string(model.name) + " speaks Modbus RTU on RS485: use RS232");
+  }
+  if (options.station < 1 || options.station > 127) {
+    throw std::invalid_argument("station " + std::to_string(options.station) + " is outside 1 to 127");
+  }
+  Slot slot;
+  slot.drive = std::make_unique<KincoDrive>(options);
+  slot.drive->advance(now_);
+  slots_.push_back(std::move(slot));
+  return *slots_.back().drive;
+}
+
+Time SerialLine::duration(std::size_t bytes) const {
+  if (options_.baud == 0) return Time{};
+  return Time{static_cast<std::int64_t>(bytes) * 10'000'000'000 / options_.baud};
+}
+
+bool SerialLine::passes_on(const Slot& slot) const {
+  return options_.wiring == Wiring::rs485 || (!slot.drive->booting() && slot.drive->cascade());
+}
+
+bool SerialLine::hears(std::size_t position) const {
+  const Slot& slot = slots_[position];
+  if (slot.drive->booting()) return false;
+  if (options_.wiring == Wiring::rs485) return slot.drive->rs485_speaks_kinco();
+  if (options_.check_baud && slot.drive->rs232_baud() != options_.baud) return false;
+  return std::all_of(slots_.begin(), slots_.begin() + static_cast<std::ptrdiff_t>(position),
+                     [this](const Slot& before) { return passes_on(before); });
+}
+
+bool SerialLine::reaches_host(std::size_t position) const {
+  return std::all_of(slots_.begin() + static_cast<std::ptrdiff_t>(position) + 1, slots_.end(),
+                     [this](const Slot& after) { return passes_on(after); });
+}
+
+void SerialLine::from_host(std::span<const std::uint8_t> bytes, Time now) {
+  advance(now);
+  for (const std::uint8_t byte : bytes) {
+    host_line_free_ = std::max(host_line_free_, now) + duration(1);
+    incoming_.push_back({host_line_free_, byte});
+  }
+  advance(now);
+}
+
+std::optional<Time> SerialLine::next_event() const {
+  std::optional<Time> next;
+  const auto consider = [&next](Time at) { next = next ? std::min(*next, at) : at; };
+  if (!incoming_.empty()) consider(incoming_.front().at);
+  if (!waiting_.empty()) consider(waiting_.begin()->first.first);
+  if (!arriving_.empty()) consider(arriving_.begin()->first.first);
+  for (const Slot& slot : slots_) {
+    if (slot.faults.armed(DriveFault::babble)) consider(slot.next_babble);
+  }
+  return next;
+}
+
+void SerialLine::advance(Time now) {
+  // Events in the order of their times; of one time: bytes at the host first, then drives that begin to send, then
+  // bytes at the drives, so that nothing overtakes.
+  for (;;) {
+    const auto next = next_event();
+    if (!next || *next > now) break;
+    now_ = std::max(now_, *next);
+    if (!arriving_.empty() && arriving_.begin()->first.first == *next) {
+      auto node = arriving_.extract(arriving_.begin());
+      const Chunk& chunk = node.mapped();
+      sink_({*next, chunk.tag, chunk.origin, chunk.bytes});
+    } else if (!waiting_.empty() && waiting_.begin()->first.first == *next) {
+      auto node = waiting_.extract(waiting_.begin());
+      put_on_wire(*next, std::move(node.mapped()));
+    } else if (!incoming_.empty() && incoming_.front().at == *next) {
+      const IncomingByte arrived = incoming_.front();
+      incoming_.pop_front();
+      byte_arrives(arrived.byte, arrived.at);
+      if (incoming_.empty() || incoming_.front().at != arrived.at) flush_echo(arrived.at);
+    } else {
+      babble(*next);
+    }
+  }
+  now_ = std::max(now_, now);
+  for (Slot& slot : slots_) {
+    slot.drive->advance(now_);
+    if (!slot.faults.armed(DriveFault::babble)) slot.next_babble = now_ + slot.faults.babble_period;
+  }
+}
+
+void SerialLine::byte_arrives(std::uint8_t byte, Time at) {
+  for (Slot& slot : slots_) slot.drive->advance(at);
+  if (options_.wiring == Wiring::rs232 && !slots_.empty() &&
+      std::all_of(slots_.begin(), slots_.end(), [this](const Slot& slot) { return passes_on(slot); })) {
+    echo_.push_back(byte);
+  }
+  for (std::size_t position = 0; position < slots_.size(); ++position) {
+    if (!hears(position)) {
+      slots_[position].receiver.forget();
+      continue;
+    }
+    const auto request = slots_[position].receiver.receive(byte, at);
+    // A frame for another station, or one with a wrong sum, meets silence (JD 2.1, MD 2.2).
+    if (!request || station_of(*request) != slots_[position].drive->station()) continue;
+    flush_echo(at);
+    request_arrives(position, *request, at);
+  }
+}
+
+void SerialLine::flush_echo(Time at) {
+  if (echo_.empty()) return;
+  send(at, {0, ByteOrigin::echo, slots_.size(), std::exchange(echo_, {})});
+}
+
+void SerialLine::request_arrives(std::size_t position, const TenByteFrame& request, Time at) {
+  Slot& slot = slots_[position];
+  Exchange exchange{++tags_, at, slot.drive->station(), request, {}, {}};
+  if (slot.faults.strikes(DriveFault::mute, random_)) {
+    journal_.record(std::move(exchange));
+    return;
+  }
+  if (slot.faults.strikes(DriveFault::restart, random_)) {
+    if (random_.chance(0.5)) (void)slot.drive->answer(request, exchange.tag, at);
+    restart(position, at);
+    journal_.record(std::move(exchange));
+    return;
+  }
+  const auto reply = slot.drive->answer(request, exchange.tag, at);
+  const bool lost = slot.faults.strikes(DriveFault::lose, random_);
+  if (reply && !lost) {
+    const bool late = slot.faults.strikes(DriveFault::late, random_);
+    slot.reply_ready = std::max(slot.reply_ready, at + options_.reply_delay + (late ? slot.faults.late_by : Time{}));
+    exchange.reply_ready = slot.reply_ready;
+    exchange.sent = distort(slot, *reply);
+    const bool twice = slot.faults.strikes(DriveFault::duplicate, random_);
+    send_reply(position, exchange.tag, slot.reply_ready, exchange.sent);
+    if (twice) send_reply(position, exchange.tag, slot.reply_ready, exchange.sent);
+  }
+  journal_.record(std::move(exchange));
+}
+
+std::vector<std::uint8_t> SerialLine::noise(const DriveFaults& faults) {
+  std::vector<std::uint8_t> bytes(1 + random_.below(std::max<std::uint64_t>(faults.longest_noise, 1)));
+  for (std::uint8_t& byte : bytes) byte = random_.byte();
+  return bytes;
+}
+
+std::vector<std::uint8_t> SerialLine::distort(Slot& slot, TenByteFrame reply) {
+  if (slot.faults.strikes(DriveFault::wrong_station, random_)) {
+    const auto other = static_cast<std::uint8_t>(station_of(reply) % 127 + 1);
+    reply = seal(other, command_of(reply), index_of(reply), sub_of(reply), data_of(reply));
+  }
+  std::vector<std::uint8_t> bytes(reply.begin(), reply.end());
+  if (slot.faults.strikes(DriveFault::corrupt, random_)) {
+    const std::uint64_t bit = random_.below(8 * frame_length);
+    bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ (1U << (bit % 8)));
+  }
+  if (slot.faults.strikes(DriveFault::noise_before, random_)) {
+    const auto before = noise(slot.faults);
+    bytes.insert(bytes.begin(), before.begin(), before.end());
+  }
+  if (slot.faults.strikes(DriveFault::noise_after, random_)) {
+    const auto after = noise(slot.faults);
+    bytes.insert(bytes.end(), after.begin(), after.end());
+  }
+  return bytes;
+}
+
+void SerialLine::send_reply(std::size_t position, std::uint64_t tag, Time ready, std::vector<std::uint8_t> bytes) {
+  Slot& slot = slots_[position];
+  if (!reaches_host(position)) return;  // a drive further down the chain does not pass it on
+  if (slot.faults.strikes(DriveFault::split, random_)) {
+    const auto cut_at = static_cast<std::ptrdiff_t>(1 + random_.below(bytes.size() - 1));
+    send(ready, {tag, ByteOrigin::reply, position, {bytes.begin(), bytes.begin() + cut_at}});
+    slot.reply_ready = ready + slot.faults.split_gap;
+    send(slot.reply_ready, {tag, ByteOrigin::reply, position, {bytes.begin() + cut_at, bytes.end()}});
+    return;
+  }
+  send(ready, {tag, ByteOrigin::reply, position, std::move(bytes)});
+}
+
+void SerialLine::send(Time ready, Chunk chunk) { waiting_.emplace(std::pair{ready, ++chunks_}, std::move(chunk)); }
+
+void SerialLine::put_on_wire(Time ready, Chunk chunk) {
+  drive_line_free_ = std::max(drive_line_free_, ready) + duration(chunk.bytes.size());
+  arriving_.emplace(std::pair{drive_line_free_, ++chunks_}, std::move(chunk));
+}
+
+void SerialLine::babble(Time now) {
+  for (std::size_t position = 0; position < slots_.size(); ++position) {
+    Slot& slot = slots_[position];
+    if (!slot.faults.armed(DriveFault::babble) || slot.next_babble > now) continue;
+    slot.next_babble = now + std::max(slot.faults.babble_period, one_millisecond);
+    if (slot.faults.strikes(DriveFault::babble, random_)) {
+      send(now, {0, ByteOrigin::noise, position, noise(slot.faults)});
+    }
+  }
+}
+
+void SerialLine::restart(std::size_t position, Time now) {
+  std::erase_if(waiting_, [position](const auto& entry) { return entry.second.drive == position; });
+  slots_[position].receiver.forget();
+  slots_[position].drive->restart(now);
+}
+
+}  // namespace axisgate::simulated

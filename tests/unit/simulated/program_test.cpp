@@ -1,0 +1,194 @@
+// axisgate-sim itself, started as a user would: ptys, control socket, unplugging, and an end that leaves nothing
+// behind.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "tests/axisgate_sim/descriptor.hpp"
+#include "tests/unit/simulated/bench.hpp"
+
+namespace axisgate::simulated {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Program : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = fs::temp_directory_path() / "axisgate-sim-XXXXXX";
+    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+    folder = pattern;
+  }
+  void TearDown() override {
+    if (child > 0) end(SIGKILL);
+    fs::remove_all(folder);
+  }
+
+  void start(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), AXISGATE_SIM_PROGRAM);
+    child = ::fork();
+    if (child == 0) {
+      const int log = ::open((folder / "log").c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
+      ::dup2(log, STDOUT_FILENO);
+      ::dup2(log, STDERR_FILENO);
+      std::vector<char*> words;
+      for (std::string& word : arguments) words.push_back(word.data());
+      words.push_back(nullptr);
+      ::execv(words[0], words.data());
+      ::_exit(127);
+    }
+  }
+  int end(int signal) {
+    ::kill(child, signal);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    child = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  std::string log() const {
+    std::ifstream file(folder / "log");
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  bool wait_for_log(const std::string& text) const {
+    for (int i = 0; i < 500 && log().find(text) == std::string::npos; ++i) {
+      std::this_thread::sleep_for(milliseconds(10));
+    }
+    return log().find(text) != std::string::npos;
+  }
+
+  std::string control(const std::string& line) const {
+    Descriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const std::string path = folder / "control";
+    std::copy(path.begin(), path.end(), address.sun_path);
+    if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return "no socket";
+    const std::string text = line + "\n";
+    (void)::send(socket.get(), text.data(), text.size(), MSG_NOSIGNAL);
+    std::string reply(4096, '\0');
+    const ssize_t got = ::recv(socket.get(), reply.data(), reply.size(), 0);
+    reply.resize(got > 0 ? static_cast<std::size_t>(got) - 1 : 0);
+    return reply;
+  }
+
+  Descriptor open_port(const char* name) const {
+    return Descriptor(::open((folder / name).c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK));
+  }
+  static Bytes exchange(const Descriptor& port, const Bytes& request, std::size_t length, int timeout_ms = 2000) {
+    (void)!::write(port.get(), request.data(), request.size());
+    Bytes reply;
+    while (reply.size() < length) {
+      pollfd ready{port.get(), POLLIN, 0};
+      if (::poll(&ready, 1, timeout_ms) <= 0) break;
+      Bytes piece(256);
+      const ssize_t got = ::read(port.get(), piece.data(), piece.size());
+      if (got <= 0) break;
+      reply.insert(reply.end(), piece.begin(), piece.begin() + got);
+    }
+    return reply;
+  }
+
+  fs::path folder;
+  pid_t child = 0;
+  const Bytes read_status = from_hex("01 40 41 60 00 00 00 00 00 1E");
+};
+
+TEST_F(Program, AnswersOnItsPtysAndEndsWithoutATrace) {
+  start({"--line", folder / "lift:jd@1", "--line", folder / "table:md@1,jd@2", "--control", folder / "control"});
+  ASSERT_TRUE(wait_for_log("control "));
+  EXPECT_THAT(log(), testing::HasSubstr("ready " + (folder / "lift").string() + " -> /dev/pts/"));
+  const Descriptor lift = open_port("lift");
+  EXPECT_EQ(exchange(lift, read_status, 10), from_hex("01 4B 41 60 00 50 40 00 00 83"));
+  const Descriptor table = open_port("table");
+  EXPECT_EQ(exchange(table, read_status, 20).size(), 20U);  // a chain returns the host's frame first
+  EXPECT_EQ(end(SIGINT), 0);
+  EXPECT_FALSE(fs::exists(fs::symlink_status(folder / "lift")));
+  EXPECT_FALSE(fs::exists(folder / "control"));
+}
+
+TEST_F(Program, KeepsAnsweringWhenAUserClosesAndOpensThePort) {
+  start({"--line", folder / "lift:jd@1"});
+  ASSERT_TRUE(wait_for_log("ready "));
+  for (int i = 0; i < 5; ++i) {
+    const Descriptor port = open_port("lift");
+    EXPECT_EQ(exchange(port, read_status, 10).size(), 10U) << i;
+  }
+  EXPECT_EQ(end(SIGTERM), 0);
+}
+
+TEST_F(Program, ObeysTheControlSocket) {
+  start({"--line", folder / "lift:jd@1", "--control", folder / "control"});
+  ASSERT_TRUE(wait_for_log("control "));
+  const Descriptor port = open_port("lift");
+  EXPECT_EQ(control("mute lift/1 on"), "ok");
+  EXPECT_TRUE(exchange(port, read_status, 10, 100).empty());
+  EXPECT_EQ(control("mute lift/1 off"), "ok");
+  EXPECT_EQ(exchange(port, from_hex("01 2B 40 60 00 0F 00 00 00 25"), 10).size(), 10U);
+  EXPECT_EQ(control("state lift/1"), "ok operation_enabled");
+  EXPECT_EQ(control("writes lift/1 6040.00"), "ok 1");
+  EXPECT_EQ(control("get lift/1 6041.00"), "ok 16439 0x00004037");
+  EXPECT_EQ(control("fault lift/1 2601 0x0020"), "ok");
+  EXPECT_EQ(control("get lift/1 2601.00"), "ok 32 0x00000020");
+  EXPECT_EQ(control("clear lift/1 2601 0x0020"), "ok");
+  EXPECT_EQ(control("set lift/1 6079.00 305"), "ok");
+  EXPECT_EQ(control("restart lift/1"), "ok");
+  EXPECT_EQ(control("state lift/1"), "ok booting");
+  EXPECT_THAT(control("state lift/7"), testing::HasSubstr("it has jd@1"));
+  EXPECT_THAT(control("fly lift/1"), testing::StartsWith("error 'fly' is no command"));
+  EXPECT_THAT(control("get lift/1 6041"), testing::HasSubstr("INDEX.SUB"));
+  EXPECT_THAT(control("help"), testing::StartsWith("ok "));
+}
+
+TEST_F(Program, UnplugsAndPlugsALineUnderTheSameName) {
+  start({"--line", folder / "lift:jd@1", "--control", folder / "control"});
+  ASSERT_TRUE(wait_for_log("control "));
+  const Descriptor old_port = open_port("lift");
+  EXPECT_EQ(control("unplug lift"), "ok");
+  EXPECT_FALSE(fs::exists(fs::symlink_status(folder / "lift")));
+  pollfd gone{old_port.get(), POLLIN, 0};
+  EXPECT_EQ(::poll(&gone, 1, 2000), 1);
+  EXPECT_NE(gone.revents & POLLHUP, 0);
+  EXPECT_EQ(control("plug lift"), "ok");
+  const Descriptor port = open_port("lift");
+  EXPECT_EQ(exchange(port, read_status, 10).size(), 10U);
+}
+
+TEST_F(Program, SaysWhatIsWrongAndEndsWith1) {
+  start({"--line", folder / "nowhere" / "lift:jd@1"});
+  ASSERT_TRUE(wait_for_log("does its folder exist?"));
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  child = 0;
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+}
+
+TEST_F(Program, LeavesAFileOfTheUsersAlone) {
+  std::ofstream(folder / "lift") << "mine";
+  start({"--line", folder / "lift:jd@1"});
+  ASSERT_TRUE(wait_for_log("exists and is no link"));
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  child = 0;
+  EXPECT_TRUE(fs::is_regular_file(folder / "lift"));
+}
+
+TEST_F(Program, AnswersAfterTheReplyDelay) {
+  start({"--line", folder / "lift:jd@1", "--reply-delay-ms", "30"});
+  ASSERT_TRUE(wait_for_log("ready "));
+  const Descriptor port = open_port("lift");
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(exchange(port, read_status, 10).size(), 10U);
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, milliseconds(29));
+}
+
+}  // namespace
+}  // namespace axisgate::simulated
