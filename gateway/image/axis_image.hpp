@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
@@ -104,8 +105,8 @@ struct AxisImage {
   MotionState motion_state = MotionState::none;
   std::uint16_t motion_id = 0;
   std::uint32_t alarms = 0;
-  std::uint16_t inputs = 0;        ///< AxisInput bits
-  std::uint16_t level_coils = 0;   ///< coils 0, 3, 7 read back: bits 0 enabled, 3 halted, 7 velocity running
+  std::uint16_t inputs = 0;          ///< AxisInput bits
+  std::uint16_t level_coils = 0;     ///< coils 0, 3, 7 read back: bits 0 enabled, 3 halted, 7 velocity running
   Instant oldest_cyclic = kLongAgo;  ///< when the oldest cyclic value was confirmed
   LatestResult latest;
   std::uint32_t sequence = 0;
@@ -115,7 +116,12 @@ struct AxisImage {
   [[nodiscard]] const Range& limit(Quantity q) const { return limits[static_cast<std::size_t>(q)]; }
   [[nodiscard]] bool has(AxisInput input) const { return (inputs & bit(input)) != 0; }
   [[nodiscard]] bool reachable() const { return link_state == LinkState::online || link_state == LinkState::suspect; }
+  /// Register 22: supported values that are good now; none while link_state is not 2 or 3.
   [[nodiscard]] std::uint32_t valid_bits() const;
 };
+
+/// Whether no client could tell the two apart: what `sequence` counts (design 3.2). Ages, times, `sequence` itself and
+/// the latest result do not count.
+[[nodiscard]] bool shows_the_same(const AxisImage& a, const AxisImage& b);
 
 }  // namespace axisgate

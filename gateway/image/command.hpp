@@ -1,6 +1,6 @@
-// What a client can ask of an axis: the one-shot commands of design 3.4 and the group, all writes of one request together.
-// Promises that both faces, Modbus and DDS, ask in the same words.
-// Never holds raw drive values, but for the object mailbox.
+// What a client can ask of an axis: the one-shot commands of design 3.4 and the group, all writes of one request
+// together. Promises that both faces, Modbus and DDS, ask in the same words. Never holds raw drive values, but for the
+// object mailbox.
 #pragma once
 
 #include <boost/container/static_vector.hpp>
@@ -55,7 +55,8 @@ struct ObjectRequest {
 
 struct Setpoint {
   Quantity quantity;
-  std::int64_t value;  ///< in register units
+  std::int64_t value;                   ///< in register units
+  std::optional<std::int64_t> exact{};  ///< as the drive counts, where the object mailbox gave it so
 };
 
 /// All writes of one request to one axis. Run in this order: setpoints, mode, controlword, command, object.
@@ -66,7 +67,8 @@ struct Group {
   boost::container::static_vector<Setpoint, kQuantityCount> setpoints;
   std::optional<std::int16_t> mode;
   std::optional<std::uint16_t> controlword;
-  /// The controlword stands alone in its request: only then do its stop bits count from a client that does not own the axis.
+  /// The controlword stands alone in its request: only then do its stop bits count from a client that does not own the
+  /// axis.
   bool single_controlword = false;
   Command command = Command::none;
   /// Row 78; the axis keeps it (gateway's own, 0 at start).

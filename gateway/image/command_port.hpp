@@ -1,6 +1,6 @@
 // The command port: the one way in which a face asks anything of an axis.
-// Promises each submitted group exactly one result: at once, by return value, or later, by the callback, on the core thread.
-// Never blocks and never throws.
+// Promises each submitted group exactly one result: at once, by return value, or later, by the callback, on the core
+// thread. Never blocks and never throws.
 #pragma once
 
 #include <functional>
@@ -18,9 +18,10 @@ class CommandPort {
   CommandPort(const CommandPort&) = delete;
   CommandPort& operator=(const CommandPort&) = delete;
   virtual ~CommandPort() = default;
-  /// With a value: that is the result, and `on_result` is never called. Without: `on_result` is called once, later, never
-  /// from inside submit(). An unknown axis number: no_path.
-  [[nodiscard]] virtual std::optional<GroupResult> submit(AxisNumber axis, const Group& group, GroupCallback on_result) = 0;
+  /// With a value: that is the result, and `on_result` is never called. Without: `on_result` is called once, later,
+  /// never from inside submit(). An unknown axis number: no_path.
+  [[nodiscard]] virtual std::optional<GroupResult> submit(AxisNumber axis, const Group& group,
+                                                          GroupCallback on_result) = 0;
   /// The client is gone for good: what it has waiting goes on, its callbacks are dropped by their owner.
   virtual void client_gone(ClientId client) = 0;
   /// The drive is known to hold exactly this value (a row that a block write may skip without asking the role).

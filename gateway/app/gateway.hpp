@@ -1,0 +1,74 @@
+// The gateway: all buses, drives and axes of a configuration, one image and one command port over them.
+// Promises that it is the same object in the product and in the simulation: what differs (clock, wires) is handed in.
+// Never opens a device or a socket itself, and never enables anything at start.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "adapters/bus/bus.hpp"
+#include "gateway/app/config.hpp"
+#include "gateway/drive/drive.hpp"
+#include "gateway/image/command_port.hpp"
+#include "gateway/image/events.hpp"
+#include "gateway/image/process_image.hpp"
+
+namespace axisgate::app {
+
+/// Per bus, per drive, in configuration order.
+using Models = std::vector<std::vector<drive::DriveModel>>;
+using MakeWire = std::function<std::unique_ptr<bus::Wire>(const BusConfig&)>;
+
+/// An event loop turn this late raises the gateway alarm "event loop slow".
+inline constexpr Duration kSlowLoop = std::chrono::milliseconds(50);
+
+class Gateway final : public CommandPort {
+ public:
+  /// `config` and `models` were checked together (config_loader).
+  Gateway(const Config& config, Models models, Runtime& runtime, const Log& log, const MakeWire& make_wire);
+  ~Gateway() override;
+
+  /// Opens the wires. A device that is missing is picked up when it appears.
+  void start();
+  /// Nothing is stopped or disabled by it: drives keep what they do (SECURITY.md).
+  void stop();
+
+  [[nodiscard]] std::optional<GroupResult> submit(AxisNumber axis, const Group& group, GroupCallback on_result) override;
+  void client_gone(ClientId client) override;
+  [[nodiscard]] bool holds(AxisNumber axis, Quantity quantity, std::int64_t value) const override;
+  [[nodiscard]] std::int32_t set_position_value(AxisNumber axis) const override;
+
+  [[nodiscard]] ProcessImage& image() { return image_; }
+  [[nodiscard]] const EventRing& events() const { return events_; }
+  [[nodiscard]] bus::Bus& bus(std::size_t index) { return *buses_[index]; }
+  [[nodiscard]] std::size_t bus_count() const { return buses_.size(); }
+  [[nodiscard]] const drive::Drive* drive_of(AxisNumber axis) const;
+  /// The loop was this late once (the shell measures it).
+  void report_loop_delay(Duration delay);
+
+ private:
+  struct Place {
+    drive::Drive* drive = nullptr;
+    bus::AxisSlot slot = 0;
+  };
+  void add_bus(const BusConfig& config, std::size_t index, const MakeWire& make_wire);
+  void refresh();
+  void refresh_bus(std::size_t index);
+  [[nodiscard]] std::uint16_t gateway_alarms() const;
+
+  Runtime& runtime_;
+  const Log& log_;
+  Models models_;  ///< drives refer to them: never changed after construction
+  ProcessImage image_;
+  EventRing events_;
+  std::vector<std::unique_ptr<bus::Bus>> buses_;
+  std::vector<std::unique_ptr<drive::Drive>> drives_;
+  std::vector<std::size_t> bus_of_drive_;
+  std::array<Place, kMaxAxisNumber + 1> places_{};
+  Instant started_ = kLongAgo;
+  Instant slow_loop_at_ = kLongAgo;
+  bool stopping_ = false;
+};
+
+}  // namespace axisgate::app

@@ -1,0 +1,91 @@
+// An action: one thing a group does on the wire or to the motion rules, in the order in which a plan lists them.
+// Promises that a plan is data: it can be printed, compared in a test, and carried out one exchange at a time.
+// Never more than kMaxActions in a plan.
+#pragma once
+
+#include <vector>
+
+#include "gateway/drive/axis_core.hpp"
+
+namespace axisgate::drive {
+
+/// Turning points that a plan reaches between its exchanges.
+enum class Mark : std::uint8_t {
+  enabled,           ///< the stop latch is cleared
+  start_discrete,    ///< the drive has acknowledged the start of such a motion
+  start_velocity,
+  start_torque,
+  start_homing,
+  controlword_passed,  ///< a raw controlword was acknowledged: one of the two steps out of the latch, perhaps
+  run_raw,           ///< raw modes 3, 4, 9, 10 run: set-points act at once
+  mode_changed,
+  values_doubtful,   ///< nothing is taken as held any more
+  not_homed,
+};
+
+struct Action {
+  enum class Kind : std::uint8_t { write, read, wait, mark };
+  Kind kind = Kind::write;
+  ObjectId object = kNoObject;      ///< write, read
+  std::int64_t number = 0;          ///< write: as the drive counts
+  ObjectId copy_of = kNoObject;     ///< write: the newest number of this object instead
+  Condition until;                  ///< wait: must hold on a sample asked for after the last acknowledgement
+  Duration limit{};                 ///< wait
+  bool optional = false;            ///< a wait that runs out is no failure
+  Errc otherwise = Errc::not_reached;
+  Mark mark{};
+
+  [[nodiscard]] static Action write(ObjectId object, std::int64_t number) {
+    Action a;
+    a.object = object;
+    a.number = number;
+    return a;
+  }
+  [[nodiscard]] static Action copy(ObjectId from, ObjectId to) {
+    Action a;
+    a.object = to;
+    a.copy_of = from;
+    return a;
+  }
+  [[nodiscard]] static Action read(ObjectId object) {
+    Action a;
+    a.kind = Kind::read;
+    a.object = object;
+    return a;
+  }
+  [[nodiscard]] static Action wait(Condition until, Duration limit, bool optional = false,
+                                   Errc otherwise = Errc::not_reached) {
+    Action a;
+    a.kind = Kind::wait;
+    a.until = std::move(until);
+    a.limit = limit;
+    a.optional = optional;
+    a.otherwise = otherwise;
+    return a;
+  }
+  [[nodiscard]] static Action at(Mark mark) {
+    Action a;
+    a.kind = Kind::mark;
+    a.mark = mark;
+    return a;
+  }
+};
+
+inline constexpr std::size_t kMaxActions = 48;
+
+/// What a part of a group comes to: refused, with the reason, or a list of actions (empty: nothing needs to be sent).
+struct Plan {
+  Outcome refusal;
+  std::vector<Action> actions;
+  [[nodiscard]] bool refused() const { return refusal.code != Errc::ok; }
+
+  [[nodiscard]] static Plan refuse(Errc code) {
+    return {{code, code == Errc::state_unsuitable ? kDetailDeviceState : 0}, {}};
+  }
+  void add(Action action) {
+    assert(actions.size() < kMaxActions);
+    actions.push_back(std::move(action));
+  }
+};
+
+}  // namespace axisgate::drive

@@ -1,0 +1,139 @@
+#include "gateway/drive/admission.hpp"
+
+#include <algorithm>
+
+#include "gateway/drive/planner.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+bool is_target(Quantity q) {
+  return q == Quantity::target_position || q == Quantity::target_velocity || q == Quantity::target_torque;
+}
+
+bool writable(const AxisCore& core, Quantity q) { return (core.model.writable & bit(q)) != 0; }
+
+// Rows 72 to 75 are checked as a pair: what is written against what is written with it, or else held.
+bool limits_in_order(const AxisCore& core, const Group& group) {
+  std::optional<std::int64_t> low, high;
+  bool written = false;
+  for (const Setpoint& sp : group.setpoints) {
+    if (sp.quantity == Quantity::position_limit_min) low = sp.value, written = true;
+    if (sp.quantity == Quantity::position_limit_max) high = sp.value, written = true;
+  }
+  if (!written) return true;
+  if (!low) low = core.value(Quantity::position_limit_min);
+  if (!high) high = core.value(Quantity::position_limit_max);
+  return !low || !high || *low <= *high;
+}
+
+Errc admit_command(const AxisCore& core, Command command) {
+  if (command == Command::none || command == Command::end_halt) return Errc::ok;
+  // Every drive can be halted: where it has no halt, quick_stop takes its place.
+  const bool supported = (core.model.supported_commands & (1U << static_cast<unsigned>(command))) != 0;
+  return supported ? Errc::ok : Errc::not_supported;
+}
+
+}  // namespace
+
+Errc admit(const AxisCore& core, const Group& group) {
+  for (const Setpoint& sp : group.setpoints)
+    if (!writable(core, sp.quantity)) return Errc::not_supported;
+  if (group.mode && !writable(core, Quantity::mode)) return Errc::not_supported;
+  if (group.controlword && !writable(core, Quantity::controlword)) return Errc::not_supported;
+  if (group.set_position_value && !core.model.command(Command::set_position)) return Errc::not_supported;
+  if (const Errc code = admit_command(core, group.command); code != Errc::ok) return code;
+  if (group.object) {
+    const std::uint8_t size = group.object->size;
+    if (size != 1 && size != 2 && size != 4) return Errc::bad_value;
+  }
+  for (const Setpoint& sp : group.setpoints) {
+    const Binding* binding = core.model.binding(sp.quantity);
+    if (!binding->limits.holds(sp.value) || !binding->to_raw(sp.value, core.object(binding->object)))
+      return Errc::bad_value;
+    const auto& methods = core.model.homing_methods;
+    if (sp.quantity == Quantity::homing_method && std::find(methods.begin(), methods.end(), sp.value) == methods.end())
+      return Errc::bad_value;
+  }
+  if (group.mode) {
+    const auto& modes = core.model.modes;
+    if (std::none_of(modes.begin(), modes.end(), [&](const auto& m) { return m.first == *group.mode; }))
+      return Errc::bad_value;
+  }
+  return limits_in_order(core, group) ? Errc::ok : Errc::bad_value;
+}
+
+bool holds_stop(const Group& group) {
+  return is_stop(group.command) || (group.controlword && is_stop(*group.controlword, group.single_controlword));
+}
+
+bool stop_latches(const AxisCore& core, const Group& group) {
+  if (group.command == Command::quick_stop) return true;
+  if (group.command == Command::halt) return halt_is_quick_stop(core);
+  return group.controlword && request_of(*group.controlword) == Request402::quick_stop;
+}
+
+bool starts_motion(const AxisCore& core, const Group& group) {
+  if (group.command >= Command::move_absolute && group.command <= Command::home) return true;
+  return group.controlword &&
+         (*group.controlword & ~core.controlword() & controlword::kStart) != 0;
+}
+
+Group as_quantities(const AxisCore& core, const Group& group) {
+  if (!group.object || !group.object->write) return group;
+  const ObjectRequest& request = *group.object;
+  const ObjectId id = core.drive.find({request.index, request.subindex});
+  if (id == kNoObject) return group;
+  const ObjectDef& object = core.object(id);
+  Group out = group;
+  out.object.reset();
+  if (id == core.model.controlword) {
+    out.controlword = static_cast<std::uint16_t>(request.data);
+    out.single_controlword = true;
+    return out;
+  }
+  const std::int64_t number = object.number(request.data);
+  if (id == core.model.mode) {
+    // A number the profile does not list stands for no mode: it is refused, as in register 41.
+    std::int16_t mode = 0;
+    for (const auto& [unified, raw] : core.model.modes)
+      if (raw == number) mode = unified;
+    out.mode = mode;
+    return out;
+  }
+  for (const Binding& binding : core.model.bindings) {
+    if (binding.object != id || !binding.writable) continue;
+    const auto value = binding.to_register(number);
+    // Not representable in register units: far outside every limit.
+    out.setpoints.push_back({binding.quantity, value.value_or(binding.limits.max + 1), number});
+    return out;
+  }
+  return group;
+}
+
+bus::Order order_for(const AxisCore& core, const Group& group, bool stop) {
+  bus::Order order;
+  order.start_by = group.start_by;
+  if (stop) {
+    order.priority = bus::Priority::stop;
+    return order;
+  }
+  const bool setpoints = !group.setpoints.empty() || group.set_position_value;
+  const bool plain = !group.mode && !group.controlword && group.command == Command::none;
+  if (group.object && plain && !setpoints) {
+    order.priority = bus::Priority::interactive;
+    order.survives_stop = true;
+    if (!group.object->write) order.read = bus::ObjectAddress{group.object->index, group.object->subindex};
+    return order;
+  }
+  order.setpoints_only = plain && !group.object && !group.set_position_value;
+  order.survives_stop = plain;
+  for (const Setpoint& sp : group.setpoints) {
+    if (is_target(sp.quantity)) order.survives_stop = false;
+    order.writes.push_back(core.object(core.model.binding(sp.quantity)->object).address);
+  }
+  std::sort(order.writes.begin(), order.writes.end());
+  return order;
+}
+
+}  // namespace axisgate::drive

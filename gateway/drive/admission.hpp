@@ -1,0 +1,25 @@
+// Admission: what can be told of a group before it is queued (design 3.3, outcome table). Pure.
+// Promises that a group it lets pass asks only for what this drive has, within the limits of axis, profile and drive.
+// Never looks at the state of the motion: that is judged when the group's turn has come.
+#pragma once
+
+#include "adapters/bus/order.hpp"
+#include "gateway/drive/axis_core.hpp"
+#include "gateway/image/command.hpp"
+
+namespace axisgate::drive {
+
+/// ok, not_supported or bad_value.
+[[nodiscard]] Errc admit(const AxisCore& core, const Group& group);
+/// The group holds a stop by design 3.4.
+[[nodiscard]] bool holds_stop(const Group& group);
+/// The stop latches the axis: quick_stop, by command, controlword, or because this drive has no other halt.
+[[nodiscard]] bool stop_latches(const AxisCore& core, const Group& group);
+/// The group starts a motion: target_reached reads 0 until it has its result.
+[[nodiscard]] bool starts_motion(const AxisCore& core, const Group& group);
+/// A mailbox write of an object that a quantity uses becomes a write of that quantity, with its limits, latch and edges.
+[[nodiscard]] Group as_quantities(const AxisCore& core, const Group& group);
+/// What the arbiter must know of the group.
+[[nodiscard]] bus::Order order_for(const AxisCore& core, const Group& group, bool stop);
+
+}  // namespace axisgate::drive

@@ -1,0 +1,105 @@
+// One axis at work: takes groups, queues them with the bus, carries them out one after another and shows the axis's image.
+// Promises each group one result; a stop taken at any time, ahead of everything; callbacks only after the image shows what
+// they tell. Never enables or moves the axis by itself (a homing out of time is halted, nothing else).
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "gateway/drive/conversation.hpp"
+#include "gateway/image/command_port.hpp"
+#include "gateway/image/events.hpp"
+
+namespace axisgate::drive {
+
+/// What an axis needs of its drive.
+class AxisHost {
+ public:
+  AxisHost() = default;
+  AxisHost(const AxisHost&) = delete;
+  AxisHost& operator=(const AxisHost&) = delete;
+  virtual ~AxisHost() = default;
+  [[nodiscard]] virtual Instant now() const = 0;
+  [[nodiscard]] virtual LinkState link_state() const = 0;
+  struct Queued {
+    Errc code = Errc::ok;  ///< ok or queue_full
+    bus::OrderId id = 0;
+    bool joined = false;
+  };
+  [[nodiscard]] virtual Queued queue(bus::Order order) = 0;
+  virtual void order_waits(bus::OrderId id, Instant until) = 0;
+  virtual void order_done(bus::OrderId id) = 0;
+  /// Read this object once more as soon as a poll has its turn.
+  virtual void read_soon(ObjectId object) = 0;
+  virtual void event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) = 0;
+};
+
+/// Clients that may wait for one and the same read or stop.
+inline constexpr std::size_t kMaxJoined = 64;
+
+class Axis {
+ public:
+  Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, AxisImage& image, AxisHost& host);
+
+  [[nodiscard]] std::optional<GroupResult> submit(const Group& group, GroupCallback on_result);
+  [[nodiscard]] bool holds(Quantity quantity, std::int64_t value) const;
+  [[nodiscard]] std::int32_t set_position_value() const { return core_.set_position_value; }
+
+  /// The drive comes up anew: nothing is known, nothing survives.
+  void on_bring_up();
+  void set_alarm(AxisAlarm alarm, bool on);
+
+  /// The order's next exchange; none: it waits or has just ended.
+  [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::OrderId id);
+  [[nodiscard]] bool passes_fence(bus::OrderId id) const;
+  void on_result(bus::OrderId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted);
+  void on_order_ended(bus::OrderId id, Errc code);
+  [[nodiscard]] bool has(bus::OrderId id) const { return find(id) != nullptr; }
+
+  /// Deadlines of groups and of homing.
+  void on_time(Instant now);
+  [[nodiscard]] Instant next_deadline() const;
+
+  /// Brings the image up to date; then calls what is due to be called.
+  void publish(Instant now);
+  void call_back();
+  [[nodiscard]] bool has_due() const { return !due_.empty(); }
+
+  [[nodiscard]] const AxisCore& core() const { return core_; }
+  /// Between the last two samples of the statusword: the poll cycle as it really is.
+  [[nodiscard]] Duration cycle() const { return cycle_; }
+
+ private:
+  struct Pending {
+    bus::OrderId id = 0;
+    std::unique_ptr<Conversation> conversation;
+    std::vector<GroupCallback> callbacks;
+    bool starts_motion = false;
+  };
+  struct Due {
+    GroupResult result;
+    std::vector<GroupCallback> callbacks;
+  };
+  [[nodiscard]] Errc link_admits(bool stop) const;
+  [[nodiscard]] bool join_stop(const Group& group, GroupCallback& on_result);
+  void accept_stop(const Group& group);
+  void carry_on(Pending& pending);
+  void complete(bus::OrderId id, const GroupResult& result);
+  void tell_changes(const AxisImage& before);
+  [[nodiscard]] Pending* find(bus::OrderId id);
+  [[nodiscard]] const Pending* find(bus::OrderId id) const { return const_cast<Axis*>(this)->find(id); }
+  [[nodiscard]] bool motion_pending() const;
+
+  AxisHost& host_;
+  AxisImage& image_;
+  bus::AxisSlot slot_;
+  AxisCore core_;
+  std::vector<Pending> pending_;
+  std::vector<Due> due_;
+  ClientId last_stopper_ = 0;
+  Duration cycle_{};
+  Instant last_statusword_ = kLongAgo;
+};
+
+}  // namespace axisgate::drive

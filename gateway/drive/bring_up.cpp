@@ -1,0 +1,67 @@
+#include "gateway/drive/bring_up.hpp"
+
+#include <algorithm>
+
+#include "gateway/drive/cia402.hpp"
+
+namespace axisgate::drive {
+
+BringUp::BringUp(const DriveModel& model) : model_(model) {
+  const auto add = [&](ObjectId id) {
+    if (id != kNoObject && std::find(reads_.begin(), reads_.end(), id) == reads_.end()) reads_.push_back(id);
+  };
+  for (const AxisModel& axis : model.axes) add(axis.statusword);  // the state comes before everything
+  for (const PollItem& item : poll_items(model)) add(item.object);
+  for (const ObjectWrite& setup : model.setup)
+    if (model.object(setup.object).readable) add(setup.object);
+}
+
+void BringUp::begin() {
+  read_at_ = setup_at_ = 0;
+  setup_written_ = read_back_ = adopted_ = false;
+  unheld_.clear();
+}
+
+bool BringUp::any_enabled(const ObjectStore& store) const {
+  return std::any_of(model_.axes.begin(), model_.axes.end(), [&](const AxisModel& axis) {
+    const ObjectState& s = store[axis.statusword];
+    if (!s.known) return false;
+    const State402 state = state_of(static_cast<std::uint16_t>(s.number));
+    return state == State402::operation_enabled || state == State402::quick_stop_active;
+  });
+}
+
+std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
+  while (read_at_ < reads_.size()) {
+    const ObjectState& s = store[reads_[read_at_]];
+    if (!s.known && !s.refused) return Next{reads_[read_at_], false, 0};
+    ++read_at_;
+  }
+  adopted_ = any_enabled(store);
+  if (adopted_) return std::nullopt;
+  while (setup_at_ < model_.setup.size()) {
+    const ObjectWrite& setup = model_.setup[setup_at_];
+    if (read_back_) return Next{setup.object, false, 0};
+    const bool holds = store[setup.object].known && store[setup.object].number == setup.raw;
+    if (holds || setup_written_) {
+      if (!holds) unheld_.push_back(setup.object);
+      ++setup_at_;
+      setup_written_ = false;
+      continue;
+    }
+    return Next{setup.object, true, setup.raw};
+  }
+  return std::nullopt;
+}
+
+void BringUp::written() {
+  setup_written_ = true;
+  read_back_ = setup_at_ < model_.setup.size() && model_.object(model_.setup[setup_at_].object).readable;
+}
+
+void BringUp::write_refused() {
+  setup_written_ = true;
+  read_back_ = false;
+}
+
+}  // namespace axisgate::drive

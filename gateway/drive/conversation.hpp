@@ -1,0 +1,95 @@
+// A conversation: one group carried out, exchange by exchange (design 3.3). Pure: results and instants in, the next move out.
+// Promises the fixed order set-points, mode, controlword, command, object; an end at the first failure; a statusword sampled
+// after the last acknowledgement before it is done; no write repeated but a stop, three times at most.
+// Never decides whose turn the wire is, and never calls anybody.
+#pragma once
+
+#include "adapters/bus/exchange.hpp"
+#include "gateway/drive/planner.hpp"
+
+namespace axisgate::drive {
+
+class Conversation {
+ public:
+  /// `core` outlives it. `stop`: the group is a stop by design 3.4; its stop is carried out before everything else in it.
+  Conversation(AxisCore& core, const Group& group, bool stop);
+
+  struct Move {
+    enum class Kind : std::uint8_t {
+      exchange,  ///< put this on the wire, then call on_result()
+      wait,      ///< nothing before `until`
+      finished,  ///< see outcome()
+    };
+    Kind kind = Kind::finished;
+    bus::Exchange exchange;
+    Instant until = kLongAgo;
+  };
+  /// Plans as far as it can without the wire. Calling it again without a result in between gives the same move.
+  [[nodiscard]] Move advance(Instant now);
+  /// The result of the exchange given last. `sent_at`: when it was sent. `trusted`: the drive was not suspect; else an
+  /// acknowledgement proves no write, and the object is read back.
+  void on_result(const bus::ExchangeResult& result, Instant sent_at, bool trusted);
+  /// It ends here: stopped, out of time, drive or link lost. What was sent stays sent.
+  void abort(Outcome outcome);
+
+  [[nodiscard]] bool finished() const { return phase_ == Phase::finished; }
+  [[nodiscard]] bool begun() const { return begun_; }  ///< something was sent
+  /// The stop itself is over: what is left of the group has no claim to go first.
+  [[nodiscard]] bool stop_is_over() const { return stop_ && !handed_over_ && phase_ > Phase::settle_stop; }
+  /// The rest of the group was queued anew, without the stop's precedence.
+  void stop_was_handed_over() { handed_over_ = true; }
+  [[nodiscard]] const Group& group() const { return group_; }
+  [[nodiscard]] const GroupResult& result() const { return result_; }
+  [[nodiscard]] bool is_stop() const { return stop_; }
+  /// The move under way is a write that belongs to the stop: it passes a suspect drive's fence.
+  [[nodiscard]] bool passes_fence() const;
+
+ private:
+  enum class Phase : std::uint8_t {
+    stop,
+    settle_stop,
+    setpoints,
+    mode,
+    controlword,
+    preparation,
+    command,
+    object,
+    settle,
+    finished,
+  };
+  static constexpr int kStopAttempts = 3;
+
+  void plan_phase();
+  void next_phase();
+  [[nodiscard]] Plan plan_of(Phase phase);
+  [[nodiscard]] Move exchange_for(const Action& action) const;
+  [[nodiscard]] std::optional<Move> advance_wait(const Action& action, Instant now);
+  [[nodiscard]] std::optional<Move> advance_settle() const;
+  void reach(Mark mark, Instant now);
+  void pop();
+  void fail(Errc code, std::uint32_t detail = 0);
+  [[nodiscard]] bool repeat_stop();
+  void on_write(const Action& action, const bus::ExchangeResult& result, Instant sent_at, bool trusted);
+  void on_read(ObjectId object, const bus::ExchangeResult& result);
+  void on_object(const bus::ExchangeResult& result);
+  [[nodiscard]] std::int64_t number_of(const Action& action) const;
+
+  AxisCore& core_;
+  Group group_;
+  GroupResult result_;
+  bool stop_;
+  Phase phase_;
+  bool planned_ = false;
+  bool begun_ = false;
+  bool handed_over_ = false;
+  bool verifying_ = false;  ///< a write was not acknowledged: its object is read back
+  int stop_attempts_ = 0;
+  int mode_before_ = 0;
+  std::vector<Action> todo_;
+  std::size_t at_ = 0;
+  std::uint64_t last_acknowledged_ = 0;   ///< exchange of the last write: samples asked for earlier are too old
+  Instant wait_until_ = kNever;           ///< of the wait under way; kNever: not begun
+  bool object_done_ = false;
+};
+
+}  // namespace axisgate::drive

@@ -1,0 +1,354 @@
+#include "gateway/drive/drive.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "gateway/drive/publisher.hpp"
+
+namespace axisgate::drive {
+
+Drive::Drive(const DriveModel& model, bus::DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus,
+             Runtime& runtime, EventRing& events)
+    : model_(model),
+      slot_(slot),
+      bus_(bus),
+      runtime_(runtime),
+      events_(events),
+      store_(model.objects.size()),
+      plan_(model),
+      fence_(model.fence, model.objects),
+      bring_up_(model),
+      backoff_(bus.settings().timeout),
+      timer_(runtime.make_timer([this] { on_time(); })) {
+  assert(images.size() == model.axes.size());
+  AxisHost& host = *this;
+  for (std::size_t i = 0; i < images.size(); ++i)
+    axes_.push_back(std::make_unique<Axis>(model_, static_cast<bus::AxisSlot>(i), store_, *images[i], host));
+  bus_.attach(slot_, *this);
+  after_event();
+}
+
+std::optional<GroupResult> Drive::submit(bus::AxisSlot axis, const Group& group, GroupCallback on_result) {
+  auto result = axes_[axis]->submit(group, std::move(on_result));
+  // Callbacks of others wait for the next turn of the loop: nobody is called from inside submit().
+  bring_up_to_date();
+  return result;
+}
+
+AxisHost::Queued Drive::queue(bus::Order order) {
+  order.drive = slot_;
+  const auto admission = bus_.submit(order);
+  return {admission.code, admission.id, admission.joined};
+}
+
+void Drive::event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) {
+  events_.add(now(), axis, kind, code, std::move(text));
+}
+
+// --- What goes on the wire ---------------------------------------------------------------------------------------------
+
+bus::Exchange Drive::read(ObjectId object) const {
+  return {model_.node, bus::Access::read, model_.object(object).address, model_.object(object).size, 0};
+}
+
+std::optional<bus::Exchange> Drive::on_grant(bus::OrderId id, bus::Priority) {
+  on_wire_ = {id, false, false, now()};
+  auto exchange = id == 0 ? own_exchange() : exchange_of(id);
+  if (exchange) {
+    store_.begin_exchange();
+  } else {
+    after_event();
+  }
+  return exchange;
+}
+
+std::optional<bus::Exchange> Drive::own_exchange() {
+  if (state_ == LinkState::unknown || state_ == LinkState::offline) return probe();
+  return fence_.suspect() ? fence(0) : poll();
+}
+
+std::optional<bus::Exchange> Drive::exchange_of(bus::OrderId id) {
+  Axis* owner = nullptr;
+  for (auto& axis : axes_)
+    if (axis->has(id)) owner = axis.get();
+  if (fence_.suspect() && !(owner != nullptr && owner->passes_fence(id))) {
+    on_wire_.order = 0;  // the order keeps its turn; this exchange is the drive's own
+    return fence(id);
+  }
+  if (owner != nullptr) return owner->on_grant(id);
+  return id == setup_order_ ? next_of_bring_up() : std::nullopt;
+}
+
+// A probe of a drive that is not there: its reply must not be one to something lost long ago.
+std::optional<bus::Exchange> Drive::probe() {
+  if (now() < probe_due_) return std::nullopt;
+  on_wire_.probe = true;
+  if (fence_.suspect()) {
+    if (now() < fence_.silent_until()) {
+      probe_due_ = fence_.silent_until();
+      return std::nullopt;
+    }
+    fence_.waited_out();
+  }
+  return read(model_.axes.front().statusword);
+}
+
+std::optional<bus::Exchange> Drive::fence(bus::OrderId order) {
+  const auto object = fence_.candidate();
+  if (object && !fence_.exhausted()) {
+    fence_.fence_sent();
+    on_wire_.fence = true;
+    return read(*object);
+  }
+  if (now() < fence_.silent_until()) {
+    if (order != 0) bus_.wait(order, fence_.silent_until());
+    return std::nullopt;
+  }
+  fence_.waited_out();
+  on_wire_.fence = true;
+  return read(model_.axes.front().statusword);
+}
+
+std::optional<bus::Exchange> Drive::poll() {
+  if (!brought_up()) return std::nullopt;
+  const auto object = plan_.next(now());
+  if (!object) return std::nullopt;
+  return read(*object);
+}
+
+std::optional<bus::Exchange> Drive::next_of_bring_up() {
+  const auto next = bring_up_.next(store_);
+  if (!next) {
+    end_bring_up();
+    return std::nullopt;
+  }
+  bus::Exchange exchange = read(next->object);
+  if (next->write) {
+    exchange.access = bus::Access::write;
+    exchange.raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(next->number));
+  }
+  return exchange;
+}
+
+// --- What comes back ---------------------------------------------------------------------------------------------------
+
+void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
+  const OnWire asked = on_wire_;
+  const bool trusted = !fence_.suspect() || asked.fence;
+  if (result.code == Errc::timed_out || result.code == Errc::bad_reply) {
+    on_timeout(exchange);
+  } else if (result.code == Errc::link_lost) {
+    fence_.lost(exchange.object, now());  // its reply may still come, after the line's return
+  } else {
+    on_answer(exchange, result);
+  }
+  if (asked.order != 0) {
+    if (asked.order == setup_order_) carry_on_bring_up(exchange, result);
+    bool owned = asked.order == setup_order_;
+    for (auto& axis : axes_) {
+      if (!axis->has(asked.order)) continue;
+      owned = true;
+      axis->on_result(asked.order, result, asked.sent_at, trusted);
+    }
+    // Whoever asked has been given up meanwhile; what the write did is not known to be held.
+    if (!owned && exchange.access == bus::Access::write)
+      if (const ObjectId id = model_.find(exchange.object); id != kNoObject) store_.doubt(id);
+  }
+  after_event();
+}
+
+void Drive::on_timeout(const bus::Exchange& exchange) {
+  fence_.lost(exchange.object, now());
+  store_.doubt_all();
+  ++mute_;
+  if (state_ == LinkState::offline) {
+    probe_due_ = now() + backoff_.next();
+    return;
+  }
+  if (mute_ >= kMuteTimeouts) {
+    set_state(LinkState::offline);
+    setup_order_ = 0;
+    bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
+    probe_due_ = now() + backoff_.next();
+  } else if (state_ == LinkState::online) {
+    set_state(LinkState::suspect);
+  }
+}
+
+void Drive::on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
+  mute_ = 0;
+  const bool counts = !fence_.suspect() || on_wire_.fence || on_wire_.probe;
+  // An error answer is no answered fence; the next candidate is tried.
+  if (result.code == Errc::ok && (on_wire_.fence || on_wire_.probe)) {
+    fence_.answered();
+    if (state_ == LinkState::suspect) set_state(LinkState::online);
+  }
+  if (result.code == Errc::refused_by_drive && on_wire_.fence) fence_.lost(exchange.object, now());
+  if (counts) store_fields(exchange, result);
+  if (state_ == LinkState::unknown || state_ == LinkState::offline) begin_bring_up();
+}
+
+void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
+  if (exchange.access != bus::Access::read) return;
+  if (result.code == Errc::refused_by_drive) {
+    // Unsupported: not asked again until the next bring-up. The statusword is asked for ever: without it there is no axis.
+    const ObjectId id = model_.find(exchange.object);
+    if (id == kNoObject) return;
+    plan_.done(id, now());
+    const bool state_itself =
+        std::any_of(axes_.begin(), axes_.end(), [&](const auto& a) { return a->core().model.statusword == id; });
+    if (state_itself) return;
+    store_.refused(id);
+    plan_.drop(id);
+    return;
+  }
+  for (const bus::ReplyField& field : result.fields) {
+    const ObjectId id = model_.find(field.object);
+    if (id == kNoObject) continue;
+    const ObjectDef& object = model_.object(id);
+    // A width other than the profile's is a wrong profile, not a value (JD sheet, K7): it is not shown.
+    if (field.size == object.size) {
+      const bool clamped = store_.read(id, object.number(field.raw), on_wire_.sent_at);
+      if (clamped)
+        for (auto& axis : axes_) axis->set_alarm(AxisAlarm::clamped, true);
+    } else if (!store_[id].refused) {
+      store_.refused(id);
+      plan_.drop(id);
+      event(axes_.front()->core().model.number, EventKind::warning, 0,
+            object.name + ": the drive answers " + std::to_string(field.size) + " bytes, the profile says " +
+                std::to_string(object.size) + ": not used");
+      continue;
+    }
+    plan_.done(id, now());
+  }
+}
+
+// --- Bring-up ------------------------------------------------------------------------------------------------------------
+
+void Drive::begin_bring_up() {
+  set_state(LinkState::setup);
+  store_.forget_all();
+  fence_.answered();
+  backoff_.reset();
+  bring_up_.begin();
+  plan_.restart(now());
+  for (auto& axis : axes_) axis->on_bring_up();
+  bus::Order order;
+  order.priority = bus::Priority::setup;
+  order.axis = bus::kNoAxis;
+  const Queued queued = queue(std::move(order));
+  setup_order_ = queued.code == Errc::ok ? queued.id : 0;
+  // A full queue empties by its deadlines: try again after a probe's pause.
+  if (setup_order_ == 0) {
+    set_state(LinkState::unknown);
+    probe_due_ = now() + bus::Backoff::kFirst;
+  }
+}
+
+void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
+  if (state_ != LinkState::setup) return;
+  const bool was_write = exchange.access == bus::Access::write;
+  if (was_write) {
+    if (result.code == Errc::refused_by_drive)
+      bring_up_.write_refused();
+    else
+      bring_up_.written();
+  } else if (result.code == Errc::ok) {
+    bring_up_.read_back_answered();
+  }
+  const bool state_refused = !was_write && result.code == Errc::refused_by_drive &&
+                             exchange.object == model_.object(model_.axes.front().statusword).address;
+  // A drive that refuses its statusword is none we can speak for: it stays in setup and is asked again, slowly.
+  if (state_refused) bus_.wait(setup_order_, now() + std::chrono::seconds(1));
+}
+
+void Drive::end_bring_up() {
+  bus_.finish(setup_order_);
+  setup_order_ = 0;
+  adopted_ = bring_up_.adopted();
+  for (const ObjectId id : bring_up_.unheld())
+    event(axes_.front()->core().model.number, EventKind::warning, 0,
+          "setup: the drive does not hold what was written to " + model_.object(id).name);
+  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, adopted_);
+  set_state(LinkState::online);
+  for (const auto& axis : axes_)
+    event(axis->core().model.number, EventKind::boot, 0, adopted_ ? "online, found enabled: adopted" : "online");
+}
+
+void Drive::judge_checks() {
+  for (const Check& check : model_.checks) {
+    const ObjectState& s = store_[check.bad.object];
+    if (!s.known) continue;
+    for (auto& axis : axes_) {
+      const bool mine = check.slot == bus::kNoAxis || &axis == &axes_[check.slot];
+      if (!mine || !check.bad.holds(model_.object(check.bad.object), static_cast<std::uint32_t>(s.number))) continue;
+      axis->set_alarm(check.alarm, true);
+    }
+  }
+}
+
+// Full bring-up at the first disabled state after an adoption.
+void Drive::leave_adoption() {
+  const bool enabled =
+      std::any_of(axes_.begin(), axes_.end(), [](const auto& a) { return a->core().facts().enabled(); });
+  if (!adopted_ || enabled) return;
+  adopted_ = false;
+  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, false);
+  if (bring_up_.has_setup()) begin_bring_up();
+}
+
+// --- Link and time -------------------------------------------------------------------------------------------------------
+
+void Drive::on_link(bool up) {
+  mute_ = 0;
+  setup_order_ = 0;
+  backoff_.reset();
+  set_state(up ? LinkState::unknown : LinkState::link_down);
+  probe_due_ = up ? now() : kNever;  // where a reply is still owed, the probe keeps silence first
+  after_event();
+}
+
+void Drive::on_order_ended(bus::OrderId id, Errc code) {
+  for (auto& axis : axes_) axis->on_order_ended(id, code);
+  if (id == setup_order_) setup_order_ = 0;
+  after_event();
+}
+
+void Drive::set_state(LinkState state) { state_ = state; }
+
+void Drive::on_time() {
+  for (auto& axis : axes_) axis->on_time(now());
+  after_event();
+}
+
+void Drive::after_event() {
+  bring_up_to_date();
+  for (auto& axis : axes_) axis->call_back();
+}
+
+void Drive::bring_up_to_date() {
+  if (brought_up()) {
+    for (auto& axis : axes_)
+      for (const Check& check : model_.checks) axis->set_alarm(check.alarm, false);
+    judge_checks();
+    leave_adoption();
+  }
+  Instant next = kNever;
+  for (auto& axis : axes_) {
+    axis->publish(now());
+    next = std::min({next, axis->next_deadline(), stale_deadline(axis->core(), now())});
+    if (axis->has_due()) next = now();
+  }
+  timer_->expires_at(next);
+  if (state_ == LinkState::link_down) {
+    bus_.set_poll_due(slot_, kNever);
+  } else if (state_ == LinkState::unknown || state_ == LinkState::offline) {
+    bus_.set_poll_due(slot_, probe_due_);
+  } else if (fence_.suspect()) {
+    bus_.set_poll_due(slot_, fence_.exhausted() ? fence_.silent_until() : now());
+  } else {
+    bus_.set_poll_due(slot_, brought_up() ? plan_.next_due() : kNever);
+  }
+}
+
+}  // namespace axisgate::drive

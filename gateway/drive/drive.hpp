@@ -1,0 +1,99 @@
+// One drive on its bus: link state, bring-up, polling, the fence after a timeout, and its axes.
+// Promises that no value of a suspect drive is stored, no write but a stop is sent to one, and that a mute drive costs its bus
+// one probe per back-off step. Never enables anything.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adapters/bus/backoff.hpp"
+#include "adapters/bus/bus.hpp"
+#include "gateway/drive/axis.hpp"
+#include "gateway/drive/bring_up.hpp"
+#include "gateway/drive/fence.hpp"
+
+namespace axisgate::drive {
+
+class Drive final : public bus::BusDrive, private AxisHost {
+ public:
+  /// A mute drive is offline after this many timeouts in a row.
+  static constexpr int kMuteTimeouts = 3;
+
+  /// `images`: one per axis of the model, in its order. Everything referred to outlives the drive.
+  Drive(const DriveModel& model, bus::DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
+        EventRing& events);
+
+  [[nodiscard]] std::optional<GroupResult> submit(bus::AxisSlot axis, const Group& group, GroupCallback on_result);
+  [[nodiscard]] const Axis& axis(bus::AxisSlot slot) const { return *axes_[slot]; }
+  [[nodiscard]] std::size_t axis_count() const { return axes_.size(); }
+  [[nodiscard]] const DriveModel& model() const { return model_; }
+  [[nodiscard]] LinkState link_state() const override { return state_; }
+  [[nodiscard]] const ObjectStore& store() const { return store_; }
+
+  // BusDrive
+  [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::OrderId id, bus::Priority priority) override;
+  void on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result) override;
+  void on_order_ended(bus::OrderId id, Errc code) override;
+  void on_link(bool up) override;
+
+ private:
+  /// Who asked for the exchange on the wire.
+  struct OnWire {
+    bus::OrderId order = 0;  ///< 0: a poll or probe
+    bool fence = false;
+    bool probe = false;
+    Instant sent_at = kLongAgo;
+  };
+
+  // AxisHost
+  [[nodiscard]] Instant now() const override { return runtime_.now(); }
+  [[nodiscard]] Queued queue(bus::Order order) override;
+  void order_waits(bus::OrderId id, Instant until) override { bus_.wait(id, until); }
+  void order_done(bus::OrderId id) override { bus_.finish(id); }
+  void read_soon(ObjectId object) override { plan_.soon(object, now()); }
+  void event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) override;
+
+  [[nodiscard]] bus::Exchange read(ObjectId object) const;
+  [[nodiscard]] std::optional<bus::Exchange> probe();
+  /// `order`: whose turn it takes; it waits where silence must be kept instead.
+  [[nodiscard]] std::optional<bus::Exchange> fence(bus::OrderId order);
+  [[nodiscard]] std::optional<bus::Exchange> poll();
+  [[nodiscard]] std::optional<bus::Exchange> own_exchange();
+  [[nodiscard]] std::optional<bus::Exchange> exchange_of(bus::OrderId id);
+  [[nodiscard]] std::optional<bus::Exchange> next_of_bring_up();
+  void store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result);
+  void on_timeout(const bus::Exchange& exchange);
+  void on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& result);
+  void begin_bring_up();
+  void carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result);
+  void end_bring_up();
+  void judge_checks();
+  void leave_adoption();
+  void set_state(LinkState state);
+  void after_event();
+  void bring_up_to_date();
+  void on_time();
+  [[nodiscard]] bool brought_up() const { return state_ == LinkState::online || state_ == LinkState::suspect; }
+
+  const DriveModel& model_;
+  bus::DriveSlot slot_;
+  bus::Bus& bus_;
+  Runtime& runtime_;
+  EventRing& events_;
+  ObjectStore store_;
+  PollPlan plan_;
+  Fence fence_;
+  BringUp bring_up_;
+  bus::Backoff backoff_;
+  std::vector<std::unique_ptr<Axis>> axes_;
+  std::unique_ptr<Timer> timer_;
+  LinkState state_ = LinkState::link_down;
+  OnWire on_wire_;
+  bus::OrderId setup_order_ = 0;
+  int mute_ = 0;
+  Instant probe_due_ = kNever;
+  bool adopted_ = false;
+};
+
+}  // namespace axisgate::drive

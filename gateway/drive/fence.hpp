@@ -1,0 +1,48 @@
+// The fence against late replies (design 7, point 4): after a timeout a drive is suspect until a read was answered whose
+// reply cannot be the reply to anything lost. Promises that no candidate is used whose reply a lost one could pass for.
+// Never sends: it says which object to read, or how long to keep silent.
+#pragma once
+
+#include <boost/container/static_vector.hpp>
+#include <optional>
+
+#include "gateway/drive/model.hpp"
+
+namespace axisgate::drive {
+
+class Fence {
+ public:
+  /// Two fences at most, each distinguishable; then the drive is offline.
+  static constexpr int kMaxFences = 2;
+
+  Fence(const FenceFacts& facts, const std::vector<ObjectDef>& objects) : facts_(facts), objects_(objects) {}
+
+  /// An exchange with this object was given up.
+  void lost(bus::ObjectAddress object, Instant now);
+  /// The fence was answered: a drive answers in order, so nothing older is left.
+  void answered() {
+    lost_.clear();
+    fences_ = 0;
+  }
+  [[nodiscard]] bool suspect() const { return !lost_.empty(); }
+  /// All fences are used up.
+  [[nodiscard]] bool exhausted() const { return fences_ >= kMaxFences; }
+  /// The object whose read is the next fence; none: no distinguishable one is left.
+  [[nodiscard]] std::optional<ObjectId> candidate() const;
+  void fence_sent() { ++fences_; }
+  /// From then on every reply still owed by the drive would break its worst_reply: a plain read is safe.
+  [[nodiscard]] Instant silent_until() const { return last_lost_ == kLongAgo ? kLongAgo : last_lost_ + facts_.worst_reply; }
+  /// Silence was kept until silent_until(): nothing can be owed any more.
+  void waited_out() { answered(); }
+
+ private:
+  const FenceFacts& facts_;
+  const std::vector<ObjectDef>& objects_;
+  // One lost exchange, its fences and the stops sent meanwhile (three repeats); more cannot be before it is offline.
+  static constexpr std::size_t kMaxLost = 16;
+  boost::container::static_vector<bus::ObjectAddress, kMaxLost> lost_;
+  Instant last_lost_ = kLongAgo;
+  int fences_ = 0;
+};
+
+}  // namespace axisgate::drive

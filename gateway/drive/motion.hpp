@@ -1,0 +1,112 @@
+// The motion rules of design 3.4 for one axis, the same on every drive: the stop latch, what runs, what survives, and which
+// set-points may reach the drive now. Promises that only start() begins a motion, that every stop, fault, disable, restart and
+// loss of the drive ends it for good, and that a latched axis starts nothing. Never sends: planners ask it, the axis tells it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "gateway/drive/cia402.hpp"
+#include "gateway/image/axis_image.hpp"
+
+namespace axisgate::drive {
+
+enum class MotionKind : std::uint8_t { none, discrete, velocity, torque, homing };
+
+/// What the drive shows, from its newest samples.
+struct AxisFacts {
+  bool reachable = false;  ///< link_state online or suspect
+  State402 state = State402::not_ready_to_switch_on;
+  int mode = 0;            ///< mode in force, unified number
+  bool moving = false;
+  bool target_reached = false;
+  bool reference = false;       ///< the drive says that it is homed
+  bool homing_failed = false;
+  std::uint64_t statusword_exchange = 0;  ///< the exchange that gave the newest statusword
+
+  [[nodiscard]] bool enabled() const { return state == State402::operation_enabled; }
+  [[nodiscard]] bool faulted() const {
+    return state == State402::fault || state == State402::fault_reaction_active;
+  }
+};
+
+class Motion {
+ public:
+  // --- Stops and the stop latch -------------------------------------------------------------------------------------
+
+  /// A stop was accepted: the motion is over, velocity and torque are needed anew. `latch`: quick_stop and lease actions.
+  void stop(bool latch);
+  /// An enable accepted after the stop has been carried out (command 1, coil 0).
+  void enabled() {
+    latched_ = false;
+    unlatch_armed_ = false;
+  }
+  [[nodiscard]] bool latched() const { return latched_; }
+
+  enum class Pass : std::uint8_t { refused, passes, passes_and_unlatches };
+  /// While latched, `controlword` passes only stops and the two steps: 6 or 7, and then 15.
+  [[nodiscard]] Pass pass(Request402 request) const;
+  void passed(Request402 request);
+
+  // --- What runs -----------------------------------------------------------------------------------------------------
+
+  /// Commands 6 to 11 need an axis that is enabled, not faulted and not stop-latched.
+  [[nodiscard]] bool may_start(const AxisFacts& facts) const {
+    return facts.reachable && facts.enabled() && !latched_;
+  }
+  /// A motion command was accepted: target_reached reads 0 from now until unmask().
+  void mask_target_reached() { target_reached_masked_ = true; }
+  void unmask_target_reached() { target_reached_masked_ = false; }
+  [[nodiscard]] bool target_reached_masked() const { return target_reached_masked_; }
+
+  /// The drive has acknowledged a start in this exchange; a motion under way is aborted by it.
+  void start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t exchange);
+  /// A raw enable or mode write that lets set-points act at once (raw modes 3, 4, 9, 10).
+  void run_raw() { raw_run_ = true; }
+  /// The mode was changed by raw write: what ran in the mode before is over.
+  void mode_changed();
+  /// New samples. Ends the motion where they show its end.
+  void observe(const AxisFacts& facts, Duration homing_timeout, Instant now);
+  /// Homing has run longer than its timeout: the axis must be halted (once).
+  [[nodiscard]] bool take_homing_timeout();
+  /// When observe() must be called even without samples.
+  [[nodiscard]] Instant deadline() const { return kind_ == MotionKind::homing ? homing_until_ : kNever; }
+
+  [[nodiscard]] MotionKind running() const { return kind_; }
+  [[nodiscard]] MotionState state() const { return state_; }
+  [[nodiscard]] std::uint16_t id() const { return id_; }
+  [[nodiscard]] AxisState axis_state(const AxisFacts& facts) const;
+
+  // --- Set-points are not starts -------------------------------------------------------------------------------------
+
+  /// A client has written a target: it is kept, whether or not it may reach the drive now.
+  void want(Quantity target, std::int64_t value);
+  /// What a start is to use; none: what the drive holds.
+  [[nodiscard]] std::optional<std::int64_t> wanted(Quantity target) const;
+  /// Whether a write of this target may go to the drive now. `held_back`: by this drive the write itself would move the axis
+  /// (profile `trigger`, or a maker's bit in the controlword in effect).
+  [[nodiscard]] bool target_acts_now(Quantity target, const AxisFacts& facts, bool held_back) const;
+
+ private:
+  void end(MotionState how);
+
+  bool latched_ = false;
+  bool unlatch_armed_ = false;
+  bool raw_run_ = false;
+  bool stopping_ = false;
+  bool target_reached_masked_ = false;
+  bool homing_timed_out_ = false;
+  MotionKind kind_ = MotionKind::none;
+  MotionState state_ = MotionState::none;
+  std::uint16_t id_ = 0;
+  Instant started_ = kLongAgo;
+  std::uint64_t started_by_ = 0;  ///< exchange: only statuswords sampled after it tell of this motion
+  Instant homing_until_ = kNever;
+  bool was_faulted_ = false;
+  bool was_reachable_ = false;
+  /// What clients last asked for: position, velocity, torque.
+  std::array<std::optional<std::int64_t>, 3> wanted_;
+};
+
+}  // namespace axisgate::drive

@@ -1,0 +1,98 @@
+#include "gateway/drive/poll_plan.hpp"
+
+#include <algorithm>
+
+namespace axisgate::drive {
+namespace {
+
+void add(std::vector<PollItem>& items, ObjectId object, PollClass poll_class) {
+  if (object == kNoObject) return;
+  const auto found = std::find_if(items.begin(), items.end(), [&](const PollItem& i) { return i.object == object; });
+  if (found == items.end())
+    items.push_back({object, poll_class});
+  else
+    found->poll_class = std::min(found->poll_class, poll_class);
+}
+
+}  // namespace
+
+std::vector<PollItem> poll_items(const DriveModel& model) {
+  std::vector<PollItem> items;
+  for (const AxisModel& axis : model.axes) {
+    // A PLC sees everything else through the statusword: it is never slower than fast.
+    add(items, axis.statusword, PollClass::fast);
+    add(items, axis.mode_display, PollClass::normal);
+    for (const ObjectId word : axis.fault_words) add(items, word, PollClass::normal);
+    for (const auto* condition : {&axis.homed, &axis.homing_failed, &axis.moving})
+      if (condition->has_value()) add(items, (*condition)->object, PollClass::normal);
+    for (const Binding& binding : axis.bindings) {
+      if (binding.object != kNoObject && model.object(binding.object).readable)
+        add(items, binding.object, binding.poll);
+      for (const BitField& field : binding.bits) add(items, field.object, binding.poll);
+    }
+  }
+  for (const Check& check : model.checks) add(items, check.bad.object, PollClass::once);
+  return items;
+}
+
+PollPlan::PollPlan(const DriveModel& model) {
+  for (const PollItem& item : poll_items(model)) {
+    const auto index = static_cast<std::size_t>(item.poll_class);
+    const Duration period = item.poll_class == PollClass::once ? Duration{} : model.poll_period[index];
+    entries_.push_back({item.object, period, kNever});
+  }
+}
+
+void PollPlan::restart(Instant now) {
+  for (Entry& e : entries_) e.due = now;
+}
+
+const PollPlan::Entry* PollPlan::earliest() const {
+  const auto found =
+      std::min_element(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.due < b.due; });
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+PollPlan::Entry* PollPlan::entry(ObjectId object) {
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.object == object; });
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+std::optional<ObjectId> PollPlan::next(Instant now) const {
+  const Entry* e = earliest();
+  if (e == nullptr || e->due > now) return std::nullopt;
+  return e->object;
+}
+
+Instant PollPlan::next_due() const {
+  const Entry* e = earliest();
+  return e == nullptr ? kNever : e->due;
+}
+
+void PollPlan::done(ObjectId object, Instant now) {
+  Entry* e = entry(object);
+  if (e == nullptr || e->due == kNever) return;
+  if (e->period == Duration{}) {
+    e->due = kNever;
+    return;
+  }
+  // On time: keep the beat. Read early by somebody else, or late (an overloaded bus stretches instead of piling up): one
+  // period from now.
+  const bool on_time = now >= e->due && now - e->due < e->period;
+  e->due = (on_time ? e->due : now) + e->period;
+}
+
+void PollPlan::drop(ObjectId object) {
+  if (Entry* e = entry(object)) e->due = kNever;
+}
+
+void PollPlan::soon(ObjectId object, Instant now) {
+  if (Entry* e = entry(object)) e->due = std::min(e->due, now);
+}
+
+Duration PollPlan::period(ObjectId object) const {
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.object == object; });
+  return found == entries_.end() ? Duration{} : found->period;
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,51 @@
+// Which object of a drive is read next, and when: classes fast, normal, slow and once (design section 5).
+// Promises that the object longest overdue goes first, and that one the drive refuses spoils none of the others.
+// Never reads anything, and knows no clock but the instants it is given.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "gateway/drive/model.hpp"
+
+namespace axisgate::drive {
+
+struct PollItem {
+  ObjectId object = kNoObject;
+  PollClass poll_class = PollClass::normal;
+};
+
+/// Every object that must be read to keep the image of these axes true, each once, in its fastest class.
+[[nodiscard]] std::vector<PollItem> poll_items(const DriveModel& model);
+
+class PollPlan {
+ public:
+  explicit PollPlan(const DriveModel& model);
+
+  /// All objects are due at once (the drive came online), those of class once included.
+  void restart(Instant now);
+  /// The object to read now: the one longest overdue. None before next_due().
+  [[nodiscard]] std::optional<ObjectId> next(Instant now) const;
+  /// kNever where nothing is polled.
+  [[nodiscard]] Instant next_due() const;
+  /// It was read (by whomever) or refused: due again one period after its due time, never more than once to catch up.
+  void done(ObjectId object, Instant now);
+  /// The drive does not have it: never due again until restart().
+  void drop(ObjectId object);
+  /// Read it once more as soon as its turn comes (a write of it was acknowledged or lost).
+  void soon(ObjectId object, Instant now);
+  /// 0 for class once.
+  [[nodiscard]] Duration period(ObjectId object) const;
+
+ private:
+  struct Entry {
+    ObjectId object;
+    Duration period;  ///< 0: once
+    Instant due;
+  };
+  [[nodiscard]] const Entry* earliest() const;
+  [[nodiscard]] Entry* entry(ObjectId object);
+  std::vector<Entry> entries_;
+};
+
+}  // namespace axisgate::drive

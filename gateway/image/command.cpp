@@ -1,0 +1,57 @@
+#include "gateway/image/command.hpp"
+
+namespace axisgate {
+
+std::string_view text(Command command) {
+  switch (command) {
+    case Command::none:
+      return "none";
+    case Command::enable:
+      return "enable";
+    case Command::disable:
+      return "disable";
+    case Command::quick_stop:
+      return "quick_stop";
+    case Command::halt:
+      return "halt";
+    case Command::fault_reset:
+      return "fault_reset";
+    case Command::move_absolute:
+      return "move_absolute";
+    case Command::move_relative:
+      return "move_relative";
+    case Command::run_velocity:
+      return "run_velocity";
+    case Command::run_torque:
+      return "run_torque";
+    case Command::home:
+      return "home";
+    case Command::set_position:
+      return "set_position";
+    case Command::save_parameters:
+      return "save_parameters";
+    case Command::release:
+      return "release";
+    case Command::take_over:
+      return "take_over";
+    case Command::end_halt:
+      return "end_halt";
+  }
+  return "?";
+}
+
+std::string_view text(Role role) {
+  switch (role) {
+    case Role::none:
+      return "none";
+    case Role::viewer:
+      return "viewer";
+    case Role::operator_:
+      return "operator";
+    case Role::engineer:
+      return "engineer";
+  }
+  return "?";
+}
+
+}  // namespace axisgate

@@ -1,0 +1,89 @@
+#include "gateway/image/map_listing.hpp"
+
+namespace axisgate {
+namespace {
+
+using namespace std::string_literals;
+
+bool has_command(const ListedAxis& axis, Command command) {
+  return (axis.supported_commands >> static_cast<unsigned>(command) & 1U) != 0;
+}
+
+bool is_supported(const RegisterRow& row, const ListedAxis& axis) {
+  if (!row.built) return false;
+  if (row.source == Source::quantity) return (axis.supported & bit(row.quantity)) != 0;
+  if (row.source == Source::set_position_value) return has_command(axis, Command::set_position);
+  return true;
+}
+
+bool can_write(const RegisterRow& row, const ListedAxis& axis) {
+  if (!row.writable) return false;
+  // What the drive does not have keeps the access of the map: `supported` says enough.
+  if (row.source != Source::quantity || !is_supported(row, axis)) return true;
+  return (axis.writable & bit(row.quantity)) != 0;
+}
+
+MapEntry holding(const RegisterRow& row, std::uint16_t block) {
+  MapEntry entry;
+  entry.table = "holding";
+  entry.address = static_cast<std::uint16_t>(block + row.offset);
+  entry.count = row.registers();
+  entry.name = row.name;
+  entry.type = text(row.type);
+  entry.unit = unit_of(row, "");
+  entry.access = row.writable ? "rw" : "r";
+  return entry;
+}
+
+void list_axis(std::vector<MapEntry>& entries, Block block, const std::string& prefix, const ListedAxis& axis) {
+  for (const RegisterRow& row : register_table(block).rows()) {
+    MapEntry& entry = entries.emplace_back(holding(row, address_of(block, axis.number)));
+    entry.axis = axis.number;
+    entry.name = prefix + entry.name;
+    entry.unit = unit_of(row, axis.position_unit);
+    entry.access = can_write(row, axis) ? "rw" : "r";
+    entry.supported = is_supported(row, axis);
+  }
+}
+
+MapEntry one_bit(std::string_view table, const ListedAxis& axis, std::uint16_t offset, std::string_view name) {
+  MapEntry entry;
+  entry.table = table;
+  entry.address = static_cast<std::uint16_t>(kAxisBlock * axis.number + offset);
+  entry.axis = axis.number;
+  entry.name = name;
+  entry.type = "bool";
+  entry.access = "r";
+  return entry;
+}
+
+}  // namespace
+
+std::vector<MapEntry> map_entries(const ListedMap& map) {
+  std::vector<MapEntry> entries;
+  for (const RegisterRow& row : register_table(Block::gateway).rows()) entries.push_back(holding(row, 0));
+  for (const ListedAxis& axis : map.axes) list_axis(entries, Block::axis, "", axis);
+  for (std::size_t b = 0; b < map.buses.size(); ++b) {
+    for (const RegisterRow& row : register_table(Block::bus).rows()) {
+      entries.push_back(holding(row, address_of(Block::bus, static_cast<std::uint16_t>(b))));
+      entries.back().bus = map.buses[b];
+    }
+  }
+  for (const ListedAxis& axis : map.axes) list_axis(entries, Block::overview, "overview_", axis);
+  for (const ListedAxis& axis : map.axes) {
+    for (const CoilRow& coil : coil_rows()) {
+      entries.push_back(one_bit("coil", axis, coil.offset, coil.name));
+      entries.back().access = "rw";
+      entries.back().supported = coil.built && has_command(axis, coil.on);
+    }
+  }
+  for (const ListedAxis& axis : map.axes)
+    for (const InputRow& input : input_rows()) entries.push_back(one_bit("discrete", axis, input.offset, input.name));
+  return entries;
+}
+
+std::string position_unit(std::int64_t numerator, std::int64_t denominator) {
+  return std::to_string(denominator) + "/" + std::to_string(numerator) + " rev";
+}
+
+}  // namespace axisgate

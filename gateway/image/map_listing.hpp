@@ -1,0 +1,58 @@
+// The listing of the map as one configuration makes it: what `axisgate map` prints (design 3.1).
+// Promises the rows that the server answers from, sorted by table and address, and needs no running gateway.
+// Never prints an address that a read would refuse.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gateway/image/axis_image.hpp"
+#include "gateway/image/register_map.hpp"
+
+namespace axisgate {
+
+struct ListedAxis {
+  AxisNumber number = 0;
+  std::string name;
+  std::string bus;                       ///< name of its bus, for headings
+  std::uint32_t supported = 0;           ///< quantities this drive has on this protocol, as register 20
+  std::uint32_t writable = 0;            ///< those that can be written; the others' rows are listed as "r"
+  std::uint32_t supported_commands = 0;  ///< as register 36
+  std::string position_unit = "1/10000 rev";
+};
+
+struct ListedMap {
+  bool low_word_first = false;     ///< of the listener the listing is made for
+  std::vector<ListedAxis> axes;    ///< in ascending order of number
+  std::vector<std::string> buses;  ///< names in configuration order
+};
+
+struct MapEntry {
+  std::string_view table;  ///< "holding" (input registers show the same), "coil", "discrete"
+  std::uint16_t address = 0;
+  int count = 1;
+  std::optional<AxisNumber> axis;
+  std::optional<std::string> bus;
+  /// In the overview with "overview_" before it, so that axis and name together are one address.
+  std::string name;
+  std::string_view type;
+  std::string unit;
+  std::string_view access;  ///< "r" or "rw"
+  bool supported = true;
+};
+
+[[nodiscard]] std::vector<MapEntry> map_entries(const ListedMap& map);
+
+enum class MapFormat : std::uint8_t { json, csv, markdown, table };
+/// "json", "csv", "md", "table".
+[[nodiscard]] std::optional<MapFormat> map_format_named(std::string_view name);
+/// Ends with a newline.
+[[nodiscard]] std::string map_text(const ListedMap& map, MapFormat format);
+
+/// "1/10000 rev" for units_per_rev 10000, "37/60000 rev" for 60000/37.
+[[nodiscard]] std::string position_unit(std::int64_t numerator, std::int64_t denominator);
+
+}  // namespace axisgate

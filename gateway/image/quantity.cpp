@@ -1,0 +1,120 @@
+#include "gateway/image/quantity.hpp"
+
+#include <cassert>
+#include <limits>
+
+namespace axisgate {
+namespace {
+
+using enum Quantity;
+using enum RegisterType;
+// Design 3.1: the column "bit" is the position in this table.
+constexpr std::array<QuantityRow, kQuantityCount> kRows{{
+    {statusword, "statusword", Kind::code, u16, false},
+    {mode_display, "mode_display", Kind::code, i16, false},
+    {position_actual, "position_actual", Kind::position, i32, false},
+    {velocity_actual, "velocity_actual", Kind::velocity, i32, false},
+    {torque_actual, "torque_actual", Kind::torque, i16, false},
+    {current_actual, "current_actual", Kind::current, i16, false},
+    {following_error, "following_error", Kind::position, i32, false},
+    {error_code, "error_code", Kind::code, u16, false},
+    {vendor_error, "vendor_error", Kind::code, u32, false},
+    {digital_inputs, "digital_inputs", Kind::code, u16, false},
+    {digital_outputs, "digital_outputs", Kind::code, u16, false},
+    {drive_temperature, "drive_temperature", Kind::temperature, i16, false},
+    {motor_temperature, "motor_temperature", Kind::temperature, i16, false},
+    {dc_voltage, "dc_voltage", Kind::voltage, u16, false},
+    {controlword, "controlword", Kind::code, u16, true},
+    {mode, "mode", Kind::code, i16, true},
+    {target_position, "target_position", Kind::position, i32, true},
+    {target_velocity, "target_velocity", Kind::velocity, i32, true},
+    {target_torque, "target_torque", Kind::torque, i16, true},
+    {max_torque, "max_torque", Kind::torque, u16, true},
+    {profile_velocity, "profile_velocity", Kind::velocity, u32, true},
+    {profile_acceleration, "profile_acceleration", Kind::acceleration, u32, true},
+    {profile_deceleration, "profile_deceleration", Kind::acceleration, u32, true},
+    {homing_method, "homing_method", Kind::code, i16, true},
+    {homing_speed_switch, "homing_speed_switch", Kind::velocity, u32, true},
+    {homing_speed_zero, "homing_speed_zero", Kind::velocity, u32, true},
+    {homing_acceleration, "homing_acceleration", Kind::acceleration, u32, true},
+    {homing_offset, "homing_offset", Kind::position, i32, true},
+    {quick_stop_deceleration, "quick_stop_deceleration", Kind::acceleration, u32, true},
+    {position_limit_min, "position_limit_min", Kind::position, i32, true},
+    {position_limit_max, "position_limit_max", Kind::position, i32, true},
+    {max_velocity, "max_velocity", Kind::velocity, u32, true},
+}};
+
+consteval bool rows_in_order() {
+  for (std::size_t i = 0; i < kRows.size(); ++i)
+    if (static_cast<std::size_t>(kRows[i].quantity) != i) return false;
+  return true;
+}
+static_assert(rows_in_order(), "a quantity's number is its position in the table");
+
+}  // namespace
+
+const std::array<QuantityRow, kQuantityCount>& quantity_table() { return kRows; }
+
+const QuantityRow& row(Quantity quantity) {
+  const auto index = static_cast<std::size_t>(quantity);
+  assert(index < kRows.size());
+  return kRows[index];
+}
+
+std::optional<Quantity> quantity_named(std::string_view name) {
+  for (const QuantityRow& each : kRows)
+    if (each.name == name) return each.quantity;
+  return std::nullopt;
+}
+
+std::string_view unit_text(Kind kind) {
+  switch (kind) {
+    case Kind::code:
+      return "";
+    case Kind::position:
+      return "1/units_per_rev rev";
+    case Kind::velocity:
+      return "0.001 rpm";
+    case Kind::acceleration:
+      return "0.1 rpm/s";
+    case Kind::torque:
+      return "0.1 %";
+    case Kind::current:
+      return "0.01 A";
+    case Kind::temperature:
+      return "0.1 degC";
+    case Kind::voltage:
+      return "0.1 V";
+  }
+  return "";
+}
+
+Range range_of(RegisterType type) {
+  switch (type) {
+    case RegisterType::u16:
+      return {0, std::numeric_limits<std::uint16_t>::max() - 1};
+    case RegisterType::i16:
+      return {std::numeric_limits<std::int16_t>::min() + 1, std::numeric_limits<std::int16_t>::max()};
+    case RegisterType::u32:
+      return {0, std::int64_t{std::numeric_limits<std::uint32_t>::max()} - 1};
+    case RegisterType::i32:
+      return {std::numeric_limits<std::int32_t>::min() + 1, std::numeric_limits<std::int32_t>::max()};
+  }
+  return {};
+}
+
+std::int64_t no_value(RegisterType type) {
+  switch (type) {
+    case RegisterType::u16:
+      return std::numeric_limits<std::uint16_t>::max();
+    case RegisterType::i16:
+      return std::numeric_limits<std::int16_t>::min();
+    case RegisterType::u32:
+      return std::numeric_limits<std::uint32_t>::max();
+    case RegisterType::i32:
+      return std::numeric_limits<std::int32_t>::min();
+  }
+  return 0;
+}
+
+}  // namespace axisgate

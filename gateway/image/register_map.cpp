@@ -1,0 +1,129 @@
+#include "gateway/image/register_map.hpp"
+
+#include <cassert>
+#include <utility>
+
+#include "gateway/image/axis_image.hpp"
+#include "gateway/image/register_rows.hpp"
+
+namespace axisgate {
+namespace {
+
+constexpr std::array<CoilRow, kCoils> kCoilRows{{
+    {0, "enable", true, Command::enable, Command::disable, true, "1 enables, 0 disables; reads: enabled"},
+    {1, "fault_reset", false, Command::fault_reset, Command::none, true, "acts on 0 to 1"},
+    {2, "quick_stop", false, Command::quick_stop, Command::none, true, "acts on 0 to 1"},
+    {3, "halt", true, Command::halt, Command::end_halt, true, "1 halts, 0 ends the halt without moving; reads: halted"},
+    {4, "start_absolute", false, Command::move_absolute, Command::none, true, "acts on 0 to 1"},
+    {5, "start_relative", false, Command::move_relative, Command::none, true, "acts on 0 to 1"},
+    {6, "home", false, Command::home, Command::none, true, "acts on 0 to 1"},
+    {7, "run_velocity", true, Command::run_velocity, Command::halt, true, "1 runs, 0 halts; reads: velocity running"},
+    {8, "jog_forward", true, Command::none, Command::none, false, "not in this version: reads 0"},
+    {9, "jog_reverse", true, Command::none, Command::none, false, "not in this version: reads 0"},
+}};
+
+constexpr std::array<InputRow, kAxisInputCount> kInputRows{{
+    {0, "online", ""},
+    {1, "ready", "online, no fault, enable would be tried"},
+    {2, "enabled", ""},
+    {3, "fault", ""},
+    {4, "warning", "statusword bit 7 or an axis alarm"},
+    {5, "target_reached", ""},
+    {6, "homed", "latched from homing attained or the drive's reference bit; cleared by a drive restart"},
+    {7, "moving", "the drive's flag, else above standstill_velocity"},
+    {8, "limit_active", ""},
+    {9, "quick_stop_active", "or stop-latched"},
+    {10, "following_error", ""},
+    {11, "owned_by_me", "this version: 0"},
+    {12, "stop_latched", ""},
+}};
+
+}  // namespace
+
+RegisterTable::RegisterTable(std::vector<RegisterRow> rows) : rows_(std::move(rows)) {
+  assert(rows_.size() < 127);
+  row_of_.fill(-1);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    for (int part = 0; part < rows_[i].registers(); ++part) {
+      std::int8_t& place = row_of_.at(rows_[i].offset + static_cast<std::size_t>(part));
+      assert(place == -1);
+      place = static_cast<std::int8_t>(i);
+    }
+  }
+}
+
+const RegisterRow* RegisterTable::covering(std::uint16_t offset) const {
+  if (offset >= kSpan || row_of_[offset] < 0) return nullptr;
+  return &rows_[static_cast<std::size_t>(row_of_[offset])];
+}
+
+const RegisterTable& register_table(Block block) {
+  static const RegisterTable gateway{gateway_register_rows()};
+  static const RegisterTable axis{axis_register_rows()};
+  static const RegisterTable bus{bus_register_rows()};
+  static const RegisterTable overview{overview_register_rows()};
+  switch (block) {
+    case Block::gateway:
+      return gateway;
+    case Block::axis:
+      return axis;
+    case Block::bus:
+      return bus;
+    case Block::overview:
+      return overview;
+  }
+  return gateway;
+}
+
+std::optional<RegisterPlace> place_of(std::uint16_t address) {
+  const auto within = [address](Block block, unsigned base, unsigned span) {
+    const unsigned from_base = address - base;
+    return RegisterPlace{block, static_cast<std::uint16_t>(from_base / span),
+                         static_cast<std::uint16_t>(from_base % span)};
+  };
+  if (address < kAxisBlock) return within(Block::gateway, 0, kAxisBlock);
+  if (address < kBusBlocks) return within(Block::axis, 0, kAxisBlock);
+  if (address < kOverviewBlocks) return within(Block::bus, kBusBlocks, kBusBlock);
+  if (address < kOverviewBlocks + kOverviewBlock * (kMaxAxisNumber + 1)) {
+    return within(Block::overview, kOverviewBlocks, kOverviewBlock);
+  }
+  return std::nullopt;
+}
+
+std::uint16_t address_of(Block block, std::uint16_t number) {
+  switch (block) {
+    case Block::gateway:
+      return 0;
+    case Block::axis:
+      return static_cast<std::uint16_t>(kAxisBlock * number);
+    case Block::bus:
+      return static_cast<std::uint16_t>(kBusBlocks + kBusBlock * number);
+    case Block::overview:
+      return static_cast<std::uint16_t>(kOverviewBlocks + kOverviewBlock * number);
+  }
+  return 0;
+}
+
+std::span<const CoilRow> coil_rows() { return kCoilRows; }
+std::span<const InputRow> input_rows() { return kInputRows; }
+
+std::string_view unit_of(const RegisterRow& row, std::string_view position_unit) {
+  if (row.kind == Kind::position) return position_unit;
+  return row.kind == Kind::code ? row.unit : unit_text(row.kind);
+}
+
+std::string_view text(RegisterType type) {
+  switch (type) {
+    case RegisterType::u16:
+      return "u16";
+    case RegisterType::i16:
+      return "i16";
+    case RegisterType::u32:
+      return "u32";
+    case RegisterType::i32:
+      return "i32";
+  }
+  return "?";
+}
+
+}  // namespace axisgate

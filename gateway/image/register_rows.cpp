@@ -1,0 +1,175 @@
+#include "gateway/image/register_rows.hpp"
+
+namespace axisgate {
+namespace {
+
+using enum RegisterType;
+constexpr Role kViewer = Role::viewer;
+constexpr Role kOperator = Role::operator_;
+constexpr Role kEngineer = Role::engineer;
+
+/// Name, type and unit of a quantity are its own.
+RegisterRow of(std::uint16_t offset, Quantity quantity, std::string_view note = {}) {
+  const QuantityRow& q = row(quantity);
+  return {.offset = offset, .name = q.name, .type = q.type, .kind = q.kind, .quantity = quantity, .note = note};
+}
+RegisterRow of(std::uint16_t offset, Quantity quantity, Role may_write, std::string_view note = {}) {
+  RegisterRow made = of(offset, quantity, note);
+  made.writable = true;
+  made.may_write = may_write;
+  return made;
+}
+RegisterRow shows(std::uint16_t offset, std::string_view name, RegisterType type, Source source,
+                  std::string_view note = {}, std::string_view unit = {}) {
+  return {.offset = offset, .name = name, .type = type, .unit = unit, .source = source, .note = note};
+}
+RegisterRow takes(std::uint16_t offset, std::string_view name, RegisterType type, Source source, Role may_write,
+                  std::string_view note = {}, std::string_view unit = {}) {
+  RegisterRow made = shows(offset, name, type, source, note, unit);
+  made.writable = true;
+  made.may_write = may_write;
+  return made;
+}
+RegisterRow in(Kind kind, RegisterRow made) {
+  made.kind = kind;
+  return made;
+}
+RegisterRow not_built(RegisterRow made) {
+  made.built = false;
+  return made;
+}
+
+}  // namespace
+
+std::vector<RegisterRow> axis_register_rows() {
+  using enum Quantity;
+  return {
+      of(0, statusword),
+      of(1, mode_display),
+      of(2, position_actual),
+      of(4, velocity_actual),
+      of(6, torque_actual),
+      of(7, current_actual),
+      of(8, following_error),
+      of(10, error_code, "CiA 402 603Fh code of the first active row of the profile's alarm table, 0 none"),
+      of(11, digital_inputs, "bit 0 negative limit, 1 positive limit, 2 home, 3 interlock or E-stop, 4..15 DI1..DI12"),
+      of(12, vendor_error, "the drive's first fault word in bits 0..15, its second in 16..31"),
+      of(14, digital_outputs, "bit 0 brake released, 4..15 DO1..DO12"),
+      of(15, drive_temperature),
+      of(16, motor_temperature),
+      of(17, dc_voltage),
+      shows(18, "link_state", u16, Source::link_state,
+            "0 unknown, 1 setup, 2 online, 3 suspect, 4 offline, 5 link_down"),
+      shows(19, "age_ms", u16, Source::age_ms, "age of the oldest cyclic value, saturating", "ms"),
+      shows(20, "supported", u32, Source::supported, "this drive on this protocol has the quantity"),
+      shows(22, "valid", u32, Source::valid, "the value is good now"),
+      shows(24, "sequence", u16, Source::sequence, "steps when anything of the axis changes but ages"),
+      shows(25, "command_result", u16, Source::command_result,
+            "0 none, 1 pending, 2 done, 3 refused by drive, 4 outcome unknown, 5 superseded, 6 never started, "
+            "7 not owner, 8 stopped by another client, 9 state unsuitable"),
+      shows(26, "command_detail", u32, Source::command_detail,
+            "SDO abort code, Modbus exception or the drive's own code"),
+      shows(28, "owner", u16, Source::owner, "0 nobody, 1 this client, 2 another; this version: 0"),
+      shows(29, "lease_remaining_ms", u16, Source::lease_remaining_ms, "this version: 0", "ms"),
+      shows(30, "command_id_seen", u16, Source::command_id_seen, "the last command_id from this client's address"),
+      shows(31, "axis_state", u16, Source::axis_state,
+            "0 disabled, 1 standstill, 2 discrete motion, 3 continuous motion, 4 homing, 5 stopping or stop-latched, "
+            "6 error stop"),
+      shows(32, "motion_state", u16, Source::motion_state,
+            "0 none, 1 active, 2 completed, 3 aborted by another command or stop, 4 failed"),
+      shows(33, "motion_id", u16, Source::motion_id, "command_id of that motion"),
+      shows(34, "axis_alarms", u32, Source::axis_alarms,
+            "bit 0 no_comm_watchdog, 1 adopted_running, 2 identity_mismatch, 3 local_control, 4 limit_inputs_open, "
+            "5 not_homed, 6 cannot_deenergise, 7 stop_latched, 8 duplicate_node, 9 nvm_budget, 10 clamped, "
+            "11 stop_options"),
+      shows(36, "supported_commands", u32, Source::supported_commands, "bit = command number"),
+      shows(38, "supported_modes", u16, Source::supported_modes, "as 6502h, low word"),
+      of(40, controlword, kOperator, "reads the controlword in effect"),
+      of(41, mode, kOperator,
+         "CiA 402: 1 profile position, 3 profile velocity, 4 torque, 6 homing, 7 interpolated, 8 csp, 9 csv, 10 cst; "
+         "negative: the drive's own"),
+      of(42, target_position, kOperator),
+      of(44, target_velocity, kOperator),
+      of(46, target_torque, kOperator),
+      of(47, max_torque, kOperator),
+      of(48, profile_velocity, kOperator),
+      of(50, profile_acceleration, kOperator),
+      of(52, profile_deceleration, kOperator),
+      takes(54, "command", u16, Source::command, kOperator,
+            "1 enable, 2 disable, 3 quick_stop, 4 halt, 5 fault_reset, 6 move_absolute, 7 move_relative, "
+            "8 run_velocity, 9 run_torque, 10 home, 11 set_position, 12 save_parameters (engineer)"),
+      takes(55, "command_id", u16, Source::command_id, kOperator),
+      takes(56, "heartbeat", u16, Source::heartbeat, kOperator),
+      not_built(in(Kind::velocity,
+                   takes(58, "jog_velocity", u32, Source::jog_velocity, kOperator, "not in this version: reads 0"))),
+      of(60, homing_method, kOperator),
+      of(62, homing_speed_switch, kOperator),
+      of(64, homing_speed_zero, kOperator),
+      of(66, homing_acceleration, kOperator),
+      of(68, homing_offset, kOperator),
+      of(70, quick_stop_deceleration, kEngineer),
+      of(72, position_limit_min, kEngineer, "72 to 75 are checked as a pair"),
+      of(74, position_limit_max, kEngineer),
+      of(76, max_velocity, kEngineer),
+      in(Kind::position, takes(78, "set_position_value", i32, Source::set_position_value, kOperator)),
+      takes(80, "object_request", u16, Source::object_request, kViewer, "1 read, 2 write (engineer)"),
+      takes(81, "object_index", u16, Source::object_index, kViewer, "for Modbus RTU drives: the register"),
+      takes(82, "object_subindex", u16, Source::object_subindex, kViewer),
+      takes(83, "object_size", u16, Source::object_size, kViewer, "1, 2 or 4", "bytes"),
+      takes(84, "object_data", u32, Source::object_data, kViewer),
+      shows(86, "object_status", u16, Source::object_status, "0 idle, 1 busy, 2 done, 3 failed"),
+      shows(88, "object_detail", u32, Source::object_detail),
+  };
+}
+
+std::vector<RegisterRow> overview_register_rows() {
+  using enum Quantity;
+  return {
+      of(0, statusword),
+      of(1, mode_display),
+      of(2, position_actual),
+      of(4, velocity_actual),
+      of(6, torque_actual),
+      of(7, error_code),
+      shows(8, "link_state", u16, Source::link_state),
+      shows(9, "sequence", u16, Source::sequence),
+  };
+}
+
+std::vector<RegisterRow> gateway_register_rows() {
+  return {
+      shows(0, "map_version", u16, Source::map_version),
+      shows(1, "axis_count", u16, Source::axis_count),
+      shows(2, "gateway_state", u16, Source::gateway_state, "0 starting, 1 running, 2 degraded, 3 stopping"),
+      shows(3, "axes_online", u16, Source::axes_online),
+      shows(4, "uptime_s", u32, Source::uptime_s, {}, "s"),
+      shows(6, "alarms", u16, Source::gateway_alarms,
+            "bit 0 an axis offline, 1 a bus down, 2 drive fault, 3 identity mismatch, 4 no_comm_watchdog, "
+            "5 a check failed, 6 adopted_running, 7 DDS process down, 8 configuration not the one on disk, "
+            "9 certificate expires, 10 event loop slow, 11 EEPROM write budget, 12 bus overloaded"),
+      shows(7, "role", u16, Source::role, "of this client: 0 none, 1 viewer, 2 operator, 3 engineer"),
+      takes(8, "heartbeat", u16, Source::gateway_heartbeat, kViewer),
+      shows(10, "word_order_test", u32, Source::word_order_test, "always 0x01020304"),
+  };
+}
+
+std::vector<RegisterRow> bus_register_rows() {
+  return {
+      shows(0, "link", u16, Source::bus_link, "0 down, 1 up, 2 suspect"),
+      shows(1, "load", u16, Source::bus_load, {}, "0.1 %"),
+      shows(2, "cycle_ms", u16, Source::bus_cycle_ms, {}, "ms"),
+      shows(3, "queue_depth", u16, Source::bus_queue_depth),
+      shows(4, "requests", u32, Source::bus_requests),
+      shows(6, "replies", u32, Source::bus_replies),
+      shows(8, "timeouts", u32, Source::bus_timeouts),
+      shows(10, "bad_frames", u32, Source::bus_bad_frames),
+      shows(12, "late_replies", u32, Source::bus_late_replies),
+      shows(14, "dropped_bytes", u32, Source::bus_dropped_bytes),
+      shows(16, "refused", u32, Source::bus_refused),
+      shows(18, "coalesced", u32, Source::bus_coalesced),
+      shows(20, "superseded", u32, Source::bus_superseded),
+      shows(22, "reconnects", u32, Source::bus_reconnects),
+  };
+}
+
+}  // namespace axisgate

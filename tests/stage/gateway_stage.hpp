@@ -1,0 +1,70 @@
+// The shipped gateway core on a stage: manual time, simulated lines, shipped profiles; a client speaks to the command port.
+// Promises that nothing happens but by the clock that the test moves.
+// Never opens a device or a socket.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/app/gateway.hpp"
+#include "gateway/drive/profile_loader.hpp"
+#include "tests/stage/sim_link.hpp"
+
+namespace axisgate::test {
+
+/// One drive of a line: what it is, and what the configuration says of its axis.
+struct StageDrive {
+  simulated::DriveOptions options{};
+  drive::ResolveAxis axis{};
+  std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
+};
+
+class GatewayStage {
+ public:
+  struct Line {
+    std::string name;
+    std::vector<StageDrive> drives;
+    simulated::LineOptions options{};
+  };
+  explicit GatewayStage(std::vector<Line> lines, std::uint64_t seed = 1);
+
+  [[nodiscard]] app::Gateway& gateway() { return *gateway_; }
+  [[nodiscard]] ManualRuntime& runtime() { return runtime_; }
+  [[nodiscard]] SimLink& link(std::size_t line) { return *links_[line]; }
+  [[nodiscard]] simulated::KincoDrive& drive(std::size_t line, std::size_t position = 0);
+  [[nodiscard]] const AxisImage& axis(AxisNumber number) { return *gateway_->image().find(number); }
+  [[nodiscard]] std::vector<std::string>& log() { return log_lines_; }
+
+  void run(Duration time) { runtime_.advance_by(time); }
+  /// Runs until `done` or for at most `limit`; false: it did not come true.
+  bool run_until(const std::function<bool()>& done, Duration limit = std::chrono::seconds(20));
+  /// Runs until all axes are online.
+  bool come_online() {
+    return run_until([this] {
+      for (const auto& a : gateway_->image().axes())
+        if (a->link_state != LinkState::online) return false;
+      return true;
+    });
+  }
+
+  /// Submits and runs until the result is there.
+  GroupResult ask(AxisNumber axis, Group group);
+  GroupResult command(AxisNumber axis, Command command);
+  GroupResult write(AxisNumber axis, Quantity quantity, std::int64_t value);
+  /// Submits without waiting; the result appears in the returned place.
+  std::shared_ptr<std::optional<GroupResult>> begin(AxisNumber axis, Group group);
+
+ private:
+  ManualRuntime runtime_;
+  std::vector<std::string> log_lines_;
+  Log log_;
+  std::vector<SimLink*> links_;
+  std::unique_ptr<app::Gateway> gateway_;
+};
+
+/// A commissioned drive on a line of its own.
+[[nodiscard]] GatewayStage::Line line_of(simulated::KincoType type, AxisNumber axis);
+
+}  // namespace axisgate::test
