@@ -1,0 +1,271 @@
+#include "adapters/bus/arbiter.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace axisgate::bus {
+
+namespace {
+
+/// kNoAxis is an axis of its own here: what concerns the whole drive has one queue.
+bool same_axis(const Order& a, const Order& b) { return a.drive == b.drive && a.axis == b.axis; }
+
+/// Orders of which one may be started at a time.
+bool exclude_each_other(const Order& a, const Order& b) {
+  if (a.priority != b.priority || a.priority == Priority::stop) return false;
+  return a.priority == Priority::setup ? a.drive == b.drive : same_axis(a, b);
+}
+
+bool falls_to_stop(const Order& order, bool started, const Order& stop) {
+  if (order.drive != stop.drive || (stop.axis != kNoAxis && order.axis != stop.axis)) return false;
+  if (order.survives_stop) return false;
+  return order.priority == Priority::command || (order.priority == Priority::interactive && !started);
+}
+
+bool is_plain_read(const Order& order) { return order.read.has_value() && order.writes.empty(); }
+
+}  // namespace
+
+struct Arbiter::Candidate {
+  Grant grant;
+  int rank = 0;
+  bool started = false;
+  std::uint64_t served = 0;
+  OrderId place = 0;
+
+  /// The order in which the wire is given away, in four comparisons.
+  [[nodiscard]] bool goes_before(const Candidate& other) const {
+    if (rank != other.rank) return rank < other.rank;            // stop, a poll that is owed, then by class
+    if (rank == 0 && started != other.started) return !started;  // a new stop before what follows from an older one
+    if (served != other.served) return served < other.served;    // drives take turns inside a class
+    return place < other.place;                                  // in order of acceptance
+  }
+};
+
+Arbiter::Arbiter(std::size_t drives) : drives_(drives) {
+  assert(drives <= kMaxDrivesPerBus);
+  const std::size_t most = kMaxOrdersPerBus + kMaxStopsPerBus + kMaxSetupsPerDrive * drives;
+  entries_.reserve(most);
+  endings_.reserve(most);
+}
+
+Arbiter::Admission Arbiter::submit(const Order& order, Instant now) {
+  assert(order.drive < drives_.size() && order.priority != Priority::poll);
+  expire_starts(now);
+  if (order.priority == Priority::stop) {
+    drop_for_stop(order);
+  } else if (const Entry* waiting = joinable(order)) {
+    ++statistics_.coalesced;
+    return {Errc::ok, waiting->id, true};
+  }
+  Entry entry{.id = last_id_ + 1, .place = last_id_ + 1, .order = order};
+  if (const Entry* older = supersedable(order)) {
+    ++statistics_.superseded;
+    entry.place = older->place;
+    end_where([id = older->id](const Entry& e) { return e.id == id; }, [](const Entry&) { return Errc::superseded; });
+  } else if (full(order)) {
+    ++statistics_.refused;
+    return {Errc::queue_full, 0, false};
+  }
+  ++last_id_;
+  entries_.push_back(entry);
+  return {Errc::ok, last_id_, false};
+}
+
+std::optional<Arbiter::Grant> Arbiter::next(Instant now) {
+  expire_starts(now);
+  if (wire_busy_ || now < silent_until_) return std::nullopt;
+  const std::optional<Candidate> chosen = choose(now);
+  if (!chosen) return std::nullopt;
+  const Grant& grant = chosen->grant;
+  DriveTurns& drive = drives_[grant.drive];
+  drive.served[static_cast<std::size_t>(grant.priority)] = ++grants_;
+  if (Entry* entry = find(grant.id)) {
+    entry->started = true;
+    others_since_poll_ = std::min(others_since_poll_ + 1, kOthersPerPoll);
+  } else {
+    drive.poll_due = kNever;
+    others_since_poll_ = 0;
+  }
+  wire_busy_ = true;
+  granted_ = {grant.id, grant.drive, now};
+  return grant;
+}
+
+std::optional<Arbiter::Candidate> Arbiter::choose(Instant now) const {
+  std::optional<Candidate> best;
+  const auto consider = [&best](const Candidate& one) {
+    if (!best || one.goes_before(*best)) best = one;
+  };
+  for (const Entry& entry : entries_) {
+    if (entry.started ? entry.ready_at <= now : !blocked(entry)) consider(candidate(entry));
+  }
+  for (std::size_t slot = 0; slot < drives_.size(); ++slot) {
+    if (drives_[slot].poll_ready_at() <= now) consider(poll_candidate(static_cast<DriveSlot>(slot)));
+  }
+  return best;
+}
+
+Arbiter::Candidate Arbiter::candidate(const Entry& entry) const {
+  static constexpr std::array<int, kPriorityCount> kRanks{0, 2, 3, 4, 5};
+  const auto priority = static_cast<std::size_t>(entry.order.priority);
+  return {.grant = {entry.id, entry.order.drive, entry.order.priority},
+          .rank = kRanks[priority],
+          .started = entry.started,
+          .served = drives_[entry.order.drive].served[priority],
+          .place = entry.place};
+}
+
+Arbiter::Candidate Arbiter::poll_candidate(DriveSlot drive) const {
+  return {.grant = {0, drive, Priority::poll},
+          .rank = others_since_poll_ >= kOthersPerPoll ? 1 : 5,
+          .served = drives_[drive].served[static_cast<std::size_t>(Priority::poll)]};
+}
+
+bool Arbiter::blocked(const Entry& entry) const {
+  return std::ranges::any_of(entries_,
+                             [&](const Entry& e) { return e.started && exclude_each_other(e.order, entry.order); });
+}
+
+void Arbiter::decline() {
+  assert(wire_busy_);
+  wire_busy_ = false;
+  const Instant pause_over = granted_.at + kDeclinePause;
+  if (granted_.id == 0) {
+    drives_[granted_.drive].poll_not_before = pause_over;
+  } else if (Entry* entry = find(granted_.id)) {
+    entry->ready_at = std::max(entry->ready_at, pause_over);
+  }
+}
+
+void Arbiter::exchange_over(Instant silent_until) {
+  assert(wire_busy_);
+  wire_busy_ = false;
+  silent_until_ = silent_until;
+}
+
+void Arbiter::wait(OrderId id, Instant until) {
+  Entry* entry = find(id);
+  if (entry != nullptr && entry->started) entry->ready_at = until;
+}
+
+void Arbiter::finish(OrderId id) {
+  std::erase_if(entries_, [id](const Entry& e) { return e.id == id; });
+  std::erase_if(endings_, [id](const Ending& e) { return e.id == id; });
+}
+
+void Arbiter::set_poll_due(DriveSlot drive, Instant due) {
+  assert(drive < drives_.size());
+  drives_[drive].poll_due = due;
+}
+
+const Arbiter::Entry* Arbiter::joinable(const Order& order) const {
+  if (!is_plain_read(order)) return nullptr;
+  // From the newest back: beyond the first write of the drive, a waiting read could be answered with what was before
+  // it.
+  for (auto e = entries_.rbegin(); e != entries_.rend(); ++e) {
+    if (e->order.drive != order.drive) continue;
+    if (!is_plain_read(e->order)) return nullptr;
+    const bool as_lasting = e->order.survives_stop || !order.survives_stop;
+    if (!e->started && e->order.axis == order.axis && e->order.read == order.read &&
+        e->order.priority <= order.priority && as_lasting) {
+      return &*e;
+    }
+  }
+  return nullptr;
+}
+
+const Arbiter::Entry* Arbiter::supersedable(const Order& order) const {
+  if (!order.setpoints_only) return nullptr;
+  // The newest of the axis, whatever it is: anything accepted between forbids it.
+  const auto e = std::find_if(entries_.rbegin(), entries_.rend(),
+                              [&](const Entry& entry) { return same_axis(entry.order, order); });
+  if (e == entries_.rend() || e->started || !e->order.setpoints_only) return nullptr;
+  return e->order.priority == order.priority && e->order.writes == order.writes ? &*e : nullptr;
+}
+
+bool Arbiter::full(const Order& order) const {
+  const auto count = [&](auto which) {
+    return static_cast<std::size_t>(std::ranges::count_if(entries_, [&](const Entry& e) { return which(e.order); }));
+  };
+  const auto same_class = [&](const Order& o) { return o.priority == order.priority; };
+  const auto same_class_and_axis = [&](const Order& o) { return same_class(o) && same_axis(o, order); };
+  switch (order.priority) {
+    case Priority::stop:
+      return count(same_class) >= kMaxStopsPerBus || count(same_class_and_axis) >= kMaxStopsPerAxis;
+    case Priority::setup:
+      return count([&](const Order& o) { return same_class(o) && o.drive == order.drive; }) >= kMaxSetupsPerDrive;
+    default:
+      return count([](const Order& o) {
+               return o.priority == Priority::command || o.priority == Priority::interactive;
+             }) >= kMaxOrdersPerBus ||
+             (order.priority == Priority::command && count(same_class_and_axis) >= kMaxOrdersPerAxis);
+  }
+}
+
+Arbiter::Entry* Arbiter::find(OrderId id) {
+  const auto at = std::ranges::find(entries_, id, &Entry::id);
+  return at == entries_.end() ? nullptr : &*at;
+}
+
+template <typename Which, typename Reason>
+void Arbiter::end_where(Which which, Reason reason) {
+  std::erase_if(entries_, [&](const Entry& entry) {
+    if (!which(entry)) return false;
+    endings_.push_back({entry.id, entry.order.drive, reason(entry)});
+    return true;
+  });
+}
+
+void Arbiter::drop_for_stop(const Order& stop) {
+  end_where([&](const Entry& e) { return falls_to_stop(e.order, e.started, stop); },
+            [](const Entry&) { return Errc::dropped_by_stop; });
+}
+
+void Arbiter::expire_starts(Instant now) {
+  end_where([now](const Entry& e) { return !e.started && e.order.start_by <= now; },
+            [](const Entry&) { return Errc::never_started; });
+}
+
+void Arbiter::end_drive(DriveSlot drive, Errc waiting, Errc started) {
+  end_where([drive](const Entry& e) { return e.order.drive == drive; },
+            [&](const Entry& e) { return e.started ? started : waiting; });
+}
+
+void Arbiter::end_all(Errc waiting, Errc started) {
+  end_where([](const Entry&) { return true; }, [&](const Entry& e) { return e.started ? started : waiting; });
+  wire_busy_ = false;
+  silent_until_ = kLongAgo;
+}
+
+std::optional<Arbiter::Ending> Arbiter::take_ending(Instant now) {
+  expire_starts(now);
+  if (endings_.empty()) return std::nullopt;
+  const Ending first = endings_.front();
+  endings_.erase(endings_.begin());
+  return first;
+}
+
+Instant Arbiter::next_deadline() const {
+  if (!endings_.empty()) return kLongAgo;
+  Instant next = kNever;
+  const auto wire_wanted_at = [&](Instant at) {
+    if (!wire_busy_) next = std::min(next, std::max(at, silent_until_));
+  };
+  for (const Entry& entry : entries_) {
+    if (entry.started) {
+      wire_wanted_at(entry.ready_at);
+    } else {
+      next = std::min(next, entry.order.start_by);
+      if (!blocked(entry)) wire_wanted_at(kLongAgo);
+    }
+  }
+  for (const DriveTurns& drive : drives_) wire_wanted_at(drive.poll_ready_at());
+  return next;
+}
+
+std::size_t Arbiter::waiting() const {
+  return static_cast<std::size_t>(std::ranges::count(entries_, false, &Entry::started));
+}
+
+}  // namespace axisgate::bus

@@ -1,0 +1,182 @@
+#include "adapters/bus/bus.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace axisgate::bus {
+
+Bus::Bus(BusSettings settings, std::size_t drives, std::unique_ptr<Wire> wire, Runtime& runtime, const Log& log)
+    : settings_(std::move(settings)),
+      arbiter_(drives),
+      runtime_(runtime),
+      log_(log),
+      drives_(drives, nullptr),
+      timer_(runtime.make_timer([this] { pump(); })),
+      wire_(std::move(wire)) {
+  assert(wire_ != nullptr);
+}
+
+Bus::~Bus() = default;
+
+void Bus::attach(DriveSlot slot, BusDrive& drive) {
+  assert(slot < drives_.size() && drives_[slot] == nullptr);
+  drives_[slot] = &drive;
+}
+
+void Bus::start() {
+  assert(std::ranges::count(drives_, nullptr) == 0);
+  wire_->start(*this);
+}
+
+Arbiter::Admission Bus::submit(const Order& order) {
+  if (!up_) return {Errc::offline, 0, false};
+  const Arbiter::Admission admission = arbiter_.submit(order, now());
+  soon();
+  return admission;
+}
+
+void Bus::wait(OrderId id, Instant until) {
+  arbiter_.wait(id, until);
+  soon();
+}
+
+void Bus::finish(OrderId id) {
+  arbiter_.finish(id);
+  soon();
+}
+
+void Bus::set_poll_due(DriveSlot drive, Instant due) {
+  arbiter_.set_poll_due(drive, due);
+  soon();
+}
+
+void Bus::end_drive(DriveSlot drive, Errc waiting, Errc started) {
+  arbiter_.end_drive(drive, waiting, started);
+  soon();
+}
+
+/// A drive that calls us is never called back from inside its call.
+void Bus::soon() {
+  if (!pumping_) timer_->expires_at(now());
+}
+
+void Bus::pump() {
+  if (pumping_) return;
+  pumping_ = true;
+  int turns = 0;
+  bool more = true;
+  while (more) more = take_wire_event() || (turns++ < kMaxTurnsPerPump && take_turn());
+  pumping_ = false;
+  if (turns > kMaxTurnsPerPump) {
+    timer_->expires_at(now());
+    return;
+  }
+  // While the link is down no exchange can go out: what waits for the wire then waits for on_wire_up().
+  const Instant arbiter_deadline = up_ ? arbiter_.next_deadline() : kNever;
+  timer_->expires_at(outstanding_ ? std::min(outstanding_->deadline, arbiter_deadline) : arbiter_deadline);
+}
+
+bool Bus::take_wire_event() {
+  if (heard_reply_) {
+    const ExchangeResult result = *std::exchange(heard_reply_, std::nullopt);
+    if (outstanding_) {
+      ++statistics_.replies;
+      end_exchange(result, settings_.min_gap);
+    }
+    return true;
+  }
+  if (heard_down_) {
+    link_down(*std::exchange(heard_down_, std::nullopt));
+    return true;
+  }
+  if (heard_up_) {
+    heard_up_ = false;
+    link_up();
+    return true;
+  }
+  return false;
+}
+
+/// One callback to one drive, if there is reason for one.
+bool Bus::take_turn() {
+  if (outstanding_ && now() >= outstanding_->deadline) {
+    ++statistics_.timeouts;
+    wire_->abandon();
+    end_exchange({.code = Errc::timed_out}, std::max(settings_.min_gap, settings_.settle));
+    return true;
+  }
+  if (const auto ending = arbiter_.take_ending(now())) {
+    drives_[ending->drive]->on_order_ended(ending->id, ending->code);
+    return true;
+  }
+  if (!up_) return false;
+  const auto granted = arbiter_.next(now());
+  if (granted) grant(*granted);
+  return granted.has_value();
+}
+
+void Bus::grant(const Arbiter::Grant& grant) {
+  const std::optional<Exchange> exchange = drives_[grant.drive]->on_grant(grant.id, grant.priority);
+  if (!exchange) {
+    arbiter_.decline();
+    return;
+  }
+  ++statistics_.requests;
+  outstanding_ = {*exchange, grant.drive, now() + settings_.timeout};
+  load_.set_busy(true, now());
+  wire_->send(*exchange);
+}
+
+void Bus::end_exchange(const ExchangeResult& result, Duration silence) {
+  const Outstanding ended = *std::exchange(outstanding_, std::nullopt);
+  load_.set_busy(false, now());
+  arbiter_.exchange_over(now() + silence);
+  drives_[ended.drive]->on_result(ended.exchange, result);
+}
+
+void Bus::link_up() {
+  if (up_) return;
+  up_ = true;
+  log_.write(LogLevel::info, log_source(), "link up");
+  for (BusDrive* drive : drives_) drive->on_link(true);
+}
+
+/// All in one turn (P7): clients get their answers now, not after a timeout each.
+void Bus::link_down(const std::string& why) {
+  if (!up_) return;
+  up_ = false;  // from here on nothing new is accepted, so what follows is bounded
+  log_.write(LogLevel::warning, log_source(), "link down: " + why);
+  if (outstanding_) end_exchange({.code = Errc::link_lost}, Duration{});
+  arbiter_.end_all(Errc::offline, Errc::link_lost);
+  while (const auto ending = arbiter_.take_ending(now())) {
+    drives_[ending->drive]->on_order_ended(ending->id, ending->code);
+  }
+  for (BusDrive* drive : drives_) drive->on_link(false);
+}
+
+void Bus::on_wire_up() {
+  heard_up_ = true;
+  pump();
+}
+
+void Bus::on_wire_down(std::string_view why) {
+  if (std::exchange(heard_up_, false) && !up_) return;  // came and went before anybody was told
+  heard_down_ = std::string(why);
+  pump();
+}
+
+void Bus::on_reply(const ExchangeResult& result) {
+  heard_reply_ = result;
+  pump();
+}
+
+Statistics Bus::statistics() const { return statistics_ + arbiter_.statistics() + wire_->statistics(); }
+
+std::size_t Bus::queue_depth() const { return arbiter_.waiting(); }
+
+std::uint16_t Bus::load_permille() const { return load_.permille(now()); }
+
+void Bus::set_decode(bool on) { wire_->set_decode(on); }
+
+}  // namespace axisgate::bus

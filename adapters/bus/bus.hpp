@@ -1,0 +1,109 @@
+// One bus: the arbiter, the wire and the timer of one physical line, brought together.
+// Promises that every grant becomes one exchange, every exchange gets one result within its timeout, and that a stop
+// goes next as soon as the exchange on the wire has ended. Never decides whose turn it is (arbiter) nor what to send
+// (drive).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adapters/bus/arbiter.hpp"
+#include "adapters/bus/load_meter.hpp"
+#include "adapters/bus/wire.hpp"
+#include "gateway/core/log.hpp"
+
+namespace axisgate::bus {
+
+/// A drive, as its bus sees it.
+class BusDrive {
+ public:
+  BusDrive() = default;
+  BusDrive(const BusDrive&) = delete;
+  BusDrive& operator=(const BusDrive&) = delete;
+  virtual ~BusDrive() = default;
+  /// The wire is this drive's for one exchange: for order `id`, or (0) for a poll. No value: nothing to send after all.
+  /// A suspect drive may answer with its fence instead of what the order wants; the order then stays.
+  [[nodiscard]] virtual std::optional<Exchange> on_grant(OrderId id, Priority priority) = 0;
+  virtual void on_result(const Exchange& exchange, const ExchangeResult& result) = 0;
+  /// The arbiter has ended this order of the drive: its exchange, if one is on the wire, still gets its on_result().
+  virtual void on_order_ended(OrderId id, Errc code) = 0;
+  virtual void on_link(bool up) = 0;
+};
+
+struct BusSettings {
+  std::string name;
+  Duration timeout = std::chrono::milliseconds(100);  ///< from the request's sending to its last byte of reply
+  Duration min_gap{};                                 ///< silence between two exchanges
+  Duration settle{};                                  ///< silence after a timeout, where two talkers could collide
+};
+
+class Bus final : private WireEvents {
+ public:
+  Bus(BusSettings settings, std::size_t drives, std::unique_ptr<Wire> wire, Runtime& runtime, const Log& log);
+  ~Bus() override;
+  /// All drives must be attached before start(). A drive must outlive the bus.
+  void attach(DriveSlot slot, BusDrive& drive);
+  void start();
+
+  /// Also `offline` while the link is down. Never calls a drive before it has returned: what follows comes with the
+  /// next turn of the loop, at once.
+  [[nodiscard]] Arbiter::Admission submit(const Order& order);
+  void wait(OrderId id, Instant until);
+  void finish(OrderId id);
+  void set_poll_due(DriveSlot drive, Instant due);
+  void end_drive(DriveSlot drive, Errc waiting, Errc started);
+
+  [[nodiscard]] const BusSettings& settings() const { return settings_; }
+  [[nodiscard]] bool up() const { return up_; }
+  [[nodiscard]] Instant now() const { return runtime_.now(); }
+  [[nodiscard]] Statistics statistics() const;
+  [[nodiscard]] std::size_t queue_depth() const;
+  /// Share of the last whole second in which an exchange was on the wire, in 0.1 %.
+  [[nodiscard]] std::uint16_t load_permille() const;
+  void set_decode(bool on);
+
+ private:
+  void on_wire_up() override;
+  void on_wire_down(std::string_view why) override;
+  void on_reply(const ExchangeResult& result) override;
+
+  struct Outstanding {
+    Exchange exchange;
+    DriveSlot drive = 0;
+    Instant deadline = kNever;
+  };
+  /// Callbacks to drives in one turn of the loop; more go on in the next turn, so that other buses keep their
+  /// deadlines.
+  static constexpr int kMaxTurnsPerPump = 64;
+
+  void pump();
+  bool take_wire_event();
+  bool take_turn();
+  void grant(const Arbiter::Grant& grant);
+  void end_exchange(const ExchangeResult& result, Duration silence);
+  void link_up();
+  void link_down(const std::string& why);
+  void soon();
+  [[nodiscard]] std::string log_source() const { return "bus " + settings_.name; }
+
+  BusSettings settings_;
+  Arbiter arbiter_;
+  Runtime& runtime_;
+  const Log& log_;
+  bool up_ = false;
+  bool pumping_ = false;
+  std::vector<BusDrive*> drives_;
+  std::optional<Outstanding> outstanding_;
+  // What the wire said while a callback of ours was running, in the order in which it is taken up.
+  std::optional<ExchangeResult> heard_reply_;
+  std::optional<std::string> heard_down_;
+  bool heard_up_ = false;
+  Statistics statistics_;  // requests, replies, timeouts
+  LoadMeter load_;
+  // Last, so that they go first: neither may call into a bus that is half gone.
+  std::unique_ptr<Timer> timer_;
+  std::unique_ptr<Wire> wire_;
+};
+
+}  // namespace axisgate::bus

@@ -1,0 +1,43 @@
+// An order: what waits for a bus. It is a chain of one or more exchanges of one drive, its content known to the drive
+// alone. Promises to the arbiter all it needs to decide whose exchange goes next, and nothing more. Never holds frames
+// or values.
+#pragma once
+
+#include <boost/container/static_vector.hpp>
+#include <cstdint>
+#include <optional>
+
+#include "adapters/bus/exchange.hpp"
+
+namespace axisgate::bus {
+
+/// In the order in which the wire is given away (design 7, point 3).
+enum class Priority : std::uint8_t { stop, command, interactive, setup, poll };
+inline constexpr std::size_t kPriorityCount = 5;
+
+/// Position of a drive in the configuration of its bus.
+using DriveSlot = std::uint8_t;
+/// Position of an axis in its drive; kNoAxis where the order is the whole drive's.
+using AxisSlot = std::uint8_t;
+inline constexpr AxisSlot kNoAxis = 0xFF;
+
+inline constexpr std::size_t kMaxOrdersPerBus = 64;
+inline constexpr std::size_t kMaxOrdersPerAxis = 8;
+/// Quantities one group can write: rows 41..53 and 60..77 of the map.
+inline constexpr std::size_t kMaxWritesPerOrder = 24;
+
+/// 0 is no order (a poll).
+using OrderId = std::uint64_t;
+
+struct Order {
+  Priority priority = Priority::command;
+  DriveSlot drive = 0;
+  AxisSlot axis = kNoAxis;
+  Instant start_by = kNever;    ///< not granted by then: ends never_started
+  bool setpoints_only = false;  ///< a newer order with the same `writes` may supersede it while it waits
+  bool survives_stop = false;   ///< parameters alone: a stop of its axis does not drop it
+  boost::container::static_vector<ObjectAddress, kMaxWritesPerOrder> writes;  ///< sorted
+  std::optional<ObjectAddress> read;  ///< a plain read: an identical one may join while it waits
+};
+
+}  // namespace axisgate::bus

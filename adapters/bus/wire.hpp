@@ -1,0 +1,45 @@
+// A wire: the link of one bus together with the protocol spoken on it, as the bus sees it. Each adapter makes one.
+// Promises at most one reply per send(), and none after abandon() or a link loss: what comes then is counted as late.
+// Never queues, repeats or orders requests: that is the arbiter's work alone.
+#pragma once
+
+#include <string_view>
+
+#include "adapters/bus/exchange.hpp"
+#include "adapters/bus/statistics.hpp"
+
+namespace axisgate::bus {
+
+class WireEvents {
+ public:
+  WireEvents() = default;
+  WireEvents(const WireEvents&) = delete;
+  WireEvents& operator=(const WireEvents&) = delete;
+  virtual ~WireEvents() = default;
+  virtual void on_wire_up() = 0;
+  /// `why` names the device and the system's reason, for the log.
+  virtual void on_wire_down(std::string_view why) = 0;
+  /// The answer to the exchange sent last. Its code is ok, refused_by_drive or bad_reply.
+  virtual void on_reply(const ExchangeResult& result) = 0;
+};
+
+class Wire {
+ public:
+  Wire() = default;
+  Wire(const Wire&) = delete;
+  Wire& operator=(const Wire&) = delete;
+  virtual ~Wire() = default;
+  /// Opens the link and keeps it open until the wire is destroyed; `events` must outlive it. May call on_wire_up() at
+  /// once.
+  virtual void start(WireEvents& events) = 0;
+  /// Only while up and with no exchange outstanding.
+  virtual void send(const Exchange& exchange) = 0;
+  /// The exchange outstanding is given up (timeout): its reply, should it come, is late.
+  virtual void abandon() = 0;
+  /// The adapter adds what it counts: bad_frames, late_replies, dropped_bytes, reconnects.
+  [[nodiscard]] virtual const Statistics& statistics() const = 0;
+  /// Decode level (design section 6): log every frame sent and received.
+  virtual void set_decode(bool on) = 0;
+};
+
+}  // namespace axisgate::bus

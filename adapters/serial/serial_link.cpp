@@ -1,0 +1,172 @@
+#include "adapters/serial/serial_link.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/error.hpp>
+#include <boost/asio/post.hpp>
+#include <cassert>
+#include <utility>
+
+#include "adapters/serial/serial_port.hpp"
+
+namespace axisgate::serial {
+
+namespace {
+
+namespace asio = boost::asio;
+using Error = boost::system::error_code;
+
+/// True in a handler as long as the link exists and has the same opening as when the handler was made.
+class StillOpen {
+ public:
+  explicit StillOpen(const std::shared_ptr<std::uint64_t>& opening) : opening_(opening), mine_(*opening) {}
+  explicit operator bool() const {
+    const auto opening = opening_.lock();
+    return opening != nullptr && *opening == mine_;
+  }
+
+ private:
+  std::weak_ptr<std::uint64_t> opening_;
+  std::uint64_t mine_;
+};
+
+char parity_letter(Parity parity) { return parity == Parity::none ? 'N' : parity == Parity::even ? 'E' : 'O'; }
+
+}  // namespace
+
+SerialLink::SerialLink(std::string name, SerialSettings settings, asio::io_context& context, Runtime& runtime,
+                       const Log& log)
+    : log_source_("bus " + std::move(name)),
+      settings_(std::move(settings)),
+      context_(context),
+      runtime_(runtime),
+      log_(log),
+      port_(context),
+      timer_(runtime.make_timer([this] { try_open(); })) {
+  unsent_.reserve(kMaxUnsent);
+}
+
+SerialLink::~SerialLink() = default;
+
+void SerialLink::start(bus::ByteLinkEvents& events) {
+  assert(events_ == nullptr);
+  events_ = &events;
+  path_watch_ = std::make_unique<PathWatch>(context_, settings_.device, [this] {
+    plan_.on_path(runtime_.now());
+    arm();
+  });
+  plan_.on_request(runtime_.now());
+  arm();
+}
+
+void SerialLink::arm() { timer_->expires_at(plan_.due()); }
+
+void SerialLink::try_open() {
+  if (port_.is_open()) return;
+  path_watch_->renew();  // before the try: what appears after it is then told
+  OpenedPort opened = open_port(settings_);
+  if (opened.descriptor < 0) {
+    plan_.on_failure(runtime_.now());
+    arm();
+    log_failure(opened.error);
+    return;
+  }
+  port_.assign(opened.descriptor);
+  port_.non_blocking(true);  // known to Asio too: else write_some() would wait until all is written
+  plan_.on_open();
+  arm();
+  ++*opening_;
+  last_failure_.clear();
+  log_.write(LogLevel::info, log_source_,
+             fmt::format("{} open, {} baud 8{}1", settings_.device, settings_.baud, parity_letter(settings_.parity)));
+  if (opened.notes != last_notes_) {
+    for (const std::string& note : opened.notes) {
+      log_.write(LogLevel::warning, log_source_, settings_.device + ": " + note);
+    }
+    last_notes_ = std::move(opened.notes);
+  }
+  read();
+  events_->on_link_up();
+}
+
+void SerialLink::read() {
+  port_.async_read_some(asio::buffer(incoming_),
+                        [this, still_open = StillOpen(opening_)](const Error& error, std::size_t size) {
+                          if (!still_open) return;
+                          if (error) {
+                            lose(device_and(error));
+                            return;
+                          }
+                          events_->on_bytes(Bytes(incoming_).first(size));
+                          if (still_open) read();
+                        });
+}
+
+void SerialLink::send(Bytes bytes) {
+  if (!port_.is_open()) return;
+  if (unsent_.size() + bytes.size() > kMaxUnsent) {
+    lose_later(settings_.device + ": it takes no bytes");
+    return;
+  }
+  unsent_.insert(unsent_.end(), bytes.begin(), bytes.end());
+  if (!writing_) write();
+}
+
+void SerialLink::write() {
+  Error error;
+  const std::size_t written = port_.write_some(asio::buffer(unsent_), error);
+  unsent_.erase(unsent_.begin(), unsent_.begin() + static_cast<std::ptrdiff_t>(written));
+  if (error && error != asio::error::would_block) {
+    lose_later(device_and(error));
+    return;
+  }
+  writing_ = !unsent_.empty();
+  if (!writing_) return;
+  port_.async_wait(asio::posix::stream_descriptor::wait_write,
+                   [this, still_open = StillOpen(opening_)](const Error& wait_error) {
+                     if (still_open && !wait_error) write();
+                   });
+}
+
+void SerialLink::lose_later(std::string why) {
+  asio::post(context_, [this, still_open = StillOpen(opening_), why = std::move(why)] {
+    if (still_open) lose(why);
+  });
+}
+
+void SerialLink::lose(const std::string& why) {
+  close();
+  plan_.on_loss(runtime_.now());
+  arm();
+  events_->on_link_down(why);
+}
+
+void SerialLink::reopen(std::string_view why) {
+  const bool was_open = port_.is_open();
+  close();
+  plan_.on_request(runtime_.now());
+  arm();
+  if (was_open) events_->on_link_down(fmt::format("{}: {}", settings_.device, why));
+}
+
+void SerialLink::close() {
+  ++*opening_;
+  Error ignored;  // the descriptor is gone either way
+  port_.close(ignored);
+  unsent_.clear();
+  writing_ = false;
+}
+
+void SerialLink::log_failure(const std::string& why) {
+  if (why == last_failure_) return;
+  last_failure_ = why;
+  log_.write(LogLevel::warning, log_source_, why + "; trying again each second");
+}
+
+std::string SerialLink::device_and(const Error& error) const {
+  const std::string reason = error == asio::error::eof ? "hung up" : error.message();
+  return settings_.device + ": " + reason;
+}
+
+}  // namespace axisgate::serial

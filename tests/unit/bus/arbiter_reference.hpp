@@ -1,0 +1,231 @@
+// A plain second telling of the arbiter's rules, against which the real one is checked step by step.
+// Promises to judge each answer by the words of design section 7 point 3, rule by rule. Never chooses: it only objects.
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "tests/unit/bus/arbiter_stage.hpp"
+
+namespace axisgate::test {
+
+class ArbiterReference {
+ public:
+  struct Known {
+    Order order;
+    OrderId place = 0;
+    bool started = false;
+    Instant ready_at = kLongAgo;
+  };
+  static constexpr std::size_t kDrives = 3;
+
+  // What happens to the arbiter.
+  void on_submit(const Order& order, const Arbiter::Admission& admission, Instant now) {
+    expire(now);
+    if (order.priority == Priority::stop) drop_for(order);
+    if (admission.joined) return check_join(order, admission.id);
+    OrderId place = admission.id;
+    if (const auto older = replaceable(order); older != 0) {
+      EXPECT_EQ(admission.code, Errc::ok) << "a newer setpoint always finds room";
+      place = known_.at(older).place;
+      end(older, Errc::superseded);
+    }
+    if (admission.code == Errc::ok) {
+      EXPECT_TRUE(seen_.insert(admission.id).second) << "a number was given twice";
+      known_[admission.id] = {order, place};
+    } else {
+      EXPECT_EQ(admission.code, Errc::queue_full);
+    }
+    EXPECT_LE(
+        count([](const Order& o) { return o.priority == Priority::command || o.priority == Priority::interactive; }),
+        bus::kMaxOrdersPerBus);
+    EXPECT_LE(count([&](const Order& o) { return o.priority == Priority::command && same_axis(o, order); }),
+              bus::kMaxOrdersPerAxis);
+    EXPECT_LE(count([](const Order& o) { return o.priority == Priority::stop; }), bus::kMaxStopsPerBus);
+  }
+  void on_grant(const Arbiter::Grant& grant, Instant now) {
+    expire(now);
+    EXPECT_FALSE(busy_) << "at most one exchange";
+    EXPECT_GE(now, silent_until_);
+    if (grant.id == 0) {
+      check_poll(grant, now);
+    } else {
+      check_order(grant, now);
+    }
+    busy_ = true;
+    granted_ = grant;
+    granted_at_ = now;
+    served_[{grant.drive, grant.priority}] = ++grants_;
+    others_ = grant.id == 0 ? 0 : others_ + 1;
+  }
+  void on_nothing(Instant now) {
+    expire(now);
+    if (busy_ || now < silent_until_) return;
+    for (const auto& [id, known] : known_) EXPECT_FALSE(ready(known, now)) << "order " << id << " is stranded";
+    for (DriveSlot drive = 0; drive < kDrives; ++drive) EXPECT_FALSE(poll_ready(drive, now)) << "a poll is stranded";
+  }
+  void on_over(Instant silent_until) {
+    busy_ = false;
+    silent_until_ = silent_until;
+  }
+  void on_decline() {
+    busy_ = false;
+    if (granted_.id == 0) not_before_[granted_.drive] = granted_at_ + bus::kDeclinePause;
+    const auto at = known_.find(granted_.id);
+    if (at != known_.end()) at->second.ready_at = std::max(at->second.ready_at, granted_at_ + bus::kDeclinePause);
+  }
+  void on_wait(OrderId id, Instant until) {
+    if (known_.contains(id) && known_[id].started) known_[id].ready_at = until;
+  }
+  void on_finish(OrderId id) {
+    known_.erase(id);
+    std::erase_if(ended_, [id](const auto& e) { return e.id == id; });
+  }
+  void on_poll_due(DriveSlot drive, Instant due) { due_[drive] = due; }
+  void on_end(std::optional<DriveSlot> drive, Errc waiting, Errc started) {
+    for (const OrderId id : ids()) {
+      const Known& known = known_.at(id);
+      if (!drive || known.order.drive == *drive) end(id, known.started ? started : waiting);
+    }
+    if (!drive) on_over(kLongAgo);
+  }
+  void on_ending(const std::optional<Arbiter::Ending>& ending, Instant now) {
+    expire(now);
+    EXPECT_EQ(ending.has_value(), !ended_.empty());
+    if (!ending || ended_.empty()) return;
+    EXPECT_EQ(*ending, ended_.front());
+    ended_.erase(ended_.begin());
+  }
+
+  [[nodiscard]] bool busy() const { return busy_; }
+  [[nodiscard]] const std::map<OrderId, Known>& known() const { return known_; }
+  [[nodiscard]] bool quiet() const { return known_.empty() && ended_.empty(); }
+
+ private:
+  static bool same_axis(const Order& a, const Order& b) { return a.drive == b.drive && a.axis == b.axis; }
+
+  [[nodiscard]] std::vector<OrderId> ids() const {
+    std::vector<OrderId> all;
+    for (const auto& [id, known] : known_) all.push_back(id);
+    return all;
+  }
+  template <typename Which>
+  [[nodiscard]] std::size_t count(Which which) const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(known_, [&](const auto& k) { return which(k.second.order); }));
+  }
+  void end(OrderId id, Errc code) {
+    ended_.push_back({id, known_.at(id).order.drive, code});
+    known_.erase(id);
+  }
+  void expire(Instant now) {
+    for (const OrderId id : ids()) {
+      if (!known_.at(id).started && known_.at(id).order.start_by <= now) end(id, Errc::never_started);
+    }
+  }
+  void drop_for(const Order& stop) {
+    for (const OrderId id : ids()) {
+      const Known& k = known_.at(id);
+      const bool hit = k.order.drive == stop.drive && (stop.axis == bus::kNoAxis || k.order.axis == stop.axis);
+      const bool can_fall =
+          k.order.priority == Priority::command || (k.order.priority == Priority::interactive && !k.started);
+      if (hit && can_fall && !k.order.survives_stop) end(id, Errc::dropped_by_stop);
+    }
+  }
+  void check_join(const Order& order, OrderId id) {
+    ASSERT_TRUE(known_.contains(id));
+    EXPECT_TRUE(order.read.has_value());
+    EXPECT_FALSE(known_[id].started) << "never one on the wire";
+    EXPECT_EQ(known_[id].order.read, order.read);
+    EXPECT_TRUE(same_axis(known_[id].order, order));
+    for (const auto& [other, known] : known_) {
+      if (other > id && known.order.drive == order.drive) {
+        EXPECT_TRUE(known.order.read && known.order.writes.empty()) << "joined across a write";
+      }
+    }
+  }
+  [[nodiscard]] OrderId replaceable(const Order& order) const {
+    OrderId newest = 0;
+    for (const auto& [id, known] : known_) {
+      if (same_axis(known.order, order)) newest = id;
+    }
+    if (newest == 0 || !order.setpoints_only) return 0;
+    const Known& k = known_.at(newest);
+    const bool fits =
+        !k.started && k.order.setpoints_only && k.order.writes == order.writes && k.order.priority == order.priority;
+    return fits ? newest : 0;
+  }
+  [[nodiscard]] bool ready(const Known& known, Instant now) const {
+    if (known.started) return known.ready_at <= now;
+    if (known.order.priority == Priority::stop) return true;
+    return std::ranges::none_of(known_, [&](const auto& k) {
+      const Order& o = k.second.order;
+      const bool same_queue =
+          known.order.priority == Priority::setup ? o.drive == known.order.drive : same_axis(o, known.order);
+      return k.second.started && o.priority == known.order.priority && same_queue;
+    });
+  }
+  void check_poll(const Arbiter::Grant& grant, Instant now) {
+    EXPECT_TRUE(poll_ready(grant.drive, now)) << "a poll before its time";
+    due_[grant.drive] = kNever;
+    for (const auto& [id, known] : known_) {
+      if (!ready(known, now)) continue;
+      EXPECT_NE(known.order.priority, Priority::stop) << "a stop waited for a poll";
+      EXPECT_GE(others_, bus::kOthersPerPoll) << "a poll went before order " << id << " and was not owed";
+    }
+    for (DriveSlot drive = 0; drive < kDrives; ++drive) {
+      if (poll_ready(drive, now)) {
+        EXPECT_LE((served_[{grant.drive, Priority::poll}]), (served_[{drive, Priority::poll}])) << "turns";
+      }
+    }
+  }
+  void check_order(const Arbiter::Grant& grant, Instant now) {
+    ASSERT_TRUE(known_.contains(grant.id)) << "granted though it has ended";
+    Known& mine = known_[grant.id];
+    EXPECT_EQ(grant.drive, mine.order.drive);
+    EXPECT_EQ(grant.priority, mine.order.priority);
+    EXPECT_TRUE(ready(mine, now));
+    if (mine.order.priority != Priority::stop && others_ >= bus::kOthersPerPoll) {
+      for (DriveSlot drive = 0; drive < kDrives; ++drive) {
+        EXPECT_FALSE(poll_ready(drive, now)) << "poll did not get its share";
+      }
+    }
+    for (const auto& [id, known] : known_) {
+      if (id == grant.id || !ready(known, now)) continue;
+      EXPECT_LE(mine.order.priority, known.order.priority) << "order " << id << " is more urgent";
+      if (known.order.priority != mine.order.priority) continue;
+      if (mine.order.priority == Priority::stop && mine.started != known.started) {
+        EXPECT_FALSE(mine.started) << "a new stop waited for an older one's second exchange";
+        continue;
+      }
+      const auto my_turn = served_[{mine.order.drive, mine.order.priority}];
+      const auto other_turn = served_[{known.order.drive, known.order.priority}];
+      EXPECT_LE(my_turn, other_turn) << "it was the other drive's turn";
+      if (mine.order.drive == known.order.drive) {
+        EXPECT_LT(mine.place, known.place) << "out of order";
+      }
+    }
+    mine.started = true;
+  }
+
+  std::map<OrderId, Known> known_;
+  std::vector<Arbiter::Ending> ended_;
+  std::set<OrderId> seen_;
+  [[nodiscard]] bool poll_ready(DriveSlot drive, Instant now) const {
+    return due_[drive] <= now && not_before_[drive] <= now;
+  }
+
+  std::vector<Instant> not_before_ = std::vector<Instant>(kDrives, kLongAgo);
+  std::vector<Instant> due_ = std::vector<Instant>(kDrives, kNever);
+  std::map<std::pair<DriveSlot, Priority>, std::uint64_t> served_;
+  std::uint64_t grants_ = 0;
+  int others_ = 0;
+  bool busy_ = false;
+  Arbiter::Grant granted_;
+  Instant granted_at_ = kLongAgo;
+  Instant silent_until_ = kLongAgo;
+};
+
+}  // namespace axisgate::test

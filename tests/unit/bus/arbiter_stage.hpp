@@ -1,0 +1,90 @@
+// Words for telling stories about an arbiter: who orders what, who gets the wire, who is told of an end.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "adapters/bus/arbiter.hpp"
+
+namespace axisgate::bus {
+
+inline void PrintTo(const Arbiter::Ending& ending, std::ostream* out) {
+  *out << "order " << ending.id << " of drive " << int{ending.drive} << ": " << text(ending.code);
+}
+
+}  // namespace axisgate::bus
+
+namespace axisgate::test {
+
+using namespace std::chrono_literals;
+using bus::Arbiter;
+using bus::DriveSlot;
+using bus::Order;
+using bus::OrderId;
+using bus::Priority;
+
+inline constexpr bus::ObjectAddress kTargetPosition{0x607A, 0};
+inline constexpr bus::ObjectAddress kProfileVelocity{0x6081, 0};
+inline constexpr bus::ObjectAddress kStatusword{0x6041, 0};
+
+inline Order order(Priority priority, DriveSlot drive, bus::AxisSlot axis = 0) {
+  Order o;
+  o.priority = priority;
+  o.drive = drive;
+  o.axis = axis;
+  return o;
+}
+inline Order stop(DriveSlot drive, bus::AxisSlot axis = 0) { return order(Priority::stop, drive, axis); }
+inline Order command(DriveSlot drive, bus::AxisSlot axis = 0) { return order(Priority::command, drive, axis); }
+inline Order interactive(DriveSlot drive, bus::AxisSlot axis = 0) { return order(Priority::interactive, drive, axis); }
+inline Order setup(DriveSlot drive) { return order(Priority::setup, drive, bus::kNoAxis); }
+inline Order setpoint(DriveSlot drive, bus::ObjectAddress object = kTargetPosition, bus::AxisSlot axis = 0) {
+  Order o = command(drive, axis);
+  o.setpoints_only = true;
+  o.writes.push_back(object);
+  return o;
+}
+inline Order reading(DriveSlot drive, bus::ObjectAddress object = kStatusword) {
+  Order o = interactive(drive);
+  o.read = object;
+  return o;
+}
+
+class ArbiterStage : public testing::Test {
+ protected:
+  static constexpr std::size_t kDrives = 4;
+
+  OrderId submit(const Order& o) {
+    const auto admission = arbiter.submit(o, now);
+    EXPECT_EQ(admission.code, Errc::ok);
+    EXPECT_FALSE(admission.joined);
+    return admission.id;
+  }
+  /// Who gets the wire next; 0 for a poll. The exchange is over at once.
+  std::optional<OrderId> exchange() {
+    const auto grant = arbiter.next(now);
+    if (!grant) return std::nullopt;
+    granted_drive = grant->drive;
+    arbiter.exchange_over(now);
+    return grant->id;
+  }
+  /// An order of one exchange from grant to end.
+  std::optional<OrderId> serve() {
+    const auto id = exchange();
+    if (id) arbiter.finish(*id);
+    return id;
+  }
+  std::vector<Arbiter::Ending> endings() {
+    std::vector<Arbiter::Ending> all;
+    while (const auto ending = arbiter.take_ending(now)) all.push_back(*ending);
+    return all;
+  }
+
+  Arbiter arbiter{kDrives};
+  Instant now = Instant{} + 1h;
+  DriveSlot granted_drive = 0;
+};
+
+}  // namespace axisgate::test

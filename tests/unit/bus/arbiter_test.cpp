@@ -1,0 +1,204 @@
+// Who gets the wire, and when.
+#include "tests/unit/bus/arbiter_stage.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using testing::ElementsAre;
+
+using ArbiterTest = ArbiterStage;
+
+TEST_F(ArbiterTest, gives_nothing_to_nobody) {
+  EXPECT_EQ(arbiter.next(now), std::nullopt);
+  EXPECT_EQ(arbiter.next_deadline(), kNever);
+}
+
+TEST_F(ArbiterTest, grants_in_order_of_class_however_they_came) {
+  arbiter.set_poll_due(0, now);
+  const OrderId of_setup = submit(setup(1));
+  const OrderId of_mailbox = submit(interactive(1));
+  const OrderId of_command = submit(command(2));
+  const OrderId of_stop = submit(stop(3));
+  EXPECT_EQ(serve(), of_stop);
+  EXPECT_EQ(serve(), of_command);
+  EXPECT_EQ(serve(), of_mailbox);
+  EXPECT_EQ(serve(), of_setup);
+  EXPECT_EQ(serve(), 0u) << "the poll";
+  EXPECT_EQ(serve(), std::nullopt);
+}
+
+TEST_F(ArbiterTest, keeps_the_wire_to_one_exchange) {
+  submit(command(0));
+  submit(stop(1));
+  ASSERT_TRUE(arbiter.next(now));
+  EXPECT_TRUE(arbiter.wire_busy());
+  EXPECT_EQ(arbiter.next(now), std::nullopt);
+  EXPECT_EQ(arbiter.next_deadline(), kNever) << "until the exchange is over, no time changes anything";
+}
+
+TEST_F(ArbiterTest, keeps_the_line_silent_even_before_a_stop) {
+  submit(command(0));
+  ASSERT_TRUE(arbiter.next(now));
+  arbiter.exchange_over(now + 4ms);
+  submit(stop(1));
+  EXPECT_EQ(arbiter.next(now + 3ms), std::nullopt);
+  EXPECT_EQ(arbiter.next_deadline(), now + 4ms);
+  EXPECT_TRUE(arbiter.next(now + 4ms));
+}
+
+TEST_F(ArbiterTest, drives_take_turns_inside_a_class) {
+  const OrderId first = submit(command(0));
+  const OrderId second = submit(command(0));
+  const OrderId of_other = submit(command(1));
+  EXPECT_EQ(serve(), first);
+  EXPECT_EQ(serve(), of_other) << "drive 1 was served less recently";
+  EXPECT_EQ(serve(), second);
+}
+
+TEST_F(ArbiterTest, a_turn_taken_in_one_class_costs_none_in_another) {
+  arbiter.set_poll_due(1, now);
+  ASSERT_EQ(exchange(), 0u);
+  submit(command(0));
+  serve();
+  // Drive 1 was polled longer ago than drive 0 was commanded, but it is drive 0 whose poll has waited.
+  arbiter.set_poll_due(0, now);
+  arbiter.set_poll_due(1, now);
+  ASSERT_EQ(exchange(), 0u);
+  EXPECT_EQ(granted_drive, 0);
+}
+
+TEST_F(ArbiterTest, commands_of_one_axis_are_never_interleaved) {
+  const OrderId group = submit(command(0));
+  const OrderId next_group = submit(command(0));
+  EXPECT_EQ(exchange(), group);
+  EXPECT_EQ(exchange(), group) << "started, so it goes on";
+  arbiter.wait(group, now + 20ms);
+  EXPECT_EQ(exchange(), std::nullopt) << "the next group waits for the end of this one, not for its pauses";
+  now += 20ms;
+  EXPECT_EQ(exchange(), group);
+  arbiter.finish(group);
+  EXPECT_EQ(exchange(), next_group);
+}
+
+TEST_F(ArbiterTest, the_axes_of_one_drive_do_not_wait_for_each_other) {
+  const OrderId of_first_axis = submit(command(0, 0));
+  const OrderId of_second_axis = submit(command(0, 1));
+  EXPECT_EQ(exchange(), of_first_axis);
+  arbiter.wait(of_first_axis, now + 1s);
+  EXPECT_EQ(exchange(), of_second_axis);
+}
+
+TEST_F(ArbiterTest, one_setup_runs_per_drive) {
+  const OrderId first = submit(setup(0));
+  submit(setup(0));
+  const OrderId of_other = submit(setup(1));
+  EXPECT_EQ(exchange(), first);
+  EXPECT_EQ(exchange(), of_other);
+  EXPECT_EQ(exchange(), first);
+}
+
+TEST_F(ArbiterTest, poll_gets_every_fifth_exchange_while_one_is_due) {
+  std::vector<OrderId> seen;
+  for (int i = 0; i < 10; ++i) {
+    arbiter.set_poll_due(0, now);
+    const OrderId id = submit(command(1));
+    seen.push_back(*exchange() == 0 ? 0 : 1);
+    arbiter.finish(id);
+  }
+  EXPECT_THAT(seen, ElementsAre(1, 1, 1, 1, 0, 1, 1, 1, 1, 0));
+}
+
+TEST_F(ArbiterTest, polls_that_are_owed_go_round_all_drives) {
+  std::vector<int> polled;
+  for (int i = 0; i < 20; ++i) {
+    for (DriveSlot drive = 0; drive < kDrives; ++drive) arbiter.set_poll_due(drive, now);
+    const OrderId id = submit(command(0));
+    if (*exchange() == 0) polled.push_back(granted_drive);
+    arbiter.finish(id);
+  }
+  EXPECT_THAT(polled, ElementsAre(0, 1, 2, 3));
+}
+
+TEST_F(ArbiterTest, a_poll_that_is_not_due_is_not_owed) {
+  arbiter.set_poll_due(0, now + 100ms);
+  for (int i = 0; i < 10; ++i) {
+    const OrderId id = submit(command(1));
+    EXPECT_EQ(serve(), id);
+  }
+  EXPECT_EQ(arbiter.next_deadline(), now + 100ms);
+}
+
+TEST_F(ArbiterTest, a_granted_poll_is_spent_until_the_drive_says_anew) {
+  arbiter.set_poll_due(0, now);
+  EXPECT_EQ(exchange(), 0u);
+  EXPECT_EQ(exchange(), std::nullopt);
+  arbiter.set_poll_due(0, now);
+  EXPECT_EQ(exchange(), 0u);
+}
+
+TEST_F(ArbiterTest, a_stop_does_not_wait_for_the_share_of_poll) {
+  arbiter.set_poll_due(0, now);
+  for (int i = 0; i < bus::kOthersPerPoll; ++i) {
+    submit(command(1));
+    ASSERT_NE(serve(), 0u);
+  }
+  submit(command(1));
+  const OrderId halt = submit(stop(2));
+  EXPECT_EQ(serve(), halt);
+  EXPECT_EQ(serve(), 0u) << "then the poll that is owed";
+}
+
+TEST_F(ArbiterTest, a_stop_does_not_wait_for_what_follows_from_an_older_one) {
+  const OrderId halt = submit(stop(0));
+  ASSERT_EQ(exchange(), halt);
+  const OrderId quick_stop = submit(stop(0));
+  const OrderId of_other_drive = submit(stop(1));
+  EXPECT_EQ(exchange(), of_other_drive) << "the less recently served drive of the two new ones";
+  EXPECT_EQ(exchange(), quick_stop);
+}
+
+TEST_F(ArbiterTest, a_flood_of_stops_of_one_drive_holds_up_another_by_one_exchange) {
+  for (std::size_t i = 0; i < bus::kMaxStopsPerAxis; ++i) submit(stop(0));
+  serve();
+  const OrderId of_other = submit(stop(1));
+  EXPECT_EQ(serve(), of_other);
+}
+
+TEST_F(ArbiterTest, a_stop_that_waits_for_a_condition_lets_others_go_on) {
+  const OrderId halt = submit(stop(0));
+  ASSERT_EQ(exchange(), halt);
+  arbiter.wait(halt, now + 10ms);
+  const OrderId of_other = submit(command(1));
+  EXPECT_EQ(serve(), of_other);
+  EXPECT_EQ(arbiter.next_deadline(), now + 10ms);
+}
+
+TEST_F(ArbiterTest, a_declined_grant_frees_the_wire_at_once) {
+  const OrderId idle = submit(command(0));
+  const OrderId other = submit(command(1));
+  ASSERT_EQ(arbiter.next(now)->id, idle);
+  arbiter.decline();
+  EXPECT_FALSE(arbiter.wire_busy());
+  EXPECT_EQ(serve(), other);
+}
+
+TEST_F(ArbiterTest, an_order_that_declines_and_stays_is_asked_again_after_a_pause) {
+  const OrderId idle = submit(command(0));
+  ASSERT_TRUE(arbiter.next(now));
+  arbiter.decline();
+  EXPECT_EQ(arbiter.next(now), std::nullopt) << "the loop must come to rest";
+  EXPECT_EQ(arbiter.next_deadline(), now + bus::kDeclinePause);
+  now += bus::kDeclinePause;
+  EXPECT_EQ(serve(), idle);
+}
+
+TEST_F(ArbiterTest, a_decline_does_not_shorten_a_wait_asked_for) {
+  const OrderId waiting = submit(command(0));
+  ASSERT_TRUE(arbiter.next(now));
+  arbiter.wait(waiting, now + 50ms);
+  arbiter.decline();
+  EXPECT_EQ(arbiter.next_deadline(), now + 50ms);
+}
+
+}  // namespace
+}  // namespace axisgate::test

@@ -1,0 +1,154 @@
+// The link comes and goes, in each state of the bus (P7).
+#include "tests/unit/bus/bus_stage.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+using BusLink = BusStage;
+
+TEST_F(BusLink, takes_no_order_before_the_link_is_up) {
+  EXPECT_FALSE(bus->up());
+  EXPECT_EQ(bus->submit(Order{}).code, Errc::offline);
+  bus->set_poll_due(0, runtime.now());
+  turn();
+  EXPECT_THAT(wire->sent, IsEmpty());
+}
+
+TEST_F(BusLink, tells_every_drive_and_the_log_that_it_is_up) {
+  wire->up();
+  EXPECT_TRUE(bus->up());
+  EXPECT_THAT(diary, ElementsAre("drive 1: link up", "drive 2: link up"));
+  EXPECT_THAT(log_lines, ElementsAre("info bus lift: link up"));
+}
+
+TEST_F(BusLink, a_poll_due_while_down_goes_out_when_the_link_is_up) {
+  bus->set_poll_due(0, runtime.now());
+  wire->up();
+  EXPECT_THAT(wire->sent, SizeIs(1));
+}
+
+TEST_F(BusLink, lost_while_idle_it_tells_the_drives_and_the_log) {
+  link_up();
+  wire->down("/dev/ttyUSB0: hung up");
+  EXPECT_FALSE(bus->up());
+  EXPECT_THAT(diary, ElementsAre("drive 1: link down", "drive 2: link down"));
+  EXPECT_THAT(log_lines, ElementsAre("warning bus lift: link down: /dev/ttyUSB0: hung up"));
+}
+
+TEST_F(BusLink, lost_with_an_exchange_on_the_wire_it_ends_everything_in_the_same_turn) {
+  link_up();
+  submit(0);
+  submit(0);
+  submit(1);
+  turn();
+  diary.clear();
+  wire->down("gone");
+  EXPECT_THAT(diary, ElementsAre("drive 1: link lost", "drive 1: order 1 link lost", "drive 1: order 2 offline",
+                                 "drive 2: order 3 offline", "drive 1: link down", "drive 2: link down"));
+  EXPECT_EQ(bus->queue_depth(), 0u);
+  EXPECT_EQ(runtime.next_deadline(), kNever) << "nothing is left to wait for";
+}
+
+TEST_F(BusLink, lost_between_two_exchanges_of_an_order_its_outcome_is_unknown) {
+  link_up();
+  submit(0);
+  turn();
+  wire->reply();
+  diary.clear();
+  wire->down("gone");
+  EXPECT_THAT(diary, ElementsAre("drive 1: order 1 link lost", "drive 1: link down", "drive 2: link down"));
+}
+
+TEST_F(BusLink, lost_while_an_order_waits_for_a_condition_it_ends) {
+  link_up();
+  const OrderId id = submit(0);
+  turn();
+  wire->reply();
+  bus->wait(id, runtime.now() + 1h);
+  turn();
+  diary.clear();
+  wire->down("gone");
+  EXPECT_EQ(diary.front(), "drive 1: order 1 link lost");
+}
+
+TEST_F(BusLink, lost_from_inside_send_the_exchange_ends_in_the_same_turn) {
+  link_up();
+  wire->on_send = [this] { wire->down("gone"); };
+  submit(0);
+  turn();
+  EXPECT_THAT(diary, ElementsAre("drive 1: grant 1", "drive 1: link lost", "drive 1: order 1 link lost",
+                                 "drive 1: link down", "drive 2: link down"));
+  EXPECT_FALSE(bus->up());
+}
+
+TEST_F(BusLink, lost_and_back_from_inside_send_both_are_told) {
+  link_up();
+  wire->on_send = [this] {
+    wire->on_send = nullptr;
+    wire->down("gone");
+    wire->up();
+  };
+  submit(0);
+  turn();
+  EXPECT_THAT(diary, ElementsAre("drive 1: grant 1", "drive 1: link lost", "drive 1: order 1 link lost",
+                                 "drive 1: link down", "drive 2: link down", "drive 1: link up", "drive 2: link up"));
+}
+
+TEST_F(BusLink, a_drive_may_ask_for_more_while_the_link_is_going_down) {
+  link_up();
+  std::vector<Errc> answers;
+  const auto ask = [&] { answers.push_back(bus->submit(Order{}).code); };
+  drives[0].result_hook = [&](const ExchangeResult&) { ask(); };
+  drives[0].ended_hook = [&](OrderId id, Errc) {
+    bus->finish(id);
+    ask();
+  };
+  drives[0].link_hook = [&](bool) { ask(); };
+  submit(0);
+  turn();
+  wire->down("gone");
+  EXPECT_THAT(answers, ElementsAre(Errc::offline, Errc::offline, Errc::offline));
+}
+
+TEST_F(BusLink, works_as_before_when_the_link_is_back) {
+  link_up();
+  submit(0);
+  turn();
+  wire->down("gone");
+  wire->up();
+  diary.clear();
+  submit(1);
+  turn();
+  wire->reply();
+  EXPECT_THAT(diary, ElementsAre("drive 2: grant 2", "drive 2: ok"));
+}
+
+TEST_F(BusLink, the_silence_after_an_exchange_does_not_outlive_the_link) {
+  link_up();
+  submit(0);
+  turn();
+  runtime.advance_by(kTimeout);
+  wire->down("gone");
+  wire->up();
+  diary.clear();
+  submit(1);
+  turn();
+  EXPECT_THAT(diary, ElementsAre("drive 2: grant 2"));
+}
+
+TEST_F(BusLink, a_bus_destroyed_with_an_exchange_on_the_wire_calls_nobody) {
+  link_up();
+  submit(0);
+  turn();
+  diary.clear();
+  bus.reset();
+  runtime.advance_by(1h);
+  EXPECT_THAT(diary, IsEmpty());
+}
+
+}  // namespace
+}  // namespace axisgate::test

@@ -1,0 +1,154 @@
+#include "adapters/asio/asio_runtime.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/asio/post.hpp>
+#include <optional>
+
+namespace axisgate {
+namespace {
+
+using namespace std::chrono_literals;
+
+class AsioRuntimeTest : public testing::Test {
+ protected:
+  void make(std::function<void()> on_expiry) { timer = runtime.make_timer(std::move(on_expiry)); }
+  /// Runs until nothing is left to wait for.
+  void run() {
+    context.restart();
+    context.run();
+  }
+  boost::asio::io_context context;
+  AsioRuntime runtime{context};
+  int fired = 0;
+  std::unique_ptr<Timer> timer;
+};
+
+TEST_F(AsioRuntimeTest, the_clock_never_goes_back) {
+  Instant before = runtime.now();
+  for (int i = 0; i < 1000; ++i) {
+    const Instant now = runtime.now();
+    ASSERT_GE(now, before);
+    before = now;
+  }
+}
+
+TEST_F(AsioRuntimeTest, a_timer_fires_once_and_not_before_its_deadline) {
+  const Instant deadline = runtime.now() + 5ms;
+  make([&] {
+    ++fired;
+    EXPECT_GE(runtime.now(), deadline);
+  });
+  timer->expires_at(deadline);
+  run();
+  EXPECT_EQ(fired, 1);
+}
+
+TEST_F(AsioRuntimeTest, a_past_deadline_fires_with_the_next_turn_and_not_inside_the_call) {
+  make([this] { ++fired; });
+  for (const Instant past : {runtime.now(), kLongAgo}) {
+    fired = 0;
+    timer->expires_at(past);
+    EXPECT_EQ(fired, 0);
+    run();
+    EXPECT_EQ(fired, 1);
+  }
+}
+
+TEST_F(AsioRuntimeTest, armed_twice_in_one_turn_it_fires_once) {
+  make([this] { ++fired; });
+  timer->expires_at(runtime.now());
+  timer->expires_at(runtime.now());
+  run();
+  EXPECT_EQ(fired, 1);
+}
+
+TEST_F(AsioRuntimeTest, a_deadline_may_move_later) {
+  const Instant later = runtime.now() + 20ms;
+  make([&] {
+    ++fired;
+    EXPECT_GE(runtime.now(), later);
+  });
+  timer->expires_at(runtime.now() + 1ms);
+  timer->expires_at(later);
+  run();
+  EXPECT_EQ(fired, 1);
+}
+
+TEST_F(AsioRuntimeTest, a_deadline_may_move_earlier) {
+  make([this] {
+    ++fired;
+    context.stop();
+  });
+  timer->expires_at(runtime.now() + 1h);
+  timer->expires_at(runtime.now() + 1ms);
+  run();
+  EXPECT_EQ(fired, 1);
+}
+
+TEST_F(AsioRuntimeTest, a_deadline_may_move_into_the_past_and_back_into_the_future) {
+  const Instant later = runtime.now() + 5ms;
+  make([&] {
+    ++fired;
+    EXPECT_GE(runtime.now(), later);
+  });
+  timer->expires_at(runtime.now());
+  timer->expires_at(later);
+  run();
+  EXPECT_EQ(fired, 1);
+}
+
+TEST_F(AsioRuntimeTest, never_disarms) {
+  make([this] { ++fired; });
+  timer->expires_at(runtime.now() + 1ms);
+  timer->expires_at(kNever);
+  run();
+  timer->expires_at(runtime.now());
+  timer->expires_at(kNever);
+  run();
+  EXPECT_EQ(fired, 0);
+}
+
+TEST_F(AsioRuntimeTest, a_timer_may_be_armed_anew_by_its_own_callback) {
+  make([this] {
+    if (++fired < 5) timer->expires_at(fired % 2 == 0 ? runtime.now() : runtime.now() + 1ms);
+  });
+  timer->expires_at(runtime.now());
+  run();
+  EXPECT_EQ(fired, 5);
+}
+
+TEST_F(AsioRuntimeTest, a_destroyed_timer_does_not_fire) {
+  for (const Duration wait : {Duration(0), Duration(1ms)}) {
+    make([this] { ++fired; });
+    timer->expires_at(runtime.now() + wait);
+    timer.reset();
+    run();
+  }
+  EXPECT_EQ(fired, 0);
+}
+
+TEST_F(AsioRuntimeTest, a_timer_may_be_destroyed_by_its_own_callback) {
+  make([this, keeps_its_captures = std::string(100, 'x')] {
+    timer.reset();
+    fired += static_cast<int>(keeps_its_captures.size());
+  });
+  timer->expires_at(runtime.now());
+  run();
+  EXPECT_EQ(fired, 100);
+}
+
+TEST(AsioRuntimeEnd, the_context_may_go_with_timers_still_armed) {
+  auto context = std::make_unique<boost::asio::io_context>();
+  auto runtime = std::make_unique<AsioRuntime>(*context);
+  auto waiting = runtime->make_timer([] { FAIL(); });
+  auto due = runtime->make_timer([] { FAIL(); });
+  waiting->expires_at(runtime->now() + 1h);
+  due->expires_at(runtime->now());
+  waiting.reset();
+  due.reset();
+  context.reset();
+}
+
+}  // namespace
+}  // namespace axisgate
