@@ -13,6 +13,7 @@
 #include "gateway/core/clock.hpp"
 #include "gateway/core/rational.hpp"
 #include "gateway/image/axis_image.hpp"
+#include "gateway/image/command.hpp"
 #include "gateway/upstream/modbus_tcp/listener_settings.hpp"
 
 namespace axisgate::app {
@@ -34,8 +35,9 @@ struct AxisConfig {
   std::int64_t standstill_velocity = 1000;  ///< 0.001 rpm
   std::optional<std::int16_t> homing_method;
   Duration homing_timeout = std::chrono::seconds(60);
-  bool lease_configured = false;  ///< read and checked; not yet enforced by this version
-  std::string pointer;            ///< JSON pointer of the entry, for messages
+  bool lease_configured = true;  ///< "lease" is not null; read and checked, not yet enforced by this version
+  Command lease_action = Command::quick_stop;  ///< "on_expiry"; none: nothing happens
+  std::string pointer;                         ///< JSON pointer of the entry, for messages
 };
 
 struct DriveConfig {

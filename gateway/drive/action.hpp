@@ -11,22 +11,27 @@ namespace axisgate::drive {
 
 /// Turning points that a plan reaches between its exchanges.
 enum class Mark : std::uint8_t {
-  enabled,           ///< the stop latch is cleared
-  start_discrete,    ///< the drive has acknowledged the start of such a motion
+  enabled,             ///< the stop latch is cleared
+  start_discrete,      ///< the drive has acknowledged the start of such a motion
   start_velocity,
   start_torque,
   start_homing,
   controlword_passed,  ///< a raw controlword was acknowledged: one of the two steps out of the latch, perhaps
-  run_raw,           ///< raw modes 3, 4, 9, 10 run: set-points act at once
+  quick_stopped,       ///< a quick stop took the place of the stop that was asked for: it latches
+  halted,              ///< bit 8 of a raw controlword: the motion is cancelled, as by command 4
+  run_raw,             ///< raw modes 3, 4, 9, 10 run: set-points act at once
   mode_changed,
-  values_doubtful,   ///< nothing is taken as held any more
+  values_doubtful,     ///< nothing is taken as held any more, but Action::object
   not_homed,
+  borrow_homing,       ///< set_position is about to change method and offset
+  return_homing,       ///< and has put them back
+  look_again,          ///< the rest of this part is planned anew with what was just read
 };
 
 struct Action {
   enum class Kind : std::uint8_t { write, read, wait, mark };
   Kind kind = Kind::write;
-  ObjectId object = kNoObject;      ///< write, read
+  ObjectId object = kNoObject;      ///< write, read; see Mark::values_doubtful
   std::int64_t number = 0;          ///< write: as the drive counts
   ObjectId copy_of = kNoObject;     ///< write: the newest number of this object instead
   Condition until;                  ///< wait: must hold on a sample asked for after the last acknowledgement
@@ -63,10 +68,11 @@ struct Action {
     a.otherwise = otherwise;
     return a;
   }
-  [[nodiscard]] static Action at(Mark mark) {
+  [[nodiscard]] static Action at(Mark mark, ObjectId object = kNoObject) {
     Action a;
     a.kind = Kind::mark;
     a.mark = mark;
+    a.object = object;
     return a;
   }
 };

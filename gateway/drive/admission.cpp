@@ -13,20 +13,6 @@ bool is_target(Quantity q) {
 
 bool writable(const AxisCore& core, Quantity q) { return (core.model.writable & bit(q)) != 0; }
 
-// Rows 72 to 75 are checked as a pair: what is written against what is written with it, or else held.
-bool limits_in_order(const AxisCore& core, const Group& group) {
-  std::optional<std::int64_t> low, high;
-  bool written = false;
-  for (const Setpoint& sp : group.setpoints) {
-    if (sp.quantity == Quantity::position_limit_min) low = sp.value, written = true;
-    if (sp.quantity == Quantity::position_limit_max) high = sp.value, written = true;
-  }
-  if (!written) return true;
-  if (!low) low = core.value(Quantity::position_limit_min);
-  if (!high) high = core.value(Quantity::position_limit_max);
-  return !low || !high || *low <= *high;
-}
-
 Errc admit_command(const AxisCore& core, Command command) {
   if (command == Command::none || command == Command::end_halt) return Errc::ok;
   // Every drive can be halted: where it has no halt, quick_stop takes its place.
@@ -67,6 +53,17 @@ bool holds_stop(const Group& group) {
   return is_stop(group.command) || (group.controlword && is_stop(*group.controlword, group.single_controlword));
 }
 
+Group stop_alone(const Group& group) {
+  Group out = group;
+  out.setpoints.clear();
+  out.mode.reset();
+  out.set_position_value.reset();
+  out.object.reset();
+  if (!is_stop(out.command)) out.command = Command::none;
+  if (out.controlword && !is_stop(*out.controlword, out.single_controlword)) out.controlword.reset();
+  return out;
+}
+
 bool stop_latches(const AxisCore& core, const Group& group) {
   if (group.command == Command::quick_stop) return true;
   if (group.command == Command::halt) return halt_is_quick_stop(core);
@@ -79,45 +76,45 @@ bool starts_motion(const AxisCore& core, const Group& group) {
          (*group.controlword & ~core.controlword() & controlword::kStart) != 0;
 }
 
-Group as_quantities(const AxisCore& core, const Group& group) {
-  if (!group.object || !group.object->write) return group;
+Translated as_quantities(const AxisCore& core, const Group& group) {
+  if (!group.object || !group.object->write) return {group, Errc::ok};
   const ObjectRequest& request = *group.object;
   const ObjectId id = core.drive.find({request.index, request.subindex});
-  if (id == kNoObject) return group;
+  if (id == kNoObject) return {group, Errc::ok};
   const ObjectDef& object = core.object(id);
   Group out = group;
   out.object.reset();
+  const auto& bindings = core.model.bindings;
+  const auto binding =
+      std::find_if(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.object == id && b.writable; });
+  const bool of_a_quantity = id == core.model.controlword || id == core.model.mode || binding != bindings.end();
+  if (!of_a_quantity) return {group, Errc::ok};
+  // A width of its own would cut the value, behind the limits' back.
+  if (request.size != object.size) return {group, Errc::bad_value};
+  const std::int64_t number = object.number(request.data);
   if (id == core.model.controlword) {
     out.controlword = static_cast<std::uint16_t>(request.data);
     out.single_controlword = true;
-    return out;
+  } else if (id == core.model.mode) {
+    const auto& modes = core.model.modes;
+    const auto known = std::find_if(modes.begin(), modes.end(), [&](const auto& m) { return m.second == number; });
+    if (known == modes.end()) return {group, Errc::bad_value};
+    out.mode = known->first;
+  } else {
+    const auto value = binding->to_register(number);
+    if (!value) return {group, Errc::bad_value};  // not representable in register units: outside every limit
+    out.setpoints.push_back({binding->quantity, *value, number});
   }
-  const std::int64_t number = object.number(request.data);
-  if (id == core.model.mode) {
-    // A number the profile does not list stands for no mode: it is refused, as in register 41.
-    std::int16_t mode = 0;
-    for (const auto& [unified, raw] : core.model.modes)
-      if (raw == number) mode = unified;
-    out.mode = mode;
-    return out;
-  }
-  for (const Binding& binding : core.model.bindings) {
-    if (binding.object != id || !binding.writable) continue;
-    const auto value = binding.to_register(number);
-    // Not representable in register units: far outside every limit.
-    out.setpoints.push_back({binding.quantity, value.value_or(binding.limits.max + 1), number});
-    return out;
-  }
-  return group;
+  return {out, Errc::ok};
 }
 
 bus::Order order_for(const AxisCore& core, const Group& group, bool stop) {
   bus::Order order;
-  order.start_by = group.start_by;
   if (stop) {
-    order.priority = bus::Priority::stop;
+    order.priority = bus::Priority::stop;  // without a start deadline: a stop is never given up for being late
     return order;
   }
+  order.start_by = group.start_by;
   const bool setpoints = !group.setpoints.empty() || group.set_position_value;
   const bool plain = !group.mode && !group.controlword && group.command == Command::none;
   if (group.object && plain && !setpoints) {

@@ -13,12 +13,19 @@ namespace axisgate::drive {
 [[nodiscard]] Errc admit(const AxisCore& core, const Group& group);
 /// The group holds a stop by design 3.4.
 [[nodiscard]] bool holds_stop(const Group& group);
+/// What is left of a group that holds a stop when everything else is taken out of it.
+[[nodiscard]] Group stop_alone(const Group& group);
 /// The stop latches the axis: quick_stop, by command, controlword, or because this drive has no other halt.
 [[nodiscard]] bool stop_latches(const AxisCore& core, const Group& group);
 /// The group starts a motion: target_reached reads 0 until it has its result.
 [[nodiscard]] bool starts_motion(const AxisCore& core, const Group& group);
-/// A mailbox write of an object that a quantity uses becomes a write of that quantity, with its limits, latch and edges.
-[[nodiscard]] Group as_quantities(const AxisCore& core, const Group& group);
+/// A mailbox write of an object that a quantity uses becomes a write of that quantity, with its limits, latch and edges;
+/// bad_value where it cannot stand for one.
+struct Translated {
+  Group group;
+  Errc code = Errc::ok;
+};
+[[nodiscard]] Translated as_quantities(const AxisCore& core, const Group& group);
 /// What the arbiter must know of the group.
 [[nodiscard]] bus::Order order_for(const AxisCore& core, const Group& group, bool stop);
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gateway/drive/admission.hpp"
+#include "gateway/drive/planner.hpp"
 #include "gateway/drive/publisher.hpp"
 
 namespace axisgate::drive {
@@ -37,8 +38,11 @@ void Axis::set_alarm(AxisAlarm alarm, bool on) {
 }
 
 void Axis::on_bring_up() {
-  core_.homing_method_given = core_.model.homing_method.has_value();
+  core_.homing_method.reset();
+  if (core_.model.homing_method) core_.homing_method = *core_.model.homing_method;
+  core_.offset_owed.reset();
   core_.mode_chosen = false;
+  reference_doubted_ = false;
   core_.homed = false;
 }
 
@@ -50,9 +54,9 @@ Errc Axis::link_admits(bool stop) const {
     case LinkState::suspect:
       return core_.alarm(AxisAlarm::identity_mismatch) && !stop ? Errc::identity_mismatch : Errc::ok;
     case LinkState::setup:
-      return stop ? Errc::ok : Errc::still_in_setup;
     case LinkState::unknown:
-      return Errc::still_in_setup;
+      // Nothing is known of it yet, and it may be running: a stop is worth its try.
+      return stop ? Errc::ok : Errc::still_in_setup;
     case LinkState::offline:
     case LinkState::link_down:
       break;
@@ -66,7 +70,7 @@ bool Axis::join_stop(const Group& group, GroupCallback& on_result) {
   for (Pending& p : pending_) {
     const Group& waiting = p.conversation->group();
     if (!p.conversation->is_stop() || p.conversation->begun() || p.callbacks.size() >= kMaxJoined) continue;
-    if (waiting.command != group.command || waiting.controlword != group.controlword) continue;
+    if (p.refusal != Errc::ok || waiting.command != group.command || waiting.controlword != group.controlword) continue;
     p.callbacks.push_back(std::move(on_result));
     return true;
   }
@@ -74,56 +78,89 @@ bool Axis::join_stop(const Group& group, GroupCallback& on_result) {
 }
 
 void Axis::accept_stop(const Group& group) {
-  core_.motion.stop(stop_latches(core_, group));
-  last_stopper_ = group.client;
+  core_.motion.stop(stop_latches(core_, group), core_.now);
+  for (Pending& p : pending_)
+    if (!p.stopped_by) p.stopped_by = group.client;
+}
+
+void Axis::show_latest(const Group& group, const Outcome& outcome) {
+  image_.latest = {command_result(outcome.code), outcome.detail, group.command_id};
+}
+
+GroupResult Axis::refuse(const Group& group, Errc code) {
+  const Outcome outcome{code, code == Errc::state_unsuitable ? kDetailDeviceState : 0};
+  if (!group.object && command_result(code) != CommandResult::none) show_latest(group, outcome);
+  return {outcome, 0, 0};
 }
 
 std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_result) {
-  const Group group = as_quantities(core_, asked);
-  const auto refuse = [](Errc code) {
-    return GroupResult{{code, code == Errc::state_unsuitable ? kDetailDeviceState : 0}, 0, 0};
-  };
-  if (const Errc code = admit(core_, group); code != Errc::ok) return refuse(code);
+  core_.now = host_.now();
+  core_.link = host_.link_state();
+  auto [group, code] = as_quantities(core_, asked);
   const bool stop = holds_stop(group);
+  if (code == Errc::ok) code = admit(core_, group);
+  Pending pending;
+  if (code != Errc::ok) {
+    // A stop is carried out whatever nonsense stands beside it; the answer tells of the nonsense.
+    if (!stop) return refuse(asked, code);
+    pending.refusal = code;
+    group = stop_alone(group);
+    if (const Errc of_stop = admit(core_, group); of_stop != Errc::ok) return refuse(asked, of_stop);
+  }
   // Accepted in every state: the latch is set even where nothing can be sent.
   if (stop) accept_stop(group);
-  if (const Errc code = link_admits(stop); code != Errc::ok) {
-    if (stop) publish(host_.now());
-    return refuse(code);
+  if (const Errc of_link = link_admits(stop); of_link != Errc::ok) {
+    if (stop) publish(core_.now);
+    return refuse(asked, of_link);
   }
-  if (stop && join_stop(group, on_result)) return std::nullopt;
-
-  Pending pending;
-  pending.conversation = std::make_unique<Conversation>(core_, group, stop);
+  if (stop && pending.refusal == Errc::ok && join_stop(group, on_result)) {
+    publish(core_.now);
+    return std::nullopt;
+  }
+  if (pending_.empty() && nothing_to_send(core_, group)) {
+    // The wire is not needed: a PLC that writes the same block for ever is answered at once.
+    remember_setpoints(core_, group);
+    core_.mode_chosen = core_.mode_chosen || group.mode.has_value();
+    show_latest(group, {});
+    publish(core_.now);
+    return GroupResult{};
+  }
+  // "Done" is up to 2 s away by the contract (command 12), later than a client's usual deadline.
+  constexpr Duration kSaving = std::chrono::milliseconds(2500);
+  if (group.command == Command::save_parameters) group.answer_by = std::max(group.answer_by, core_.now + kSaving);
+  pending.by_mailbox = asked.object.has_value();
+  pending.conversation = std::make_unique<Conversation>(core_, group, stop, asked.object && !group.object);
   pending.starts_motion = starts_motion(core_, group);
-  const bool idle = pending_.empty();
-  if (idle && !stop) {
-    // Nothing ahead of it: what needs no wire is answered at once.
-    const auto move = pending.conversation->advance(host_.now());
-    if (move.kind == Conversation::Move::Kind::finished) {
-      const GroupResult result = pending.conversation->result();
-      if (!group.object) image_.latest = {command_result(result.outcome.code), result.outcome.detail, group.command_id};
-      publish(host_.now());
-      return result;
-    }
-  }
+  pending.callbacks.push_back(std::move(on_result));
+  std::optional<GroupResult> refused;
+  enqueue(std::move(pending), stop, refused);
+  return refused;
+}
+
+void Axis::enqueue(Pending pending, bool stop, std::optional<GroupResult>& refused) {
+  const Group& group = pending.conversation->group();
   bus::Order order = order_for(core_, group, stop);
   order.axis = slot_;
   const AxisHost::Queued queued = host_.queue(std::move(order));
-  if (queued.code != Errc::ok) return refuse(queued.code);
+  if (queued.code != Errc::ok) {
+    refused = refuse(group, queued.code);
+    if (stop) publish(core_.now);
+    return;
+  }
   if (queued.joined) {
     Pending* twin = find(queued.id);
-    if (twin == nullptr || twin->callbacks.size() >= kMaxJoined) return refuse(Errc::queue_full);
-    twin->callbacks.push_back(std::move(on_result));
-    return std::nullopt;
+    if (twin == nullptr || twin->callbacks.size() >= kMaxJoined) {
+      refused = refuse(group, Errc::queue_full);
+    } else {
+      twin->callbacks.push_back(std::move(pending.callbacks.front()));
+    }
+    return;
   }
   pending.id = queued.id;
-  pending.callbacks.push_back(std::move(on_result));
-  if (!group.object) image_.latest = {CommandResult::pending, 0, group.command_id};
+  if (!pending.by_mailbox) image_.latest = {CommandResult::pending, 0, group.command_id};
   if (pending.starts_motion) core_.motion.mask_target_reached();
   pending_.push_back(std::move(pending));
-  publish(host_.now());
-  return std::nullopt;
+  publish(core_.now);
 }
 
 // --- Carrying it out -----------------------------------------------------------------------------------------------------
@@ -131,7 +168,8 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
 std::optional<bus::Exchange> Axis::on_grant(bus::OrderId id) {
   Pending* pending = find(id);
   if (pending == nullptr) return std::nullopt;
-  const auto move = pending->conversation->advance(host_.now());
+  core_.link = host_.link_state();
+  const auto move = pending->conversation->granted(host_.now());
   if (move.kind == Conversation::Move::Kind::exchange) return move.exchange;
   if (move.kind == Conversation::Move::Kind::wait) {
     host_.order_waits(id, move.until);
@@ -141,20 +179,24 @@ std::optional<bus::Exchange> Axis::on_grant(bus::OrderId id) {
   return std::nullopt;
 }
 
-bool Axis::passes_fence(bus::OrderId id) const {
+bool Axis::passes_fence(bus::OrderId id) {
+  Pending* pending = find(id);
+  if (pending == nullptr) return false;
+  core_.now = host_.now();
+  core_.link = host_.link_state();
+  return pending->conversation->passes_fence();
+}
+
+bool Axis::insists(bus::OrderId id) const {
   const Pending* pending = find(id);
-  return pending != nullptr && pending->conversation->passes_fence();
+  return pending != nullptr && pending->conversation->would_repeat();
 }
 
 void Axis::on_result(bus::OrderId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
   Pending* pending = find(id);
   if (pending == nullptr) return;
-  const Conversation& conversation = *pending->conversation;
+  core_.link = host_.link_state();
   pending->conversation->on_result(result, sent_at, trusted);
-  if (conversation.group().object && conversation.group().object->write && result.code == Errc::ok) {
-    const ObjectId object = core_.drive.find({conversation.group().object->index, conversation.group().object->subindex});
-    if (object != kNoObject) host_.read_soon(object);
-  }
   carry_on(*pending);
 }
 
@@ -186,10 +228,15 @@ void Axis::on_order_ended(bus::OrderId id, Errc code) {
   Pending* pending = find(id);
   if (pending == nullptr) return;
   Conversation& conversation = *pending->conversation;
-  if (code == Errc::dropped_by_stop && conversation.begun())
-    code = conversation.group().client == last_stopper_ ? Errc::superseded : Errc::stopped_by_other;
-  // Nothing of it was ever sent: the link's end is no unknown outcome.
-  if (code == Errc::link_lost && !conversation.begun()) code = Errc::offline;
+  const bool begun = conversation.begun();
+  const bool by_other = pending->stopped_by && *pending->stopped_by != conversation.group().client;
+  if (code == Errc::dropped_by_stop && begun && by_other) {
+    code = Errc::stopped_by_other;
+    host_.event(image_.number, EventKind::command, conversation.group().command_id, "stopped by another client");
+  }
+  // Whether something was sent is what tells the two apart, not whether the bus had granted it a turn.
+  if (code == Errc::link_lost && !begun) code = Errc::offline;
+  if (code == Errc::offline && begun) code = Errc::link_lost;
   conversation.abort({code, 0});
   complete(id, conversation.result());
 }
@@ -201,51 +248,74 @@ void Axis::complete(bus::OrderId id, const GroupResult& result) {
   pending_.erase(found);
   host_.order_done(id);
   if (!motion_pending()) core_.motion.unmask_target_reached();
-  const Group& group = pending.conversation->group();
-  if (!group.object) image_.latest = {command_result(result.outcome.code), result.outcome.detail, group.command_id};
-  due_.push_back({result, std::move(pending.callbacks)});
+  GroupResult told = result;
+  if (told.outcome.code == Errc::ok && pending.refusal != Errc::ok) told.outcome = {pending.refusal, 0};
+  if (!pending.by_mailbox) show_latest(pending.conversation->group(), told.outcome);
+  if (!pending.callbacks.empty()) due_.push_back({told, std::move(pending.callbacks)});
 }
 
 // --- Time --------------------------------------------------------------------------------------------------------------
 
 void Axis::on_time(Instant now) {
-  std::vector<std::pair<bus::OrderId, Errc>> late;
+  std::vector<bus::OrderId> late;
   for (const Pending& p : pending_)
-    if (now >= p.conversation->group().answer_by)
-      late.emplace_back(p.id, p.conversation->begun() ? Errc::timed_out : Errc::never_started);
-  for (const auto& [id, code] : late) {
+    if (now >= p.conversation->group().answer_by && !p.callbacks.empty()) late.push_back(p.id);
+  for (const bus::OrderId id : late) {
     Pending* pending = find(id);
-    pending->conversation->abort({code, 0});
-    complete(id, pending->conversation->result());
-  }
-  core_.motion.observe(core_.facts(), core_.model.homing_timeout, now);
-  if (core_.motion.take_homing_timeout()) {
-    host_.event(image_.number, EventKind::warning, 0, "homing took longer than its timeout: halted");
-    Group halt;
-    halt.role = Role::engineer;
-    halt.command = Command::halt;
-    static_cast<void>(submit(halt, [](const GroupResult&) {}));
+    Conversation& conversation = *pending->conversation;
+    if (conversation.is_stop() && !conversation.stop_is_over()) {
+      // Its client has its answer; the stop goes on until it shows, or was repeated as often as it may.
+      due_.push_back({{{Errc::timed_out, 0}, 0, 0}, std::exchange(pending->callbacks, {})});
+      continue;
+    }
+    conversation.abort({conversation.begun() ? Errc::timed_out : Errc::never_started, 0});
+    complete(id, conversation.result());
   }
 }
 
 Instant Axis::next_deadline() const {
   Instant next = core_.motion.deadline();
-  for (const Pending& p : pending_) next = std::min(next, p.conversation->group().answer_by);
+  for (const Pending& p : pending_)
+    if (!p.callbacks.empty()) next = std::min(next, p.conversation->group().answer_by);
   return next;
+}
+
+void Axis::observe(Instant now) {
+  core_.now = now;
+  core_.link = host_.link_state();
+  const AxisFacts facts = core_.facts();
+  core_.motion.observe(facts, core_.model.homing_timeout);
+  const bool homing = core_.motion.running() == MotionKind::homing;
+  if (core_.link == LinkState::online && core_.model.homed && core_.store[core_.model.homed->object].held) {
+    if (facts.reference && !homing) core_.homed = true;
+    // A drive that was silent and has lost its reference since has restarted, too quickly to go offline.
+    if (reference_doubted_ && !facts.reference) core_.homed = false;
+    reference_doubted_ = false;
+  }
+  bool clamped = false;
+  for (const Binding& binding : core_.model.bindings)
+    if (binding.object != kNoObject && binding.object != core_.model.controlword)
+      clamped = clamped || core_.store[binding.object].clamped;
+  set_alarm(AxisAlarm::clamped, clamped);
+  if (!core_.motion.take_homing_timeout()) return;
+  host_.event(image_.number, EventKind::warning, 0, "homing took longer than its timeout: halted");
+  Group halt;
+  halt.role = Role::engineer;
+  halt.command = Command::halt;
+  static_cast<void>(submit(halt, [](const GroupResult&) {}));
 }
 
 // --- The image -----------------------------------------------------------------------------------------------------------
 
 void Axis::publish(Instant now) {
-  core_.reachable = host_.link_state() == LinkState::online || host_.link_state() == LinkState::suspect;
-  const AxisFacts facts = core_.facts();
   const Instant statusword_at = core_.store[core_.model.statusword].sent_at;
   if (statusword_at > last_statusword_) {
     if (last_statusword_ != kLongAgo) cycle_ = statusword_at - last_statusword_;
     last_statusword_ = statusword_at;
   }
-  core_.motion.observe(facts, core_.model.homing_timeout, now);
-  if (facts.reference && core_.reachable && core_.motion.running() != MotionKind::homing) core_.homed = true;
+  core_.now = now;
+  core_.link = host_.link_state();
+  core_.motion.observe(core_.facts(), core_.model.homing_timeout);
   const AxisImage before = image_;
   image_.link_state = host_.link_state();
   show_state(core_, image_, now);

@@ -30,8 +30,6 @@ class AxisHost {
   [[nodiscard]] virtual Queued queue(bus::Order order) = 0;
   virtual void order_waits(bus::OrderId id, Instant until) = 0;
   virtual void order_done(bus::OrderId id) = 0;
-  /// Read this object once more as soon as a poll has its turn.
-  virtual void read_soon(ObjectId object) = 0;
   virtual void event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) = 0;
 };
 
@@ -48,17 +46,23 @@ class Axis {
 
   /// The drive comes up anew: nothing is known, nothing survives.
   void on_bring_up();
+  /// It was suspect: it may have restarted unseen.
+  void on_doubt() { reference_doubted_ = true; }
   void set_alarm(AxisAlarm alarm, bool on);
 
   /// The order's next exchange; none: it waits or has just ended.
   [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::OrderId id);
-  [[nodiscard]] bool passes_fence(bus::OrderId id) const;
+  [[nodiscard]] bool passes_fence(bus::OrderId id);
+  /// A stop that goes out once more if the exchange on the wire stays without an answer.
+  [[nodiscard]] bool insists(bus::OrderId id) const;
   void on_result(bus::OrderId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted);
   void on_order_ended(bus::OrderId id, Errc code);
   [[nodiscard]] bool has(bus::OrderId id) const { return find(id) != nullptr; }
 
-  /// Deadlines of groups and of homing.
+  /// Deadlines of groups.
   void on_time(Instant now);
+  /// New samples, or time has passed: what runs, what has ended.
+  void observe(Instant now);
   [[nodiscard]] Instant next_deadline() const;
 
   /// Brings the image up to date; then calls what is due to be called.
@@ -76,6 +80,9 @@ class Axis {
     std::unique_ptr<Conversation> conversation;
     std::vector<GroupCallback> callbacks;
     bool starts_motion = false;
+    bool by_mailbox = false;
+    Errc refusal = Errc::ok;               ///< of what stood beside the stop; the answer once the stop is done
+    std::optional<ClientId> stopped_by{};  ///< whose stop came first after it
   };
   struct Due {
     GroupResult result;
@@ -84,6 +91,9 @@ class Axis {
   [[nodiscard]] Errc link_admits(bool stop) const;
   [[nodiscard]] bool join_stop(const Group& group, GroupCallback& on_result);
   void accept_stop(const Group& group);
+  [[nodiscard]] GroupResult refuse(const Group& group, Errc code);
+  void show_latest(const Group& group, const Outcome& outcome);
+  void enqueue(Pending pending, bool stop, std::optional<GroupResult>& refused);
   void carry_on(Pending& pending);
   void complete(bus::OrderId id, const GroupResult& result);
   void tell_changes(const AxisImage& before);
@@ -97,7 +107,7 @@ class Axis {
   AxisCore core_;
   std::vector<Pending> pending_;
   std::vector<Due> due_;
-  ClientId last_stopper_ = 0;
+  bool reference_doubted_ = false;
   Duration cycle_{};
   Instant last_statusword_ = kLongAgo;
 };

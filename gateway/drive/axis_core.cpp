@@ -52,7 +52,8 @@ std::uint16_t AxisCore::controlword() const {
 
 AxisFacts AxisCore::facts() const {
   AxisFacts facts;
-  facts.reachable = reachable;
+  facts.at = now;
+  facts.reachable = reachable();
   const ObjectState& status = store[model.statusword];
   const auto word = static_cast<std::uint16_t>(status.known ? status.number : 0);
   facts.state = status.known ? state_of(word) : State402::not_ready_to_switch_on;
@@ -72,13 +73,17 @@ AxisFacts AxisCore::facts() const {
 bool AxisCore::held_back(Quantity quantity) const {
   const Binding* binding = model.binding(quantity);
   if (binding == nullptr || binding->object == kNoObject) return false;
-  return object(binding->object).trigger || (this->controlword() & controlword::kMaker) != 0;
+  const bool followed = facts().enabled() && (this->controlword() & controlword::kMaker) != 0;
+  return object(binding->object).trigger || followed;
 }
 
-std::optional<std::int64_t> AxisCore::target(Quantity quantity) const {
-  if (const auto wanted = motion.wanted(quantity)) return wanted;
-  return value(quantity);
+std::optional<Wanted> AxisCore::target_position() const {
+  if (const auto wanted = motion.wanted(Quantity::target_position)) return wanted;
+  if (const auto held = value(Quantity::target_position)) return Wanted{*held};
+  return std::nullopt;
 }
+
+Wanted AxisCore::running_target(Quantity quantity) const { return motion.wanted(quantity).value_or(Wanted{}); }
 
 const AlarmRow* active_alarm(const AxisCore& core) {
   for (const AlarmRow& row : core.drive.alarms) {

@@ -14,13 +14,17 @@ struct AxisCore {
   const AxisModel& model;
   ObjectStore& store;
   Motion motion{};
-  std::uint32_t alarms = 0;               ///< AxisAlarm bits found by checks and by what was seen
-  bool reachable = false;                 ///< link_state online or suspect
-  bool homing_method_given = false;       ///< written or configured since bring-up
-  bool mode_chosen = false;               ///< a client has chosen the mode since bring-up
-  bool homed = false;                     ///< latched (design 3.1, discrete input 6)
-  std::int32_t set_position_value = 0;    ///< row 78, the gateway's own
+  Instant now = kLongAgo;                     ///< of the turn in which this is looked at
+  std::uint32_t alarms = 0;                   ///< AxisAlarm bits found by checks and by what was seen
+  LinkState link = LinkState::unknown;        ///< the drive's
+  std::optional<std::int64_t> homing_method{};  ///< written or configured since bring-up
+  std::optional<std::int64_t> offset_owed{};  ///< homing offset that set_position could not put back yet
+  bool mode_chosen = false;                   ///< a client has chosen the mode since bring-up
+  bool homed = false;                         ///< latched (design 3.1, discrete input 6)
+  std::int32_t set_position_value = 0;        ///< row 78, the gateway's own
 
+  /// link_state online or suspect.
+  [[nodiscard]] bool reachable() const { return link == LinkState::online || link == LinkState::suspect; }
   [[nodiscard]] AxisFacts facts() const;
   /// The newest number of the quantity in register units; none where there is no good one.
   [[nodiscard]] std::optional<std::int64_t> value(Quantity quantity) const;
@@ -32,11 +36,13 @@ struct AxisCore {
   [[nodiscard]] const ObjectDef& object(ObjectId id) const { return drive.object(id); }
   /// A write of this target would by itself move the axis on this drive, now.
   [[nodiscard]] bool held_back(Quantity target) const;
-  /// What a start uses: what a client asked for last, else what the drive holds.
-  [[nodiscard]] std::optional<std::int64_t> target(Quantity quantity) const;
+  /// The position a move uses: what a client asked for last, else what the drive holds.
+  [[nodiscard]] std::optional<Wanted> target_position() const;
+  /// Velocity and torque: what a client has asked for since the last stop, fault, disable or loss, else 0.
+  [[nodiscard]] Wanted running_target(Quantity quantity) const;
 };
 
-/// The faults words of an axis and what they mean: the first active row of the profile's alarm table.
+/// The fault words of an axis and what they mean: the first active row of the profile's alarm table.
 [[nodiscard]] const AlarmRow* active_alarm(const AxisCore& core);
 
 }  // namespace axisgate::drive

@@ -19,6 +19,7 @@ BringUp::BringUp(const DriveModel& model) : model_(model) {
 void BringUp::begin() {
   read_at_ = setup_at_ = 0;
   setup_written_ = read_back_ = adopted_ = false;
+  confirm_after_.reset();
   unheld_.clear();
 }
 
@@ -37,6 +38,11 @@ std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
     if (!s.known && !s.refused) return Next{reads_[read_at_], false, 0};
     ++read_at_;
   }
+  // Everything else was read meanwhile: somebody may have enabled it since its state was read.
+  if (!confirm_after_) confirm_after_ = store.exchange();
+  if (has_setup())
+    for (const AxisModel& axis : model_.axes)
+      if (store[axis.statusword].exchange <= *confirm_after_) return Next{axis.statusword, false, 0};
   adopted_ = any_enabled(store);
   if (adopted_) return std::nullopt;
   while (setup_at_ < model_.setup.size()) {
@@ -44,7 +50,7 @@ std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
     if (read_back_) return Next{setup.object, false, 0};
     const bool holds = store[setup.object].known && store[setup.object].number == setup.raw;
     if (holds || setup_written_) {
-      if (!holds) unheld_.push_back(setup.object);
+      if (!holds && model_.object(setup.object).readable) unheld_.push_back(setup.object);
       ++setup_at_;
       setup_written_ = false;
       continue;

@@ -40,6 +40,7 @@ class BringUp {
   const DriveModel& model_;
   std::vector<ObjectId> reads_;
   std::size_t read_at_ = 0;
+  std::optional<std::uint64_t> confirm_after_;  ///< exchange: the state is read once more before the first setup write
   std::size_t setup_at_ = 0;
   bool setup_written_ = false;
   bool read_back_ = false;

@@ -5,6 +5,8 @@ namespace {
 
 // Between two looks at an awaited condition, so that a waiting group leaves the wire to others.
 constexpr Duration kLookAgain = std::chrono::milliseconds(5);
+// How long a stop may take to show before it is sent once more.
+constexpr Duration kStopShows = std::chrono::milliseconds(250);
 
 std::uint32_t wire_bits(std::int64_t number, std::uint8_t size) {
   const std::uint32_t mask = size >= 4 ? ~0U : (1U << (8U * size)) - 1U;
@@ -13,23 +15,33 @@ std::uint32_t wire_bits(std::int64_t number, std::uint8_t size) {
 
 }  // namespace
 
-Conversation::Conversation(AxisCore& core, const Group& group, bool stop)
-    : core_(core), group_(group), stop_(stop), phase_(stop ? Phase::stop : Phase::setpoints) {}
+Conversation::Conversation(AxisCore& core, const Group& group, bool stop, bool by_mailbox)
+    : core_(core),
+      group_(group),
+      stop_(stop),
+      by_mailbox_(by_mailbox),
+      stops_before_(core.motion.stops()),
+      phase_(stop ? Phase::stop : Phase::setpoints) {
+  // In the group's order the controlword comes before the command: carried out after the stop it could undo it, and before it
+  // the stop would have to wait for it. A stop by controlword is part of the stop; anything else the stop has made void.
+  if (stop_ && axisgate::is_stop(group_.command) && group_.controlword &&
+      !drive::is_stop(*group_.controlword, group_.single_controlword))
+    group_.controlword.reset();
+}
 
 // --- Phases ----------------------------------------------------------------------------------------------------------
 
 Plan Conversation::plan_of(Phase phase) {
   switch (phase) {
-    case Phase::stop: {
-      const bool by_command = axisgate::is_stop(group_.command);
-      return by_command ? plan_stop(core_, group_.command) : plan_stop_controlword(core_, *group_.controlword);
-    }
+    case Phase::stop:
+      return plan_stop(core_, group_);
     case Phase::setpoints:
       return plan_setpoints(core_, group_);
     case Phase::mode:
-      return group_.mode ? plan_mode(core_, *group_.mode) : Plan{};
+      return group_.mode ? plan_raw_mode(core_, *group_.mode) : Plan{};
     case Phase::controlword: {
-      const bool done_as_stop = stop_ && !axisgate::is_stop(group_.command);
+      const bool done_as_stop = stop_ && group_.controlword &&
+                                drive::is_stop(*group_.controlword, group_.single_controlword);
       return group_.controlword && !done_as_stop ? plan_controlword(core_, *group_.controlword) : Plan{};
     }
     case Phase::preparation:
@@ -51,8 +63,12 @@ Plan Conversation::plan_of(Phase phase) {
 }
 
 void Conversation::plan_phase() {
+  if (phase_ == Phase::setpoints) remember_setpoints(core_, group_);
   Plan plan = plan_of(phase_);
+  // A mode that a client asks for is its choice, also where it is in force already.
+  if (phase_ == Phase::mode && group_.mode && !plan.refused()) core_.mode_chosen = true;
   planned_ = true;
+  sent_of_plan_ = false;
   todo_ = std::move(plan.actions);
   at_ = 0;
   wait_until_ = kNever;
@@ -75,7 +91,23 @@ void Conversation::abort(Outcome outcome) {
 
 // --- The next move ---------------------------------------------------------------------------------------------------
 
+Conversation::Move Conversation::granted(Instant now) {
+  if (planned_ && !sent_of_plan_) planned_ = false;
+  Move move = advance(now);
+  if (move.kind == Move::Kind::exchange) begun_ = sent_of_plan_ = true;
+  return move;
+}
+
+Conversation::Move Conversation::advance_object() const {
+  const ObjectRequest& o = *group_.object;
+  const bus::Access access = o.write ? bus::Access::write : bus::Access::read;
+  return {Move::Kind::exchange,
+          {core_.drive.node, access, {o.index, o.subindex}, o.size, o.write ? wire_bits(o.data, o.size) : 0},
+          kLongAgo};
+}
+
 Conversation::Move Conversation::advance(Instant now) {
+  core_.now = now;
   while (!finished()) {
     if (phase_ == Phase::settle_stop || phase_ == Phase::settle) {
       if (const auto move = advance_settle()) return *move;
@@ -83,13 +115,7 @@ Conversation::Move Conversation::advance(Instant now) {
       continue;
     }
     if (phase_ == Phase::object) {
-      if (group_.object && !object_done_) {
-        const ObjectRequest& o = *group_.object;
-        return {Move::Kind::exchange,
-                {core_.drive.node, o.write ? bus::Access::write : bus::Access::read, {o.index, o.subindex}, o.size,
-                 o.write ? wire_bits(o.data, o.size) : 0},
-                kLongAgo};
-      }
+      if (group_.object && !object_done_) return advance_object();
       next_phase();
       continue;
     }
@@ -103,8 +129,9 @@ Conversation::Move Conversation::advance(Instant now) {
     }
     const Action& action = todo_[at_];
     if (action.kind == Action::Kind::mark) {
-      reach(action.mark, now);
+      const Action mark = action;  // reaching it may plan anew
       pop();
+      reach(mark, now);
     } else if (action.kind == Action::Kind::wait) {
       if (const auto move = advance_wait(action, now)) return *move;
     } else {
@@ -135,24 +162,34 @@ Conversation::Move Conversation::exchange_for(const Action& action) const {
 }
 
 std::optional<Conversation::Move> Conversation::advance_wait(const Action& action, Instant now) {
-  if (wait_until_ == kNever) wait_until_ = now + action.limit;
+  if (wait_until_ == kNever) {
+    wait_until_ = now + action.limit;
+    if (phase_ == Phase::stop) {
+      // However often the stop is repeated: the time it has in all began with its first look.
+      if (stop_until_ == kNever) stop_until_ = wait_until_;
+      wait_until_ = stop_until_;
+      repeat_at_ = now + kStopShows;
+    }
+  }
   const ObjectState& state = core_.store[action.until.object];
   const bool fresh = state.known && state.exchange > last_acknowledged_;
   if (fresh && action.until.holds(core_.object(action.until.object), static_cast<std::uint32_t>(state.number))) {
     pop();
     return std::nullopt;
   }
-  if (now >= wait_until_ && (fresh || action.limit > Duration{})) {
+  // A fence may have kept the look away until the time was over: one look there is in any case.
+  const bool looked = fresh && state.sent_at + kLookAgain >= std::min(now, wait_until_);
+  if (now >= wait_until_ && (looked || (fresh && action.limit == Duration{}))) {
     if (action.optional) {
       pop();
-    } else if (!repeat_stop()) {
+    } else {
       fail(action.otherwise, action.otherwise == Errc::state_unsuitable ? kDetailDeviceState : 0);
     }
     return std::nullopt;
   }
+  if (fresh && phase_ == Phase::stop && !action.optional && now >= repeat_at_ && repeat_stop()) return std::nullopt;
   if (fresh && now < state.sent_at + kLookAgain) return Move{Move::Kind::wait, {}, state.sent_at + kLookAgain};
-  Action look = Action::read(action.until.object);
-  return exchange_for(look);
+  return exchange_for(Action::read(action.until.object));
 }
 
 // A reply is sent only when the image holds a statusword sampled after the last acknowledgement.
@@ -163,13 +200,15 @@ std::optional<Conversation::Move> Conversation::advance_settle() const {
   return exchange_for(Action::read(core_.model.statusword));
 }
 
-bool Conversation::passes_fence() const {
-  return phase_ == Phase::stop && planned_ && at_ < todo_.size() && todo_[at_].kind == Action::Kind::write &&
-         !verifying_;
+bool Conversation::passes_fence() {
+  if (phase_ != Phase::stop || verifying_) return false;
+  if (!planned_ || !sent_of_plan_) plan_phase();
+  return phase_ == Phase::stop && at_ < todo_.size() && todo_[at_].kind == Action::Kind::write;
 }
 
 bool Conversation::repeat_stop() {
-  if (phase_ != Phase::stop || ++stop_attempts_ >= kStopAttempts) return false;
+  if (phase_ != Phase::stop || !would_repeat()) return false;
+  ++attempts_;
   planned_ = verifying_ = false;
   return true;
 }
@@ -178,7 +217,6 @@ bool Conversation::repeat_stop() {
 
 void Conversation::on_result(const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
   if (finished()) return;
-  begun_ = true;
   if (result.code == Errc::link_lost) {
     fail(Errc::link_lost);
   } else if (phase_ == Phase::object) {
@@ -196,33 +234,39 @@ void Conversation::on_result(const bus::ExchangeResult& result, Instant sent_at,
 }
 
 void Conversation::on_write(const Action& action, const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
-  const ObjectDef& object = core_.object(action.object);
+  // Anything sampled from the next request on has seen this write, if it was one.
+  last_acknowledged_ = core_.store.exchange();
   switch (result.code) {
     case Errc::ok:
-      if (!trusted && object.readable) {
+      if (!trusted && core_.object(action.object).readable) {
         core_.store.doubt(action.object);
         verifying_ = true;
         return;
       }
       core_.store.acknowledged(action.object, number_of(action), sent_at);
-      // Anything sampled from the next request on has seen this write.
-      last_acknowledged_ = core_.store.exchange();
+      if (by_mailbox_) core_.store.doubt_all(action.object);
       pop();
       return;
     case Errc::refused_by_drive:
-      fail(Errc::refused_by_drive, result.detail);
+      if (!repeat_stop()) fail(Errc::refused_by_drive, result.detail);
       return;
     default:
-      // Unknown, and never sent again blindly. A stop is: a state read shows whether it took.
-      core_.store.doubt(action.object);
-      last_acknowledged_ = core_.store.exchange();
-      if (repeat_stop()) return;
-      if (phase_ == Phase::stop || object.trigger || !object.readable) {
-        fail(Errc::timed_out);
-      } else {
-        verifying_ = true;
-      }
-      return;
+      on_lost_write(action);
+  }
+}
+
+// Unknown, and never sent again blindly: read back before it is reported. A stop is sent again, unless it is a halt that could
+// enable a drive which has meanwhile restarted: that one is looked at first.
+void Conversation::on_lost_write(const Action& action) {
+  const ObjectDef& object = core_.object(action.object);
+  const bool could_enable = action.object == core_.model.controlword &&
+                            request_of(static_cast<std::uint16_t>(number_of(action))) == Request402::enable_operation;
+  core_.store.doubt(action.object);
+  if (!could_enable && repeat_stop()) return;
+  if (object.trigger || !object.readable || (phase_ == Phase::stop && !could_enable)) {
+    fail(Errc::timed_out);
+  } else {
+    verifying_ = true;
   }
 }
 
@@ -239,7 +283,8 @@ void Conversation::on_read(ObjectId object, const bus::ExchangeResult& result) {
   // A read that was not answered is asked again once the fence stands: it changes nothing. The drive goes offline first.
   if (result.code != Errc::ok) return;
   if (verifying_) {
-    if (core_.store[object].number == number_of(action)) {
+    const ObjectDef& def = core_.object(object);
+    if (core_.store[object].number == def.number(wire_bits(number_of(action), def.size))) {
       pop();
     } else if (!repeat_stop()) {
       fail(Errc::timed_out);
@@ -260,6 +305,7 @@ void Conversation::on_object(const bus::ExchangeResult& result) {
   }
   object_done_ = true;
   if (group_.object->write) {
+    last_acknowledged_ = core_.store.exchange();
     core_.store.doubt_all();
   } else {
     result_.object_data = result.fields.front().raw;
@@ -269,43 +315,74 @@ void Conversation::on_object(const bus::ExchangeResult& result) {
 
 // --- Turning points --------------------------------------------------------------------------------------------------
 
-void Conversation::reach(Mark mark, Instant now) {
-  Motion& motion = core_.motion;
-  const std::uint16_t id = group_.command_id;
+// A stop accepted after this group ends what it would begin: nothing that it reaches late counts as a start or an enable.
+bool Conversation::overtaken_by_stop(Mark mark) const {
   switch (mark) {
+    case Mark::enabled:
+    case Mark::start_discrete:
+    case Mark::start_velocity:
+    case Mark::start_torque:
+    case Mark::start_homing:
+    case Mark::controlword_passed:
+    case Mark::run_raw:
+      return core_.motion.stops() != stops_before_;
+    default:
+      return false;
+  }
+}
+
+void Conversation::reach(const Action& action, Instant now) {
+  if (overtaken_by_stop(action.mark)) return;
+  Motion& motion = core_.motion;
+  const auto start = [&](MotionKind kind) { motion.start(kind, group_.command_id, now, core_.store.exchange()); };
+  switch (action.mark) {
     case Mark::enabled:
       motion.enabled();
       break;
     case Mark::start_discrete:
-      motion.start(MotionKind::discrete, id, now, core_.store.exchange());
+      start(MotionKind::discrete);
       break;
     case Mark::start_velocity:
-      motion.start(MotionKind::velocity, id, now, core_.store.exchange());
+      start(MotionKind::velocity);
       break;
     case Mark::start_torque:
-      motion.start(MotionKind::torque, id, now, core_.store.exchange());
+      start(MotionKind::torque);
       break;
     case Mark::start_homing:
-      motion.start(MotionKind::homing, id, now, core_.store.exchange());
+      start(MotionKind::homing);
       break;
     case Mark::controlword_passed:
       motion.passed(request_of(*group_.controlword));
+      break;
+    case Mark::quick_stopped:
+      if (!motion.latched()) motion.stop(true, now);
+      stops_before_ = motion.stops();
+      break;
+    case Mark::halted:
+      motion.stop(false, now);
+      stops_before_ = motion.stops();
       break;
     case Mark::run_raw:
       motion.run_raw();
       break;
     case Mark::mode_changed:
       motion.mode_changed();
-      if (phase_ == Phase::mode) {
-        core_.mode_chosen = true;
-        if (core_.facts().enabled() && is_continuous(core_.mode_in_force())) motion.run_raw();
-      }
+      if (phase_ == Phase::mode && core_.facts().enabled() && is_continuous(core_.mode_in_force())) motion.run_raw();
       break;
     case Mark::values_doubtful:
-      core_.store.doubt_all();
+      core_.store.doubt_all(action.object);
       break;
     case Mark::not_homed:
       core_.homed = false;
+      break;
+    case Mark::borrow_homing:
+      if (!core_.offset_owed) core_.offset_owed = core_.value(Quantity::homing_offset);
+      break;
+    case Mark::return_homing:
+      core_.offset_owed.reset();
+      break;
+    case Mark::look_again:
+      planned_ = false;
       break;
   }
 }

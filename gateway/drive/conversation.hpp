@@ -12,7 +12,8 @@ namespace axisgate::drive {
 class Conversation {
  public:
   /// `core` outlives it. `stop`: the group is a stop by design 3.4; its stop is carried out before everything else in it.
-  Conversation(AxisCore& core, const Group& group, bool stop);
+  /// `by_mailbox`: after its writes nothing else counts as held (design 3.3).
+  Conversation(AxisCore& core, const Group& group, bool stop, bool by_mailbox = false);
 
   struct Move {
     enum class Kind : std::uint8_t {
@@ -24,8 +25,10 @@ class Conversation {
     bus::Exchange exchange;
     Instant until = kLongAgo;
   };
-  /// Plans as far as it can without the wire. Calling it again without a result in between gives the same move.
+  /// Goes as far as it can without the wire. The exchange of the answer is only for looking ahead.
   [[nodiscard]] Move advance(Instant now);
+  /// As advance(), and its exchange goes on the wire now: what is only planned is planned anew, with what is known by now.
+  [[nodiscard]] Move granted(Instant now);
   /// The result of the exchange given last. `sent_at`: when it was sent. `trusted`: the drive was not suspect; else an
   /// acknowledgement proves no write, and the object is read back.
   void on_result(const bus::ExchangeResult& result, Instant sent_at, bool trusted);
@@ -34,6 +37,8 @@ class Conversation {
 
   [[nodiscard]] bool finished() const { return phase_ == Phase::finished; }
   [[nodiscard]] bool begun() const { return begun_; }  ///< something was sent
+  /// A stop that would be sent once more if the exchange on the wire stays without an answer.
+  [[nodiscard]] bool would_repeat() const { return phase_ == Phase::stop && attempts_ + 1 < kStopAttempts; }
   /// The stop itself is over: what is left of the group has no claim to go first.
   [[nodiscard]] bool stop_is_over() const { return stop_ && !handed_over_ && phase_ > Phase::settle_stop; }
   /// The rest of the group was queued anew, without the stop's precedence.
@@ -41,8 +46,8 @@ class Conversation {
   [[nodiscard]] const Group& group() const { return group_; }
   [[nodiscard]] const GroupResult& result() const { return result_; }
   [[nodiscard]] bool is_stop() const { return stop_; }
-  /// The move under way is a write that belongs to the stop: it passes a suspect drive's fence.
-  [[nodiscard]] bool passes_fence() const;
+  /// The next move is a write that belongs to the stop: it passes a suspect drive's fence.
+  [[nodiscard]] bool passes_fence();
 
  private:
   enum class Phase : std::uint8_t {
@@ -57,7 +62,7 @@ class Conversation {
     settle,
     finished,
   };
-  static constexpr int kStopAttempts = 3;
+  static constexpr int kStopAttempts = 3;  // design 3.4
 
   void plan_phase();
   void next_phase();
@@ -65,11 +70,14 @@ class Conversation {
   [[nodiscard]] Move exchange_for(const Action& action) const;
   [[nodiscard]] std::optional<Move> advance_wait(const Action& action, Instant now);
   [[nodiscard]] std::optional<Move> advance_settle() const;
-  void reach(Mark mark, Instant now);
+  [[nodiscard]] Move advance_object() const;
+  void reach(const Action& action, Instant now);
+  [[nodiscard]] bool overtaken_by_stop(Mark mark) const;
   void pop();
   void fail(Errc code, std::uint32_t detail = 0);
   [[nodiscard]] bool repeat_stop();
   void on_write(const Action& action, const bus::ExchangeResult& result, Instant sent_at, bool trusted);
+  void on_lost_write(const Action& action);
   void on_read(ObjectId object, const bus::ExchangeResult& result);
   void on_object(const bus::ExchangeResult& result);
   [[nodiscard]] std::int64_t number_of(const Action& action) const;
@@ -78,17 +86,22 @@ class Conversation {
   Group group_;
   GroupResult result_;
   bool stop_;
+  bool by_mailbox_;
+  std::uint64_t stops_before_;  ///< stops accepted by then: what a later one overtakes starts and enables nothing
   Phase phase_;
   bool planned_ = false;
+  bool sent_of_plan_ = false;  ///< something of this plan was sent: it is carried to its end
   bool begun_ = false;
   bool handed_over_ = false;
   bool verifying_ = false;  ///< a write was not acknowledged: its object is read back
-  int stop_attempts_ = 0;
+  int attempts_ = 0;        ///< of a stop, beyond the first
   int mode_before_ = 0;
   std::vector<Action> todo_;
   std::size_t at_ = 0;
-  std::uint64_t last_acknowledged_ = 0;   ///< exchange of the last write: samples asked for earlier are too old
-  Instant wait_until_ = kNever;           ///< of the wait under way; kNever: not begun
+  std::uint64_t last_acknowledged_ = 0;  ///< exchange of the last write: samples asked for earlier are too old
+  Instant wait_until_ = kNever;          ///< of the wait under way; kNever: not begun
+  Instant stop_until_ = kNever;          ///< of the stop's waits together, however often it is repeated
+  Instant repeat_at_ = kNever;           ///< of a stop: sent once more if it has not shown by then
   bool object_done_ = false;
 };
 

@@ -136,28 +136,39 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
   const OnWire asked = on_wire_;
   const bool trusted = !fence_.suspect() || asked.fence;
   if (result.code == Errc::timed_out || result.code == Errc::bad_reply) {
-    on_timeout(exchange);
+    const bool stop_insists =
+        std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->insists(asked.order); });
+    on_timeout(exchange, stop_insists);
   } else if (result.code == Errc::link_lost) {
     fence_.lost(exchange.object, now());  // its reply may still come, after the line's return
   } else {
     on_answer(exchange, result);
   }
+  const ObjectId written = exchange.access == bus::Access::write ? model_.find(exchange.object) : kNoObject;
   if (asked.order != 0) {
-    if (asked.order == setup_order_) carry_on_bring_up(exchange, result);
     bool owned = asked.order == setup_order_;
+    if (owned) carry_on_bring_up(exchange, result);
     for (auto& axis : axes_) {
       if (!axis->has(asked.order)) continue;
       owned = true;
       axis->on_result(asked.order, result, asked.sent_at, trusted);
     }
-    // Whoever asked has been given up meanwhile; what the write did is not known to be held.
-    if (!owned && exchange.access == bus::Access::write)
-      if (const ObjectId id = model_.find(exchange.object); id != kNoObject) store_.doubt(id);
+    if (!owned && written != kNoObject) on_write_without_owner(exchange, result, trusted);
   }
+  if (written != kNoObject && result.code == Errc::ok) plan_.written(written, now());
   after_event();
 }
 
-void Drive::on_timeout(const bus::Exchange& exchange) {
+// Whoever asked was given up while it was on the wire: what the drive holds now must be known all the same.
+void Drive::on_write_without_owner(const bus::Exchange& exchange, const bus::ExchangeResult& result, bool trusted) {
+  const ObjectId id = model_.find(exchange.object);
+  if (result.code == Errc::ok && trusted)
+    store_.acknowledged(id, model_.object(id).number(exchange.raw), on_wire_.sent_at);
+  else if (result.code != Errc::refused_by_drive)
+    store_.doubt(id);
+}
+
+void Drive::on_timeout(const bus::Exchange& exchange, bool stop_insists) {
   fence_.lost(exchange.object, now());
   store_.doubt_all();
   ++mute_;
@@ -165,7 +176,8 @@ void Drive::on_timeout(const bus::Exchange& exchange) {
     probe_due_ = now() + backoff_.next();
     return;
   }
-  if (mute_ >= kMuteTimeouts) {
+  // A stop has its three tries, also at a drive that was silent before it came.
+  if (mute_ >= kMuteTimeouts && !stop_insists) {
     set_state(LinkState::offline);
     setup_order_ = 0;
     bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
@@ -181,11 +193,16 @@ void Drive::on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& 
   // An error answer is no answered fence; the next candidate is tried.
   if (result.code == Errc::ok && (on_wire_.fence || on_wire_.probe)) {
     fence_.answered();
-    if (state_ == LinkState::suspect) set_state(LinkState::online);
+    if (state_ == LinkState::suspect) {
+      set_state(LinkState::online);
+      for (auto& axis : axes_) axis->on_doubt();
+    }
   }
   if (result.code == Errc::refused_by_drive && on_wire_.fence) fence_.lost(exchange.object, now());
   if (counts) store_fields(exchange, result);
-  if (state_ == LinkState::unknown || state_ == LinkState::offline) begin_bring_up();
+  // The answer to a stop may be a late one: only what cannot be begins a bring-up.
+  const bool not_there = state_ == LinkState::unknown || state_ == LinkState::offline;
+  if (not_there && !fence_.suspect()) begin_bring_up(true);
 }
 
 void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
@@ -208,9 +225,7 @@ void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResul
     const ObjectDef& object = model_.object(id);
     // A width other than the profile's is a wrong profile, not a value (JD sheet, K7): it is not shown.
     if (field.size == object.size) {
-      const bool clamped = store_.read(id, object.number(field.raw), on_wire_.sent_at);
-      if (clamped)
-        for (auto& axis : axes_) axis->set_alarm(AxisAlarm::clamped, true);
+      store_.read(id, object.number(field.raw), on_wire_.sent_at);
     } else if (!store_[id].refused) {
       store_.refused(id);
       plan_.drop(id);
@@ -225,14 +240,15 @@ void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResul
 
 // --- Bring-up ------------------------------------------------------------------------------------------------------------
 
-void Drive::begin_bring_up() {
+void Drive::begin_bring_up(bool restarted) {
   set_state(LinkState::setup);
   store_.forget_all();
   fence_.answered();
   backoff_.reset();
   bring_up_.begin();
   plan_.restart(now());
-  for (auto& axis : axes_) axis->on_bring_up();
+  if (restarted)
+    for (auto& axis : axes_) axis->on_bring_up();
   bus::Order order;
   order.priority = bus::Priority::setup;
   order.axis = bus::kNoAxis;
@@ -294,7 +310,7 @@ void Drive::leave_adoption() {
   if (!adopted_ || enabled) return;
   adopted_ = false;
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, false);
-  if (bring_up_.has_setup()) begin_bring_up();
+  if (bring_up_.has_setup()) begin_bring_up(false);
 }
 
 // --- Link and time -------------------------------------------------------------------------------------------------------
@@ -327,6 +343,11 @@ void Drive::after_event() {
 }
 
 void Drive::bring_up_to_date() {
+  for (auto& axis : axes_) axis->observe(now());
+  if (doubts_seen_ != store_.doubts()) {
+    doubts_seen_ = store_.doubts();
+    plan_.refresh(now());
+  }
   if (brought_up()) {
     for (auto& axis : axes_)
       for (const Check& check : model_.checks) axis->set_alarm(check.alarm, false);

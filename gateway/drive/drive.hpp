@@ -51,7 +51,6 @@ class Drive final : public bus::BusDrive, private AxisHost {
   [[nodiscard]] Queued queue(bus::Order order) override;
   void order_waits(bus::OrderId id, Instant until) override { bus_.wait(id, until); }
   void order_done(bus::OrderId id) override { bus_.finish(id); }
-  void read_soon(ObjectId object) override { plan_.soon(object, now()); }
   void event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) override;
 
   [[nodiscard]] bus::Exchange read(ObjectId object) const;
@@ -63,9 +62,11 @@ class Drive final : public bus::BusDrive, private AxisHost {
   [[nodiscard]] std::optional<bus::Exchange> exchange_of(bus::OrderId id);
   [[nodiscard]] std::optional<bus::Exchange> next_of_bring_up();
   void store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result);
-  void on_timeout(const bus::Exchange& exchange);
+  void on_timeout(const bus::Exchange& exchange, bool stop_insists);
+  void on_write_without_owner(const bus::Exchange& exchange, const bus::ExchangeResult& result, bool trusted);
   void on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& result);
-  void begin_bring_up();
+  /// `restarted`: the drive comes up anew; else a running one was adopted and is only set up now.
+  void begin_bring_up(bool restarted);
   void carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result);
   void end_bring_up();
   void judge_checks();
@@ -92,6 +93,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   OnWire on_wire_;
   bus::OrderId setup_order_ = 0;
   int mute_ = 0;
+  std::uint64_t doubts_seen_ = 0;
   Instant probe_due_ = kNever;
   bool adopted_ = false;
 };

@@ -162,6 +162,9 @@ struct AxisModel {
   /// Unified mode -> what the drive calls it; absent: refused. In ascending order of the unified number.
   std::vector<std::pair<std::int16_t, std::int64_t>> modes;
   std::vector<std::int16_t> homing_methods;
+  /// Velocity and torque set-points that must hold 0 before torque comes on, those without a known unit included: 0 is 0 in any
+  /// unit (Kinco's current set-points, where no rated current was configured).
+  std::vector<ObjectId> zero_before_enable;
   std::optional<Condition> homed;
   std::optional<Condition> homing_failed;
   std::optional<Condition> moving;  ///< absent: velocity_actual above standstill_velocity
@@ -194,6 +197,7 @@ struct DriveModel {
   std::vector<ObjectWrite> setup;
   std::vector<Check> checks;
   FenceFacts fence;
+  Duration timeout = std::chrono::milliseconds(100);  ///< profile's reply timeout, for a bus whose configuration names none
   bool stops_by_itself = false;  ///< it notices a dead gateway on this protocol; else alarm no_comm_watchdog
   /// A command that removes torque exists on the bus; else the gate rule of 3.4.
   std::array<Duration, 3> poll_period{std::chrono::milliseconds(20), std::chrono::milliseconds(100),

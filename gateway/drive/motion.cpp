@@ -8,6 +8,8 @@ namespace {
 // A reference bit may still stand from the homing before, and no sheet says when it falls: homing counts as attained when the
 // bit is set and the axis stands, this long after the start at the earliest.
 constexpr Duration kHomingSettle = std::chrono::milliseconds(500);
+// A Kinco JD samples its velocity each 200 ms: for so long after a change it may still show what was before.
+constexpr Duration kVelocityLag = std::chrono::milliseconds(300);
 
 enum Target : std::size_t { kPosition, kVelocity, kTorque };
 
@@ -28,9 +30,11 @@ std::optional<Target> target_of(Quantity quantity) {
 
 // Stops ---------------------------------------------------------------------------------------------------------------
 
-void Motion::stop(bool latch) {
+void Motion::stop(bool latch, Instant now) {
   end(MotionState::aborted);
+  ++stops_;
   stopping_ = true;
+  settled_from_ = now + kVelocityLag;
   if (latch) latched_ = true;
   unlatch_armed_ = false;
 }
@@ -60,18 +64,21 @@ void Motion::passed(Request402 request) {
 
 void Motion::start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t exchange) {
   assert(kind != MotionKind::none);
-  if (kind_ != MotionKind::none) end(MotionState::aborted);
+  // A motion replaced by another one is aborted, but nothing ends "for good" by it: velocity and torque stay as asked.
   kind_ = kind;
   state_ = MotionState::active;
   id_ = id;
   started_ = now;
+  settled_from_ = now + kVelocityLag;
   started_by_ = exchange;
   homing_until_ = kNever;
   raw_run_ = false;
+  stopping_ = false;
 }
 
 void Motion::mode_changed() {
-  if (kind_ != MotionKind::none) end(MotionState::aborted);
+  if (kind_ != MotionKind::none) state_ = MotionState::aborted;
+  kind_ = MotionKind::none;
   raw_run_ = false;
 }
 
@@ -86,33 +93,40 @@ void Motion::end(MotionState how) {
   wanted_[kTorque].reset();
 }
 
-void Motion::observe(const AxisFacts& facts, Duration homing_timeout, Instant now) {
-  if (!facts.moving || !facts.reachable) stopping_ = false;
-  const bool newly_lost = (facts.faulted() && !was_faulted_) || (!facts.reachable && was_reachable_);
+void Motion::complete(Instant now) {
+  kind_ = MotionKind::none;
+  state_ = MotionState::completed;
+  homing_until_ = kNever;
+  settled_from_ = now + kVelocityLag;
+}
+
+void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
+  if (!facts.reachable || (!facts.moving && facts.at >= settled_from_)) stopping_ = false;
+  // Targets written while it is disabled or faulted are kept for the start that follows: only the change ends things.
+  const bool newly_faulted = facts.faulted() && !was_faulted_;
+  const bool newly_lost = !facts.reachable && was_reachable_;
+  const bool newly_disabled = !facts.enabled() && was_enabled_;
   was_faulted_ = facts.faulted();
   was_reachable_ = facts.reachable;
-  if (!facts.reachable || !facts.enabled()) {
-    // Targets written while it is disabled or faulted are kept for the start that follows: only the change ends things.
-    if (newly_lost || kind_ != MotionKind::none || raw_run_) end(MotionState::failed);
+  was_enabled_ = facts.enabled();
+  if (!facts.enabled()) {
+    if (newly_faulted || newly_lost || newly_disabled || kind_ != MotionKind::none || raw_run_) end(MotionState::failed);
     return;
   }
-  const bool seen_after_start = facts.statusword_exchange > started_by_;
-  if (kind_ == MotionKind::discrete && seen_after_start && facts.target_reached && !target_reached_masked_) {
-    kind_ = MotionKind::none;
-    state_ = MotionState::completed;
-  }
-  if (kind_ == MotionKind::homing && seen_after_start && !target_reached_masked_) {
-    if (homing_until_ == kNever) homing_until_ = started_ + homing_timeout;
-    if (facts.homing_failed) {
-      end(MotionState::failed);
-    } else if (facts.reference && !facts.moving && now - started_ >= kHomingSettle) {
-      kind_ = MotionKind::none;
-      homing_until_ = kNever;
-      state_ = MotionState::completed;
-    } else if (now >= homing_until_) {
-      end(MotionState::failed);
-      homing_timed_out_ = true;
-    }
+  const bool seen_after_start = facts.statusword_exchange > started_by_ && !target_reached_masked_;
+  if (kind_ == MotionKind::discrete && seen_after_start && facts.target_reached) complete(facts.at);
+  if (kind_ == MotionKind::homing && seen_after_start) observe_homing(facts, homing_timeout);
+}
+
+void Motion::observe_homing(const AxisFacts& facts, Duration timeout) {
+  homing_until_ = started_ + timeout;
+  if (facts.homing_failed) {
+    end(MotionState::failed);
+  } else if (facts.reference && !facts.moving && facts.at - started_ >= kHomingSettle) {
+    complete(facts.at);
+  } else if (facts.at >= homing_until_) {
+    end(MotionState::failed);
+    homing_timed_out_ = true;
   }
 }
 
@@ -122,10 +136,18 @@ bool Motion::take_homing_timeout() {
   return out;
 }
 
+bool Motion::at_rest(const AxisFacts& facts) const {
+  if (kind_ != MotionKind::none) return false;
+  // In mode 1 the drive itself says so, before the sampled velocity does.
+  if (facts.mode == 1 && facts.enabled() && facts.target_reached) return true;
+  return !facts.moving && facts.at >= settled_from_;
+}
+
 AxisState Motion::axis_state(const AxisFacts& facts) const {
   if (facts.faulted()) return AxisState::error_stop;
-  if (latched_ || facts.state == State402::quick_stop_active || (stopping_ && facts.moving)) return AxisState::stopping;
-  if (!facts.enabled()) return AxisState::disabled;
+  if (latched_ || facts.state == State402::quick_stop_active) return AxisState::stopping;
+  if (!facts.enabled()) return AxisState::disabled;  // it may coast: nothing of ours stops it any more
+  if (stopping_ && facts.moving) return AxisState::stopping;
   switch (kind_) {
     case MotionKind::discrete:
       return AxisState::discrete_motion;
@@ -137,34 +159,43 @@ AxisState Motion::axis_state(const AxisFacts& facts) const {
     case MotionKind::none:
       break;
   }
-  return raw_run_ && facts.moving ? AxisState::continuous_motion : AxisState::standstill;
+  if (!facts.moving || facts.at < settled_from_) return AxisState::standstill;
+  // It moves without a start of ours: found running, run in a raw mode, or by a start whose outcome is unknown.
+  if (is_continuous(facts.mode)) return AxisState::continuous_motion;
+  return facts.mode == 6 ? AxisState::homing : AxisState::discrete_motion;
 }
 
 // Set-points ----------------------------------------------------------------------------------------------------------
 
-void Motion::want(Quantity target, std::int64_t value) {
-  if (const auto t = target_of(target)) wanted_[*t] = value;
+void Motion::want(Quantity target, Wanted wanted) {
+  if (const auto t = target_of(target)) wanted_[*t] = wanted;
 }
 
-std::optional<std::int64_t> Motion::wanted(Quantity target) const {
+std::optional<Wanted> Motion::wanted(Quantity target) const {
   const auto t = target_of(target);
   return t ? wanted_[*t] : std::nullopt;
 }
 
+bool Motion::move_under_way(const AxisFacts& facts) const {
+  if (kind_ != MotionKind::none) return kind_ == MotionKind::discrete;
+  return facts.enabled() && facts.moving && facts.at >= settled_from_ && !is_continuous(facts.mode);
+}
+
 bool Motion::target_acts_now(Quantity target, const AxisFacts& facts, bool held_back) const {
-  if (latched_) return false;  // kept, not sent
-  switch (target) {
-    case Quantity::target_position:
+  const auto t = target_of(target);
+  if (!t) return true;           // a parameter
+  if (latched_) return false;    // kept, not sent
+  switch (*t) {
+    case kPosition:
       // In modes 7 and 8 the target is the demand of every cycle; elsewhere a write must not disturb or start a move.
       if (facts.mode == 7 || facts.mode == 8) return true;
-      return !held_back && kind_ != MotionKind::discrete;
-    case Quantity::target_velocity:
+      return !held_back && !move_under_way(facts);
+    case kVelocity:
       return !facts.enabled() || kind_ == MotionKind::velocity || raw_run_;
-    case Quantity::target_torque:
+    case kTorque:
       return !facts.enabled() || kind_ == MotionKind::torque || raw_run_;
-    default:
-      return true;
   }
+  return false;
 }
 
 }  // namespace axisgate::drive

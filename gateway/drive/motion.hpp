@@ -16,19 +16,26 @@ enum class MotionKind : std::uint8_t { none, discrete, velocity, torque, homing 
 
 /// What the drive shows, from its newest samples.
 struct AxisFacts {
+  Instant at = kLongAgo;   ///< now
   bool reachable = false;  ///< link_state online or suspect
   State402 state = State402::not_ready_to_switch_on;
-  int mode = 0;            ///< mode in force, unified number
+  int mode = 0;  ///< mode in force, unified number
   bool moving = false;
   bool target_reached = false;
-  bool reference = false;       ///< the drive says that it is homed
+  bool reference = false;  ///< the drive says that it is homed
   bool homing_failed = false;
   std::uint64_t statusword_exchange = 0;  ///< the exchange that gave the newest statusword
 
-  [[nodiscard]] bool enabled() const { return state == State402::operation_enabled; }
+  [[nodiscard]] bool enabled() const { return reachable && state == State402::operation_enabled; }
   [[nodiscard]] bool faulted() const {
     return state == State402::fault || state == State402::fault_reaction_active;
   }
+};
+
+/// A target as a client asked for it.
+struct Wanted {
+  std::int64_t value = 0;               ///< in register units
+  std::optional<std::int64_t> exact{};  ///< as the drive counts, where the object mailbox gave it so
 };
 
 class Motion {
@@ -36,7 +43,9 @@ class Motion {
   // --- Stops and the stop latch -------------------------------------------------------------------------------------
 
   /// A stop was accepted: the motion is over, velocity and torque are needed anew. `latch`: quick_stop and lease actions.
-  void stop(bool latch);
+  void stop(bool latch, Instant now);
+  /// How many stops were accepted: what a group that was accepted before the newest one starts or enables does not count.
+  [[nodiscard]] std::uint64_t stops() const { return stops_; }
   /// An enable accepted after the stop has been carried out (command 1, coil 0).
   void enabled() {
     latched_ = false;
@@ -52,9 +61,9 @@ class Motion {
   // --- What runs -----------------------------------------------------------------------------------------------------
 
   /// Commands 6 to 11 need an axis that is enabled, not faulted and not stop-latched.
-  [[nodiscard]] bool may_start(const AxisFacts& facts) const {
-    return facts.reachable && facts.enabled() && !latched_;
-  }
+  [[nodiscard]] bool may_start(const AxisFacts& facts) const { return facts.enabled() && !latched_; }
+  /// Standstill, as a relative move and set_position need it.
+  [[nodiscard]] bool at_rest(const AxisFacts& facts) const;
   /// A motion command was accepted: target_reached reads 0 from now until unmask().
   void mask_target_reached() { target_reached_masked_ = true; }
   void unmask_target_reached() { target_reached_masked_ = false; }
@@ -64,10 +73,10 @@ class Motion {
   void start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t exchange);
   /// A raw enable or mode write that lets set-points act at once (raw modes 3, 4, 9, 10).
   void run_raw() { raw_run_ = true; }
-  /// The mode was changed by raw write: what ran in the mode before is over.
+  /// The mode was changed: what ran in the mode before is over.
   void mode_changed();
   /// New samples. Ends the motion where they show its end.
-  void observe(const AxisFacts& facts, Duration homing_timeout, Instant now);
+  void observe(const AxisFacts& facts, Duration homing_timeout);
   /// Homing has run longer than its timeout: the axis must be halted (once).
   [[nodiscard]] bool take_homing_timeout();
   /// When observe() must be called even without samples.
@@ -81,18 +90,22 @@ class Motion {
   // --- Set-points are not starts -------------------------------------------------------------------------------------
 
   /// A client has written a target: it is kept, whether or not it may reach the drive now.
-  void want(Quantity target, std::int64_t value);
-  /// What a start is to use; none: what the drive holds.
-  [[nodiscard]] std::optional<std::int64_t> wanted(Quantity target) const;
-  /// Whether a write of this target may go to the drive now. `held_back`: by this drive the write itself would move the axis
+  void want(Quantity target, Wanted wanted);
+  /// What clients asked for last. Velocity and torque: none after anything that ended a motion for good.
+  [[nodiscard]] std::optional<Wanted> wanted(Quantity target) const;
+  /// Whether a write of this quantity may go to the drive now. `held_back`: by this drive the write itself would move the axis
   /// (profile `trigger`, or a maker's bit in the controlword in effect).
   [[nodiscard]] bool target_acts_now(Quantity target, const AxisFacts& facts, bool held_back) const;
 
  private:
   void end(MotionState how);
+  void complete(Instant now);
+  void observe_homing(const AxisFacts& facts, Duration timeout);
+  [[nodiscard]] bool move_under_way(const AxisFacts& facts) const;
 
   bool latched_ = false;
   bool unlatch_armed_ = false;
+  std::uint64_t stops_ = 0;
   bool raw_run_ = false;
   bool stopping_ = false;
   bool target_reached_masked_ = false;
@@ -101,12 +114,14 @@ class Motion {
   MotionState state_ = MotionState::none;
   std::uint16_t id_ = 0;
   Instant started_ = kLongAgo;
-  std::uint64_t started_by_ = 0;  ///< exchange: only statuswords sampled after it tell of this motion
+  Instant settled_from_ = kLongAgo;  ///< the sampled velocity tells the truth of the newest start, stop or end from then on
+  std::uint64_t started_by_ = 0;     ///< exchange: only statuswords sampled after it tell of this motion
   Instant homing_until_ = kNever;
   bool was_faulted_ = false;
   bool was_reachable_ = false;
+  bool was_enabled_ = false;
   /// What clients last asked for: position, velocity, torque.
-  std::array<std::optional<std::int64_t>, 3> wanted_;
+  std::array<std::optional<Wanted>, 3> wanted_;
 };
 
 }  // namespace axisgate::drive

@@ -12,10 +12,12 @@ namespace axisgate::drive {
 
 struct ObjectState {
   std::int64_t number = 0;
-  bool known = false;       ///< read or acknowledged since bring-up
-  bool held = false;        ///< the drive is known to hold it now
-  bool refused = false;     ///< the drive does not have it: not asked again until the next bring-up
-  bool unverified = false;  ///< acknowledged, but not read back yet
+  bool known = false;          ///< read or acknowledged since bring-up
+  bool held = false;           ///< the drive is known to hold it now
+  bool refused = false;        ///< the drive does not have it: not asked again until the next bring-up
+  bool unverified = false;     ///< acknowledged, but not read back yet
+  bool unsure = false;         ///< a write of it may or may not have happened, and it was not read since
+  bool clamped = false;        ///< read back other than it was acknowledged; until it is written again
   Instant sent_at = kLongAgo;  ///< when the request that gave the number was sent
   std::uint64_t exchange = 0;  ///< and which one it was: tells before from after where both fall on one instant
 };
@@ -33,26 +35,30 @@ class ObjectStore {
   /// The newest exchange's number.
   [[nodiscard]] std::uint64_t exchange() const { return exchange_; }
 
-  /// A number read. Returns true where a value acknowledged before reads back differently: the drive has clamped it.
-  bool read(ObjectId id, std::int64_t number, Instant sent_at) {
+  void read(ObjectId id, std::int64_t number, Instant sent_at) {
     ObjectState& s = at(id);
-    const bool clamped = s.unverified && s.number != number;
-    s = {number, true, true, false, false, sent_at, exchange_};
-    return clamped;
+    const bool clamped = s.unverified ? s.number != number : s.clamped && s.number == number;
+    s = {.number = number, .known = true, .held = true, .clamped = clamped, .sent_at = sent_at, .exchange = exchange_};
   }
   void acknowledged(ObjectId id, std::int64_t number, Instant sent_at) {
-    at(id) = {number, true, true, false, true, sent_at, exchange_};
+    at(id) = {
+        .number = number, .known = true, .held = true, .unverified = true, .sent_at = sent_at, .exchange = exchange_};
   }
-  void refused(ObjectId id) {
-    at(id) = {};
-    at(id).refused = true;
-  }
+  void refused(ObjectId id) { at(id) = {.refused = true}; }
   /// A write of it may or may not have happened.
-  void doubt(ObjectId id) { at(id).held = at(id).unverified = false; }
-  /// Nothing is taken as held any more: timeout, mailbox write, mode change, fault reset, set_position (design 3.3).
-  void doubt_all() {
-    for (ObjectState& s : states_) s.held = s.unverified = false;
+  void doubt(ObjectId id) {
+    at(id).held = at(id).unverified = false;
+    at(id).unsure = true;
   }
+  /// Nothing is taken as held any more, but what `except` holds: timeout, mailbox write, mode change, fault reset,
+  /// set_position (design 3.3).
+  void doubt_all(ObjectId except = kNoObject) {
+    for (std::size_t i = 0; i < states_.size(); ++i)
+      if (i != except) states_[i].held = states_[i].unverified = false;
+    ++doubts_;
+  }
+  /// How often doubt_all() was called: whoever keeps the image true reads everything anew then.
+  [[nodiscard]] std::uint64_t doubts() const { return doubts_; }
   /// Bring-up begins: nothing is known.
   void forget_all() { states_.assign(states_.size(), ObjectState{}); }
 
@@ -63,6 +69,7 @@ class ObjectStore {
   }
   std::vector<ObjectState> states_;
   std::uint64_t exchange_ = 0;
+  std::uint64_t doubts_ = 0;
 };
 
 }  // namespace axisgate::drive

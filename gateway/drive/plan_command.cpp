@@ -7,35 +7,13 @@ namespace {
 
 constexpr Duration kSaveLimit = std::chrono::seconds(2);  // design 3.4, command 12
 constexpr std::int16_t kModePosition = 1, kModeVelocity = 3, kModeTorque = 4, kModeHoming = 6;
-constexpr std::int64_t kMethodPresentPosition = 35;  // CiA 402-2 table 100: homing on the present position
-
-// Appends another plan; false where that one is refused (its refusal becomes this plan's).
-bool append(Plan& plan, Plan more) {
-  if (more.refused()) {
-    plan.refusal = more.refusal;
-    return false;
-  }
-  for (Action& a : more.actions) plan.add(std::move(a));
-  return true;
-}
-
-bool add_command_steps(const AxisCore& core, Command command, Plan& plan) {
-  const Steps* steps = steps_of(core, command);
-  if (steps == nullptr) {
-    plan.refusal = {Errc::not_supported, 0};
-    return false;
-  }
-  add_steps(core, *steps, plan);
-  return true;
-}
+constexpr std::uint16_t kEnabledBits = 0x000F;
 
 // homing_method must have been written or configured since bring-up and be in the profile's list.
 std::optional<std::int64_t> homing_method(const AxisCore& core) {
-  const auto chosen = core.homing_method_given ? core.value(Quantity::homing_method)
-                                               : std::optional<std::int64_t>(core.model.homing_method);
   const auto& list = core.model.homing_methods;
-  if (!chosen || std::find(list.begin(), list.end(), *chosen) == list.end()) return std::nullopt;
-  return chosen;
+  const bool listed = core.homing_method && std::find(list.begin(), list.end(), *core.homing_method) != list.end();
+  return listed ? core.homing_method : std::nullopt;
 }
 
 std::optional<std::int16_t> mode_needed(const AxisCore& core, Command command) {
@@ -65,17 +43,21 @@ std::optional<std::int16_t> mode_needed(const AxisCore& core, Command command) {
 // What can be told before anything is sent.
 Errc admissible(const AxisCore& core, Command command) {
   const AxisFacts facts = core.facts();
-  const bool at_rest = !facts.moving && core.motion.running() == MotionKind::none;
+  const bool at_rest = core.motion.at_rest(facts);
   switch (command) {
     case Command::enable:
       return facts.faulted() || core.alarm(AxisAlarm::local_control) ? Errc::state_unsuitable : Errc::ok;
+    case Command::move_absolute:
+      return judge_move(core, false);
     case Command::move_relative:
-      return at_rest ? Errc::ok : Errc::busy;
+      return at_rest ? judge_move(core, true) : Errc::busy;
+    case Command::run_velocity:
+      return core.model.binding(Quantity::target_velocity) != nullptr ? Errc::ok : Errc::not_supported;
     case Command::run_torque: {
-      // Torque without a speed limit runs away: max_velocity must be one the drive is known to hold.
+      if (core.model.binding(Quantity::target_torque) == nullptr) return Errc::not_supported;
       const Binding* limit = core.model.binding(Quantity::max_velocity);
-      const bool held = limit != nullptr && limit->object != kNoObject && core.store[limit->object].held;
-      return held ? Errc::ok : Errc::bad_value;
+      const bool there = limit != nullptr && limit->object != kNoObject && !core.store[limit->object].refused;
+      return there ? Errc::ok : Errc::bad_value;
     }
     case Command::home:
       return homing_method(core) ? Errc::ok : Errc::bad_value;
@@ -85,7 +67,10 @@ Errc admissible(const AxisCore& core, Command command) {
       return at_rest ? Errc::ok : Errc::busy;
     }
     case Command::save_parameters:
-      return facts.enabled() || facts.state == State402::quick_stop_active ? Errc::busy : Errc::ok;
+      return facts.enabled() || facts.state == State402::quick_stop_active ||
+                     facts.state == State402::fault_reaction_active
+                 ? Errc::busy
+                 : Errc::ok;
     default:
       return Errc::ok;
   }
@@ -93,21 +78,34 @@ Errc admissible(const AxisCore& core, Command command) {
 
 Plan plan_enable(const AxisCore& core) {
   Plan plan;
-  if (core.facts().enabled()) {
+  const AxisFacts facts = core.facts();
+  if (facts.enabled()) {
     plan.add(Action::at(Mark::enabled));
     return plan;
   }
-  // Before torque comes on, velocity and torque set-points are made 0 and a position set-point the actual position.
-  add_zero_targets(core, plan);
-  const Binding* target = core.model.binding(Quantity::target_position);
-  const Binding* actual = core.model.binding(Quantity::position_actual);
-  if (target != nullptr && actual != nullptr && target->writable && !core.held_back(Quantity::target_position)) {
-    plan.add(Action::read(actual->object));
-    plan.add(Action::copy(actual->object, target->object));
+  if (facts.state == State402::quick_stop_active && facts.moving) {
+    // The first step takes the torque away: a ramp under way is let to its end before.
+    Condition stopped;
+    stopped.object = core.model.statusword;
+    stopped.mask = 0x6F;
+    stopped.test = Condition::Test::not_equals;
+    stopped.values = {0x07};
+    plan.add(Action::wait(stopped, std::chrono::seconds(2), true));
   }
+  // Before torque comes on, velocity and torque set-points are made 0 and a position set-point the actual position.
+  add_running_targets(core, false, plan);
+  add_target_here(core, plan);
   if (!add_command_steps(core, Command::enable, plan)) return plan;
   plan.add(Action::at(Mark::enabled));
   return plan;
+}
+
+// What a step that names a quantity is to write.
+std::optional<Wanted> asked_for(const AxisCore& core, Quantity quantity) {
+  if (quantity == Quantity::target_position) return core.target_position();
+  if (quantity == Quantity::target_velocity || quantity == Quantity::target_torque) return core.running_target(quantity);
+  if (const auto held = core.value(quantity)) return Wanted{*held};
+  return std::nullopt;
 }
 
 Plan plan_fault_reset(const AxisCore& core) {
@@ -118,25 +116,33 @@ Plan plan_fault_reset(const AxisCore& core) {
 }
 
 Plan plan_move(const AxisCore& core, Command command) {
-  const auto wanted = core.target(Quantity::target_position);
-  const Binding* target = core.model.binding(Quantity::target_position);
-  if (!wanted || target == nullptr) return Plan::refuse(Errc::state_unsuitable);
-  std::int64_t value = *wanted;
-  std::int64_t end = value;
-  if (command == Command::move_relative) {
-    const auto actual = core.value(Quantity::position_actual);
-    if (!actual) return Plan::refuse(Errc::state_unsuitable);
-    end += *actual;
-    if (steps_of(core, Command::move_relative) == nullptr) {
-      // No relative move documented as edge-triggered: carried out as an absolute one.
-      value = end;
-      command = Command::move_absolute;
-    }
+  auto wanted = core.target_position();
+  if (!wanted) return Plan::refuse(Errc::state_unsuitable);
+  const bool relative = command == Command::move_relative;
+  if (const Errc code = judge_move(core, relative); code != Errc::ok) return Plan::refuse(code);
+  if (relative && steps_of(core, Command::move_relative) == nullptr) {
+    // No relative move documented as edge-triggered: carried out as an absolute one.
+    wanted = Wanted{wanted->value + core.value(Quantity::position_actual).value_or(0)};
+    command = Command::move_absolute;
   }
-  if (!target->limits.holds(end)) return Plan::refuse(Errc::bad_value);
+  const Binding* target = core.model.binding(Quantity::target_position);
+  const auto raw = wanted->exact ? wanted->exact : target->to_raw(wanted->value, core.object(target->object));
+  if (!raw) return Plan::refuse(Errc::bad_value);
   Plan plan;
-  if (!add_write(core, Quantity::target_position, value, plan)) return Plan::refuse(Errc::bad_value);
-  if (add_command_steps(core, command, plan)) plan.add(Action::at(Mark::start_discrete));
+  // A drive that follows its target would take even a distance for one.
+  if (core.facts().enabled() && (core.controlword() & controlword::kMaker) != 0)
+    plan.add(Action::write(core.model.controlword, core.controlword() & kEnabledBits));
+  Plan steps;
+  if (!add_command_steps(core, command, steps)) return steps;
+  bool written = false;
+  for (Action& a : steps.actions) {
+    if (a.kind != Action::Kind::write || a.object != target->object) continue;
+    a.number = *raw;
+    written = true;
+  }
+  if (!written && !add_write(core, Quantity::target_position, *wanted, plan)) return Plan::refuse(Errc::bad_value);
+  append(plan, std::move(steps));
+  plan.add(Action::at(Mark::start_discrete));
   return plan;
 }
 
@@ -144,17 +150,14 @@ Plan plan_move(const AxisCore& core, Command command) {
 Plan plan_run(const AxisCore& core, Command command) {
   const bool velocity = command == Command::run_velocity;
   const Quantity quantity = velocity ? Quantity::target_velocity : Quantity::target_torque;
-  const auto wanted = core.target(quantity);
   const Binding* binding = core.model.binding(quantity);
-  if (!wanted || binding == nullptr) return Plan::refuse(Errc::state_unsuitable);
-  const auto raw = binding->to_raw(*wanted, core.object(binding->object));
-  if (!raw) return Plan::refuse(Errc::bad_value);
+  if (binding == nullptr) return Plan::refuse(Errc::not_supported);
   Plan plan;
   if (!add_command_steps(core, command, plan)) return plan;
   const bool written = std::any_of(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
     return a.kind == Action::Kind::write && a.object == binding->object;
   });
-  if (!written && !add_write(core, quantity, *wanted, plan)) return Plan::refuse(Errc::bad_value);
+  if (!written && !add_write(core, quantity, core.running_target(quantity), plan)) return Plan::refuse(Errc::bad_value);
   plan.add(Action::at(velocity ? Mark::start_velocity : Mark::start_torque));
   return plan;
 }
@@ -163,52 +166,14 @@ Plan plan_home(const AxisCore& core) {
   const auto method = homing_method(core);
   if (!method) return Plan::refuse(Errc::bad_value);
   Plan plan;
-  if (!add_write(core, Quantity::homing_method, *method, plan)) return Plan::refuse(Errc::bad_value);
+  if (!add_write(core, Quantity::homing_method, {*method}, plan)) return Plan::refuse(Errc::bad_value);
+  // A set_position that failed half-way may have left 0 there.
+  if (core.offset_owed) {
+    if (!add_write(core, Quantity::homing_offset, {*core.offset_owed}, plan)) return Plan::refuse(Errc::bad_value);
+    plan.add(Action::at(Mark::return_homing));
+  }
   plan.add(Action::at(Mark::not_homed));
   if (add_command_steps(core, Command::home, plan)) plan.add(Action::at(Mark::start_homing));
-  return plan;
-}
-
-// By the drive's own homing on the present position; what it needs for that is put back afterwards.
-Plan plan_set_position(const AxisCore& core, int mode_before) {
-  const Binding* actual = core.model.binding(Quantity::position_actual);
-  Plan plan;
-  struct Saved {
-    Quantity quantity;
-    std::int64_t during;
-    std::optional<std::int64_t> before;
-  };
-  std::array<Saved, 2> saved{{{Quantity::homing_offset, 0, core.value(Quantity::homing_offset)},
-                              {Quantity::homing_method, kMethodPresentPosition, core.value(Quantity::homing_method)}}};
-  for (const Saved& s : saved)
-    if (core.model.binding(s.quantity) != nullptr && !add_write(core, s.quantity, s.during, plan))
-      return Plan::refuse(Errc::bad_value);
-  if (!add_command_steps(core, Command::set_position, plan)) return plan;
-  if (actual != nullptr && actual->object != kNoObject) {
-    Condition there;  // read back: the counter itself says so
-    there.object = actual->object;
-    const auto raw = actual->to_raw(core.set_position_value, core.object(actual->object));
-    if (!raw) return Plan::refuse(Errc::bad_value);
-    // A standing servo hunts a few counts around its set-point.
-    constexpr std::int64_t kHunting = 5;
-    there.test = Condition::Test::in;
-    for (std::int64_t d = -kHunting; d <= kHunting; ++d) there.values.push_back(*raw + d);
-    plan.add(Action::wait(there, std::chrono::milliseconds(500)));
-  }
-  plan.add(Action::at(Mark::values_doubtful));
-  // Unconditionally: what is held now says nothing about what is held then.
-  constexpr std::int64_t kEnabled = 0x0F;
-  plan.add(Action::write(core.model.controlword, kEnabled));
-  for (const Saved& s : saved) {
-    const Binding* binding = core.model.binding(s.quantity);
-    if (binding == nullptr || !s.before || *s.before == s.during) continue;
-    if (const auto raw = binding->to_raw(*s.before, core.object(binding->object)))
-      plan.add(Action::write(binding->object, *raw));
-  }
-  if (mode_before != 0 && mode_before != kModeHoming) {
-    Plan back = plan_mode(core, static_cast<std::int16_t>(mode_before));
-    if (!back.refused()) static_cast<void>(append(plan, std::move(back)));
-  }
   return plan;
 }
 
@@ -221,6 +186,38 @@ Plan plan_save(const AxisCore& core) {
 }
 
 }  // namespace
+
+bool append(Plan& plan, Plan more) {
+  if (more.refused()) {
+    plan.refusal = more.refusal;
+    return false;
+  }
+  for (Action& a : more.actions) plan.add(std::move(a));
+  return true;
+}
+
+bool add_command_steps(const AxisCore& core, Command command, Plan& plan) {
+  const Steps* steps = steps_of(core, command);
+  if (steps == nullptr) {
+    plan.refusal = {Errc::not_supported, 0};
+    return false;
+  }
+  add_steps(core, *steps, plan);
+  return true;
+}
+
+Errc judge_move(const AxisCore& core, bool relative) {
+  const Binding* target = core.model.binding(Quantity::target_position);
+  const auto wanted = core.target_position();
+  if (target == nullptr || !wanted) return Errc::state_unsuitable;
+  std::int64_t end = wanted->value;
+  if (relative) {
+    const auto actual = core.value(Quantity::position_actual);
+    if (!actual) return Errc::state_unsuitable;
+    end += *actual;
+  }
+  return target->limits.holds(end) ? Errc::ok : Errc::bad_value;
+}
 
 const Steps* steps_of(const AxisCore& core, Command command) {
   const auto& def = core.model.command(command);
@@ -242,8 +239,8 @@ void add_steps(const AxisCore& core, const Steps& steps, Plan& plan) {
           if (actual == nullptr) break;
           plan.add(Action::read(actual->object));
           plan.add(Action::copy(actual->object, step.object));
-        } else if (const auto value = core.target(step.quantity)) {
-          static_cast<void>(add_write(core, step.quantity, *value, plan));
+        } else if (const auto wanted = asked_for(core, step.quantity)) {
+          static_cast<void>(add_write(core, step.quantity, *wanted, plan));
         }
         break;
       case Step::Verb::wait:
@@ -261,10 +258,13 @@ Plan plan_preparation(const AxisCore& core, Command command) {
   if (is_motion && !core.motion.may_start(core.facts())) return Plan::refuse(Errc::state_unsuitable);
   if (const Errc code = admissible(core, command); code != Errc::ok) return Plan::refuse(code);
   Plan plan;
+  // Torque without a speed limit runs away: what was doubted since is read back before it counts as held.
+  const Binding* limit = core.model.binding(Quantity::max_velocity);
+  if (command == Command::run_torque && !core.store[limit->object].held) plan.add(Action::read(limit->object));
   if (is_motion) add_end_of_halt(core, plan);
   const auto mode = mode_needed(core, command);
   if (!mode) return plan;
-  if (is_continuous(*mode) && core.mode_in_force() != *mode) add_zero_targets(core, plan);
+  if (is_continuous(*mode) && core.mode_in_force() != *mode) add_running_targets(core, false, plan);
   static_cast<void>(append(plan, plan_mode(core, *mode)));
   return plan;
 }

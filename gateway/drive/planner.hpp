@@ -1,6 +1,6 @@
 // The planners: what each part of a group comes to on this axis, now (design 3.3 and 3.4). Pure: rules and facts in, a plan out.
-// Promise that no plan moves the axis unless a start was asked for, and that a set-point the drive is known to hold is not
-// sent again. Never carry a plan out: the conversation does.
+// Promise that no plan moves the axis unless a start was asked for, that no stop enables it, and that a set-point the drive is
+// known to hold is not sent again. Never carry a plan out: the conversation does.
 #pragma once
 
 #include "gateway/drive/action.hpp"
@@ -8,31 +8,57 @@
 
 namespace axisgate::drive {
 
-/// Parameters and set-points. Targets are remembered in the motion rules even where they may not reach the drive now.
-[[nodiscard]] Plan plan_setpoints(AxisCore& core, const Group& group);
-/// A raw mode write, or the mode a command needs: writes it and waits for the display.
+// --- Parameters, set-points and mode ---------------------------------------------------------------------------------
+
+/// Rows 72 to 75 are checked as a pair: what is written against what is written with it, or else held.
+[[nodiscard]] bool limits_in_order(const AxisCore& core, const Group& group);
+/// Parameters and set-points: those that may reach the drive now.
+[[nodiscard]] Plan plan_setpoints(const AxisCore& core, const Group& group);
+/// Targets are remembered in the motion rules even where they may not reach the drive now.
+void remember_setpoints(AxisCore& core, const Group& group);
+/// The mode a command needs: writes it and waits for the display.
 [[nodiscard]] Plan plan_mode(const AxisCore& core, std::int16_t mode);
+/// A mode that a client writes: as plan_mode(), and nothing the drive holds from before moves it.
+[[nodiscard]] Plan plan_raw_mode(const AxisCore& core, std::int16_t mode);
+/// Parameters, set-points and mode alone, and the drive is known to hold them all: the wire is not needed.
+[[nodiscard]] bool nothing_to_send(const AxisCore& core, const Group& group);
+
+// --- Starts ------------------------------------------------------------------------------------------------------------
+
 /// A raw controlword that is no stop.
 [[nodiscard]] Plan plan_controlword(const AxisCore& core, std::uint16_t controlword);
 /// What must be so before a command's own actions are planned: the halt ended, the mode it needs in force.
 [[nodiscard]] Plan plan_preparation(const AxisCore& core, Command command);
 /// Commands that are no stops, once prepared. `mode_before`: the mode in force before the preparation.
 [[nodiscard]] Plan plan_command(const AxisCore& core, Command command, int mode_before);
-/// Commands 2, 3, 4: what removes torque or motion, then the state that shows it.
-[[nodiscard]] Plan plan_stop(const AxisCore& core, Command command);
-/// A raw controlword that is a stop.
-[[nodiscard]] Plan plan_stop_controlword(const AxisCore& core, std::uint16_t controlword);
+/// Whether the move that a start would begin stays within the limits: bad_value where it does not.
+[[nodiscard]] Errc judge_move(const AxisCore& core, bool relative);
+/// Command 11: by the drive's own homing on the present position; what it needs for that is put back afterwards.
+[[nodiscard]] Plan plan_set_position(const AxisCore& core, int mode_before);
+
+// --- Stops -------------------------------------------------------------------------------------------------------------
+
+/// The stop of a group: commands 2, 3, 4, a raw controlword, or both.
+[[nodiscard]] Plan plan_stop(const AxisCore& core, const Group& group);
 /// Halt on this drive in the mode in force is carried out by quick_stop.
 [[nodiscard]] bool halt_is_quick_stop(const AxisCore& core);
-
-/// What must be written before a halt may end: velocity and torque 0, target = actual, then the controlword without bit 8.
+/// What must be written before a halt may end, and the controlword without bit 8.
 void add_end_of_halt(const AxisCore& core, Plan& plan);
+
+// --- Building blocks ---------------------------------------------------------------------------------------------------
+
+/// Appends another plan; false where that one is refused (its refusal becomes this plan's).
+bool append(Plan& plan, Plan more);
 /// Appends the profile's steps.
 void add_steps(const AxisCore& core, const Steps& steps, Plan& plan);
+/// Appends the command's steps in the mode in force; false (and refused) where the drive has none.
+bool add_command_steps(const AxisCore& core, Command command, Plan& plan);
 /// Writes the quantity's value unless the drive is known to hold it. False where it cannot be had in the drive's numbers.
-[[nodiscard]] bool add_write(const AxisCore& core, Quantity quantity, std::int64_t value, Plan& plan);
-/// Makes velocity and torque set-points in the drive 0 unless they are known to be.
-void add_zero_targets(const AxisCore& core, Plan& plan);
+[[nodiscard]] bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan);
+/// Makes the velocity and torque set-points in the drive 0, or, with `keep_wanted`, what was asked for since the last stop.
+void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan);
+/// Makes the position set-point the actual position.
+void add_target_here(const AxisCore& core, Plan& plan);
 /// The steps of a command in the mode in force, or null where the drive has none.
 [[nodiscard]] const Steps* steps_of(const AxisCore& core, Command command);
 

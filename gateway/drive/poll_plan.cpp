@@ -31,6 +31,10 @@ std::vector<PollItem> poll_items(const DriveModel& model) {
       for (const BitField& field : binding.bits) add(items, field.object, binding.poll);
     }
   }
+  // Their zero is judged at each enable: read once, it need not be written.
+  for (const AxisModel& axis : model.axes)
+    for (const ObjectId id : axis.zero_before_enable)
+      if (model.object(id).readable) add(items, id, PollClass::once);
   for (const Check& check : model.checks) add(items, check.bad.object, PollClass::once);
   return items;
 }
@@ -39,12 +43,12 @@ PollPlan::PollPlan(const DriveModel& model) {
   for (const PollItem& item : poll_items(model)) {
     const auto index = static_cast<std::size_t>(item.poll_class);
     const Duration period = item.poll_class == PollClass::once ? Duration{} : model.poll_period[index];
-    entries_.push_back({item.object, period, kNever});
+    entries_.push_back({item.object, period, kNever, false});
   }
 }
 
 void PollPlan::restart(Instant now) {
-  for (Entry& e : entries_) e.due = now;
+  for (Entry& e : entries_) e = {e.object, e.period, now, false};
 }
 
 const PollPlan::Entry* PollPlan::earliest() const {
@@ -83,11 +87,23 @@ void PollPlan::done(ObjectId object, Instant now) {
 }
 
 void PollPlan::drop(ObjectId object) {
-  if (Entry* e = entry(object)) e->due = kNever;
+  Entry* e = entry(object);
+  if (e == nullptr) return;
+  e->due = kNever;
+  e->dropped = true;
 }
 
-void PollPlan::soon(ObjectId object, Instant now) {
-  if (Entry* e = entry(object)) e->due = std::min(e->due, now);
+void PollPlan::written(ObjectId object, Instant now) {
+  Entry* e = entry(object);
+  if (e != nullptr && e->period == Duration{} && !e->dropped) e->due = std::min(e->due, now);
+}
+
+void PollPlan::refresh(Instant now) {
+  for (Entry& e : entries_) {
+    if (e.period != Duration{} || e.dropped) continue;
+    now += kRefreshPause;
+    e.due = std::min(e.due, now);
+  }
 }
 
 Duration PollPlan::period(ObjectId object) const {

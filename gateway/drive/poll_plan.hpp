@@ -32,8 +32,10 @@ class PollPlan {
   void done(ObjectId object, Instant now);
   /// The drive does not have it: never due again until restart().
   void drop(ObjectId object);
-  /// Read it once more as soon as its turn comes (a write of it was acknowledged or lost).
-  void soon(ObjectId object, Instant now);
+  /// A write of it was acknowledged: if it is of class once, it is read once more as soon as its turn comes.
+  void written(ObjectId object, Instant now);
+  /// What the drive holds was doubted: those of class once are read again, one by one, so that the others keep their beat.
+  void refresh(Instant now);
   /// 0 for class once.
   [[nodiscard]] Duration period(ObjectId object) const;
 
@@ -42,7 +44,9 @@ class PollPlan {
     ObjectId object;
     Duration period;  ///< 0: once
     Instant due;
+    bool dropped = false;
   };
+  static constexpr Duration kRefreshPause = std::chrono::milliseconds(20);
   [[nodiscard]] const Entry* earliest() const;
   [[nodiscard]] Entry* entry(ObjectId object);
   std::vector<Entry> entries_;

@@ -7,7 +7,7 @@
 namespace axisgate::test {
 namespace {
 
-drive::DriveModel model_of(const StageDrive& staged) {
+drive::DriveModel model_of(const StageDrive& staged, const std::optional<std::array<Duration, 3>>& poll) {
   const bool jd = staged.options.type == simulated::KincoType::jd;
   const std::string file = std::string(AXISGATE_SOURCE_DIR "/schemas/drives/") + (jd ? "kinco-jd" : "kinco-md") + ".json";
   const drive::LoadedProfile loaded = drive::load_profile(file);
@@ -17,6 +17,7 @@ drive::DriveModel model_of(const StageDrive& staged) {
   input.node = staged.options.station;
   input.constants = staged.constants;
   input.constants.emplace("peak_current_a", jd ? Rational(275, 10) : Rational(36));
+  if (poll) input.poll = *poll;
   input.axes = {staged.axis};
   auto resolved = drive::resolve(loaded, input);
   if (auto* faults = std::get_if<std::vector<drive::Fault>>(&resolved)) throw std::runtime_error(text(faults->front()));
@@ -56,7 +57,7 @@ GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
       app::DriveConfig drive;
       drive.node = staged.options.station;
       bus.drives.push_back(drive);
-      models.back().push_back(model_of(staged));
+      models.back().push_back(model_of(staged, line.poll));
     }
     links_.push_back(link.get());
     made.emplace(line.name, std::move(link));

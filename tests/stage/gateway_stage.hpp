@@ -27,6 +27,7 @@ class GatewayStage {
     std::string name;
     std::vector<StageDrive> drives;
     simulated::LineOptions options{};
+    std::optional<std::array<Duration, 3>> poll{};  ///< fast, normal, slow; none: the defaults
   };
   explicit GatewayStage(std::vector<Line> lines, std::uint64_t seed = 1);
 

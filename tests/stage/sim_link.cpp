@@ -21,8 +21,28 @@ void SimLink::start(bus::ByteLinkEvents& events) {
 void SimLink::send(Bytes bytes) {
   if (!up_) return;
   sent.push_back({runtime_.now(), {bytes.begin(), bytes.end()}});
+  fate = Fate::delivered;
   on_traffic(true, bytes);
-  line_.from_host(bytes, time_of(runtime_.now()));
+  switch (fate) {
+    case Fate::refused: {
+      const auto answer = simulated::seal(bytes[0], simulated::FrameCommand::error,
+                                          static_cast<std::uint16_t>(bytes[2] | bytes[3] << 8), bytes[4], 0x06090030);
+      arrived_.insert(arrived_.end(), answer.begin(), answer.end());
+      break;
+    }
+    case Fate::cut_before:
+      unplug();
+      return;
+    case Fate::delivered:
+    case Fate::cut_after:
+      line_.from_host(bytes, time_of(runtime_.now()));
+      break;
+  }
+  if (fate == Fate::cut_after) {
+    line_.advance(time_of(runtime_.now()));
+    unplug();
+    return;
+  }
   arm();
 }
 
@@ -51,14 +71,18 @@ void SimLink::arm() {
   timer_->expires_at(next);
 }
 
-void SimLink::reopen(std::string_view) {
+void SimLink::reopen(std::string_view why) {
   arrived_.clear();
   line_.cut();
-  arm();
+  if (!up_) return;
+  up_ = false;
+  events_->on_link_down(why);
+  arm();  // and up again with the next turn
 }
 
 void SimLink::unplug() {
   plugged_ = false;
+  on_unplugged();
   arrived_.clear();
   line_.cut();
   timer_->expires_at(runtime_.now());

@@ -36,6 +36,15 @@ class SimLink final : public bus::ByteLink {
   /// Everything the gateway has sent, and everything it was given, for transcripts.
   std::vector<Sent> sent;
   std::function<void(bool to_drive, Bytes)> on_traffic = [](bool, Bytes) {};
+  /// From inside on_traffic(): what becomes of the request just told.
+  enum class Fate : std::uint8_t {
+    delivered,
+    refused,       ///< the drive does not see it; the answer is an error (0x80, detail 0x06090030)
+    cut_before,    ///< the cable is pulled before it arrives
+    cut_after,     ///< the drive acts, then the cable is pulled
+  };
+  Fate fate = Fate::delivered;
+  std::function<void()> on_unplugged = [] {};
 
  private:
   void deliver();

@@ -39,7 +39,7 @@ struct ListenerSettings {
   Duration request_deadline = std::chrono::seconds(5);  ///< a whole request from its first byte; a reply from its first
   Duration idle_timeout = std::chrono::seconds(60);     ///< 0: none
   std::uint32_t max_clients = 1000;
-  std::uint32_t max_clients_per_address = 64;           ///< 0: no limit
+  std::uint32_t max_clients_per_address = 64;  ///< 0: no limit
 };
 
 }  // namespace axisgate::modbus_tcp

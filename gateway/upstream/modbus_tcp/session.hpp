@@ -1,9 +1,10 @@
 // One Modbus-TCP connection: bytes in, bytes out. Pure: no socket, no clock.
-// Promises replies in request order, at most kMaxPipelined requests under way, a malformed frame closing the connection,
-// and that a stop behind a slow write is started on arrival. Never waits for a bus in a read.
+// Promises replies in request order, at most kMaxPipelined requests under way, a malformed frame closing the
+// connection, and that a stop behind a slow write is started on arrival. Never waits for a bus in a read.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,18 +36,22 @@ struct SessionContext {
   CommandPort& commands;
   ClientRegistry& clients;
   const Log& log;
+  /// The time of results that come from the bus, between two calls of the server. Without it the time of the last call
+  /// counts, and ages in replies to slow writes are that much too small.
+  const Runtime* runtime = nullptr;
 };
 
 class Session {
  public:
-  /// `on_output` is called when output() has grown by something that was not caused by on_bytes() or on_deadline() just now
-  /// (a write's result came from the bus), or when wants_input() or finished() changed with it.
+  /// `on_output` is called when output() has grown by something that was not caused by on_bytes() or on_deadline() just
+  /// now (a write's result came from the bus), or when wants_input() or finished() changed with it.
   Session(const SessionContext& context, const Peer& peer, Instant now, std::function<void()> on_output);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Any split of the stream. Bytes beyond what is wanted now are kept (at most kMaxPipelined ADUs) and carried on later.
+  /// Any split of the stream. Bytes beyond what is wanted now are kept (at most kMaxPipelined ADUs) and carried on
+  /// later.
   void on_bytes(Bytes bytes, Instant now);
   void on_deadline(Instant now);
   /// The connection is gone: writes under way go on, their results are nobody's.
@@ -63,7 +68,7 @@ class Session {
   [[nodiscard]] Instant next_deadline() const;
 
  private:
-  struct Impl;
+  class Impl;
   std::unique_ptr<Impl> impl_;
 };
 

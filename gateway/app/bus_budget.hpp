@@ -1,0 +1,54 @@
+// The budget of one bus: what its polls will take of the line, and how long a command or a stop may have to wait.
+// Promises plain arithmetic over the same poll items that the gateway reads, and to name each assumption.
+// Never measures: the load that a running gateway has is in its bus registers.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "gateway/app/config.hpp"
+#include "gateway/core/clock.hpp"
+#include "gateway/drive/model.hpp"
+
+namespace axisgate::app {
+
+/// What a drive is taken to need for its answer, beside the time on the wire: no sheet states it. The drives' own limit
+/// is the bus's timeout.
+inline constexpr Duration kAssumedAnswer = std::chrono::milliseconds(5);
+/// Above this share of the line the polls leave commands little room; suggested periods stay below it.
+inline constexpr int kComfortablePermille = 800;
+
+struct BusTiming {
+  Duration on_wire;  ///< of one exchange, without the drive's own time
+  Duration min_gap;
+  Duration settle;
+  Duration timeout;
+  std::array<Duration, 3> poll;  ///< periods of the classes fast, normal, slow
+};
+
+[[nodiscard]] BusTiming timing_of(const BusConfig& bus);
+
+struct BusBudget {
+  struct Polled {
+    int reads = 0;  ///< objects of this class over all drives of the bus
+    Duration period{};
+  };
+  std::array<Polled, 3> classes;
+  int load_on_wire = 0;   ///< 0.1 %, drives that answer at once
+  int load_answered = 0;  ///< 0.1 %, drives that answer after kAssumedAnswer
+  Duration exchange{};    ///< one request and its answer after kAssumedAnswer
+  Duration cycle{};       ///< in which each fast value is read once; longer than its period where the bus is over 100 %
+  Duration command_wait{};       ///< the exchange on the wire, and one poll whose turn it is
+  Duration stop_wait{};          ///< the exchange on the wire
+  Duration command_wait_mute{};  ///< the same while a drive is mute
+  Duration stop_wait_mute{};
+
+  [[nodiscard]] bool overloaded() const { return load_answered > 1000; }
+};
+
+[[nodiscard]] BusBudget plan_bus(const BusTiming& timing, const std::vector<drive::DriveModel>& drives);
+
+/// Periods that bring this bus down to kComfortablePermille, in whole 10 ms; those in force where it is there already.
+[[nodiscard]] std::array<Duration, 3> comfortable_periods(const BusBudget& budget);
+
+}  // namespace axisgate::app

@@ -1,0 +1,162 @@
+#include "gateway/app/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include "gateway/app/check_command.hpp"
+#include "gateway/app/commission_command.hpp"
+#include "gateway/app/map_command.hpp"
+#include "gateway/app/profile_command.hpp"
+#include "gateway/app/profile_folders.hpp"
+#include "gateway/app/run_command.hpp"
+#include "gateway/app/top_command.hpp"
+
+namespace axisgate::app {
+namespace {
+
+constexpr int kWrongCommandLine = 2;
+
+/// Everything that options are read into; commands copy from it when they run.
+struct Parsed {
+  std::string profiles;
+  RunOptions run;
+  CheckOptions check;
+  MapOptions map;
+  TopOptions top;
+  ProfileCheckOptions profile;
+  std::string eds;
+  CommissionOptions commission;
+  int exit_code = 0;
+};
+
+/// A command that reads a configuration.
+CLI::App* add_config_command(CLI::App& app, Parsed& parsed, const std::string& name, const std::string& what,
+                             std::string& config) {
+  CLI::App* command = app.add_subcommand(name, what);
+  command->add_option("CONFIG", config, "configuration file (JSON)")->required();
+  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
+      ->type_name("DIR");
+  return command;
+}
+
+template <typename Options>
+void run_with_folders(Parsed& parsed, Options& options) {
+  options.profile_folders = profile_folders(parsed.profiles);
+  parsed.exit_code = run(options);
+}
+
+void add_run(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = add_config_command(app, parsed, "run", "Run the gateway", parsed.run.config);
+  const std::map<std::string, LogLevel> levels{
+      {"error", LogLevel::error}, {"warning", LogLevel::warning}, {"info", LogLevel::info}, {"debug", LogLevel::debug}};
+  command->add_option("--log-level", parsed.run.log_level, "error, warning, info or debug")
+      ->transform(CLI::CheckedTransformer(levels).description(""))
+      ->type_name("LEVEL")
+      ->default_str("info");
+  command->add_option("--decode", parsed.run.decode, "log every frame of this bus; may be given more than once")
+      ->type_name("BUS");
+  command->footer("Example: axisgate run /etc/axisgate/gateway.json --decode lift-serial");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.run); });
+}
+
+void add_check(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = add_config_command(
+      app, parsed, "check", "Validate a configuration and print the plan of each bus", parsed.check.config);
+  command->footer(
+      "Exit code 1: mistakes (each with file and JSON pointer), or a bus planned over 100 %.\n"
+      "Example: axisgate check /etc/axisgate/gateway.json");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.check); });
+}
+
+void add_map(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = add_config_command(app, parsed, "map", "Print every register, coil and input", parsed.map.config);
+  command->add_option("--format", parsed.map.format, "table, md, csv or json")
+      ->check(CLI::IsMember({"table", "md", "csv", "json"}).description(""))
+      ->type_name("FORMAT")
+      ->capture_default_str();
+  command->footer("Example: axisgate map /etc/axisgate/gateway.json --format csv > registers.csv");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.map); });
+}
+
+void add_top(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = app.add_subcommand("top", "Live table of all axes of a running gateway");
+  command->add_option("HOST:PORT", parsed.top.endpoint, "the gateway's Modbus-TCP listener")->required();
+  command->add_option("--interval", parsed.top.interval_ms, "milliseconds between two tables")
+      ->check(CLI::Range(50, 60000).description(""))
+      ->type_name("MS")
+      ->capture_default_str();
+  command->add_option("--seconds", parsed.top.seconds, "end after so long; 0: until Ctrl-C")
+      ->check(CLI::Range(0, 86400).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--count", parsed.top.count, "end after so many tables; 0: no such end")
+      ->check(CLI::Range(0, 1000000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_flag("--plain", parsed.top.plain, "print one table after the other, for pipes and logs");
+  command->footer("Example: axisgate top 127.0.0.1:1502");
+  command->callback([&parsed] { parsed.exit_code = run(parsed.top); });
+}
+
+void add_profile(CLI::App& app, Parsed& parsed) {
+  CLI::App* group = app.add_subcommand("profile", "Work with drive profiles");
+  group->require_subcommand(1);
+  CLI::App* command = group->add_subcommand("check", "Validate a profile and say what it gives on each protocol");
+  command->add_option("FILE", parsed.profile.file, "profile (JSON)")->required();
+  command->add_option("--eds", parsed.eds, "compare with an EDS file")->type_name("FILE");
+  command->footer("Example: axisgate profile check schemas/drives/kinco-jd.json");
+  command->callback([&parsed] {
+    if (!parsed.eds.empty()) throw CLI::ValidationError("--eds", "not available in this version: leave it out");
+    parsed.exit_code = run(parsed.profile);
+  });
+}
+
+void add_commission(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = add_config_command(app, parsed, "commission",
+                                         "Show settings of a drive that a person must decide, and apply the remedies",
+                                         parsed.commission.config);
+  command->add_option("AXIS", parsed.commission.axis, "axis number")
+      ->required()
+      ->check(CLI::Range(1, 499).description(""));
+  command->add_flag("--yes", parsed.commission.yes, "apply the remedies without asking");
+  command->footer(
+      "The gateway must not be running: the command needs the bus for itself. It never enables or moves an axis.\n"
+      "Example: axisgate commission /etc/axisgate/gateway.json 1");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.commission); });
+}
+
+/// CLI11 says of an unknown word only that a command is missing.
+bool knows_command(const CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return true;
+  const auto commands = app.get_subcommands([&](const CLI::App* command) { return command->get_name() == argv[1]; });
+  if (!commands.empty()) return true;
+  std::cerr << "axisgate: there is no command '" << argv[1] << "'; axisgate --help lists them\n";
+  return false;
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  CLI::App app("axisgate: motor drives on fieldbuses as one Modbus-TCP register map", "axisgate");
+  app.set_version_flag("--version", "axisgate " AXISGATE_VERSION);
+  app.require_subcommand(1);
+  app.footer("Example: axisgate check CONFIG && axisgate run CONFIG\nEvery command has --help.");
+  Parsed parsed;
+  add_run(app, parsed);
+  add_check(app, parsed);
+  add_map(app, parsed);
+  add_top(app, parsed);
+  add_profile(app, parsed);
+  add_commission(app, parsed);
+  if (!knows_command(app, argc, argv)) return kWrongCommandLine;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kWrongCommandLine;
+  }
+  return parsed.exit_code;
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,11 @@
+// The command line: which command is meant, with which options.
+// Promises that every command has --help with an example, and that a wrong option is named.
+// Never does a command's work itself.
+#pragma once
+
+namespace axisgate::app {
+
+/// Parses and runs; the exit code of the process. 0: done. 1: the command says no. 2: the command line is wrong.
+[[nodiscard]] int run_command_line(int argc, const char* const* argv);
+
+}  // namespace axisgate::app

@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include "adapters/kinco/kinco_exchange.hpp"
+#include "gateway/app/config_sections.hpp"
+
+namespace axisgate::app {
+namespace {
+
+void read_constants(const ConfigNode& node, DriveConfig& drive, ConfigFaults& faults) {
+  for (const ConfigNode& constant : node.items("constants")) {
+    if (const auto value = constant.rational()) {
+      drive.constants.emplace(constant.key(), *value);
+    } else if (!faults.within(constant.pointer())) {
+      faults.add(constant.pointer(), "is no decimal number: write it like 27.5 or \"27.5\", without an exponent");
+    }
+  }
+}
+
+void check_node(const ConfigNode& node, const DriveConfig& drive, const BusConfig& bus, ConfigFaults& faults) {
+  if (bus.adapter != "kinco-serial" || drive.node <= kinco::kLastStation || faults.within(node.pointer("node"))) return;
+  if (drive.node == kinco::kLastStation + 1) {
+    faults.add(node.pointer("node"),
+               "127 is the address with which Kinco's PC tool reaches every drive: give the drive a station "
+               "number of 1 to 126 (object 100B:00 or its DIP switches)");
+  } else {
+    faults.add(node.pointer("node"),
+               fmt::format("{} is no station number of a Kinco drive: they go from 1 to 126", drive.node));
+  }
+}
+
+}  // namespace
+
+DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+  DriveConfig drive;
+  drive.pointer = node.pointer();
+  drive.profile = node.string("profile").value_or("");
+  drive.node = static_cast<std::uint8_t>(node.integer("node").value_or(0));
+  check_node(node, drive, bus, faults);
+  read_constants(node, drive, faults);
+  // Accepting it unchecked would promise a safety that is not there.
+  if (node.has("identity") && bus.adapter == "kinco-serial") {
+    faults.add(node.pointer("identity"), "Kinco's serial protocol has no object 1018h to compare with: remove the key");
+  }
+  for (const ConfigNode& axis : node.items("axes")) drive.axes.push_back(read_axis(axis, faults));
+  return drive;
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+
+#include "gateway/app/config_sections.hpp"
+#include "gateway/drive/profile_loader.hpp"
+
+namespace axisgate::app {
+namespace {
+
+/// Largest position a register can show, design 3.1; the other end is its negative.
+constexpr std::int64_t kLargestPosition = 2147483647;
+
+drive::ResolveInput input_of(const BusConfig& bus, const DriveConfig& config) {
+  drive::ResolveInput input;
+  input.protocol = bus.adapter;
+  input.node = config.node;
+  input.constants = config.constants;
+  input.poll = bus.poll;
+  for (const AxisConfig& axis : config.axes) {
+    drive::ResolveAxis resolved;
+    resolved.number = axis.number;
+    resolved.name = axis.name;
+    resolved.units_per_rev = axis.units_per_rev;
+    resolved.inverted = axis.inverted;
+    resolved.position_limits = axis.limits.position;
+    resolved.velocity_limit = axis.limits.velocity;
+    resolved.acceleration_limit = axis.limits.acceleration;
+    resolved.torque_limit = axis.limits.torque;
+    resolved.quick_stop_deceleration_min = axis.limits.quick_stop_deceleration_min;
+    resolved.standstill_velocity = axis.standstill_velocity;
+    resolved.homing_method = axis.homing_method;
+    resolved.homing_timeout = axis.homing_timeout;
+    input.axes.push_back(std::move(resolved));
+  }
+  return input;
+}
+
+/// Reads each profile once, however many drives use it.
+class Profiles {
+ public:
+  Profiles(const std::vector<std::string>& folders, ConfigFaults& faults) : folders_(folders), faults_(faults) {}
+
+  /// Null where it is missing or wrong; the mistakes are told.
+  const drive::LoadedProfile* find(const DriveConfig& config) {
+    const std::string pointer = config.pointer + "/profile";
+    const auto file = drive::find_profile(config.profile, folders_);
+    if (!file) {
+      faults_.add(pointer, missing(config.profile));
+      return nullptr;
+    }
+    auto known = loaded_.find(*file);
+    if (known == loaded_.end()) known = loaded_.emplace(*file, drive::load_profile(*file)).first;
+    const drive::LoadedProfile& profile = known->second;
+    if (profile.faults.empty()) return &profile;
+    for (const drive::Fault& fault : profile.faults) faults_.add(ConfigFault{fault.file, fault.pointer, fault.message});
+    faults_.add(pointer, fmt::format("profile {} is wrong, see its own mistakes: correct it", *file));
+    return nullptr;
+  }
+
+ private:
+  [[nodiscard]] std::string missing(const std::string& profile) const {
+    if (profile.find('/') != std::string::npos || profile.ends_with(".json")) {
+      return fmt::format("there is no file {}: correct the path, which counts from where the program was started",
+                         profile);
+    }
+    return fmt::format("there is no {}.json in {}: correct the name, or name its folder with --profiles", profile,
+                       folders_.empty() ? "any folder" : fmt::format("{}", fmt::join(folders_, ", ")));
+  }
+
+  const std::vector<std::string>& folders_;
+  ConfigFaults& faults_;
+  std::map<std::string, drive::LoadedProfile> loaded_;
+};
+
+/// Without limits, an axis that can travel further than a register can count would one day show no position at all.
+void check_travel(const drive::AxisModel& model, const drive::DriveModel& drive, const AxisConfig& axis,
+                  ConfigFaults& faults) {
+  const drive::Binding* position = model.binding(Quantity::position_actual);
+  if (position == nullptr || position->object == drive::kNoObject || axis.limits.position) return;
+  const auto travel = position->to_register(drive.object(position->object).range().max);
+  if (travel && *travel <= kLargestPosition && *travel >= -kLargestPosition) return;
+  faults.add(
+      axis.pointer + "/units_per_rev",
+      fmt::format(
+          "the drive can travel further than a register can count in these units (±{:.1f} turns): write fewer units "
+          "per turn, or \"limits\": {{\"position\": [min, max]}}",
+          static_cast<double>(kLargestPosition) / axis.units_per_rev.to_double()));
+}
+
+void check_lease(const drive::AxisModel& model, const AxisConfig& axis, ConfigFaults& faults) {
+  if (!axis.lease_configured || axis.lease_action == Command::none || model.command(axis.lease_action)) return;
+  faults.add(axis.pointer + "/lease/on_expiry",
+             fmt::format("this drive has no {} on its protocol: write quick_stop, halt or disable, whichever it has",
+                         axisgate::text(axis.lease_action)));
+}
+
+std::optional<drive::DriveModel> load_model(const BusConfig& bus, const DriveConfig& config, Profiles& profiles,
+                                            ConfigFaults& faults) {
+  const drive::LoadedProfile* profile = profiles.find(config);
+  if (profile == nullptr || faults.within(config.pointer)) return std::nullopt;
+  const std::size_t motors = profile->profile.axes.size();
+  if (config.axes.size() > motors) {
+    faults.add(config.pointer + "/axes",
+               fmt::format("a {} drives {} motor{}, and {} axes are given: remove what is too many",
+                           profile->profile.title, motors, motors == 1 ? "" : "s", config.axes.size()));
+    return std::nullopt;
+  }
+  auto resolved = drive::resolve(*profile, input_of(bus, config));
+  if (const auto* wrong = std::get_if<std::vector<drive::Fault>>(&resolved)) {
+    for (const drive::Fault& fault : *wrong) faults.add(config.pointer + fault.pointer, fault.message);
+    return std::nullopt;
+  }
+  auto& model = std::get<drive::DriveModel>(resolved);
+  for (std::size_t i = 0; i < model.axes.size(); ++i) {
+    check_travel(model.axes[i], model, config.axes[i], faults);
+    check_lease(model.axes[i], config.axes[i], faults);
+  }
+  return std::move(model);
+}
+
+}  // namespace
+
+std::vector<std::vector<drive::DriveModel>> load_models(const Config& config,
+                                                        const std::vector<std::string>& profile_folders,
+                                                        ConfigFaults& faults) {
+  std::vector<std::vector<drive::DriveModel>> models;
+  Profiles profiles(profile_folders, faults);
+  for (const BusConfig& bus : config.buses) {
+    auto& drives = models.emplace_back();
+    if (faults.within(bus.pointer + "/adapter")) continue;  // no protocol to resolve for
+    for (const DriveConfig& drive : bus.drives) {
+      if (faults.within(drive.pointer + "/profile") || drive.profile.empty()) continue;
+      if (auto model = load_model(bus, drive, profiles, faults)) drives.push_back(std::move(*model));
+    }
+  }
+  return models;
+}
+
+}  // namespace axisgate::app

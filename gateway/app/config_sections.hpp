@@ -1,0 +1,35 @@
+// The sections of a configuration file, each read and checked by a function of its own; config_loader calls them in
+// order. Promises that each finds every mistake of its section and reads on after it. Never looks at a section that is
+// not its own.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/app/config.hpp"
+#include "gateway/app/config_fault.hpp"
+#include "gateway/app/config_node.hpp"
+#include "gateway/drive/model.hpp"
+
+namespace axisgate::app {
+
+/// What the schema knows and this version has not: refused by name, never ignored.
+void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults);
+
+[[nodiscard]] std::vector<modbus_tcp::ListenerSettings> read_listeners(const ConfigNode& root, ConfigFaults& faults);
+[[nodiscard]] std::vector<BusConfig> read_buses(const ConfigNode& root, ConfigFaults& faults);
+[[nodiscard]] DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
+[[nodiscard]] AxisConfig read_axis(const ConfigNode& node, ConfigFaults& faults);
+
+/// Names, numbers, devices and stations that may be there once only, over the whole file.
+void check_unique(const Config& config, ConfigFaults& faults);
+/// Keys that are right and have no effect in this version: one warning for each.
+void warn_without_effect(const ConfigNode& root, ConfigFaults& faults);
+
+/// The profiles of all drives, resolved for their axes. Drives with mistakes of their own are left out.
+[[nodiscard]] std::vector<std::vector<drive::DriveModel>> load_models(const Config& config,
+                                                                      const std::vector<std::string>& profile_folders,
+                                                                      ConfigFaults& faults);
+
+}  // namespace axisgate::app

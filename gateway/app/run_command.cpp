@@ -1,0 +1,82 @@
+#include "gateway/app/run_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "adapters/asio/asio_runtime.hpp"
+#include "gateway/app/config_loader.hpp"
+#include "gateway/app/faults_told.hpp"
+#include "gateway/app/gateway.hpp"
+#include "gateway/app/loop_watch.hpp"
+#include "gateway/app/serial_wires.hpp"
+#include "gateway/app/stderr_log.hpp"
+#include "gateway/upstream/modbus_tcp/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/server.hpp"
+
+namespace axisgate::app {
+namespace {
+
+/// Names given with --decode; one that no bus has is told, not passed over.
+bool switch_decode_on(Config& config, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const auto bus = std::find_if(config.buses.begin(), config.buses.end(), [&](const auto& b) { return b.name == name; });
+    if (bus == config.buses.end()) {
+      fmt::print(stderr, "--decode {}: no bus of {} has this name\n", name, config.file);
+      return false;
+    }
+    bus->decode = true;
+  }
+  return true;
+}
+
+int serve(LoadedConfig loaded, const RunOptions& options) {
+  Log log = stderr_log(options.decode.empty() ? options.log_level : std::max(options.log_level, LogLevel::debug));
+  boost::asio::io_context io(1);
+  AsioRuntime runtime(io);
+  // Before anything is opened: client sockets move above the numbers that serial ports need.
+  modbus_tcp::raise_descriptor_limit();
+  modbus_tcp::ClientRegistry clients;
+  Gateway gateway(loaded.config, std::move(loaded.models), runtime, log, serial_wires(io, runtime, log));
+  modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log);
+  try {
+    server.start();
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", options.config, error.what());
+    return 1;
+  }
+  gateway.start();
+  LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
+  for (std::size_t i = 0; i < loaded.config.modbus_tcp.size(); ++i)
+    log.write(LogLevel::info, "modbus",
+              fmt::format("listening on {}:{}", loaded.config.modbus_tcp[i].host, server.ports()[i]));
+
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  signals.async_wait([&](const boost::system::error_code& error, int signal) {
+    if (error) return;
+    log.write(LogLevel::info, "gateway", fmt::format("signal {}: ending; the drives keep what they do", signal));
+    gateway.stop();
+    server.stop();
+    io.stop();
+  });
+  io.run();
+  return 0;
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  LoadResult result = load_config(options.config, options.profile_folders);
+  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
+  auto& loaded = std::get<LoadedConfig>(result);
+  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "{}\n", warning);
+  if (!switch_decode_on(loaded.config, options.decode)) return 1;
+  return serve(std::move(loaded), options);
+}
+
+}  // namespace axisgate::app

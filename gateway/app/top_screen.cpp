@@ -1,0 +1,74 @@
+#include "gateway/app/top_screen.hpp"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace axisgate::app {
+namespace {
+
+// ECMA-48: the alternate screen keeps what the user had on the terminal; its cursor is hidden while we redraw.
+constexpr std::string_view kEnter = "\x1b[?1049h\x1b[?25l";
+constexpr std::string_view kLeave = "\x1b[?25h\x1b[?1049l";
+constexpr std::string_view kHome = "\x1b[H";
+constexpr std::string_view kWipeLine = "\x1b[K";
+constexpr std::string_view kWipeBelow = "\x1b[J";
+constexpr std::size_t kUsualColumns = 160;
+constexpr std::size_t kUsualRows = 50;
+
+void put(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+std::string terminal_frame(std::string_view text, std::size_t columns, std::size_t rows) {
+  std::string frame(kHome);
+  for (std::size_t line_number = 0; !text.empty() && line_number < rows; ++line_number) {
+    const std::size_t end = text.find('\n');
+    if (line_number != 0) frame += "\r\n";
+    frame += text.substr(0, end).substr(0, columns);
+    frame += kWipeLine;
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+  }
+  frame += kWipeBelow;
+  return frame;
+}
+
+TopScreen::TopScreen(bool plain) : redraws_(!plain && isatty(STDOUT_FILENO) == 1) {
+  if (redraws_) put(kEnter);
+}
+
+TopScreen::~TopScreen() {
+  if (redraws_) put(kLeave);
+}
+
+void TopScreen::show_table(const std::string& table) {
+  last_notice_.clear();
+  last_table_ = table;
+  if (redraws_) {
+    draw(table);
+  } else {
+    put(table);
+  }
+}
+
+void TopScreen::show_notice(const std::string& notice) {
+  if (redraws_) {
+    // The notice comes first: of a long table the end may be outside the window.
+    draw(notice + "\n" + (last_table_.empty() ? std::string() : "last table:\n" + last_table_));
+  } else if (notice != last_notice_) {
+    put(notice + "\n");
+  }
+  last_notice_ = notice;
+}
+
+void TopScreen::draw(const std::string& text) {
+  winsize window{};
+  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0 && window.ws_row > 0;
+  put(terminal_frame(text, known ? window.ws_col : kUsualColumns, known ? window.ws_row : kUsualRows));
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,132 @@
+#include <algorithm>
+
+#include "gateway/drive/planner.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+// How long a stop may take to show: a ramp at the drive's own deceleration. Meanwhile it is repeated (Conversation).
+constexpr Duration kStopLimit = std::chrono::seconds(5);
+
+Condition not_enabled(const AxisCore& core) {
+  Condition c;
+  c.object = core.model.statusword;
+  c.mask = 0x6F;
+  c.test = Condition::Test::not_equals;
+  c.values = {0x27};  // operation enabled
+  return c;
+}
+
+// Disabled: neither operation enabled nor still in quick stop.
+Condition torque_off(const AxisCore& core) {
+  Condition c = not_enabled(core);
+  c.test = Condition::Test::not_in;
+  c.values = {0x27, 0x07};
+  return c;
+}
+
+// Kinco's halt word is 0x010F: its low bits ask for "enabled", also of a drive that is not.
+bool would_enable(const AxisCore& core, const Steps& steps) {
+  return std::any_of(steps.begin(), steps.end(), [&](const Step& s) {
+    return s.verb == Step::Verb::write && s.object == core.model.controlword && s.source == Step::Source::literal &&
+           request_of(static_cast<std::uint16_t>(s.literal)) == Request402::enable_operation;
+  });
+}
+
+Plan quick_stop(const AxisCore& core) {
+  Plan plan;
+  if (!add_command_steps(core, Command::quick_stop, plan)) return plan;
+  plan.actions.insert(plan.actions.begin() + 1, Action::at(Mark::quick_stopped));  // as soon as it is acknowledged
+  plan.add(Action::wait(not_enabled(core), kStopLimit));
+  return plan;
+}
+
+Plan disable(const AxisCore& core) {
+  Plan plan;
+  if (add_command_steps(core, Command::disable, plan)) plan.add(Action::wait(torque_off(core), kStopLimit));
+  return plan;
+}
+
+// A halt must never enable: not the axis whose disable is still on its way, not the drive that has just restarted. What stops
+// without that risk is the quick stop; and an axis without torque needs no halt at all.
+Plan halt(const AxisCore& core) {
+  if (halt_is_quick_stop(core)) return quick_stop(core);
+  const Steps* steps = steps_of(core, Command::halt);
+  Plan plan;
+  if (would_enable(core, *steps)) {
+    const ObjectState& status = core.store[core.model.statusword];
+    const ObjectState& word = core.store[core.model.controlword];
+    if (core.link != LinkState::online || !status.known || !word.known || word.unsure) return quick_stop(core);
+    if (!status.held) {
+      plan.add(Action::read(core.model.statusword));
+      plan.add(Action::at(Mark::look_again));
+      return plan;
+    }
+    const bool asked_for = request_of(core.controlword()) == Request402::enable_operation;
+    if (!asked_for || !core.facts().enabled()) {
+      plan.add(Action::read(core.model.statusword));
+      plan.add(Action::wait(not_enabled(core), kStopLimit));
+      return plan;
+    }
+  }
+  add_steps(core, *steps, plan);
+  return plan;
+}
+
+Plan by_command(const AxisCore& core, Command command) {
+  if (command == Command::halt) return halt(core);
+  return command == Command::quick_stop ? quick_stop(core) : disable(core);
+}
+
+Plan by_controlword(const AxisCore& core, std::uint16_t word) {
+  Plan plan;
+  plan.add(Action::write(core.model.controlword, word));
+  plan.add(Action::at(Mark::controlword_passed));
+  const bool quick = request_of(word) == Request402::quick_stop;
+  plan.add(Action::wait(quick ? not_enabled(core) : torque_off(core), kStopLimit));
+  return plan;
+}
+
+}  // namespace
+
+Plan plan_stop(const AxisCore& core, const Group& group) {
+  const bool commanded = is_stop(group.command);
+  if (!group.controlword || !is_stop(*group.controlword, group.single_controlword)) return by_command(core, group.command);
+  Plan plan = by_controlword(core, *group.controlword);
+  // Both: in the order of the group. A halt asks for less than any stop by controlword does.
+  if (commanded && group.command != Command::halt) static_cast<void>(append(plan, by_command(core, group.command)));
+  return plan;
+}
+
+bool halt_is_quick_stop(const AxisCore& core) {
+  const auto& halt_def = core.model.command(Command::halt);
+  if (!halt_def) return true;
+  const int mode = core.mode_in_force();
+  for (const CommandDef::Variant& variant : halt_def->variants)
+    for (const std::int16_t m : variant.modes)
+      if (m == mode) return false;
+  return halt_def->quick_stop_otherwise || halt_def->steps.empty();
+}
+
+void add_end_of_halt(const AxisCore& core, Plan& plan) {
+  const std::uint16_t word = core.controlword();
+  if ((word & controlword::kHalt) == 0) return;
+  constexpr std::uint16_t kEnabled = 0x000F, kShutdown = 0x0006, kTake = 0x0030;  // new set-point, change at once
+  if (!core.facts().enabled()) {
+    plan.add(Action::write(core.model.controlword, kShutdown));  // ending a halt never enables
+    return;
+  }
+  add_running_targets(core, false, plan);
+  const Binding* target = core.model.binding(Quantity::target_position);
+  if (!is_continuous(core.mode_in_force()) && target != nullptr && !core.object(target->object).trigger) {
+    // A halted homing would go on, and so would a move whose target was merely overwritten: the drive must have taken the new
+    // set-point, the present position, before bit 8 falls.
+    if (core.mode_in_force() != 1) static_cast<void>(append(plan, plan_mode(core, 1)));
+    plan.add(Action::write(core.model.controlword, controlword::kHalt | kEnabled));
+    add_target_here(core, plan);
+    plan.add(Action::write(core.model.controlword, controlword::kHalt | kEnabled | kTake));
+  }
+  plan.add(Action::write(core.model.controlword, kEnabled));
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,58 @@
+#include "gateway/drive/profile.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace axisgate::drive {
+namespace {
+
+struct BaseRow {
+  std::string_view name;
+  Base base;
+  Kind kind;
+};
+constexpr std::array<BaseRow, 9> kBases{{
+    {"rpm", Base::rpm, Kind::velocity},
+    {"rps", Base::rps, Kind::velocity},
+    {"rpm/s", Base::rpm_per_s, Kind::acceleration},
+    {"rps/s", Base::rps_per_s, Kind::acceleration},
+    {"rev", Base::rev, Kind::position},
+    {"Arms", Base::arms, Kind::current},
+    {"%", Base::percent, Kind::torque},
+    {"degC", Base::degc, Kind::temperature},
+    {"V", Base::volt, Kind::voltage},
+}};
+
+}  // namespace
+
+std::optional<Base> base_named(std::string_view name) {
+  const auto at = std::find_if(kBases.begin(), kBases.end(), [&](const BaseRow& row) { return row.name == name; });
+  return at == kBases.end() ? std::nullopt : std::optional(at->base);
+}
+
+Kind kind_of(Base base) { return kBases[static_cast<std::size_t>(base)].kind; }
+
+Range Object::numbers() const {
+  const std::int64_t span = std::int64_t{1} << (8 * type.size);
+  Range out = type.is_signed ? Range{-span / 2, span / 2 - 1} : Range{0, span - 1};
+  if (range) out = {std::max(out.min, range->min), std::min(out.max, range->max)};
+  return out;
+}
+
+const Object* Profile::find(std::string_view object, bus::AxisSlot slot) const {
+  const std::string own = slot < axes.size() ? axes[slot] + "." + std::string(object) : std::string();
+  const Object* shared = nullptr;
+  for (const Object& candidate : objects) {
+    if (candidate.name == own) return &candidate;
+    if (candidate.name == object) shared = &candidate;
+  }
+  return shared;
+}
+
+const QuantitySpec* Profile::find(Quantity quantity) const {
+  const auto at = std::find_if(quantities.begin(), quantities.end(),
+                               [&](const QuantitySpec& spec) { return spec.quantity == quantity; });
+  return at == quantities.end() ? nullptr : &*at;
+}
+
+}  // namespace axisgate::drive

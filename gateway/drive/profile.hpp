@@ -1,0 +1,200 @@
+// A drive profile as it was read: typed, named, still without a configuration. docs: schemas/README.md.
+// Promises that names refer to what exists and numbers fit, where load_profile() found no fault.
+// Never holds JSON, and never says what a configured drive does: that is the resolved model (model.hpp).
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "gateway/drive/model.hpp"
+
+namespace axisgate::drive {
+
+/// What a unit counts, before the drive's own factors.
+enum class Base : std::uint8_t { rpm, rps, rpm_per_s, rps_per_s, rev, arms, percent, degc, volt };
+[[nodiscard]] std::optional<Base> base_named(std::string_view name);
+/// The kind of quantity that this base can stand for.
+[[nodiscard]] Kind kind_of(Base base);
+
+/// A number, or the constant of this name.
+using Factor = std::variant<Rational, std::string>;
+
+struct Constant {
+  std::optional<Rational> standard;  ///< key "default"
+  std::optional<Rational> min, max;
+  bool required = false;
+  bool from_drive = false;  ///< rules under "first": read from the drive at bring-up
+  std::string text;
+};
+
+/// raw = engineering * product(mul) / product(div).
+struct Unit {
+  Base base{};
+  std::vector<Factor> mul, div;
+};
+
+/// "-3000 rpm", "rated_speed_rpm rpm".
+struct Amount {
+  bool negative = false;
+  Factor number;
+  Base base{};
+};
+
+struct DataType {
+  std::uint8_t size = 2;
+  bool is_signed = false;
+  friend bool operator==(const DataType&, const DataType&) = default;
+};
+
+/// Where an object is found on one protocol.
+struct Place {
+  bus::ObjectAddress address;
+  std::string request;  ///< keya-*: the named frame that carries it; empty: `address` alone
+  std::uint8_t byte = 0;
+  std::optional<std::uint8_t> bit;
+  std::uint8_t bits = 1;  ///< with `bit`: how many
+  std::optional<DataType> type;
+  bool derived = false;  ///< follows from a rule of the manual's table, not printed
+};
+
+struct Object {
+  std::string name;
+  bus::AxisSlot slot = bus::kNoAxis;
+  DataType type;
+  bool readable = true;
+  bool writable = false;
+  bool trigger = false;
+  Nvm nvm = Nvm::no;
+  std::string unit;
+  std::optional<Range> range;  ///< raw
+  std::string alias_of;
+  std::map<std::string, Place, std::less<>> places;  ///< by protocol
+  std::string pointer;
+  [[nodiscard]] Range numbers() const;  ///< of its type and range together
+};
+
+struct BitsSpec {
+  std::string object;
+  std::uint8_t from = 0, count = 1, to = 0;
+  bool inverted = false;
+};
+
+struct QuantitySpec {
+  Quantity quantity{};
+  std::vector<std::string> objects;  ///< the first that the protocol has
+  std::string unit;                  ///< empty: the object's
+  std::optional<PollClass> poll;
+  std::optional<Amount> min, max;
+  std::vector<BitsSpec> bits;
+  std::string pointer;
+};
+
+struct ConditionSpec {
+  std::string object;
+  std::uint32_t mask = 0;
+  Condition::Test test{};
+  std::vector<std::int64_t> values;
+};
+
+/// Register 78: the position that command set_position asks for.
+struct SetPositionValue {};
+
+using ValueSpec = std::variant<std::int64_t, Amount, Quantity, SetPositionValue>;
+
+struct StepSpec {
+  Step::Verb verb{};
+  std::string object;
+  std::vector<ValueSpec> values;  ///< of a write: one for all axes, or one for each
+  ConditionSpec until;
+  Duration limit{};
+  bool optional = false;
+  Errc otherwise = Errc::state_unsuitable;
+  std::string pointer;
+};
+
+struct CommandSpec {
+  struct Variant {
+    std::vector<std::int16_t> modes;
+    std::vector<StepSpec> steps;
+  };
+  Command command{};
+  std::string protocol;  ///< empty: every one without an override
+  std::vector<Variant> variants;
+  std::vector<StepSpec> steps;
+  bool quick_stop_otherwise = false;
+  bool zero_only = false;
+  std::string pointer;
+};
+
+struct WriteSpec {
+  std::string object;
+  std::vector<ValueSpec> values;
+  std::vector<std::string> on;  ///< protocols; empty: all
+  std::string why;
+  std::string pointer;
+};
+
+struct CheckSpec {
+  std::string name;
+  ConditionSpec bad;
+  AxisAlarm alarm{};
+  std::string text;
+  std::vector<WriteSpec> remedy;
+  std::string pointer;
+};
+
+struct AlarmSpec {
+  std::uint8_t word = 0;
+  std::optional<std::uint8_t> bit;
+  std::optional<std::uint32_t> value;
+  std::uint16_t code = 0;
+  std::string text, remedy;
+};
+
+struct ProtocolSpec {
+  std::vector<std::string> fence;
+  Duration worst_reply{};
+  Duration timeout{};
+  bool stops_by_itself = false;
+  std::vector<std::string> requests;  ///< names of frames, keya-* only
+};
+
+struct StateSpec {
+  bool is_virtual = false;
+  bool setpoint_acknowledge = true;
+  std::vector<std::string> zero_before_enable;
+  std::optional<ConditionSpec> moving;
+};
+
+struct HomingSpec {
+  std::map<std::int16_t, std::int64_t> methods;  ///< CiA 402 method -> what the drive calls it
+  std::optional<ConditionSpec> homed, failed;
+};
+
+struct Profile {
+  std::string name, title;
+  std::vector<std::string> axes;  ///< "A", "B": one for each motor
+  std::map<std::string, Constant, std::less<>> constants;
+  std::map<std::string, Unit, std::less<>> units;
+  std::map<std::string, ProtocolSpec, std::less<>> protocols;
+  std::vector<Object> objects;
+  std::vector<QuantitySpec> quantities;
+  StateSpec state;
+  std::map<std::int16_t, std::int64_t> modes;
+  HomingSpec homing;
+  std::vector<CommandSpec> commands;
+  std::vector<WriteSpec> setup;
+  std::vector<CheckSpec> checks;
+  std::vector<std::string> fault_words;
+  std::vector<AlarmSpec> alarms;
+  bool keepalive = false;
+
+  /// The object that `name` means for this axis: its own ("A.speed") before the drive's ("speed").
+  [[nodiscard]] const Object* find(std::string_view object, bus::AxisSlot slot) const;
+  [[nodiscard]] const QuantitySpec* find(Quantity quantity) const;
+};
+
+}  // namespace axisgate::drive

@@ -1,0 +1,92 @@
+// What the section readers of a profile share: the document, the profile being filled, the faults found, and how values
+// are written in JSON. Promises that a reader can go on after any fault, so that all are found in one run. Never
+// reports what the JSON Schema reports already: a value of the wrong type simply reads as absent.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gateway/drive/json_schema.hpp"
+#include "gateway/drive/profile.hpp"
+
+namespace axisgate::drive {
+
+class Reading {
+ public:
+  Reading(const nlohmann::json& file, Profile& filled, std::vector<SchemaFault>& faults)
+      : document(file), profile(filled), faults_(faults), from_schema_(faults.size()) {}
+
+  const nlohmann::json& document;
+  Profile& profile;
+
+  /// Dropped where the schema has found fault with the same place.
+  void fault(const std::string& pointer, std::string message);
+  /// The axis slots that a name without a prefix is looked up for.
+  [[nodiscard]] std::size_t axes() const { return profile.axes.size(); }
+  /// Says what is wrong with `object` for any axis, unless it names one. Returns whether it does.
+  bool names_object(const std::string& object, const std::string& pointer);
+  /// Calls `check(object)` for what the name means on each axis (once, where all mean the same).
+  template <class Check>
+  void each_meaning(const std::string& name, Check&& check) const {
+    const Object* last = nullptr;
+    for (std::size_t slot = 0; slot < axes(); ++slot) {
+      const Object* object = profile.find(name, static_cast<bus::AxisSlot>(slot));
+      if (object != nullptr && object != last) check(*object);
+      last = object;
+    }
+  }
+  /// Readers of a value, shared by commands, setup and remedies.
+  [[nodiscard]] std::vector<ValueSpec> values(const nlohmann::json& node, const std::string& pointer);
+  void value_fits(const ValueSpec& value, const Object& object, const std::string& pointer);
+  [[nodiscard]] ConditionSpec condition(const nlohmann::json& node, const std::string& object,
+                                        const std::string& pointer);
+  /// "3000 rpm"; nothing where the schema has reported its form. An unknown constant is a fault.
+  [[nodiscard]] std::optional<Amount> amount(const nlohmann::json& node, const std::string& pointer);
+
+ private:
+  std::vector<SchemaFault>& faults_;
+  std::size_t from_schema_;
+};
+
+/// The member, or null.
+[[nodiscard]] const nlohmann::json* member(const nlohmann::json& node, std::string_view key);
+[[nodiscard]] std::string text_in(const nlohmann::json& node, std::string_view key);
+[[nodiscard]] bool flag_in(const nlohmann::json& node, std::string_view key, bool otherwise);
+/// 47, "47", "0x2F".
+[[nodiscard]] std::optional<std::int64_t> whole(const nlohmann::json& node);
+[[nodiscard]] std::int64_t whole_in(const nlohmann::json& node, std::string_view key, std::int64_t otherwise);
+[[nodiscard]] std::vector<std::string> names_in(const nlohmann::json& node, std::string_view key);
+[[nodiscard]] std::optional<DataType> type_named(std::string_view name);
+[[nodiscard]] std::string range_text(const Range& range);
+template <class Map>
+[[nodiscard]] std::vector<std::string> keys_in(const Map& map) {
+  std::vector<std::string> out;
+  for (const auto& [key, value] : map) out.push_back(key);
+  return out;
+}
+/// `; did you mean "x"?`, or nothing.
+[[nodiscard]] std::string hint(std::string_view name, const std::vector<std::string>& known);
+
+// The sections, in the order in which they must be read.
+void read_constants(Reading& reading);
+void read_units(Reading& reading);
+void read_protocols(Reading& reading);
+void read_objects(Reading& reading);
+void read_quantities(Reading& reading);
+void read_modes(Reading& reading);
+void read_state(Reading& reading);
+void read_homing(Reading& reading);
+void read_commands(Reading& reading);
+void read_setup(Reading& reading);
+void read_checks(Reading& reading);
+void read_alarms(Reading& reading);
+/// After all: what a section can only be judged by together with others.
+void check_protocols(Reading& reading);
+void check_constant_rules(Reading& reading);
+
+/// Reads "write"/"value"/"on"/"why" as setup and remedies have them.
+[[nodiscard]] WriteSpec read_write(Reading& reading, const nlohmann::json& node, const std::string& pointer);
+
+}  // namespace axisgate::drive

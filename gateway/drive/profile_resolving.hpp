@@ -1,0 +1,49 @@
+// What the parts of resolve() share: the profile, the configured drive, the model being built and the faults found.
+// Promises that names become ids here and nowhere else.
+// Never decides what a quantity or a command means: the parts do.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/drive/profile_loader.hpp"
+#include "gateway/drive/profile_scale.hpp"
+
+namespace axisgate::drive {
+
+class Resolving {
+ public:
+  Resolving(const Profile& loaded, const ResolveInput& configured) : profile(loaded), input(configured) {}
+
+  const Profile& profile;
+  const ResolveInput& input;
+  DriveModel model;
+  Constants constants;
+  std::vector<Fault> faults;
+
+  void fault(std::string pointer, std::string message) {
+    faults.push_back({"", std::move(pointer), std::move(message)});
+  }
+
+  // Each is absent where the protocol, or a constant nobody gave, leaves something out.
+  [[nodiscard]] ObjectId id(std::string_view name, bus::AxisSlot slot) const;
+  [[nodiscard]] std::optional<Condition> condition(const ConditionSpec& spec, bus::AxisSlot slot) const;
+  [[nodiscard]] std::optional<std::int64_t> raw(const std::vector<ValueSpec>& values, std::string_view object,
+                                                bus::AxisSlot slot) const;
+  [[nodiscard]] std::optional<ObjectWrite> write(const WriteSpec& spec, bus::AxisSlot slot) const;
+
+  std::map<std::string, ObjectId, std::less<>> ids;  ///< by full name
+};
+
+// The parts, in their order.
+void resolve_constants(Resolving& resolving);
+void resolve_objects(Resolving& resolving);
+/// Bindings, limits, roles, modes and homing of the axis at `slot`.
+void resolve_quantities(Resolving& resolving, bus::AxisSlot slot);
+void resolve_modes(Resolving& resolving, bus::AxisSlot slot);
+void resolve_commands(Resolving& resolving, bus::AxisSlot slot);
+void resolve_drive(Resolving& resolving);
+
+}  // namespace axisgate::drive

@@ -1,0 +1,94 @@
+#include "gateway/drive/profile_scale.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace axisgate::drive {
+namespace {
+
+std::int64_t saturated(Int128 value) {
+  if (value > INT64_MAX) return INT64_MAX;
+  if (value < INT64_MIN) return INT64_MIN;
+  return static_cast<std::int64_t>(value);
+}
+
+/// numerator / denominator rounded towards minus infinity; `denominator` above 0.
+Int128 floor_of(Int128 numerator, Int128 denominator) {
+  const Int128 quotient = numerator / denominator;
+  return numerator % denominator < 0 ? quotient - 1 : quotient;
+}
+
+Int128 ceiling_of(Int128 numerator, Int128 denominator) { return -floor_of(-numerator, denominator); }
+
+}  // namespace
+
+std::optional<Rational> value_of(const Factor& factor, const Constants& constants) {
+  if (const auto* number = std::get_if<Rational>(&factor)) return *number;
+  const auto at = constants.find(std::get<std::string>(factor));
+  return at == constants.end() ? std::nullopt : std::optional(at->second);
+}
+
+std::optional<Rational> raw_per_base(const Unit& unit, const Constants& constants) {
+  Rational out(1);
+  for (const Factor& factor : unit.mul) {
+    const std::optional<Rational> value = value_of(factor, constants);
+    if (!value) return std::nullopt;
+    out = out * *value;
+  }
+  for (const Factor& factor : unit.div) {
+    const std::optional<Rational> value = value_of(factor, constants);
+    if (!value || value->numerator() == 0) return std::nullopt;
+    out = out / *value;
+  }
+  return out;
+}
+
+Rational base_per_register(Base base, const Rational& units_per_rev) {
+  switch (base) {
+    case Base::rpm:
+      return Rational(1, 1000);
+    case Base::rps:
+      return Rational(1, 60000);
+    case Base::rpm_per_s:
+    case Base::percent:
+    case Base::degc:
+    case Base::volt:
+      return Rational(1, 10);
+    case Base::rps_per_s:
+      return Rational(1, 600);
+    case Base::rev:
+      return units_per_rev.inverse();
+    case Base::arms:
+      return Rational(1, 100);
+  }
+  assert(false);
+  return Rational(1);
+}
+
+std::optional<Rational> in_registers(const Amount& amount, const Constants& constants, const Rational& units_per_rev) {
+  const std::optional<Rational> value = value_of(amount.number, constants);
+  if (!value) return std::nullopt;
+  return *value * Rational(amount.negative ? -1 : 1) / base_per_register(amount.base, units_per_rev);
+}
+
+std::int64_t rounded_up(const Rational& value) { return saturated(ceiling_of(value.numerator(), value.denominator())); }
+
+std::int64_t rounded_down(const Rational& value) { return saturated(floor_of(value.numerator(), value.denominator())); }
+
+Range registers_within(const Range& raw, const Rational& raw_per_register) {
+  Int128 numerator = raw_per_register.denominator();
+  Int128 denominator = raw_per_register.numerator();
+  assert(denominator != 0);
+  if (denominator < 0) {
+    numerator = -numerator;
+    denominator = -denominator;
+  }
+  // An inverted axis has a negative factor: the ends change places.
+  const Int128 low = numerator < 0 ? raw.max : raw.min;
+  const Int128 high = numerator < 0 ? raw.min : raw.max;
+  return {saturated(ceiling_of(low * numerator, denominator)), saturated(floor_of(high * numerator, denominator))};
+}
+
+Range intersection(const Range& a, const Range& b) { return {std::max(a.min, b.min), std::min(a.max, b.max)}; }
+
+}  // namespace axisgate::drive

@@ -1,0 +1,32 @@
+// Exact conversions between what a drive counts and the units of the registers (design 2).
+// Promises that limits are rounded inwards, so that no value a limit allows goes beyond it in the drive.
+// Never uses floating point.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "gateway/drive/profile.hpp"
+
+namespace axisgate::drive {
+
+/// The constants of one configured drive: overrides over defaults. What is in neither is absent.
+using Constants = std::map<std::string, Rational, std::less<>>;
+
+[[nodiscard]] std::optional<Rational> value_of(const Factor& factor, const Constants& constants);
+/// raw = engineering * this; no value where a constant is absent. Throws std::overflow_error beyond 64 bits.
+[[nodiscard]] std::optional<Rational> raw_per_base(const Unit& unit, const Constants& constants);
+/// How many of this base one register unit is: 1/1000 for rpm.
+[[nodiscard]] Rational base_per_register(Base base, const Rational& units_per_rev);
+/// In register units, not rounded; no value where a constant is absent.
+[[nodiscard]] std::optional<Rational> in_registers(const Amount& amount, const Constants& constants,
+                                                   const Rational& units_per_rev);
+
+[[nodiscard]] std::int64_t rounded_up(const Rational& value);
+[[nodiscard]] std::int64_t rounded_down(const Rational& value);
+/// The register values whose raw values lie in `raw`.
+[[nodiscard]] Range registers_within(const Range& raw, const Rational& raw_per_register);
+[[nodiscard]] Range intersection(const Range& a, const Range& b);
+
+}  // namespace axisgate::drive

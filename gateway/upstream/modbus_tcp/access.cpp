@@ -1,0 +1,118 @@
+#include "gateway/upstream/modbus_tcp/access.hpp"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace axisgate::modbus_tcp {
+namespace {
+
+constexpr std::size_t kMappedBytes = 12;  // ::ffff: before the four bytes of IPv4
+
+bool is_mapped(const Address& address) {
+  return std::all_of(address.begin(), address.begin() + 10, [](std::uint8_t b) { return b == 0; }) &&
+         address[10] == 0xFF && address[11] == 0xFF;
+}
+
+bool same_bits(const Address& a, const Address& b, std::uint8_t bits) {
+  const std::size_t whole = bits / 8U;
+  if (!std::equal(a.begin(), a.begin() + whole, b.begin())) return false;
+  if (bits % 8U == 0) return true;
+  const unsigned mask = 0xFFU << (8U - bits % 8U);
+  return ((static_cast<unsigned>(a[whole]) ^ b[whole]) & mask & 0xFFU) == 0;
+}
+
+}  // namespace
+
+std::string text(const Address& address) {
+  char written[INET6_ADDRSTRLEN] = {};
+  const bool v4 = is_mapped(address);
+  const void* from = v4 ? address.data() + kMappedBytes : address.data();
+  const char* result = inet_ntop(v4 ? AF_INET : AF_INET6, from, written, sizeof written);
+  return result == nullptr ? std::string() : std::string(result);
+}
+
+bool is_loopback(const Address& address) {
+  if (is_mapped(address)) return address[kMappedBytes] == 127;
+  return std::all_of(address.begin(), address.end() - 1, [](std::uint8_t b) { return b == 0; }) && address[15] == 1;
+}
+
+bool holds(const AllowEntry& entry, const Address& address) {
+  return same_bits(entry.network, address, std::min<std::uint8_t>(entry.prefix, 128));
+}
+
+Role role_of(const ListenerSettings& settings, const Address& address) {
+  if (!settings.has_allow) return is_loopback(address) ? Role::engineer : Role::viewer;
+  const AllowEntry* best = nullptr;
+  for (const AllowEntry& entry : settings.allow) {
+    if (holds(entry, address) && (best == nullptr || entry.prefix > best->prefix)) best = &entry;
+  }
+  return best == nullptr ? Role::none : best->role;
+}
+
+std::uint32_t kept_for_operators(const ListenerSettings& settings) {
+  const bool named = settings.has_allow && std::any_of(settings.allow.begin(), settings.allow.end(),
+                                                       [](const AllowEntry& e) { return e.role > Role::viewer; });
+  return named ? settings.max_clients / 10 : 0;
+}
+
+std::string text(Admission admission, const ListenerSettings& settings) {
+  switch (admission) {
+    case Admission::admitted:
+      return "admitted";
+    case Admission::not_allowed:
+      return "`allow` does not name this address";
+    case Admission::listener_full:
+      return "max_clients (" + std::to_string(settings.max_clients) + ") is reached";
+    case Admission::address_full:
+      return "max_clients_per_address (" + std::to_string(settings.max_clients_per_address) + ") is reached";
+    case Admission::kept_for_operators:
+      return "the last " + std::to_string(modbus_tcp::kept_for_operators(settings)) + " of max_clients (" +
+             std::to_string(settings.max_clients) + ") are kept for operators and engineers";
+    case Admission::no_descriptor:
+      return "the system's descriptor limit is reached; raise LimitNOFILE";
+  }
+  return {};
+}
+
+Admission ClientCounts::admit(const ListenerSettings& settings, const Address& address, Role role,
+                              std::uint32_t descriptors_for) {
+  if (role == Role::none) return Admission::not_allowed;
+  if (total_ >= settings.max_clients) return Admission::listener_full;
+  if (total_ >= descriptors_for) return Admission::no_descriptor;
+  if (settings.max_clients_per_address != 0 && of(address) >= settings.max_clients_per_address) {
+    return Admission::address_full;
+  }
+  const std::uint32_t room = std::min(settings.max_clients, descriptors_for);
+  if (role == Role::viewer && total_ + modbus_tcp::kept_for_operators(settings) >= room) {
+    return Admission::kept_for_operators;
+  }
+  ++total_;
+  ++by_address_[address];
+  return Admission::admitted;
+}
+
+void ClientCounts::release(const Address& address) {
+  const auto found = by_address_.find(address);
+  assert(found != by_address_.end() && total_ > 0);
+  --total_;
+  if (--found->second == 0) by_address_.erase(found);
+}
+
+std::uint32_t ClientCounts::of(const Address& address) const {
+  const auto found = by_address_.find(address);
+  return found == by_address_.end() ? 0 : found->second;
+}
+
+std::optional<std::uint64_t> LineLimit::admit(Instant now) {
+  if (last_ && now - *last_ < interval_) {
+    ++left_out_;
+    return std::nullopt;
+  }
+  last_ = now;
+  return std::exchange(left_out_, 0);
+}
+
+}  // namespace axisgate::modbus_tcp

@@ -1,0 +1,101 @@
+// The clients of the Modbus-TCP face: what each of them has written and been answered, per axis (design 3.3 "A client",
+// "Edges"). Promises that memory is bounded whoever connects, and that one client never sees what belongs to another.
+// Never speaks to an axis and never reads a clock.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "gateway/core/clock.hpp"
+#include "gateway/image/command.hpp"
+#include "gateway/upstream/modbus_tcp/diagnostics.hpp"
+#include "gateway/upstream/modbus_tcp/edges.hpp"
+#include "gateway/upstream/modbus_tcp/listener_settings.hpp"
+
+namespace axisgate::modbus_tcp {
+
+/// What an address is remembered for after its last connection closed: command ids, and its client where
+/// "client" is "address".
+inline constexpr Duration kHostKept = std::chrono::seconds(60);
+/// Addresses without a connection; beyond it the one that left first is forgotten early.
+inline constexpr std::size_t kMaxIdleHosts = 1024;
+
+enum class ObjectStatus : std::uint16_t { idle = 0, busy = 1, done = 2, failed = 3 };
+
+/// Registers 80..88.
+struct Mailbox {
+  std::uint16_t request = 0;
+  std::uint16_t index = 0;
+  std::uint16_t subindex = 0;
+  std::uint16_t size = 0;
+  std::uint32_t data = 0;
+  ObjectStatus status = ObjectStatus::idle;
+  std::uint32_t detail = 0;
+};
+
+/// One client's side of one axis.
+struct ClientAxis {
+  /// False until it has used registers 25..28 or 80..89: it sees the axis's latest result till then.
+  bool used = false;
+  LatestResult result;
+  std::uint64_t submission = 0;  ///< counts its groups: an older one's result does not replace a newer one's
+  EdgeMemory edges;
+  std::uint16_t command_id = 0;
+  std::uint16_t heartbeat = 0;
+  Mailbox mailbox;
+};
+
+/// What all clients from one address share.
+struct Host {
+  std::map<AxisNumber, CommandIds> ids;
+  std::size_t connections = 0;
+  Instant left_at = kLongAgo;  ///< when the last connection closed
+};
+
+struct Client {
+  ClientId id = 0;
+  Address address{};
+  std::shared_ptr<Host> host;
+  std::map<AxisNumber, ClientAxis> axes;  ///< those it has written to
+  std::uint16_t heartbeat = 0;            ///< gateway register 8
+
+  /// nullptr where it has written nothing to this axis yet.
+  [[nodiscard]] const ClientAxis* find(AxisNumber axis) const;
+  [[nodiscard]] ClientAxis& at(AxisNumber axis) { return axes[axis]; }
+  /// The last command_id from its address for this axis, if one is known.
+  [[nodiscard]] std::optional<std::uint16_t> last_id(AxisNumber axis) const;
+};
+
+class ClientRegistry {
+ public:
+  ClientRegistry() = default;
+  ClientRegistry(const ClientRegistry&) = delete;
+  ClientRegistry& operator=(const ClientRegistry&) = delete;
+
+  struct Connected {
+    std::shared_ptr<Client> client;
+    std::optional<ClientId> forgotten;  ///< another client that is gone for good by this
+  };
+  /// `shared`: listener option "client": "address". Once per connection.
+  [[nodiscard]] Connected connect(const Address& address, bool shared, Instant now);
+  /// The client's id where it is gone for good by this.
+  std::optional<ClientId> disconnect(const std::shared_ptr<Client>& client, Instant now);
+
+  [[nodiscard]] std::size_t hosts() const { return hosts_.size(); }
+
+  DiagnosticCounters counters;  ///< function 8, of all sessions together
+
+ private:
+  struct Entry {
+    std::shared_ptr<Host> host;
+    std::shared_ptr<Client> shared_client;  ///< where "client" is "address"
+  };
+  [[nodiscard]] std::optional<ClientId> forget_oldest_idle();
+
+  std::map<Address, Entry> hosts_;
+  ClientId last_id_ = 0;
+};
+
+}  // namespace axisgate::modbus_tcp

@@ -1,0 +1,76 @@
+// The requests of one connection that are under way, at most kMaxPipelined: started on arrival, answered in order.
+// Promises each request exactly one reply and that a stop never waits behind a slow write. Pure: replies go to `emit`.
+// Never knows bytes on the stream: frames come in, PDUs go out.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+
+#include "gateway/upstream/modbus_tcp/mbap.hpp"
+#include "gateway/upstream/modbus_tcp/pdu.hpp"
+#include "gateway/upstream/modbus_tcp/session.hpp"
+#include "gateway/upstream/modbus_tcp/unit_view.hpp"
+#include "gateway/upstream/modbus_tcp/write_run.hpp"
+
+namespace axisgate::modbus_tcp {
+
+class Pipeline {
+ public:
+  using Emit = std::function<void(std::uint16_t transaction, std::uint8_t unit, const Pdu& reply)>;
+  /// `on_result` is called with the number of a request whose write has ended, never from inside accept() or
+  /// carry_out().
+  using OnResult = std::function<void(std::uint64_t number, const Outcome& outcome)>;
+
+  Pipeline(const SessionContext& context, Role role, std::shared_ptr<Client> client, Emit emit, OnResult on_result);
+  ~Pipeline();
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  [[nodiscard]] std::size_t under_way() const { return entries_.size(); }
+  /// Only while under_way() < kMaxPipelined.
+  void accept(const Frame& frame, Instant now);
+  /// The end of a write, as on_result told it. Unknown numbers are harmless.
+  void conclude(std::uint64_t number, const Outcome& outcome, Instant now);
+  /// Nobody is left to answer.
+  void abandon();
+
+ private:
+  enum class Stage : std::uint8_t {
+    waiting,   ///< a write that has not begun
+    running,   ///< a write in the command port
+    at_turn,   ///< answered when all before it are: the newest values, and the effect of its own write (FC 23)
+    answered,  ///< the reply stands
+  };
+  struct Entry {
+    std::uint64_t number = 0;
+    std::uint16_t transaction = 0;
+    std::uint8_t unit = 0;
+    Stage stage = Stage::answered;
+    std::optional<UnitView> view;
+    Request request;
+    Pdu reply;
+    std::shared_ptr<WriteRun> run;
+  };
+
+  void start_ready(Instant now);
+  [[nodiscard]] bool must_wait(std::size_t position) const;
+  void drop_waiting_before(std::size_t stop);
+  void start(Entry& entry, Instant now);
+  void finish(Entry& entry, const Outcome& outcome);
+  void refuse(Entry& entry, ModbusException exception);
+  void flush(Instant now);
+  [[nodiscard]] Pdu answer(const Request& request, const UnitView& view, Instant now) const;
+  [[nodiscard]] Onlooker onlooker(Instant now) const;
+  void send(std::uint16_t transaction, std::uint8_t unit, const Pdu& reply);
+
+  SessionContext context_;
+  Role role_;
+  std::shared_ptr<Client> client_;
+  Emit emit_;
+  OnResult on_result_;
+  std::deque<Entry> entries_;
+  std::uint64_t last_number_ = 0;
+};
+
+}  // namespace axisgate::modbus_tcp

@@ -1,0 +1,137 @@
+#include "gateway/upstream/modbus_tcp/row_writes.hpp"
+
+#include "gateway/upstream/modbus_tcp/reads.hpp"
+
+namespace axisgate::modbus_tcp {
+namespace {
+
+constexpr std::uint16_t kFirstWritable = 40;  // of an axis block; unlisted offsets from here to kLastWritable
+constexpr std::uint16_t kLastWritable = 89;   // are ignored in a longer write
+
+/// FC 22: the masks on what the register shows at this moment (V1.1b3 6.16).
+std::uint32_t masked(const Request& request, std::uint16_t shown) {
+  return static_cast<std::uint32_t>((shown & request.and_mask) | (request.or_mask & ~request.and_mask)) & 0xFFFFU;
+}
+
+std::uint32_t written_bits(const Request& request, std::size_t i, int registers, bool low_word_first) {
+  const std::uint32_t first = request.written_register(i);
+  if (registers == 1) return first;
+  const std::uint32_t second = request.written_register(i + 1);
+  return low_word_first ? (second << 16) | first : (first << 16) | second;
+}
+
+/// A block never reaches into the next one: the last offsets of a block take no write, so `outside` is set before.
+RowWrites gather(const Request& request, const UnitView& view, const Onlooker& onlooker) {
+  RowWrites found;
+  const std::size_t count = request.write_count;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto place = view.place_register(static_cast<std::uint32_t>(request.write_address + i), onlooker.image);
+    const RegisterRow* row = place ? register_table(place->block).covering(place->offset) : nullptr;
+    if (place && place->block == Block::axis) found.axis = onlooker.image.find(place->number);
+    if (row == nullptr) {
+      const bool ignored = count > 1 && place && place->block == Block::axis && place->offset >= kFirstWritable &&
+                           place->offset <= kLastWritable;
+      found.outside = found.outside || !ignored;
+      continue;
+    }
+    const auto registers = static_cast<std::size_t>(row->registers());
+    if (!row->writable || place->offset != row->offset || i + registers > count) {
+      found.outside = true;
+      continue;
+    }
+    const std::uint32_t bits = request.function == Function::mask_write_register
+                                   ? masked(request, read_one(request.write_address, view, onlooker).value_or(0))
+                                   : written_bits(request, i, row->registers(), onlooker.settings.low_word_first);
+    found.rows.push_back({row, number_of(bits, row->type)});
+    i += registers - 1;
+  }
+  return found;
+}
+
+bool exists(const RegisterRow& row, const AxisImage* axis) {
+  if (!row.built) return false;
+  if (axis == nullptr) return true;
+  if (row.source == Source::quantity) return (axis->supported & axis->writable & bit(row.quantity)) != 0;
+  if (row.source == Source::set_position_value) {
+    return (axis->supported_commands >> static_cast<unsigned>(Command::set_position) & 1U) != 0;
+  }
+  return true;
+}
+
+/// "In a block write a row whose value the drive already holds is skipped without asking the role." So is a row that
+/// this drive does not have, written with what it reads as: a scanner may write back the block that it has read.
+bool is_held(const RowWrite& write, const AxisImage& axis, const Onlooker& onlooker) {
+  const RegisterRow& row = *write.row;
+  if (!exists(row, &axis)) return number_of(axis_value(row, axis, onlooker), row.type) == write.value;
+  if (row.source == Source::set_position_value) {
+    return onlooker.commands.set_position_value(axis.number) == write.value;
+  }
+  return row.source == Source::quantity && row.quantity != Quantity::controlword &&
+         onlooker.commands.holds(axis.number, row.quantity, write.value);
+}
+
+Role needed_role(const RowWrite& write) {
+  if (write.row->source == Source::command && write.value == static_cast<int>(Command::save_parameters)) {
+    return Role::engineer;
+  }
+  if (write.row->source == Source::object_request && write.value == 2) return Role::engineer;
+  return write.row->may_write;
+}
+
+Errc check_role(const RowWrites& found, Role role) {
+  if (found.outside && role < Role::operator_) return Errc::role_forbidden;
+  for (const RowWrite& each : found.rows)
+    if (!each.skipped && role < needed_role(each)) return Errc::role_forbidden;
+  return Errc::ok;
+}
+
+Errc check_addresses(const RowWrites& found) {
+  if (found.outside) return Errc::not_supported;
+  for (const RowWrite& each : found.rows) {
+    if (each.skipped) continue;
+    if (!exists(*each.row, found.axis)) return Errc::not_supported;
+    const bool known_command = each.row->source == Source::command && each.value >= 1 && each.value <= kLastCommand;
+    if (known_command && (found.axis->supported_commands >> each.value & 1U) == 0) return Errc::not_supported;
+  }
+  return Errc::ok;
+}
+
+/// What the table alone knows: unknown commands and requests, and the number that means "no value".
+Errc check_values(const RowWrites& found) {
+  for (const RowWrite& each : found.rows) {
+    if (each.skipped) continue;
+    const RegisterRow& row = *each.row;
+    if (row.source == Source::command && each.value > kLastCommand) return Errc::bad_value;
+    if (row.source == Source::object_request && each.value > 2) return Errc::bad_value;
+    if (row.kind != Kind::code && each.value == no_value(row.type)) return Errc::bad_value;
+    // Masking a value that was never received would make a number out of none.
+    const bool unknown = row.source == Source::quantity && !(*found.axis)[row.quantity].received;
+    if (found.masks && unknown && found.axis->reachable()) return Errc::bad_value;
+  }
+  return Errc::ok;
+}
+
+}  // namespace
+
+const RowWrite* RowWrites::of(Source source) const {
+  for (const RowWrite& each : rows)
+    if (each.row->source == source) return &each;
+  return nullptr;
+}
+
+RowWrites resolve_rows(const Request& request, const UnitView& view, const Onlooker& onlooker) {
+  RowWrites writes = gather(request, view, onlooker);
+  writes.masks = request.function == Function::mask_write_register && request.and_mask != 0;
+  if (writes.axis != nullptr && writes.rows.size() > 1) {
+    for (RowWrite& each : writes.rows) each.skipped = is_held(each, *writes.axis, onlooker);
+  }
+  return writes;
+}
+
+Errc check_rows(const RowWrites& writes, Role role) {
+  if (const Errc wrong = check_role(writes, role); wrong != Errc::ok) return wrong;
+  if (const Errc wrong = check_addresses(writes); wrong != Errc::ok) return wrong;
+  return check_values(writes);
+}
+
+}  // namespace axisgate::modbus_tcp

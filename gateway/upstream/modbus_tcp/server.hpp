@@ -1,0 +1,51 @@
+// The Modbus-TCP server: its listeners, opened together and stopped together, on the core thread's io_context.
+// Promises that start() either serves on every configured address or throws and says which one and what to change, and
+// that nothing of it runs after stop(). Never decides what a request means: that is the Session's part.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gateway/core/clock.hpp"
+#include "gateway/core/log.hpp"
+#include "gateway/image/command_port.hpp"
+#include "gateway/image/process_image.hpp"
+#include "gateway/upstream/modbus_tcp/descriptors.hpp"
+#include "gateway/upstream/modbus_tcp/listener_settings.hpp"
+#include "gateway/upstream/modbus_tcp/server_counters.hpp"
+
+namespace axisgate::modbus_tcp {
+
+class ClientRegistry;
+class Listener;
+struct ServerContext;
+
+class Server {
+ public:
+  /// Copies the settings. Everything passed by reference must outlive the server.
+  Server(boost::asio::io_context& io, Runtime& runtime, std::span<const ListenerSettings> listeners,
+         ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// Binds all listeners, then accepts. Call raise_descriptor_limit() before it. Throws std::runtime_error, and has
+  /// then opened nothing.
+  void start();
+  /// Closes listeners and connections. Not from inside a CommandPort call or a result's callback.
+  void stop();
+
+  /// In the order of the settings; the ports really in force where 0 was asked for.
+  [[nodiscard]] std::vector<std::uint16_t> ports() const;
+  [[nodiscard]] const ServerCounters& counters() const;
+  /// What start() found: where it limits the clients, `check`, log and alarm say so.
+  [[nodiscard]] const DescriptorRule& descriptor_rule() const;
+
+ private:
+  std::unique_ptr<ServerContext> context_;
+  std::vector<std::shared_ptr<Listener>> listeners_;
+};
+
+}  // namespace axisgate::modbus_tcp

@@ -1,0 +1,46 @@
+#include "gateway/upstream/modbus_tcp/write_plan.hpp"
+
+namespace axisgate::modbus_tcp {
+namespace {
+
+/// The two bits whose 0 stops: enable voltage and, inverted, quick stop.
+constexpr std::uint16_t kStoppingBits = 0x0006;
+
+bool stops_through(const RegisterRow& row, const Request& request) {
+  const bool is_controlword = row.source == Source::quantity && row.quantity == Quantity::controlword;
+  if (request.function == Function::mask_write_register) {
+    // Both masks force at least one of the bits to 0.
+    return is_controlword && (~request.and_mask & ~request.or_mask & kStoppingBits) != 0;
+  }
+  const std::uint16_t value = request.written_register(0);
+  if (row.source == Source::command) return value <= kLastCommand && is_stop(Command{static_cast<Byte>(value)});
+  return is_controlword && is_stop_controlword(value);
+}
+
+}  // namespace
+
+Planned plan_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
+  return request.writes_coils() ? plan_coil_write(request, view, onlooker, client)
+                                : plan_register_write(request, view, onlooker, client);
+}
+
+bool asks_for_a_stop(const Request& request, const UnitView& view, const ProcessImage& image) {
+  if (request.write_count != 1) return false;
+  if (request.writes_coils()) {
+    const auto place = view.place_bit(request.write_address, image);
+    if (!place || place->offset >= kCoils) return false;
+    const CoilRow& coil = coil_rows()[place->offset];
+    return is_stop(request.written_coil(0) ? coil.on : coil.off);
+  }
+  const auto place = view.place_register(request.write_address, image);
+  if (!place || place->block != Block::axis) return false;
+  const RegisterRow* row = register_table(Block::axis).covering(place->offset);
+  return row != nullptr && stops_through(*row, request);
+}
+
+AxisNumber axis_of_write(const Request& request, const UnitView& view, const ProcessImage& image) {
+  const auto place = view.place_register(request.write_address, image);
+  return place && place->block == Block::axis ? place->number : AxisNumber{0};
+}
+
+}  // namespace axisgate::modbus_tcp

@@ -1,0 +1,44 @@
+// The plan of one write request: what is to be asked of the axis, after role, addresses and values were checked in that
+// order (design 3.3, "Writes" and "Roles"). Promises that a refused request has changed nothing, not even the memory of
+// edges. Never asks anything of an axis itself: WriteRun carries the plan out.
+#pragma once
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "gateway/image/command_port.hpp"
+#include "gateway/upstream/modbus_tcp/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/pdu.hpp"
+#include "gateway/upstream/modbus_tcp/row_values.hpp"
+#include "gateway/upstream/modbus_tcp/unit_view.hpp"
+
+namespace axisgate::modbus_tcp {
+
+/// One request writes to one axis at most: offsets 90 to 99 of a block, and coils 16 to 99, take no write.
+struct WritePlan {
+  AxisNumber axis = 0;          ///< 0: nothing is asked of an axis (gateway register 8)
+  std::vector<Group> groups;    ///< one after another; more than one only where several coils act at once
+  Errc afterwards = Errc::ok;   ///< how the request ends when all groups are done: starts that its own stop has dropped
+  std::optional<Group> object;  ///< the mailbox's request, after the groups; not waited for
+};
+
+/// `client` is the one that writes: what is its own is stored there. Errors: role_forbidden, not_supported, bad_value
+/// and, for a second mailbox request, busy.
+using Planned = std::variant<WritePlan, Errc>;
+[[nodiscard]] Planned plan_write(const Request& request, const UnitView& view, const Onlooker& onlooker,
+                                 Client& client);
+
+// The two halves of it, by what is written.
+[[nodiscard]] Planned plan_register_write(const Request& request, const UnitView& view, const Onlooker& onlooker,
+                                          Client& client);
+[[nodiscard]] Planned plan_coil_write(const Request& request, const UnitView& view, const Onlooker& onlooker,
+                                      Client& client);
+
+/// The request is a single write that is a stop whatever was written before: it starts ahead of a request that has to
+/// wait.
+[[nodiscard]] bool asks_for_a_stop(const Request& request, const UnitView& view, const ProcessImage& image);
+/// The axis a write is addressed to, for its result registers; 0 where it is none.
+[[nodiscard]] AxisNumber axis_of_write(const Request& request, const UnitView& view, const ProcessImage& image);
+
+}  // namespace axisgate::modbus_tcp

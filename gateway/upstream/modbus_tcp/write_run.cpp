@@ -1,0 +1,124 @@
+#include "gateway/upstream/modbus_tcp/write_run.hpp"
+
+#include <utility>
+
+namespace axisgate::modbus_tcp {
+namespace {
+
+/// The axis is as it was before the press: pressing again is a new press, not the same one twice. After an unknown
+/// outcome the drive may have acted, so there a repetition within rearm_ms stays one press.
+bool did_nothing(Errc code) {
+  return code != Errc::ok && code != Errc::stopped_by_other && code != Errc::not_reached &&
+         command_result(code) != CommandResult::outcome_unknown;
+}
+
+/// For register 88: the drive's code, or the exception that says why there is none.
+std::uint32_t object_detail(const Outcome& outcome) {
+  if (outcome.code == Errc::ok) return 0;
+  return outcome.detail != 0 ? outcome.detail : static_cast<std::uint32_t>(modbus_exception(outcome.code));
+}
+
+}  // namespace
+
+WriteRun::WriteRun(CommandPort& commands, const std::shared_ptr<Client>& client, WritePlan plan, Instant now,
+                   const ListenerSettings& settings)
+    : commands_(commands), client_(client), plan_(std::move(plan)), began_(now) {
+  const auto set_deadlines = [&](Group& group) {
+    group.start_by = now + settings.start_deadline;
+    group.answer_by = now + settings.reply_deadline;
+  };
+  for (Group& group : plan_.groups) set_deadlines(group);
+  if (plan_.object) set_deadlines(*plan_.object);
+}
+
+ClientAxis* WriteRun::own() const {
+  const std::shared_ptr<Client> client = client_.lock();
+  return client == nullptr ? nullptr : &client->at(plan_.axis);
+}
+
+std::optional<Outcome> WriteRun::start(OnDone on_done) {
+  on_done_ = std::move(on_done);
+  return carry_on();
+}
+
+void WriteRun::abandon() {
+  abandoned_ = true;
+  on_done_ = nullptr;
+}
+
+std::optional<Outcome> WriteRun::carry_on() {
+  while (next_ < plan_.groups.size()) {
+    const Group& group = plan_.groups[next_++];
+    const std::uint64_t submission = begin(group.command_id);
+    // The callback holds the run: results are recorded even when the session that began it is gone.
+    const auto at_once = commands_.submit(
+        plan_.axis, group,
+        [self = shared_from_this(), submission](const GroupResult& result) { self->on_result(submission, result); });
+    if (!at_once) return std::nullopt;
+    settle(submission, at_once->outcome);
+    if (at_once->outcome.code != Errc::ok) return end(at_once->outcome);
+  }
+  if (plan_.afterwards != Errc::ok) {
+    const Outcome dropped{plan_.afterwards, 0};
+    settle(begin(0), dropped);
+    return end(dropped);
+  }
+  return submit_object();
+}
+
+void WriteRun::on_result(std::uint64_t submission, const GroupResult& result) {
+  settle(submission, result.outcome);
+  std::optional<Outcome> outcome;
+  if (result.outcome.code != Errc::ok || abandoned_) {
+    outcome = end(result.outcome);
+  } else {
+    outcome = carry_on();
+  }
+  // Moved out first: whoever is told may let go of this run.
+  if (outcome && on_done_) std::exchange(on_done_, nullptr)(*outcome);
+}
+
+std::uint64_t WriteRun::begin(std::uint16_t command_id) {
+  ClientAxis* const axis = own();
+  if (axis == nullptr) return 0;
+  axis->used = true;
+  axis->result = {CommandResult::pending, 0, command_id};
+  return ++axis->submission;
+}
+
+void WriteRun::settle(std::uint64_t submission, const Outcome& outcome) {
+  ClientAxis* const axis = own();
+  if (axis == nullptr) return;
+  if (did_nothing(outcome.code)) axis->edges.forget_presses(began_);
+  if (axis->submission != submission) return;
+  axis->result.result = command_result(outcome.code);
+  axis->result.detail = outcome.detail;
+}
+
+Outcome WriteRun::submit_object() {
+  if (!plan_.object) return {};
+  const auto at_once =
+      commands_.submit(plan_.axis, *plan_.object,
+                       [self = shared_from_this()](const GroupResult& result) { self->settle_object(result); });
+  if (!at_once) return {};  // "writing 80 returns at once and 86 tells the rest"
+  settle_object(*at_once);
+  return at_once->outcome;
+}
+
+void WriteRun::settle_object(const GroupResult& result) {
+  ClientAxis* const axis = own();
+  if (axis == nullptr) return;
+  Mailbox& box = axis->mailbox;
+  const bool done = result.outcome.code == Errc::ok;
+  box.status = done ? ObjectStatus::done : ObjectStatus::failed;
+  box.detail = object_detail(result.outcome);
+  if (done && plan_.object->object && !plan_.object->object->write) box.data = result.object_data;
+}
+
+/// The mailbox was promised an end when the request was taken; a failure before its turn is that end.
+Outcome WriteRun::end(const Outcome& outcome) {
+  if (plan_.object) settle_object({outcome, 0, 0});
+  return outcome;
+}
+
+}  // namespace axisgate::modbus_tcp

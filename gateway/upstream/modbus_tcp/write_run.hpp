@@ -1,0 +1,49 @@
+// One write request on its way through the command port: its groups one after another, then the mailbox.
+// Promises one outcome, the first failure's or `ok`, and that the client's result registers follow every group, also
+// when its connection has gone meanwhile. Never repeats anything.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "gateway/image/command_port.hpp"
+#include "gateway/upstream/modbus_tcp/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/write_plan.hpp"
+
+namespace axisgate::modbus_tcp {
+
+class WriteRun : public std::enable_shared_from_this<WriteRun> {
+ public:
+  using OnDone = std::function<void(const Outcome&)>;
+
+  /// The deadlines hold for the request as a whole (start_deadline_ms, reply_deadline_ms).
+  WriteRun(CommandPort& commands, const std::shared_ptr<Client>& client, WritePlan plan, Instant now,
+           const ListenerSettings& settings);
+
+  /// With a value: that is the end, and `on_done` is never called. Without: it is called once, later.
+  [[nodiscard]] std::optional<Outcome> start(OnDone on_done);
+  /// Nobody waits any longer: what was submitted goes on, nothing more is submitted.
+  void abandon();
+
+ private:
+  [[nodiscard]] std::optional<Outcome> carry_on();
+  void on_result(std::uint64_t submission, const GroupResult& result);
+  /// The client's result reads "pending"; gives the number by which settle() knows whether it is still the newest.
+  std::uint64_t begin(std::uint16_t command_id);
+  void settle(std::uint64_t submission, const Outcome& outcome);
+  [[nodiscard]] Outcome submit_object();
+  void settle_object(const GroupResult& result);
+  [[nodiscard]] Outcome end(const Outcome& outcome);
+  [[nodiscard]] ClientAxis* own() const;
+
+  CommandPort& commands_;
+  std::weak_ptr<Client> client_;
+  WritePlan plan_;
+  Instant began_;
+  std::size_t next_ = 0;
+  bool abandoned_ = false;
+  OnDone on_done_;
+};
+
+}  // namespace axisgate::modbus_tcp

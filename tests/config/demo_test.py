@@ -1,0 +1,153 @@
+#!/usr/bin/python3
+"""deploy/demo as a user has it: what it shows is true, what it prints can be typed, and however it ends nothing is left behind.
+
+usage: demo_test.py SOURCE_FOLDER BUILD_FOLDER
+"""
+import os
+import pty
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+SOURCE, BUILD = (os.path.abspath(folder) for folder in sys.argv[1:3])
+LONGEST = 60
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def processes_in(folder):
+    """Processes whose current folder is in `folder`, as all of the demo's are."""
+    found = []
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            if os.readlink(f"/proc/{pid}/cwd").startswith(folder):
+                found.append(int(pid))
+        except OSError:
+            continue
+    return found
+
+
+def until(what, condition):
+    deadline = time.monotonic() + LONGEST
+    while time.monotonic() < deadline:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.05)
+    raise AssertionError(f"{what}: not within {LONGEST} s")
+
+
+class Demo(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.port = free_port()
+        self.environment = {**os.environ, "TMPDIR": self.folder.name, "TERM": "xterm"}
+
+    def command(self, *options):
+        return [f"{SOURCE}/deploy/demo", "--built", BUILD, "--port", str(self.port), *options]
+
+    def start_on_terminal(self, *options):
+        """Its pid and the other end of its terminal."""
+        pid, terminal = pty.fork()
+        if pid == 0:
+            os.execve(f"{SOURCE}/deploy/demo", self.command(*options), self.environment)
+        os.set_blocking(terminal, False)
+        return pid, terminal
+
+    def read(self, terminal, so_far):
+        try:
+            so_far.append(os.read(terminal, 65536).decode(errors="replace"))
+        except (BlockingIOError, OSError):
+            pass
+        return "".join(so_far)
+
+    def wait_for_table(self, terminal):
+        screen = []
+        return until("a table", lambda: (text := self.read(terminal, screen)) and "axes online 2 of 2" in text and text)
+
+    def ended(self, pid, terminal=None):
+        def look():
+            if terminal is not None:
+                self.read(terminal, [])  # a full terminal would hold it up
+            done, status = os.waitpid(pid, os.WNOHANG)
+            return (status,) if done else None
+
+        return os.waitstatus_to_exitcode(until("its end", look)[0])
+
+    def assert_nothing_left(self):
+        until("no process left", lambda: not processes_in(self.folder.name))
+        self.assertEqual(os.listdir(self.folder.name), [])
+
+    def test_without_a_terminal_it_prints_tables_and_ends_by_itself(self):
+        ended = subprocess.run(self.command("--seconds", "5"), env=self.environment, stdin=subprocess.DEVNULL, capture_output=True,
+                               text=True, timeout=LONGEST, check=False)
+        self.assertEqual(ended.returncode, 0, ended.stderr + ended.stdout)
+        self.assertGreaterEqual(ended.stdout.count("axes online 2 of 2"), 3)
+        positions = set(re.findall(r"^ +1 .*?profile position +(-?\d+)", ended.stdout, re.M))
+        self.assertGreaterEqual(len(positions), 2, "axis 1 does not move:\n" + ended.stdout)
+        self.assert_nothing_left()
+
+    def test_what_it_prints_can_be_typed(self):
+        pid, terminal = self.start_on_terminal("--no-move")
+        screen = self.wait_for_table(terminal)
+        lines = dict(re.findall(r"^  (\S.*?)  +(mbpoll [^\r\n\x1b]*)", screen, re.M))
+        self.assertEqual(sorted(lines), ["enable axis 2", "its target, 5 turns", "read axis 1's position", "start the move"])
+        for line in ("read axis 1's position", "enable axis 2", "its target, 5 turns", "start the move"):
+            typed = subprocess.run(lines[line].split(), capture_output=True, text=True, timeout=LONGEST, check=False)
+            self.assertEqual(typed.returncode, 0, f"{lines[line]}\n{typed.stdout}{typed.stderr}")
+        position = lines["read axis 1's position"].replace("-r 102", "-q -r 202").split()
+
+        def arrived():
+            self.read(terminal, [])
+            return "50000" in subprocess.run(position, capture_output=True, text=True, timeout=LONGEST, check=False).stdout
+
+        until("axis 2 at its target", arrived)
+        os.write(terminal, b"\x03")
+        self.assertEqual(self.ended(pid, terminal), 0)
+        self.assert_nothing_left()
+        os.close(terminal)
+
+    def test_ctrl_c_leaves_nothing_behind(self):
+        pid, terminal = self.start_on_terminal()
+        self.wait_for_table(terminal)
+        os.write(terminal, b"\x03")
+        self.assertEqual(self.ended(pid, terminal), 0)
+        self.assert_nothing_left()
+        os.close(terminal)
+
+    def test_closing_the_terminal_leaves_nothing_behind(self):
+        pid, terminal = self.start_on_terminal()
+        self.wait_for_table(terminal)
+        os.close(terminal)
+        self.ended(pid)
+        self.assert_nothing_left()
+
+    def test_being_terminated_leaves_nothing_behind(self):
+        pid, terminal = self.start_on_terminal()
+        self.wait_for_table(terminal)
+        os.kill(pid, signal.SIGTERM)
+        self.assertEqual(self.ended(pid, terminal), 128 + signal.SIGTERM)
+        self.assert_nothing_left()
+        os.close(terminal)
+
+    def test_a_taken_port_is_named(self):
+        with socket.create_server(("127.0.0.1", self.port)):
+            ended = subprocess.run(self.command("--seconds", "1"), env=self.environment, stdin=subprocess.DEVNULL,
+                                   capture_output=True, text=True, timeout=LONGEST, check=False)
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn(f"port {self.port} is taken", ended.stderr)
+        self.assert_nothing_left()
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

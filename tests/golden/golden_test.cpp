@@ -1,0 +1,105 @@
+// Stories told once and kept: the text that a story makes must equal its file. Run with AXISGATE_WRITE_GOLDEN=1 to write the
+// files anew; read the difference before committing it.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "tests/golden/recorder.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using namespace std::chrono_literals;
+using simulated::DriveFault;
+using simulated::KincoType;
+
+void compare(const Recorder& recorder, const std::string& name) {
+  const std::string path = std::string(AXISGATE_SOURCE_DIR "/tests/golden/") + name + ".txt";
+  if (std::getenv("AXISGATE_WRITE_GOLDEN") != nullptr) std::ofstream(path) << recorder.text();
+  std::ifstream file(path);
+  std::ostringstream expected;
+  expected << file.rdbuf();
+  EXPECT_EQ(recorder.text(), expected.str()) << "the story in " << path << " is told differently now";
+}
+
+TEST(Golden, JdComesUp) {
+  Recorder story(KincoType::jd, true);
+  story.read(0, 39);
+  compare(story, "kinco-jd.bring-up");
+}
+
+TEST(Golden, JdIsEnabledMovesAndIsDisabled) {
+  Recorder story(KincoType::jd, false);
+  story.say("commands with a command_id: 0 first, then counted on");
+  story.write(54, {0, 0});
+  story.write(54, {1, 1});
+  story.say("target 20000 units and 600 rpm in one block with move_absolute");
+  story.write(42, {0, 20000});
+  story.write(48, {9, 10176});
+  story.write(54, {6, 2});
+  story.run(600ms);
+  story.write(54, {2, 3});
+  story.read(25, 14);
+  compare(story, "kinco-jd.move");
+}
+
+TEST(Golden, JdIsStoppedQuicklyAndLatched) {
+  Recorder story(KincoType::jd, false);
+  story.write(54, {1});
+  story.write(44, {1, 0x86A0});
+  story.write(54, {8});
+  story.coil(2, true);
+  story.say("latched: a start is refused until it is enabled anew");
+  story.write(54, {6});
+  story.coil(0, true);
+  compare(story, "kinco-jd.quick-stop");
+}
+
+TEST(Golden, MdHaltsAndNothingResumes) {
+  Recorder story(KincoType::md, false);
+  story.write(54, {1});
+  story.write(44, {1, 0x86A0});
+  story.write(54, {8});
+  story.coil(3, true);
+  story.coil(3, false);
+  story.write(54, {2});
+  compare(story, "kinco-md.halt");
+}
+
+TEST(Golden, AReplyThatIsLateIsNeverTakenForAnother) {
+  Recorder story(KincoType::jd, false);
+  story.say("the reply to the next request comes 150 ms late, after the timeout of 100 ms");
+  story.faults().late_by = 150ms;
+  story.faults().next(DriveFault::late);
+  story.write(48, {0, 1000});
+  story.run(300ms);
+  story.read(18, 1);
+  compare(story, "kinco-jd.late-reply");
+}
+
+TEST(Golden, ACableThatIsPulledAndPluggedBack) {
+  Recorder story(KincoType::jd, false);
+  story.say("the cable is pulled");
+  story.stage().link(0).unplug();
+  story.run(10ms);
+  story.write(54, {1});
+  story.say("and plugged back");
+  story.stage().link(0).plug();
+  story.run(2s);
+  story.read(18, 1);
+  compare(story, "kinco-jd.cable");
+}
+
+TEST(Golden, ADriveThatRefuses) {
+  Recorder story(KincoType::md, false);
+  story.say("an object that the drive does not have, through the object mailbox");
+  story.write(80, {1, 0x5FFF, 0, 2});
+  story.run(50ms);
+  story.read(80, 10);
+  compare(story, "kinco-md.refusal");
+}
+
+}  // namespace
+}  // namespace axisgate::test

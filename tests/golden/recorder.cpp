@@ -1,0 +1,137 @@
+#include "tests/golden/recorder.hpp"
+
+#include <array>
+#include <cstdio>
+
+namespace axisgate::test {
+namespace {
+
+GatewayStage::Line staged(simulated::KincoType type) {
+  GatewayStage::Line line = line_of(type, 1);
+  line.options.baud = 38400;
+  line.options.reply_delay = std::chrono::milliseconds(2);
+  line.poll = {std::chrono::milliseconds(100), std::chrono::hours(1), std::chrono::hours(1)};
+  return line;
+}
+
+std::string number_text(const char* format, std::int64_t number) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, static_cast<long long>(number));
+  return buffer.data();
+}
+
+}  // namespace
+
+Recorder::Recorder(simulated::KincoType type, bool bring_up)
+    : stage_({staged(type)}), began_(stage_.runtime().now()), recording_(bring_up) {
+  const modbus_tcp::SessionContext context{settings_, stage_.gateway().image(), stage_.gateway(), registry_, quiet_,
+                                           &stage_.runtime()};
+  modbus_tcp::Peer peer;
+  peer.role = Role::engineer;
+  session_ = std::make_unique<modbus_tcp::Session>(context, peer, stage_.runtime().now(), [] {});
+  stage_.link(0).on_traffic = [this](bool to_drive, Bytes bytes) {
+    line(to_drive ? "bus    ->" : "bus    <-", hex_text(bytes));
+  };
+  while (stage_.axis(1).link_state != LinkState::online) step();
+  began_ = stage_.runtime().now();
+  if (!recording_) show_image();  // remembers, without a word
+  recording_ = true;
+}
+
+void Recorder::line(const std::string& who, const std::string& what) {
+  if (!recording_) return;
+  const auto us = std::chrono::duration_cast<std::chrono::microseconds>(stage_.runtime().now() - began_).count();
+  std::array<char, 32> time{};
+  std::snprintf(time.data(), time.size(), "%9.3f ms  ", static_cast<double>(us) / 1000.0);
+  text_ += time.data() + who + " " + what + "\n";
+}
+
+void Recorder::say(const std::string& text) { text_ += "# " + text + "\n"; }
+
+// What a client would notice of the axis, by name; only what has changed is told.
+void Recorder::show_image() {
+  const AxisImage& axis = stage_.axis(1);
+  std::map<std::string, std::string> now;
+  now["link_state"] = text(axis.link_state);
+  now["axis_state"] = text(axis.axis_state);
+  now["motion_state"] = number_text("%lld", static_cast<int>(axis.motion_state));
+  now["alarms"] = number_text("0x%llX", axis.alarms);
+  now["inputs"] = number_text("0x%04llX", axis.inputs);
+  for (const QuantityRow& row : quantity_table()) {
+    const Sample& sample = axis[row.quantity];
+    if (!sample.received) continue;
+    const bool word = row.quantity == Quantity::statusword || row.quantity == Quantity::controlword;
+    now[std::string(row.name)] = number_text(word ? "0x%04llX" : "%lld", sample.value) + (sample.valid ? "" : " (not valid)");
+  }
+  for (const auto& [name, value] : now) {
+    if (shown_[name] == value) continue;
+    line("image    ", name + " = " + value);
+    shown_[name] = value;
+  }
+}
+
+void Recorder::step() {
+  stage_.runtime().advance_by(std::chrono::microseconds(100));
+  if (recording_) show_image();
+}
+
+void Recorder::take_output() {
+  while (!session_->output().empty()) {
+    const Bytes out = session_->output();
+    const std::vector<Byte> reply(out.begin(), out.end());
+    session_->take_output(reply.size(), stage_.runtime().now());
+    line("modbus <-", hex_text(reply));
+    ++replies_;
+  }
+}
+
+void Recorder::send(std::vector<Byte> pdu, const std::string& meaning) {
+  say(meaning);
+  std::vector<Byte> adu(7);
+  store_be16(adu, 0, ++transaction_);
+  store_be16(adu, 4, static_cast<std::uint16_t>(pdu.size() + 1));
+  adu[6] = 1;
+  adu.insert(adu.end(), pdu.begin(), pdu.end());
+  line("modbus ->", hex_text(adu));
+  const std::size_t before = replies_;
+  session_->on_bytes(adu, stage_.runtime().now());
+  take_output();
+  while (replies_ == before) {
+    step();
+    take_output();
+  }
+}
+
+void Recorder::write(std::uint16_t offset, const std::vector<std::uint16_t>& registers) {
+  std::vector<Byte> pdu(6 + 2 * registers.size());
+  pdu[0] = 16;
+  store_be16(pdu, 1, static_cast<std::uint16_t>(100 + offset));
+  store_be16(pdu, 3, static_cast<std::uint16_t>(registers.size()));
+  pdu[5] = static_cast<Byte>(2 * registers.size());
+  std::string values;
+  for (std::size_t i = 0; i < registers.size(); ++i) {
+    store_be16(pdu, 6 + 2 * i, registers[i]);
+    values += " " + std::to_string(registers[i]);
+  }
+  send(std::move(pdu), "the PLC writes registers from " + std::to_string(100 + offset) + ":" + values);
+}
+
+void Recorder::coil(std::uint16_t number, bool on) {
+  std::vector<Byte> pdu{5, 0, static_cast<Byte>(100 + number), static_cast<Byte>(on ? 0xFF : 0), 0};
+  send(std::move(pdu), "the panel sets coil " + std::to_string(100 + number) + (on ? " to 1" : " to 0"));
+}
+
+void Recorder::read(std::uint16_t offset, std::uint16_t count) {
+  std::vector<Byte> pdu(5);
+  pdu[0] = 3;
+  store_be16(pdu, 1, static_cast<std::uint16_t>(100 + offset));
+  store_be16(pdu, 3, count);
+  send(std::move(pdu), "the PLC reads " + std::to_string(count) + " registers from " + std::to_string(100 + offset));
+}
+
+void Recorder::run(Duration time) {
+  const Instant end = stage_.runtime().now() + time;
+  while (stage_.runtime().now() < end) step();
+}
+
+}  // namespace axisgate::test

@@ -1,0 +1,53 @@
+// Writes down one story from the bus bytes to the Modbus frames: virtual time, what went over the cable, what the image showed,
+// what the client asked and was answered. Promises the same text for the same story, and that polling does not drown it: only
+// class fast is polled, each 100 ms. Never judges: the text is compared with the file of the story.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gateway/upstream/modbus_tcp/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/session.hpp"
+#include "tests/stage/gateway_stage.hpp"
+
+namespace axisgate::test {
+
+class Recorder {
+ public:
+  /// One drive of this type on one line, axis 1. `bring_up`: whether the bring-up is part of the story.
+  Recorder(simulated::KincoType type, bool bring_up);
+
+  /// A remark of the teller, as a line of its own.
+  void say(const std::string& text);
+  /// FC 16 at `100 + offset`; runs until the reply is there.
+  void write(std::uint16_t offset, const std::vector<std::uint16_t>& registers);
+  void coil(std::uint16_t number, bool on);
+  void read(std::uint16_t offset, std::uint16_t count);
+  void run(Duration time);
+  [[nodiscard]] GatewayStage& stage() { return stage_; }
+  [[nodiscard]] simulated::DriveFaults& faults() { return stage_.link(0).line().faults(0); }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  void line(const std::string& who, const std::string& what);
+  void send(std::vector<Byte> pdu, const std::string& meaning);
+  void take_output();
+  void step();
+  void show_image();
+
+  GatewayStage stage_;
+  modbus_tcp::ListenerSettings settings_;
+  modbus_tcp::ClientRegistry registry_;
+  Log quiet_;
+  std::unique_ptr<modbus_tcp::Session> session_;
+  std::string text_;
+  Instant began_;
+  bool recording_ = false;
+  std::uint16_t transaction_ = 0;
+  std::size_t replies_ = 0;
+  std::map<std::string, std::string> shown_;
+};
+
+}  // namespace axisgate::test

@@ -1,0 +1,50 @@
+// Whatever stands in a profile, reading it ends in faults or in a profile: never in an exception or a crash.
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "gateway/drive/json_schema.hpp"
+#include "tests/profiles/resolving.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+using nlohmann::json;
+
+/// Every place of the document, the root first.
+void places(const json& node, const json::json_pointer& here, std::vector<json::json_pointer>& out) {
+  out.push_back(here);
+  if (node.is_object())
+    for (const auto& [key, value] : node.items()) places(value, here / key, out);
+  if (node.is_array())
+    for (std::size_t i = 0; i < node.size(); ++i) places(node[i], here / i, out);
+}
+
+void read_with(json document, const json::json_pointer& place, const json& value, const std::string& file) {
+  document[place] = value;
+  std::ofstream(file) << document;
+  const LoadedProfile loaded = load_profile(file);
+  if (loaded.faults.empty()) {
+    static_cast<void>(resolve(loaded, one_axis()));
+    return;
+  }
+  for (const Fault& fault : loaded.faults) EXPECT_FALSE(fault.message.empty());
+}
+
+TEST(AnyValue, AtAnyPlaceOfAProfileNeverThrows) {
+  std::ifstream original(valid_file("minimal"));
+  const json document = json::parse(original);
+  std::vector<json::json_pointer> all;
+  places(document, json::json_pointer(), all);
+  EXPECT_GE(all.size(), 150U);
+  const std::string file = std::filesystem::path(AXISGATE_BINARY_DIR) / "any-value" / "minimal.json";
+  std::filesystem::create_directories(std::filesystem::path(file).parent_path());
+  const std::vector<json> values{nullptr, -1, "0x1FFFFFFFF", "A.x", json::array({1}), json::object({{"object", 7}})};
+  for (const json::json_pointer& place : all)
+    for (const json& value : values)
+      ASSERT_NO_THROW(read_with(document, place, value, file)) << place << " = " << value;
+  std::filesystem::remove_all(std::filesystem::path(file).parent_path());
+}
+
+}  // namespace
+}  // namespace axisgate::drive

@@ -1,0 +1,101 @@
+#include "gateway/drive/json_schema.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+namespace axisgate::drive {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+json schema() {
+  return json::parse(R"({
+    "type": "object", "additionalProperties": false, "required": ["name"],
+    "definitions": {"entry": {"type": "object", "required": ["size"], "additionalProperties": false,
+                              "properties": {"size": {"type": "integer", "minimum": 1, "maximum": 4}}}},
+    "properties": {
+      "name": {"type": "string", "pattern": "^[a-z]+$", "expects": "a name of small letters"},
+      "class": {"enum": ["fast", "slow"]},
+      "entries": {"type": "array", "maxItems": 2, "items": {"$ref": "#/definitions/entry"}},
+      "a/b": {"type": "boolean"}
+    }})");
+}
+
+std::vector<SchemaFault> faults(const char* document) { return validate(json::parse(document), schema()); }
+
+TEST(JsonSchema, ADocumentThatFitsHasNoFaults) {
+  EXPECT_THAT(faults(R"({"name": "x", "class": "fast", "entries": [{"size": 4}], "a/b": true})"), IsEmpty());
+}
+
+TEST(JsonSchema, EveryFaultIsToldOnceWithoutItsParents) {
+  EXPECT_THAT(
+      faults(R"({"name": "X1", "class": "fats", "entries": [{"size": 5}, {"size": "1"}], "a/b": 0})"),
+      testing::UnorderedElementsAre(SchemaFault{"/name", "\"X1\" is not a name of small letters"},
+                                    SchemaFault{"/class", "\"fats\" is none of: fast, slow; did you mean \"fast\"?"},
+                                    SchemaFault{"/entries/0/size", "must be at most 4, is 5"},
+                                    SchemaFault{"/entries/1/size", "must be integer, is string"},
+                                    SchemaFault{"/a~1b", "must be boolean, is number"}));
+}
+
+TEST(JsonSchema, MissingAndUnknownKeysAreNamedAllOfThem) {
+  EXPECT_THAT(
+      faults(R"({"entires": [], "clas": "fast"})"),
+      testing::UnorderedElementsAre(SchemaFault{"", "key \"name\" is missing"},
+                                    SchemaFault{"/clas", "unknown key \"clas\"; did you mean \"class\"?"},
+                                    SchemaFault{"/entires", "unknown key \"entires\"; did you mean \"entries\"?"}));
+}
+
+TEST(JsonSchema, AListThatIsTooLongIsAFault) {
+  EXPECT_THAT(faults(R"({"name": "x", "entries": [{"size": 1}, {"size": 1}, {"size": 1}]})"),
+              ElementsAre(SchemaFault{"/entries", "must have at most 2 entries, has 3"}));
+}
+
+TEST(JsonSchema, ADocumentOfAnotherKindIsAFault) {
+  EXPECT_THAT(faults("[1]"), ElementsAre(SchemaFault{"", "must be object, is array"}));
+}
+
+TEST(JsonSchema, NamesFarFromEveryKnownOneSuggestNothing) {
+  EXPECT_EQ(nearest("velocity", {"statusword", "mode"}), std::nullopt);
+  EXPECT_EQ(nearest("velocty", {"statusword", "velocity"}), "velocity");
+}
+
+std::string refusal(std::string_view text) {
+  const auto parsed = parse_json(text);
+  const auto* fault = std::get_if<SchemaFault>(&parsed);
+  return fault == nullptr ? "accepted" : fault->message;
+}
+
+TEST(JsonFile, CommentsAreAllowed) { EXPECT_EQ(refusal("{ // why\n \"a\": 1 /* what */ }"), "accepted"); }
+
+TEST(JsonFile, ASyntaxErrorTellsLineAndColumn) {
+  EXPECT_EQ(refusal("{\n  \"a\": 1,\n  b\n}").substr(0, 18), "line 3, column 3: ");
+}
+
+TEST(JsonFile, AKeyTwiceIsRefusedAndItsPlaceTold) {
+  EXPECT_EQ(refusal(R"({"a": {"b": {"c": 1, "d": {}, "c": 2}}})"), "key \"c\" is given twice under /a/b");
+  EXPECT_EQ(refusal(R"({"a": {"c": 1}, "b": {"c": 2}})"), "accepted");
+}
+
+TEST(JsonFile, DepthAndTextsAreBounded) {
+  EXPECT_EQ(refusal(std::string(100, '[') + std::string(100, ']')), "nested more than 32 levels deep");
+  EXPECT_EQ(refusal("\"" + std::string(5000, 'x') + "\""), "a text of more than 4096 characters");
+}
+
+TEST(JsonFile, AMillionOpenBracketsAreOnlyASyntaxError) {
+  EXPECT_NE(refusal(std::string(1000000, '[')).find("line 1"), std::string::npos);
+}
+
+TEST(JsonFile, NumbersAreExactAsWritten) {
+  EXPECT_EQ(rational_of(json::parse("27.5")), Rational(55, 2));
+  EXPECT_EQ(rational_of(json::parse("0.1")), Rational(1, 10));
+  EXPECT_EQ(rational_of(json::parse("\"1.414\"")), Rational(1414, 1000));
+  EXPECT_EQ(rational_of(json::parse("65536")), Rational(65536));
+  EXPECT_EQ(rational_of(json::parse("\"ten\"")), std::nullopt);
+  EXPECT_EQ(rational_of(json::parse("true")), std::nullopt);
+}
+
+}  // namespace
+}  // namespace axisgate::drive

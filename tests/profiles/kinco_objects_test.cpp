@@ -1,0 +1,98 @@
+// The shipped Kinco profiles against the manuals' object tables: no address, width, sign or access may be mistyped.
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tests/profiles/resolving.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+using nlohmann::json;
+
+json vectors(const std::string& drive) {
+  std::ifstream file(AXISGATE_SOURCE_DIR "/tests/vectors/" + drive + ".json");
+  return json::parse(file);
+}
+
+std::int64_t hex(const json& text) { return std::stoll(text.get<std::string>(), nullptr, 16); }
+
+/// The manual's row of each index and sub-index.
+std::map<bus::ObjectAddress, json> rows_of(const std::string& drive) {
+  std::map<bus::ObjectAddress, json> out;
+  const json objects = vectors(drive)["objects"];
+  for (const json& row : objects) {
+    if (row["sub"].is_null()) continue;
+    const std::int64_t sub = row["sub"].is_string() ? hex(row["sub"]) : row["sub"].get<std::int64_t>();
+    out[{static_cast<std::uint16_t>(hex(row["index"])), static_cast<std::uint8_t>(sub)}] = row;
+  }
+  return out;
+}
+
+void check_row(const Object& object, const json& row) {
+  SCOPED_TRACE(object.name);
+  if (row["bits"].is_number()) {
+    EXPECT_EQ(object.type.size * 8, row["bits"].get<int>());
+  }
+  const std::string type = row["type"].is_string() ? row["type"].get<std::string>() : "";
+  if (!type.ends_with('?') && (type.starts_with("int") || type.starts_with("uint"))) {
+    EXPECT_EQ(object.type.is_signed, type.starts_with("int")) << type;
+  }
+  const std::string access = row["access"].is_string() ? row["access"].get<std::string>() : "";
+  if (access.starts_with("RO") || (access.starts_with("R") && access.find('W') == std::string::npos)) {
+    EXPECT_FALSE(object.writable) << access;
+  } else if (access.starts_with("RW")) {
+    EXPECT_TRUE(object.readable && object.writable) << access;
+  }
+}
+
+void check_register(const Object& object, const json& row) {
+  SCOPED_TRACE(object.name);
+  const auto place = object.places.find("modbus-rtu");
+  const bool known =
+      row.contains("modbus") && row["modbus"].is_string() && row["modbus"].get<std::string>().starts_with("0x");
+  if (place == object.places.end()) {
+    EXPECT_FALSE(known && row["modbus_origin"] == "printed") << "the manual prints a register: " << row["modbus"];
+    return;
+  }
+  ASSERT_TRUE(known) << "no register in the manual";
+  EXPECT_EQ(place->second.address.index, hex(row["modbus"]));
+  EXPECT_EQ(place->second.derived, row["modbus_origin"] != "printed");
+}
+
+void check_profile(const std::string& drive, std::size_t at_least) {
+  const LoadedProfile loaded = load_profile(shipped(drive));
+  const auto rows = rows_of(drive);
+  EXPECT_GE(loaded.profile.objects.size(), at_least);
+  for (const Object& object : loaded.profile.objects) {
+    const auto serial = object.places.find("kinco-serial");
+    const auto can = object.places.find("canopen");
+    ASSERT_NE(can, object.places.end()) << object.name;
+    const auto row = rows.find(can->second.address);
+    ASSERT_NE(row, rows.end()) << object.name << " is at an address that the manual does not have";
+    check_row(object, row->second);
+    if (serial == object.places.end()) continue;  // a CANopen communication object
+    EXPECT_EQ(serial->second.address, can->second.address) << object.name;
+    check_register(object, row->second);
+  }
+}
+
+TEST(KincoJd, EveryObjectIsWhereAndAsTheManualSays) { check_profile("kinco-jd", 40); }
+TEST(KincoMd, EveryObjectIsWhereAndAsTheManualSays) { check_profile("kinco-md", 35); }
+
+TEST(KincoJd, EachBitOfTheFirstFaultWordHasItsCode) {
+  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
+  EXPECT_EQ(model.alarms.size(), 16U);
+  for (const AlarmRow& row : model.alarms) EXPECT_NE(row.code, 0) << row.text;
+  EXPECT_EQ(model.alarms.back().bit, 0) << "the vaguest fault speaks last";
+}
+
+TEST(KincoMd, TheSecondFaultWordSpeaksBeforeTheBitThatPointsToIt) {
+  const DriveModel model = resolved(shipped("kinco-md"), kinco_axis());
+  EXPECT_EQ(model.alarms.size(), 27U);
+  EXPECT_EQ(model.alarms.back().word, 0);
+  EXPECT_EQ(model.alarms.back().bit, 0);
+}
+
+}  // namespace
+}  // namespace axisgate::drive

@@ -1,0 +1,114 @@
+// The model's own arithmetic: numbers of an object, one rounding, conditions.
+#include "gateway/drive/model.hpp"
+
+#include <gtest/gtest.h>
+
+namespace axisgate::drive {
+namespace {
+
+ObjectDef object(std::uint8_t size, bool is_signed) {
+  ObjectDef out;
+  out.size = size;
+  out.is_signed = is_signed;
+  return out;
+}
+
+Binding scaled(Quantity quantity, Rational raw_per_unit) {
+  Binding out;
+  out.quantity = quantity;
+  out.raw_per_unit = raw_per_unit;
+  return out;
+}
+
+TEST(ObjectDef, TakesOnlyTheLowBytesOfAReplyAndTheirSign) {
+  EXPECT_EQ(object(1, true).number(0xFFFFFFFD), -3);
+  EXPECT_EQ(object(1, false).number(0xFFFFFFFD), 0xFD);
+  EXPECT_EQ(object(2, true).number(0xFFFF8000), -32768);
+  EXPECT_EQ(object(2, false).number(0xFFFFD437), 0xD437);
+  EXPECT_EQ(object(4, true).number(0xFFFF3CB0), -50000);
+  EXPECT_EQ(object(4, false).number(0xFFFFFFFF), 4294967295);
+}
+
+TEST(ObjectDef, KnowsItsRange) {
+  EXPECT_EQ(object(1, true).range(), (Range{-128, 127}));
+  EXPECT_EQ(object(2, false).range(), (Range{0, 65535}));
+  EXPECT_EQ(object(4, true).range(), (Range{-2147483648LL, 2147483647LL}));
+  EXPECT_EQ(object(4, false).range(), (Range{0, 4294967295LL}));
+}
+
+TEST(Binding, RoundsHalfAwayFromZeroOnceAtTheEnd) {
+  const Binding half = scaled(Quantity::target_velocity, Rational(1, 2));
+  EXPECT_EQ(half.to_raw(1, object(4, true)), 1);
+  EXPECT_EQ(half.to_raw(-1, object(4, true)), -1);
+  EXPECT_EQ(half.to_raw(3, object(4, true)), 2);
+  EXPECT_EQ(half.to_register(-3), -6);
+  const Binding two = scaled(Quantity::velocity_actual, Rational(2));
+  EXPECT_EQ(two.to_register(1), 1);
+  EXPECT_EQ(two.to_register(-1), -1);
+  EXPECT_EQ(two.to_register(-3), -2);
+}
+
+TEST(Binding, GivesNoValueWhereARegisterCannotShowIt) {
+  const Binding torque = scaled(Quantity::torque_actual, Rational(1, 100));
+  EXPECT_EQ(torque.to_register(327), 32700);
+  EXPECT_EQ(torque.to_register(328), std::nullopt);
+  EXPECT_EQ(torque.to_register(-328), std::nullopt);
+  // -32768 is the register's "no value" and never a number.
+  EXPECT_EQ(scaled(Quantity::torque_actual, Rational(1)).to_register(-32768), std::nullopt);
+  EXPECT_EQ(scaled(Quantity::position_actual, Rational(1)).to_register(-2147483648LL), std::nullopt);
+  EXPECT_EQ(scaled(Quantity::position_actual, Rational(1)).to_register(-2147483647LL), -2147483647LL);
+}
+
+TEST(Binding, GivesNoValueWhereTheObjectCannotTakeIt) {
+  const Binding speed = scaled(Quantity::target_velocity, Rational(1, 1000));
+  EXPECT_EQ(speed.to_raw(32767499, object(2, true)), 32767);
+  EXPECT_EQ(speed.to_raw(32767500, object(2, true)), std::nullopt);
+  EXPECT_EQ(speed.to_raw(-1000, object(2, false)), std::nullopt);
+}
+
+TEST(Binding, AnExtremeFactorNeverWraps) {
+  const Binding huge = scaled(Quantity::target_position, Rational(INT64_MAX));
+  EXPECT_EQ(huge.to_raw(3, object(4, true)), std::nullopt);
+  const Binding tiny = scaled(Quantity::position_actual, Rational(1, INT64_MAX));
+  EXPECT_EQ(tiny.to_register(2147483647), std::nullopt);
+}
+
+Condition condition(std::uint32_t mask, Condition::Test test, std::vector<std::int64_t> values) {
+  Condition out;
+  out.mask = mask;
+  out.test = test;
+  out.values = std::move(values);
+  return out;
+}
+
+TEST(Condition, ComparesMaskedBitsOrTheNumberItself) {
+  const ObjectDef word = object(2, false);
+  EXPECT_TRUE(condition(0x6F, Condition::Test::equals, {0x27}).holds(word, 0xC037));
+  EXPECT_FALSE(condition(0x6F, Condition::Test::equals, {0x27}).holds(word, 0x0250));
+  EXPECT_TRUE(condition(0x24, Condition::Test::not_equals, {0x24}).holds(word, 0x0007));
+  EXPECT_TRUE(condition(0, Condition::Test::equals, {-3}).holds(object(1, true), 0xFD));
+  EXPECT_FALSE(condition(0, Condition::Test::equals, {-3}).holds(object(1, false), 0xFD));
+}
+
+TEST(Condition, InAndNotInLookThroughTheWholeList) {
+  const ObjectDef word = object(2, false);
+  const auto blocked = condition(0x8005, Condition::Test::in, {1, 4, 5});
+  EXPECT_TRUE(blocked.holds(word, 0x0011)) << "enable together with a limit";
+  EXPECT_TRUE(blocked.holds(word, 0x0004));
+  EXPECT_FALSE(blocked.holds(word, 0x8001)) << "a speed selector, although its lowest bit is set";
+  EXPECT_TRUE(condition(0, Condition::Test::not_in, {1, 2}).holds(word, 0));
+  EXPECT_FALSE(condition(0, Condition::Test::not_in, {1, 2}).holds(word, 2));
+}
+
+TEST(DriveModel, FindsObjectsByAddress) {
+  DriveModel model;
+  model.objects.push_back(object(2, false));
+  model.objects.back().address = {0x6041, 0};
+  model.objects.push_back(object(4, true));
+  model.objects.back().address = {0x607D, 2};
+  EXPECT_EQ(model.find({0x607D, 2}), 1);
+  EXPECT_EQ(model.find({0x607D, 1}), kNoObject);
+}
+
+}  // namespace
+}  // namespace axisgate::drive

@@ -1,0 +1,63 @@
+// What must hold in every run, whatever the seed: checked after every step of the world.
+// Promises to name the first violation with the virtual time at which it was seen.
+// Never changes anything it looks at.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gateway/app/gateway.hpp"
+#include "tests/sim/modbus_client.hpp"
+#include "tests/stage/sim_link.hpp"
+
+namespace axisgate::test {
+
+/// I1 at most one exchange outstanding per bus; I5 no unique value written twice: seen on the cable.
+class CableWatch {
+ public:
+  CableWatch(SimLink& link, Runtime& runtime, Duration timeout, std::function<void(std::string)> violated);
+  [[nodiscard]] std::uint64_t hash() const { return hash_; }
+  [[nodiscard]] std::uint64_t starts() const { return starts_; }
+
+ private:
+  void to_drive(Bytes bytes);
+  void to_host(Bytes bytes);
+  [[nodiscard]] bool answered() const;
+
+  SimLink& link_;
+  Runtime& runtime_;
+  Duration timeout_;
+  std::function<void(std::string)> violated_;
+  std::vector<Byte> request_;
+  std::vector<Byte> heard_;  ///< since the request
+  Instant sent_at_ = kLongAgo;
+  std::map<std::pair<Byte, std::uint32_t>, int> profile_velocities_;  ///< per station and value
+  std::uint64_t starts_ = 0;
+  std::uint64_t hash_ = 0xCBF29CE484222325U;
+};
+
+/// I2 a stored value is what the drive sent in answer to that very request; I6 nothing valid is stale; I7 bounds;
+/// I10 nothing is enabled unasked.
+class DriveWatch {
+ public:
+  DriveWatch(const app::Gateway& gateway, SimLink& link, std::size_t position, AxisNumber axis, const Asked& asked,
+             Runtime& runtime, std::function<void(std::string)> violated);
+  void check();
+
+ private:
+  void check_values();
+  void check_enables();
+  void check_validity();
+  const app::Gateway& gateway_;
+  SimLink& link_;
+  std::size_t position_;
+  AxisNumber axis_;
+  const Asked& asked_;
+  Runtime& runtime_;
+  std::function<void(std::string)> violated_;
+  std::vector<std::uint64_t> seen_;  ///< exchange of each object when it was last checked
+  Instant enables_seen_until_;
+};
+
+}  // namespace axisgate::test

@@ -1,0 +1,128 @@
+#include "tests/sim/world.hpp"
+
+#include <algorithm>
+
+namespace axisgate::test {
+namespace {
+
+constexpr std::size_t kMaxViolations = 5;
+constexpr int kClients = 3;
+
+/// Two lines with one drive each, or both drives in one RS232 chain, or two MDs on one RS485 line (a JD's speaks Modbus).
+std::vector<GatewayStage::Line> layout(Random& random) {
+  GatewayStage::Line jd = line_of(simulated::KincoType::jd, 1);
+  GatewayStage::Line md = line_of(simulated::KincoType::md, 2);
+  for (GatewayStage::Line* line : {&jd, &md}) {
+    line->options.reply_delay = std::chrono::microseconds(100 + random.below(5000));
+    if (random.chance(1, 2)) line->options.baud = 38400;
+  }
+  if (random.chance(1, 2)) return {jd, md};
+  md.drives.front().options.station = 2;
+  if (random.chance(1, 2)) {
+    GatewayStage::Line rs485 = line_of(simulated::KincoType::md, 1);
+    rs485.options = md.options;
+    rs485.options.wiring = simulated::Wiring::rs485;
+    rs485.drives.push_back(md.drives.front());
+    return {rs485};
+  }
+  jd.drives.push_back(md.drives.front());
+  for (StageDrive& drive : jd.drives) drive.options.cascade = true;
+  return {jd};
+}
+
+}  // namespace
+
+World::World(std::uint64_t seed)
+    : random_(seed), stage_(layout(random_), seed), began_(stage_.runtime().now()) {
+  const auto report = [this](const std::string& what) { violated(what); };
+  std::vector<SimLink*> links;
+  AxisNumber axis = 1;
+  for (std::size_t l = 0; l < stage_.gateway().bus_count(); ++l) {
+    SimLink& link = stage_.link(l);
+    links.push_back(&link);
+    cables_.push_back(std::make_unique<CableWatch>(link, stage_.runtime(), stage_.gateway().bus(l).settings().timeout, report));
+    for (std::size_t d = 0; d < link.line().size(); ++d, ++axis)
+      drives_.push_back(std::make_unique<DriveWatch>(stage_.gateway(), link, d, axis, asked_, stage_.runtime(), report));
+  }
+  nemesis_ = std::make_unique<Nemesis>(links, stage_.runtime(), random_.next());
+  const modbus_tcp::SessionContext context{settings_, stage_.gateway().image(), stage_.gateway(), registry_, quiet_,
+                                           &stage_.runtime()};
+  for (int c = 0; c < kClients; ++c)
+    clients_.push_back(std::make_unique<ModbusClient>(context, stage_.runtime(), random_.next(),
+                                                      static_cast<std::uint16_t>(50000 + c),
+                                                      std::vector<AxisNumber>{1, 2}, asked_, report));
+}
+
+World::~World() = default;
+
+void World::violated(const std::string& what) {
+  if (violations_.size() >= kMaxViolations) return;
+  violations_.push_back("at " + std::to_string(elapsed_ms(began_, stage_.runtime().now())) + " ms: " + what);
+}
+
+void World::step(Instant until) {
+  Instant next = std::min(until, stage_.runtime().now() + std::chrono::milliseconds(1));
+  next = std::min(next, nemesis_->next_deed());
+  for (const auto& client : clients_) next = std::min(next, client->next_action());
+  stage_.runtime().advance_to(std::max(next, stage_.runtime().now()));
+  const Instant now = stage_.runtime().now();
+  if (nemesis_->next_deed() <= now) nemesis_->act();
+  for (const auto& client : clients_)
+    if (client->next_action() <= now) client->act();
+  for (const auto& drive : drives_) drive->check();
+  for (std::size_t b = 0; b < stage_.gateway().bus_count(); ++b)
+    if (stage_.gateway().bus(b).queue_depth() > bus::kMaxOrdersPerBus + 32) violated("I7: the queue is over its bound");
+}
+
+void World::run(Duration length) {
+  const Instant end = stage_.runtime().now() + length;
+  while (stage_.runtime().now() < end && violations_.empty()) step(end);
+  std::uint64_t starts = 0;
+  for (const auto& cable : cables_) starts += cable->starts();
+  if (starts > asked_.starts) violated("I5: more moves were started than asked for");
+}
+
+void World::recover() {
+  nemesis_->retire();
+  // The longest pause between two probes of a mute drive is 200 timeouts of 100 ms.
+  const Instant online_by = stage_.runtime().now() + std::chrono::seconds(26);
+  while (stage_.runtime().now() < online_by && violations_.empty()) step(online_by);
+  if (!violations_.empty()) return;  // the first one tells the story; the rest would be its consequences
+  for (const auto& axis : stage_.gateway().image().axes())
+    if (axis->link_state != LinkState::online)
+      violated("I11: axis " + std::to_string(axis->number) + " is " + std::string(text(axis->link_state)) +
+               " long after the last fault");
+  for (const auto& client : clients_) client->retire();
+  const Instant end = stage_.runtime().now() + std::chrono::seconds(10);
+  while (stage_.runtime().now() < end && violations_.empty()) step(end);
+  for (const auto& client : clients_)
+    if (client->waiting()) violated("I4: a request never got its reply");
+  for (const auto& axis : stage_.gateway().image().axes()) {
+    if (axis->has(AxisInput::moving)) violated("I12: axis " + std::to_string(axis->number) + " moves on after a quick stop");
+    if (axis->axis_state != AxisState::stopping && axis->axis_state != AxisState::error_stop)
+      violated("I12: axis " + std::to_string(axis->number) + " is not latched after a quick stop");
+  }
+}
+
+std::uint64_t World::hash() const {
+  std::uint64_t hash = 0;
+  for (const auto& cable : cables_) hash = hash * 31 + cable->hash();
+  for (const auto& client : clients_) hash = hash * 31 + client->hash();
+  return hash;
+}
+
+std::string World::summary() {
+  bus::Statistics s{};
+  for (std::size_t b = 0; b < stage_.gateway().bus_count(); ++b) {
+    const bus::Statistics one = stage_.gateway().bus(b).statistics();
+    s.requests += one.requests;
+    s.timeouts += one.timeouts;
+    s.late_replies += one.late_replies;
+    s.bad_frames += one.bad_frames;
+  }
+  return std::to_string(s.requests) + " exchanges, " + std::to_string(s.timeouts) + " timeouts, " +
+         std::to_string(s.late_replies) + " late replies, " + std::to_string(s.bad_frames) + " bad frames, " +
+         std::to_string(asked_.requests) + " client requests";
+}
+
+}  // namespace axisgate::test

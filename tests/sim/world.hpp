@@ -1,0 +1,45 @@
+// The simulated world of one seed: the shipped core with two Kinco drives, three Modbus clients and the faults of the seed.
+// Promises that equal seeds give equal hashes, and a transcript of the last moments before the first violation.
+// Never uses real time, sockets or devices.
+#pragma once
+
+#include "tests/sim/invariants.hpp"
+#include "tests/sim/nemesis.hpp"
+#include "tests/stage/gateway_stage.hpp"
+
+namespace axisgate::test {
+
+class World {
+ public:
+  explicit World(std::uint64_t seed);
+  ~World();
+
+  /// The faults' time: `length` of virtual time.
+  void run(Duration length);
+  /// Then quiet: faults end, clients stop the axes; everything must come back.
+  void recover();
+
+  [[nodiscard]] const std::vector<std::string>& violations() const { return violations_; }
+  [[nodiscard]] std::uint64_t hash() const;
+  [[nodiscard]] const Asked& asked() const { return asked_; }
+  [[nodiscard]] std::string summary();
+
+ private:
+  void step(Instant until);
+  void violated(const std::string& what);
+
+  Random random_;
+  GatewayStage stage_;
+  modbus_tcp::ListenerSettings settings_;
+  modbus_tcp::ClientRegistry registry_;
+  Log quiet_;
+  Asked asked_;
+  std::vector<std::string> violations_;
+  Instant began_;
+  std::vector<std::unique_ptr<CableWatch>> cables_;
+  std::vector<std::unique_ptr<DriveWatch>> drives_;
+  std::unique_ptr<Nemesis> nemesis_;
+  std::vector<std::unique_ptr<ModbusClient>> clients_;
+};
+
+}  // namespace axisgate::test

@@ -1,0 +1,117 @@
+#include "gateway/app/bus_budget.hpp"
+
+#include <gmock/gmock.h>
+
+namespace axisgate::app {
+namespace {
+
+using drive::PollClass;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using ::testing::Each;
+
+/// A drive of one axis with as many objects in each class.
+drive::DriveModel model_with(int fast, int normal, int slow, int once = 0) {
+  drive::DriveModel model;
+  drive::AxisModel axis;
+  axis.binding_of.fill(-1);
+  const auto add = [&](int count, PollClass poll) {
+    for (int i = 0; i < count; ++i) {
+      drive::Binding binding;
+      binding.quantity = static_cast<Quantity>(axis.bindings.size());
+      binding.object = static_cast<drive::ObjectId>(model.objects.size());
+      binding.poll = poll;
+      axis.binding_of[axis.bindings.size()] = static_cast<std::int16_t>(axis.bindings.size());
+      axis.bindings.push_back(binding);
+      model.objects.push_back({});
+    }
+  };
+  add(fast, PollClass::fast);
+  add(normal, PollClass::normal);
+  add(slow, PollClass::slow);
+  add(once, PollClass::once);
+  model.axes.push_back(axis);
+  return model;
+}
+
+BusTiming kinco_timing() {
+  return {microseconds(5208),
+          Duration{},
+          milliseconds(10),
+          milliseconds(100),
+          {milliseconds(100), milliseconds(500), milliseconds(5000)}};
+}
+
+TEST(BusBudget, AddsUpWhatThePollsTakeOfTheLine) {
+  const BusBudget budget = plan_bus(kinco_timing(), {model_with(3, 5, 10)});
+  EXPECT_EQ(budget.classes[0].reads, 3);
+  EXPECT_EQ(budget.classes[1].reads, 5);
+  EXPECT_EQ(budget.classes[2].reads, 10);
+  // 30 + 10 + 2 = 42 exchanges a second of 5.208 ms, or of 10.208 ms.
+  EXPECT_EQ(budget.load_on_wire, 219);
+  EXPECT_EQ(budget.load_answered, 429);
+  EXPECT_FALSE(budget.overloaded());
+  EXPECT_EQ(budget.cycle, milliseconds(100));
+}
+
+TEST(BusBudget, CountsAllDrivesOfTheBus) {
+  const BusBudget one = plan_bus(kinco_timing(), {model_with(2, 0, 0)});
+  const BusBudget two = plan_bus(kinco_timing(), {model_with(2, 0, 0), model_with(2, 0, 0)});
+  EXPECT_EQ(two.classes[0].reads, 2 * one.classes[0].reads);
+  EXPECT_EQ(two.load_answered, 409);  // 40 exchanges a second of 10.208 ms, rounded up
+}
+
+TEST(BusBudget, LeavesOutWhatIsReadOnceOnly) {
+  EXPECT_EQ(plan_bus(kinco_timing(), {model_with(0, 0, 0, 20)}).load_answered, 0);
+}
+
+TEST(BusBudget, AGapIsTimeOfTheLineToo) {
+  BusTiming timing = kinco_timing();
+  timing.min_gap = milliseconds(2);
+  const BusBudget budget = plan_bus(timing, {model_with(1, 0, 0)});
+  EXPECT_EQ(budget.load_on_wire, 73);  // 10 exchanges a second of 7.208 ms
+  EXPECT_EQ(budget.stop_wait, microseconds(12208));
+}
+
+TEST(BusBudget, WaitsAreCountedInExchanges) {
+  const BusBudget budget = plan_bus(kinco_timing(), {model_with(1, 1, 1)});
+  EXPECT_EQ(budget.exchange, microseconds(10208));
+  EXPECT_EQ(budget.stop_wait, microseconds(10208));
+  EXPECT_EQ(budget.command_wait, microseconds(20416));
+  EXPECT_EQ(budget.stop_wait_mute, milliseconds(110));
+  EXPECT_EQ(budget.command_wait_mute, microseconds(120208));
+}
+
+TEST(BusBudget, AnOverloadedBusStretchesItsCycleAndNamesPeriodsThatFit) {
+  BusTiming timing = kinco_timing();
+  timing.poll = {milliseconds(20), milliseconds(100), milliseconds(1000)};
+  const std::vector<drive::DriveModel> drives{model_with(3, 6, 10)};
+  const BusBudget budget = plan_bus(timing, drives);
+  EXPECT_TRUE(budget.overloaded());
+  EXPECT_EQ(budget.load_answered, 2246);  // 150 + 60 + 10 exchanges a second
+  EXPECT_EQ(budget.cycle, microseconds(44920));
+
+  timing.poll = comfortable_periods(budget);
+  EXPECT_EQ(timing.poll[0], milliseconds(60));
+  const BusBudget mended = plan_bus(timing, drives);
+  EXPECT_LE(mended.load_answered, kComfortablePermille);
+}
+
+TEST(BusBudget, PeriodsThatFitAreLeftAsTheyAre) {
+  const BusBudget budget = plan_bus(kinco_timing(), {model_with(1, 1, 1)});
+  EXPECT_EQ(comfortable_periods(budget), kinco_timing().poll);
+}
+
+TEST(BusBudget, ExactlyFullIsNotOverloaded) {
+  BusTiming timing = kinco_timing();
+  timing.on_wire = milliseconds(5);
+  timing.poll.fill(milliseconds(10));
+  const BusBudget full = plan_bus(timing, {model_with(1, 0, 0)});
+  EXPECT_EQ(full.load_answered, 1000);
+  EXPECT_FALSE(full.overloaded());
+  timing.min_gap = microseconds(1);
+  EXPECT_TRUE(plan_bus(timing, {model_with(1, 0, 0)}).overloaded());
+}
+
+}  // namespace
+}  // namespace axisgate::app

@@ -1,0 +1,100 @@
+#include "gateway/app/check.hpp"
+
+#include <gmock/gmock.h>
+
+namespace axisgate::app {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// One Kinco-like drive with one axis that has a position, read in class fast.
+LoadedConfig one_axis() {
+  LoadedConfig loaded;
+  loaded.config.file = "gateway.json";
+  BusConfig bus;
+  bus.name = "lift-serial";
+  bus.adapter = "kinco-serial";
+  bus.device = "/dev/ttyUSB0";
+  bus.timeout = milliseconds(100);
+  DriveConfig drive;
+  AxisConfig axis;
+  axis.number = 7;
+  axis.name = "lift";
+  drive.axes.push_back(axis);
+  bus.drives.push_back(drive);
+  loaded.config.buses.push_back(bus);
+
+  drive::DriveModel model;
+  model.title = "Kinco JD";
+  model.protocol = "kinco-serial";
+  model.objects.push_back({});
+  drive::AxisModel axis_model;
+  axis_model.binding_of.fill(-1);
+  axis_model.statusword = 0;
+  axis_model.supported = bit(Quantity::statusword) | bit(Quantity::position_actual);
+  axis_model.supported_commands = 1U << static_cast<unsigned>(Command::enable);
+  model.axes.push_back(axis_model);
+  loaded.models.push_back({model});
+  return loaded;
+}
+
+TEST(Check, SaysThatTheFileIsValidAndPlansEachBus) {
+  const CheckReport report = check(one_axis());
+  EXPECT_THAT(report.text, HasSubstr("gateway.json is valid.\n"));
+  EXPECT_THAT(report.text, HasSubstr("Bus lift-serial: kinco-serial on /dev/ttyUSB0, 38400 baud\n"));
+  EXPECT_THAT(report.text, HasSubstr("fast 1 each 20 ms"));
+  EXPECT_THAT(report.text,
+              HasSubstr("planned load    51.1 % with drives that answer after 5 ms, 26.1 % on the wire alone"));
+  EXPECT_THAT(report.text, HasSubstr("stop waits      at most 10.2 ms; beside a mute drive at most 100.0 ms"));
+  EXPECT_FALSE(report.overloaded);
+}
+
+TEST(Check, SaysWhatADriveDoesWhenTheGatewayDies) {
+  LoadedConfig loaded = one_axis();
+  EXPECT_THAT(check(loaded).text, HasSubstr("THE DRIVE DOES NOT STOP BY ITSELF on kinco-serial"));
+  loaded.models[0][0].stops_by_itself = true;
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("DOES NOT STOP")));
+}
+
+TEST(Check, NamesWhatAnAxisDoesNotHave) {
+  const std::string text = check(one_axis()).text;
+  EXPECT_THAT(text, HasSubstr("quantities: mode_display, velocity_actual, torque_actual"));
+  EXPECT_THAT(text, HasSubstr("commands: disable, quick_stop, halt"));
+}
+
+TEST(Check, GivesUnitsAndRangeInTurns) {
+  LoadedConfig loaded = one_axis();
+  EXPECT_THAT(check(loaded).text, HasSubstr("10000 per motor turn; in turns, a register reaches ±214748.4"));
+  AxisConfig& axis = loaded.config.buses[0].drives[0].axes[0];
+  axis.units_per_rev = Rational(60000, 37);
+  axis.limits.position = Range{-60000, 120000};
+  EXPECT_THAT(check(loaded).text, HasSubstr("60000/37 per motor turn"));
+  EXPECT_THAT(check(loaded).text, HasSubstr("-60000 to 120000 (-37.00 to 74.00 turns)"));
+}
+
+TEST(Check, AnOverloadedBusIsNamedWithPeriodsThatFit) {
+  LoadedConfig loaded = one_axis();
+  loaded.config.buses[0].poll[0] = milliseconds(5);
+  const CheckReport report = check(loaded);
+  EXPECT_TRUE(report.overloaded);
+  EXPECT_THAT(report.text, HasSubstr("OVERLOADED"));
+  EXPECT_THAT(report.text, HasSubstr("\"poll\": {\"fast\": 20,"));
+}
+
+TEST(Check, SaysOnceThatLeasesAreNotEnforced) {
+  LoadedConfig loaded = one_axis();
+  EXPECT_THAT(check(loaded).text, HasSubstr("Leases are not enforced by this version"));
+  loaded.config.buses[0].drives[0].axes[0].lease_configured = false;
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("Leases are not enforced")));
+}
+
+TEST(Check, RepeatsTheWarnings) {
+  LoadedConfig loaded = one_axis();
+  loaded.warnings.push_back("gateway.json: /modbus_tcp/0/listen: everybody may read");
+  EXPECT_THAT(check(loaded).text, HasSubstr("warning: gateway.json: /modbus_tcp/0/listen: everybody may read\n"));
+}
+
+}  // namespace
+}  // namespace axisgate::app

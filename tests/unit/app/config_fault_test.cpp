@@ -1,0 +1,49 @@
+#include "gateway/app/config_fault.hpp"
+
+#include <gmock/gmock.h>
+
+namespace axisgate::app {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::SizeIs;
+
+TEST(ConfigFaults, SayFilePointerAndMessage) {
+  EXPECT_EQ(text({"a.json", "/buses/0/baud", "is wrong: mend it"}), "a.json: /buses/0/baud: is wrong: mend it");
+  EXPECT_EQ(text({"a.json", "", "cannot be read"}), "a.json: cannot be read");
+}
+
+TEST(ConfigFaults, KnowWhatIsWrongAtOrBelowAPlace) {
+  ConfigFaults faults("a.json");
+  faults.add("/buses/1/drives/0", "x");
+  EXPECT_TRUE(faults.within("/buses/1"));
+  EXPECT_TRUE(faults.within("/buses/1/drives/0"));
+  EXPECT_TRUE(faults.within(""));
+  EXPECT_FALSE(faults.within("/buses/1/drives/0/node"));
+  EXPECT_FALSE(faults.within("/buses/1/drives/00"));
+  EXPECT_FALSE(faults.within("/buses/10"));
+  EXPECT_FALSE(faults.within("/buses/1/drives/0/"));
+}
+
+TEST(ConfigFaults, DoNotMistakeAFaultOfAProfileForOneOfThisFile) {
+  ConfigFaults faults("a.json");
+  faults.add(ConfigFault{"kinco-jd.json", "/objects/mode", "x"});
+  EXPECT_FALSE(faults.within("/objects"));
+}
+
+TEST(ConfigFaults, TellTheSameMistakeOnce) {
+  ConfigFaults faults("a.json");
+  faults.add(ConfigFault{"kinco-jd.json", "/objects/mode", "x"});
+  faults.add(ConfigFault{"kinco-jd.json", "/objects/mode", "x"});
+  EXPECT_THAT(faults.faults(), SizeIs(1));
+}
+
+TEST(ConfigFaults, KeepWarningsApart) {
+  ConfigFaults faults("a.json");
+  faults.warn("/modbus_tcp/0/listen", "everybody may read");
+  EXPECT_THAT(faults.faults(), SizeIs(0));
+  EXPECT_THAT(faults.warnings(), ElementsAre("a.json: /modbus_tcp/0/listen: everybody may read"));
+}
+
+}  // namespace
+}  // namespace axisgate::app

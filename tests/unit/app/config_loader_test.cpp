@@ -1,0 +1,201 @@
+#include "gateway/app/config_loader.hpp"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace axisgate::app {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+const std::vector<std::string> kShipped{AXISGATE_SOURCE_DIR "/schemas/drives"};
+
+/// A configuration file that lives as long as the test.
+class ConfigLoader : public ::testing::Test {
+ protected:
+  ~ConfigLoader() override { std::filesystem::remove(path_); }
+
+  LoadResult load(const std::string& text) {
+    std::ofstream(path_) << text;
+    return load_config(path_, kShipped);
+  }
+  LoadedConfig load_good(const std::string& text) {
+    LoadResult result = load(text);
+    if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) {
+      for (const ConfigFault& fault : *faults) ADD_FAILURE() << axisgate::app::text(fault);
+      return {};
+    }
+    return std::move(std::get<LoadedConfig>(result));
+  }
+  std::vector<ConfigFault> load_bad(const std::string& text) {
+    LoadResult result = load(text);
+    const auto* faults = std::get_if<std::vector<ConfigFault>>(&result);
+    if (faults == nullptr) ADD_FAILURE() << "taken for right";
+    return faults == nullptr ? std::vector<ConfigFault>{} : *faults;
+  }
+
+  /// One Kinco JD; the texts are put into listener, bus, drive and axis.
+  static std::string one_drive(const std::string& listener = "", const std::string& bus = "",
+                               const std::string& drive = "", const std::string& axis = "") {
+    return R"({"modbus_tcp": [{"listen": "127.0.0.1:1502")" + listener +
+           R"(}], "buses": [{"name": "lift-serial", "adapter": "kinco-serial", "device": "/dev/ttyUSB0")" + bus +
+           R"(, "drives": [{"profile": "kinco-jd", "node": 1, )" + (drive.empty() ? kConstants : drive) +
+           R"(, "axes": [{"axis": 1)" + axis + "}]}]}]}";
+  }
+
+  static constexpr const char* kConstants = R"("constants": {"encoder_counts_per_rev": 65536, "peak_current_a": 27.5})";
+  const std::string path_ =
+      std::filesystem::temp_directory_path() / ("axisgate-config-" + std::to_string(getpid()) + ".json");
+};
+
+TEST_F(ConfigLoader, FillsInEveryDefault) {
+  const LoadedConfig loaded = load_good(one_drive());
+  ASSERT_THAT(loaded.config.modbus_tcp, SizeIs(1));
+  const auto& listener = loaded.config.modbus_tcp[0];
+  EXPECT_EQ(listener.host, "127.0.0.1");
+  EXPECT_EQ(listener.port, 1502);
+  EXPECT_FALSE(listener.low_word_first || listener.per_axis_units || listener.client_is_address ||
+               listener.posted_writes || listener.offline_reads_fail || listener.has_allow);
+  EXPECT_EQ(listener.rearm, milliseconds(1000));
+  EXPECT_EQ(listener.start_deadline, milliseconds(500));
+  EXPECT_EQ(listener.reply_deadline, milliseconds(900));
+  EXPECT_EQ(listener.max_clients, 1000U);
+  EXPECT_EQ(listener.max_clients_per_address, 64U);
+
+  ASSERT_THAT(loaded.config.buses, SizeIs(1));
+  const BusConfig& bus = loaded.config.buses[0];
+  EXPECT_EQ(bus.baud, 38400U);
+  EXPECT_EQ(bus.parity, "none");
+  EXPECT_EQ(bus.rs485, "auto");
+  EXPECT_FALSE(bus.cascade || bus.decode);
+  EXPECT_EQ(bus.timeout, milliseconds(100));
+  EXPECT_EQ(bus.min_gap, Duration{});
+  EXPECT_EQ(bus.settle, milliseconds(10));
+  EXPECT_THAT(bus.poll, ElementsAre(milliseconds(50), milliseconds(250), milliseconds(2500)));
+
+  const AxisConfig& axis = bus.drives.at(0).axes.at(0);
+  EXPECT_EQ(axis.name, "axis 1");
+  EXPECT_EQ(axis.units_per_rev, Rational(10000));
+  EXPECT_FALSE(axis.inverted);
+  EXPECT_EQ(axis.standstill_velocity, 1000);
+  EXPECT_EQ(axis.homing_timeout, milliseconds(60000));
+  EXPECT_TRUE(axis.lease_configured);
+  EXPECT_EQ(axis.lease_action, Command::quick_stop);
+  EXPECT_THAT(loaded.warnings, IsEmpty());
+}
+
+TEST_F(ConfigLoader, ReadsEveryKeyOfAListener) {
+  const LoadedConfig loaded = load_good(one_drive(
+      R"(, "word_order": "low-first", "unit_ids": "per-axis", "client": "address", "writes": "posted",
+         "offline_reads": "exception", "rearm_ms": 0, "start_deadline_ms": 200, "reply_deadline_ms": 700, "max_clients": 5,
+         "max_clients_per_address": 0, "allow": [{"from": "192.168.1.0/24", "role": "operator", "rank": 3},
+                                                 {"from": "::1", "role": "engineer"}])"));
+  const auto& listener = loaded.config.modbus_tcp.at(0);
+  EXPECT_TRUE(listener.low_word_first && listener.per_axis_units && listener.client_is_address &&
+              listener.posted_writes && listener.offline_reads_fail && listener.has_allow);
+  EXPECT_EQ(listener.rearm, Duration{});
+  EXPECT_EQ(listener.start_deadline, milliseconds(200));
+  EXPECT_EQ(listener.reply_deadline, milliseconds(700));
+  EXPECT_EQ(listener.max_clients, 5U);
+  EXPECT_EQ(listener.max_clients_per_address, 0U);
+  ASSERT_THAT(listener.allow, SizeIs(2));
+  EXPECT_EQ(listener.allow[0].role, Role::operator_);
+  EXPECT_EQ(listener.allow[0].prefix, 120);
+  EXPECT_EQ(listener.allow[0].rank, 3);
+  EXPECT_EQ(listener.allow[1].role, Role::engineer);
+  EXPECT_EQ(listener.allow[1].prefix, 128);
+}
+
+TEST_F(ConfigLoader, ReadsEveryKeyOfABusAndItsAxis) {
+  const LoadedConfig loaded = load_good(one_drive(
+      "",
+      R"(, "baud": 115200, "parity": "none", "rs485": "off", "cascade": true, "timeout_ms": 50, "min_gap_ms": 1, "settle_ms": 20,
+         "poll": {"fast": 30, "slow": 2000}, "decode": true)",
+      "",
+      R"(, "name": "lift", "units_per_rev": {"numerator": 60000, "denominator": 37}, "direction": "inverted",
+         "limits": {"position": [-1000, 500000], "velocity": 1500000, "acceleration": 20000, "torque": 900,
+                    "quick_stop_deceleration_min": 3000},
+         "lease": null, "standstill_velocity": 2000, "homing_timeout_ms": 90000)"));
+  const BusConfig& bus = loaded.config.buses.at(0);
+  EXPECT_EQ(bus.baud, 115200U);
+  EXPECT_EQ(bus.rs485, "off");
+  EXPECT_TRUE(bus.cascade && bus.decode);
+  EXPECT_EQ(bus.timeout, milliseconds(50));
+  EXPECT_EQ(bus.min_gap, milliseconds(1));
+  EXPECT_EQ(bus.settle, milliseconds(20));
+  EXPECT_THAT(bus.poll, ElementsAre(milliseconds(30), milliseconds(250), milliseconds(2000)));
+  const AxisConfig& axis = bus.drives.at(0).axes.at(0);
+  EXPECT_EQ(axis.name, "lift");
+  EXPECT_EQ(axis.units_per_rev, Rational(60000, 37));
+  EXPECT_TRUE(axis.inverted);
+  EXPECT_EQ(axis.limits.position, (Range{-1000, 500000}));
+  EXPECT_EQ(axis.limits.velocity, 1500000);
+  EXPECT_EQ(axis.limits.acceleration, 20000);
+  EXPECT_EQ(axis.limits.torque, 900);
+  EXPECT_EQ(axis.limits.quick_stop_deceleration_min, 3000);
+  EXPECT_FALSE(axis.lease_configured);
+  EXPECT_EQ(axis.standstill_velocity, 2000);
+  EXPECT_EQ(axis.homing_timeout, milliseconds(90000));
+}
+
+TEST_F(ConfigLoader, KeepsConstantsExactly) {
+  const LoadedConfig loaded =
+      load_good(one_drive("", "", R"("constants": {"encoder_counts_per_rev": 65536, "peak_current_a": "27.55"})"));
+  const auto& constants = loaded.config.buses.at(0).drives.at(0).constants;
+  EXPECT_EQ(constants.at("peak_current_a"), Rational(551, 20));
+  EXPECT_EQ(constants.at("encoder_counts_per_rev"), Rational(65536));
+}
+
+TEST_F(ConfigLoader, GivesEachDriveItsModel) {
+  const LoadedConfig loaded = load_good(one_drive("", R"(, "poll": {"fast": 40})"));
+  ASSERT_THAT(loaded.models, SizeIs(1));
+  ASSERT_THAT(loaded.models[0], SizeIs(1));
+  const drive::DriveModel& model = loaded.models[0][0];
+  EXPECT_EQ(model.profile, "kinco-jd");
+  EXPECT_EQ(model.protocol, "kinco-serial");
+  EXPECT_EQ(model.node, 1);
+  EXPECT_EQ(model.poll_period[0], milliseconds(40));
+  ASSERT_THAT(model.axes, SizeIs(1));
+  EXPECT_EQ(model.axes[0].number, 1);
+}
+
+TEST_F(ConfigLoader, WarnsWithoutRefusing) {
+  const LoadedConfig loaded = load_good(one_drive(
+      "", R"(, "baud": 57600)", "", R"(, "jog_timeout_ms": 300, "dds_unit": "m", "metres_per_rev": "0.005")"));
+  ASSERT_THAT(loaded.warnings, SizeIs(4));
+  EXPECT_THAT(loaded.warnings[0], HasSubstr("/buses/0/baud: 57600 is not among the rates of Kinco drives"));
+  EXPECT_THAT(loaded.warnings[1], HasSubstr("/buses/0/drives/0/axes/0/jog_timeout_ms: jog is not available"));
+  EXPECT_THAT(loaded.warnings[2], HasSubstr("/dds_unit: DDS is not available"));
+  EXPECT_THAT(loaded.warnings[3], HasSubstr("/metres_per_rev: DDS is not available"));
+}
+
+TEST_F(ConfigLoader, ToldOfAFileThatIsNotThereNamesIt) {
+  const LoadResult result = load_config("/nowhere/gateway.json", kShipped);
+  const auto& faults = std::get<std::vector<ConfigFault>>(result);
+  ASSERT_THAT(faults, SizeIs(1));
+  EXPECT_THAT(text(faults[0]), HasSubstr("/nowhere/gateway.json: cannot be read: No such file or directory"));
+}
+
+TEST_F(ConfigLoader, NothingThatJsonCanSayEndsItByException) {
+  for (
+      const char* wrong :
+      {"", "[]", "null", "1", "\"text\"", "{}", R"({"buses": null})", R"({"buses": [null]})", R"({"buses": [{}]})",
+       R"({"buses": {"a": 1}})", R"({"buses": [{"name": 1, "adapter": [], "device": {}, "drives": 3}]})",
+       R"({"buses": [{"adapter": "kinco-serial", "baud": 0, "timeout_ms": -1, "poll": 7, "drives": [[], {"axes": [{"axis": -1}]}]}]})",
+       R"({"buses": [{"adapter": "kinco-serial", "baud": 99999999999999999999, "drives": [{"node": 1e99, "constants": {"x": null}}]}]})",
+       R"({"modbus_tcp": [{"listen": 5, "allow": [{"from": 1}, null]}, 9], "buses": []})",
+       R"({"modbus_tcp": {"listen": "x"}, "dds": 1, "http": [], "buses": [{"drives": [{"axes": [{"axis": 1, "limits": {"position": ["a", 2]},
+            "units_per_rev": {"numerator": 0}, "lease": {"on_expiry": 5}, "homing_method": 1e300}]}]}]})"}) {
+    EXPECT_THAT(load_bad(wrong), Not(IsEmpty())) << wrong;
+  }
+}
+
+}  // namespace
+}  // namespace axisgate::app

@@ -1,0 +1,138 @@
+#include "gateway/image/map_listing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace axisgate {
+namespace {
+
+ListedMap two_axes() {
+  ListedMap map;
+  map.buses = {"lift-serial", "a \"quoted\", name"};
+  ListedAxis one;
+  one.number = 1;
+  one.name = "lift";
+  one.bus = "lift-serial";
+  one.supported = ~0U & ~bit(Quantity::motor_temperature);
+  one.writable = one.supported & ~bit(Quantity::max_torque);
+  one.supported_commands = 0x0FFE & ~(1U << 11);
+  ListedAxis five = one;
+  five.number = 5;
+  five.position_unit = position_unit(360, 1);
+  map.axes = {one, five};
+  return map;
+}
+
+const MapEntry* find(const std::vector<MapEntry>& entries, std::string_view table, int address) {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const MapEntry& e) { return e.table == table && e.address == address; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+TEST(MapListing, PrintsTheEntryOfTheContractsExample) {
+  const std::string json = map_text(two_axes(), MapFormat::json);
+  EXPECT_NE(json.find(R"({"table":"holding","address":102,"count":2,"axis":1,"bus":null,"name":"position_actual",)"
+                      R"("type":"i32","unit":"1/10000 rev","access":"r","supported":true})"),
+            std::string::npos)
+      << json.substr(0, 2000);
+}
+
+TEST(MapListing, JsonCarriesVersionWordOrderAndEveryEntry) {
+  ListedMap map = two_axes();
+  auto json = nlohmann::json::parse(map_text(map, MapFormat::json));
+  EXPECT_EQ(json["map_version"], 1);
+  EXPECT_EQ(json["word_order"], "high-first");
+  EXPECT_EQ(json["entries"].size(), map_entries(map).size());
+  map.low_word_first = true;
+  EXPECT_EQ(nlohmann::json::parse(map_text(map, MapFormat::json))["word_order"], "low-first");
+}
+
+TEST(MapListing, CountsEveryRowOfEveryBlock) {
+  // gateway 9; per axis 60 registers, 8 of the overview, 10 coils, 13 inputs; per bus 14.
+  EXPECT_EQ(map_entries(two_axes()).size(), 9U + 2U * (60 + 8 + 10 + 13) + 2U * 14);
+}
+
+TEST(MapListing, IsSortedByTableAndAddressAndNamesNoAddressTwice) {
+  const auto entries = map_entries(two_axes());
+  std::set<std::pair<std::string_view, int>> seen;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    for (int part = 0; part < entries[i].count; ++part)
+      EXPECT_TRUE(seen.emplace(entries[i].table, entries[i].address + part).second) << entries[i].name;
+    if (i > 0 && entries[i].table == entries[i - 1].table) {
+      EXPECT_GT(entries[i].address, entries[i - 1].address);
+    }
+  }
+}
+
+TEST(MapListing, AxisAndNameTogetherAreOneAddressOfATable) {
+  std::set<std::string> seen;
+  for (const MapEntry& entry : map_entries(two_axes())) {
+    if (!entry.axis) continue;
+    EXPECT_TRUE(seen.insert(std::string(entry.table) + std::to_string(*entry.axis) + entry.name).second) << entry.name;
+  }
+}
+
+TEST(MapListing, SaysWhatTheDriveHasAndWhatCanBeWritten) {
+  const auto entries = map_entries(two_axes());
+  EXPECT_FALSE(find(entries, "holding", 116)->supported) << "motor_temperature";
+  EXPECT_TRUE(find(entries, "holding", 142)->supported);
+  EXPECT_EQ(find(entries, "holding", 142)->access, "rw");
+  EXPECT_EQ(find(entries, "holding", 147)->access, "r") << "max_torque, on this drive";
+  EXPECT_EQ(find(entries, "holding", 100)->access, "r");
+  EXPECT_FALSE(find(entries, "holding", 158)->supported) << "jog_velocity";
+  EXPECT_FALSE(find(entries, "holding", 178)->supported) << "set_position_value, without the command";
+  EXPECT_TRUE(find(entries, "coil", 106)->supported);
+  EXPECT_FALSE(find(entries, "coil", 108)->supported) << "jog_forward";
+  EXPECT_TRUE(find(entries, "discrete", 511)->supported);
+}
+
+TEST(MapListing, PrintsPositionsInTheAxissOwnUnit) {
+  const auto entries = map_entries(two_axes());
+  EXPECT_EQ(find(entries, "holding", 502)->unit, "1/360 rev");
+  EXPECT_EQ(find(entries, "holding", 578)->unit, "1/360 rev");
+  EXPECT_EQ(find(entries, "holding", 60052)->unit, "1/360 rev");
+  EXPECT_EQ(find(entries, "holding", 104)->unit, "0.001 rpm");
+  EXPECT_EQ(position_unit(60000, 37), "37/60000 rev");
+}
+
+TEST(MapListing, NamesTheBusOfBusRowsAndNoAxis) {
+  const auto entries = map_entries(two_axes());
+  const MapEntry* entry = find(entries, "holding", 50104);
+  ASSERT_NE(entry, nullptr);
+  EXPECT_EQ(entry->name, "requests");
+  EXPECT_EQ(entry->bus, "a \"quoted\", name");
+  EXPECT_FALSE(entry->axis.has_value());
+}
+
+TEST(MapListing, CsvHasTheColumnsOfTheContractAndQuotesWhatNeedsIt) {
+  const std::string csv = map_text(two_axes(), MapFormat::csv);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "table,address,count,axis,bus,name,type,unit,access,supported");
+  EXPECT_NE(csv.find("holding,102,2,1,,position_actual,i32,1/10000 rev,r,true\n"), std::string::npos);
+  EXPECT_NE(csv.find("holding,50100,1,,\"a \"\"quoted\"\", name\",link,u16,,r,true\n"), std::string::npos);
+}
+
+TEST(MapListing, MarkdownAndTableCarryTheSameRows) {
+  const std::string markdown = map_text(two_axes(), MapFormat::markdown);
+  EXPECT_NE(markdown.find("| holding | 102 | 2 | 1 |  | position_actual | i32 | 1/10000 rev | r | true |"),
+            std::string::npos);
+  const std::string table = map_text(two_axes(), MapFormat::table);
+  EXPECT_NE(table.find("axis 1: lift, on lift-serial\n"), std::string::npos);
+  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+  const auto rows = static_cast<std::ptrdiff_t>(map_entries(two_axes()).size());
+  EXPECT_EQ(lines(markdown), rows + 2);
+  EXPECT_EQ(lines(table), rows + 1 + 4) << "a heading, and four lines of titles";
+}
+
+TEST(MapListing, KnowsItsFormatsByName) {
+  EXPECT_EQ(map_format_named("json"), MapFormat::json);
+  EXPECT_EQ(map_format_named("csv"), MapFormat::csv);
+  EXPECT_EQ(map_format_named("md"), MapFormat::markdown);
+  EXPECT_EQ(map_format_named("table"), MapFormat::table);
+  EXPECT_FALSE(map_format_named("xml").has_value());
+}
+
+}  // namespace
+}  // namespace axisgate

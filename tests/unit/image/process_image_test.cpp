@@ -1,0 +1,32 @@
+#include "gateway/image/process_image.hpp"
+
+#include <gtest/gtest.h>
+
+namespace axisgate {
+namespace {
+
+TEST(ProcessImage, FindsAxesByNumberAndListsThemInOrder) {
+  ProcessImage image;
+  AxisImage& fifth = image.add_axis(5, "five", 1);
+  AxisImage& second = image.add_axis(2, "two", 0);
+  EXPECT_EQ(image.find(5), &fifth);
+  EXPECT_EQ(image.find(2), &second);
+  EXPECT_EQ(image.find(3), nullptr);
+  EXPECT_EQ(image.find(0), nullptr);
+  EXPECT_EQ(image.find(65535), nullptr);
+  ASSERT_EQ(image.axes().size(), 2U);
+  EXPECT_EQ(image.axes()[0]->number, 2);
+  EXPECT_EQ(image.axes()[1]->number, 5);
+  EXPECT_EQ(image.axes()[1]->name, "five");
+  EXPECT_EQ(image.axes()[1]->bus, 1);
+}
+
+TEST(ProcessImage, KeepsAxesWhereTheyAreWhenOthersCome) {
+  ProcessImage image;
+  const AxisImage* first = &image.add_axis(200, "a", 0);
+  for (AxisNumber n = 1; n < 100; ++n) image.add_axis(n, "b", 0);
+  EXPECT_EQ(image.find(200), first);
+}
+
+}  // namespace
+}  // namespace axisgate

@@ -1,0 +1,120 @@
+// How the server starts and how it ends.
+#include <gmock/gmock.h>
+
+#include <stdexcept>
+
+#include "tests/unit/modbus_server/served.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::string failure_of_start(Served& served) {
+  try {
+    served.start();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "started";
+}
+
+TEST(ModbusServerStart, APortThatIsTakenIsNamedWithWhatToDo) {
+  Served holder;
+  holder.start();
+  Served served;
+  served.listeners[0].port = holder.server->ports()[0];
+  const std::string port = std::to_string(holder.server->ports()[0]);
+  EXPECT_THAT(failure_of_start(served), AllOf(HasSubstr("/modbus_tcp/0/listen: cannot listen on 127.0.0.1:" + port),
+                                              HasSubstr("stop that one or choose another port")));
+}
+
+TEST(ModbusServerStart, AnAddressOfAnotherMachineIsNamedWithWhatToDo) {
+  Served served;
+  served.listeners[0].host = "192.0.2.1";  // TEST-NET-1: nobody's
+  EXPECT_THAT(failure_of_start(served), HasSubstr("no interface of this machine has this address"));
+}
+
+TEST(ModbusServerStart, ATextThatIsNoAddressIsRefused) {
+  Served served;
+  served.listeners[0].host = "gateway.local";
+  EXPECT_THAT(failure_of_start(served), HasSubstr("not an IP address"));
+}
+
+TEST(ModbusServerStart, WhereOneListenerCannotBeOpenedNoneStaysOpen) {
+  Served holder;
+  holder.start();
+  Served served;
+  served.listeners.push_back(served.listeners[0]);
+  served.listeners[1].port = holder.server->ports()[0];
+  EXPECT_THAT(failure_of_start(served), HasSubstr("/modbus_tcp/1/listen"));
+  const std::uint16_t first = served.server->ports()[0];
+  ASSERT_NE(first, 0);
+
+  Served next;
+  next.listeners[0].port = first;
+  EXPECT_EQ(failure_of_start(next), "started") << "the first listener's port is free again";
+}
+
+TEST(ModbusServerStart, APortIsFreeForTheNextStartAtOnce) {
+  Served served;
+  served.start();
+  const std::uint16_t port = served.server->ports()[0];
+  {
+    TestClient client(served);
+    client.send(read_request(1, 0, 1));
+    EXPECT_EQ(client.receive(11).size(), 11U);
+    served.server->stop();
+    EXPECT_TRUE(client.closed_by_server());
+  }
+  Served next;
+  next.listeners[0].port = port;
+  EXPECT_EQ(failure_of_start(next), "started");
+}
+
+TEST(ModbusServerStop, ClosesAllConnectionsAndCanBeRepeated) {
+  Served served;
+  served.start();
+  TestClient first(served);
+  TestClient second(served);
+  served.settle();
+  ASSERT_EQ(served.server->counters().open, 2U);
+  served.server->stop();
+  served.server->stop();
+  EXPECT_EQ(served.server->counters().open, 0U);
+  EXPECT_TRUE(first.closed_by_server());
+  EXPECT_TRUE(second.closed_by_server());
+}
+
+TEST(ModbusServerStop, NothingOfItRunsOnceItIsGone) {
+  Served served;
+  served.port.answers_at_once = false;
+  served.start();
+  TestClient writer(served);
+  writer.send(write_request(1, 146, 100));
+  ASSERT_TRUE(served.await([&] { return served.port.submitted.size() == 1; }));
+  served.server.reset();
+  served.settle();  // handlers of closed sockets are still to run: they must find nothing to touch
+  served.port.submitted[0].on_result(GroupResult{});
+  served.pass(std::chrono::hours(1));
+  EXPECT_TRUE(writer.closed_by_server());
+}
+
+TEST(ModbusServerStop, ConnectionsThatEndedInTheSameTurnAreGoneToo) {
+  Served served;
+  served.start();
+  auto client = std::make_unique<TestClient>(served);
+  served.settle();
+  client.reset();
+  // One step at a time, the server ends between the connection's end and its removal.
+  while (served.server->counters().open != 0) {
+    served.io.restart();
+    ASSERT_TRUE(served.io.run_one_for(kPatience));
+  }
+  served.server.reset();
+  served.settle();
+}
+
+}  // namespace
+}  // namespace axisgate::test

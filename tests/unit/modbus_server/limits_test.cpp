@@ -1,0 +1,234 @@
+// What happens to clients that are too many, not allowed, too slow, gone or not speaking Modbus.
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
+#include "tests/unit/modbus_server/served.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr std::uint16_t kPositionOfAxis1 = 102;
+
+/// Reads through `client`, whatever the others do.
+void expect_served(TestClient& client) {
+  client.send(read_request(1, kPositionOfAxis1, 2));
+  EXPECT_EQ(client.receive(13).size(), 13U);
+}
+
+std::vector<std::string> lines_with(const Served& served, const std::string& words) {
+  std::vector<std::string> found;
+  for (const std::string& line : served.lines) {
+    if (line.find(words) != std::string::npos) found.push_back(line);
+  }
+  return found;
+}
+
+TEST(ModbusServerLimits, ASlowRequestIsCutAtItsDeadlineWhileOthersAreServed) {
+  Served served;
+  served.listeners[0].request_deadline = std::chrono::seconds(5);
+  served.start();
+  TestClient slow(served);
+  TestClient good(served);
+  const std::vector<Byte> request = read_request(1, kPositionOfAxis1, 2);
+  for (std::size_t i = 0; i < 5; ++i) {
+    slow.send({request[i]});
+    served.pass(std::chrono::milliseconds(980));
+    expect_served(good);
+  }
+  EXPECT_EQ(served.server->counters().open, 2U) << "4.9 s after its first byte it still has time";
+  served.pass(std::chrono::milliseconds(100));
+  EXPECT_TRUE(slow.closed_by_server());
+  expect_served(good);
+  EXPECT_EQ(served.server->counters().closed_late, 1U);
+}
+
+TEST(ModbusServerLimits, AClientThatDoesNotTakeItsRepliesIsCutAtItsDeadlineWhileOthersAreServed) {
+  Served served;
+  served.start();
+  const auto deaf = TestClient::with_small_buffer(served);
+  TestClient good(served);
+  // Until the server can send no more and takes no more: the queue in between is bounded.
+  std::size_t taken = 0;
+  for (;;) {
+    const std::size_t now = deaf->send_what_fits(read_request(1, 100, 125));
+    served.settle();
+    taken += now;
+    if (now == 0) break;
+    ASSERT_LT(taken, 64U << 20) << "a client that never reads must not be read for ever";
+  }
+  expect_served(good);
+  served.pass(served.listeners[0].request_deadline + std::chrono::milliseconds(1));
+  ASSERT_TRUE(served.await([&] { return served.server->counters().closed_late == 1; }));
+  expect_served(good);
+  EXPECT_EQ(served.server->counters().open, 1U);
+}
+
+TEST(ModbusServerLimits, AnIdleClientIsClosedAndABusyOneIsNot) {
+  Served served;
+  served.start();
+  TestClient idle(served);
+  TestClient busy(served);
+  expect_served(idle);
+  for (int i = 0; i < 7; ++i) {
+    expect_served(busy);
+    served.pass(std::chrono::seconds(10));
+  }
+  EXPECT_TRUE(idle.closed_by_server());
+  expect_served(busy);
+}
+
+TEST(ModbusServerLimits, IdleTimeoutZeroIsNone) {
+  Served served;
+  served.listeners[0].idle_timeout = Duration::zero();
+  served.start();
+  TestClient idle(served);
+  expect_served(idle);
+  served.pass(std::chrono::hours(1000));
+  expect_served(idle);
+}
+
+TEST(ModbusServerLimits, AClientThatVanishesLeavesRoom) {
+  Served served;
+  served.listeners[0].max_clients = 1;
+  served.start();
+  for (const bool reset : {false, true}) {
+    TestClient client(served);
+    expect_served(client);
+    client.leave(reset);
+    ASSERT_TRUE(served.await([&] { return served.server->counters().open == 0; }));
+  }
+  EXPECT_EQ(served.server->counters().closed_by_peer, 2U);
+  EXPECT_EQ(served.server->counters().refused_full, 0U);
+}
+
+TEST(ModbusServerLimits, OverMaxClientsNewOnesAreClosedAtOnceAndTheOthersStay) {
+  Served served;
+  served.listeners[0].max_clients = 2;
+  served.start();
+  TestClient first(served);
+  TestClient second(served);
+  expect_served(first);
+  expect_served(second);
+  TestClient third(served);
+  EXPECT_TRUE(third.closed_by_server());
+  expect_served(first);
+  expect_served(second);
+  EXPECT_EQ(served.server->counters().refused_full, 1U);
+  EXPECT_THAT(lines_with(served, "refused"), ElementsAre(HasSubstr("refused 127.0.0.1: max_clients (2) is reached")));
+}
+
+TEST(ModbusServerLimits, RefusalsAreLoggedOnceAMinute) {
+  Served served;
+  served.listeners[0].max_clients_per_address = 1;
+  served.start();
+  TestClient first(served);
+  for (int i = 0; i < 10; ++i) {
+    expect_served(first);
+    EXPECT_TRUE(TestClient(served).closed_by_server());
+    served.pass(std::chrono::seconds(1));
+  }
+  EXPECT_EQ(lines_with(served, "refused").size(), 1U);
+  served.pass(std::chrono::seconds(50));
+  EXPECT_TRUE(TestClient(served).closed_by_server());
+  ASSERT_EQ(lines_with(served, "refused").size(), 2U);
+  EXPECT_THAT(lines_with(served, "refused")[1], HasSubstr("(and 9 more since the last such line)"));
+  EXPECT_EQ(served.server->counters().refused_full, 11U);
+}
+
+TEST(ModbusServerLimits, AnAddressThatAllowDoesNotNameIsClosedAtAccept) {
+  Served served;
+  served.listeners[0].has_allow = true;
+  served.listeners[0].allow = {{{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 192, 168, 1, 0}, 120, Role::operator_, 0}};
+  served.start();
+  TestClient stranger(served);
+  EXPECT_TRUE(stranger.closed_by_server());
+  EXPECT_EQ(served.server->counters().refused_not_allowed, 1U);
+  EXPECT_EQ(served.server->counters().accepted, 0U);
+  EXPECT_EQ(lines_with(served, "`allow` does not name").size(), 1U);
+}
+
+TEST(ModbusServerLimits, AllowGivesTheRoleThatTheRegisterShows) {
+  Served served;
+  served.listeners[0].has_allow = true;
+  served.listeners[0].allow = {{{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 127, 0, 0, 0}, 104, Role::operator_, 0}};
+  served.start();
+  TestClient client(served);
+  client.send(read_request(1, 7, 1));
+  EXPECT_EQ(client.receive(11).back(), 2);
+}
+
+class NoFrame : public ::testing::TestWithParam<std::vector<Byte>> {};
+
+TEST_P(NoFrame, ClosesTheConnectionAndNoOther) {
+  Served served;
+  served.start();
+  TestClient bad(served);
+  TestClient good(served);
+  bad.send(GetParam());
+  EXPECT_TRUE(bad.closed_by_server());
+  expect_served(good);
+  EXPECT_EQ(served.server->counters().closed_malformed, 1U);
+  EXPECT_EQ(served.server->counters().open, 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Mbap, NoFrame,
+                         ::testing::Values(std::vector<Byte>{0, 1, 0, 1, 0, 6, 0xFF, 3, 0, 100, 0, 2},  // protocol 1
+                                           std::vector<Byte>{0, 1, 0, 0, 0, 0, 0xFF, 3, 0, 100, 0, 2},  // length 0
+                                           std::vector<Byte>{0, 1, 0, 0, 0, 1, 0xFF, 3, 0, 100, 0, 2},  // no function
+                                           std::vector<Byte>{0, 1, 0, 0, 0x01, 0, 0xFF, 3, 0, 100, 0, 2},  // over 254
+                                           std::vector<Byte>{'G', 'E', 'T', ' ', '/', ' ', 'H', 'T', 'T', 'P', '/',
+                                                             '1'}));
+
+TEST(ModbusServerLimits, WhatWasAskedBeforeBytesThatAreNoFrameIsAnsweredFirst) {
+  Served served;
+  served.start();
+  TestClient client(served);
+  std::vector<Byte> bytes = read_request(1, kPositionOfAxis1, 2);
+  for (int i = 0; i < 12; ++i) bytes.push_back(0xAA);
+  client.send(bytes);
+  EXPECT_EQ(client.receive(13).size(), 13U);
+  EXPECT_TRUE(client.closed_by_server());
+}
+
+/// Lowers the number of descriptors this process may have, for a scope.
+class FewDescriptors {
+ public:
+  explicit FewDescriptors(rlim_t limit) {
+    EXPECT_EQ(getrlimit(RLIMIT_NOFILE, &before_), 0);
+    rlimit lowered = before_;
+    lowered.rlim_cur = limit;
+    EXPECT_EQ(setrlimit(RLIMIT_NOFILE, &lowered), 0);
+  }
+  ~FewDescriptors() { EXPECT_EQ(setrlimit(RLIMIT_NOFILE, &before_), 0); }
+  FewDescriptors(const FewDescriptors&) = delete;
+  FewDescriptors& operator=(const FewDescriptors&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(ModbusServerLimits, WithoutDescriptorsAcceptingPausesInsteadOfSpinningAndThenGoesOn) {
+  Served served;
+  served.start();
+  TestClient first(served);
+  expect_served(first);
+  TestClient second(served);
+  {
+    const FewDescriptors none_free(3);
+    ASSERT_TRUE(served.await([&] { return served.server->counters().accept_pauses == 1; }));
+    for (int i = 0; i < 100; ++i) served.settle();
+    EXPECT_EQ(served.server->counters().accept_pauses, 1U) << "it tries again only after its pause";
+    expect_served(first);
+    served.pass(std::chrono::milliseconds(200));
+    EXPECT_EQ(served.server->counters().accept_pauses, 2U);
+  }
+  served.pass(std::chrono::milliseconds(200));
+  expect_served(second);
+  EXPECT_EQ(lines_with(served, "cannot accept").size(), 1U);
+}
+
+}  // namespace
+}  // namespace axisgate::test

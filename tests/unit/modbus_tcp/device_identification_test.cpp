@@ -1,0 +1,100 @@
+#include "gateway/upstream/modbus_tcp/device_identification.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/modbus_tcp/support/desk.hpp"
+
+namespace axisgate::modbus_tcp::test {
+namespace {
+
+/// id and text of each object in a reply, as "00 axisgate".
+std::vector<std::string> objects_in(const std::string& reply) {
+  const auto pdu = bytes(reply);
+  std::vector<std::string> out;
+  std::size_t at = 7;
+  while (at + 2 <= pdu.size()) {
+    const Byte id[] = {pdu[at]};
+    const std::size_t size = pdu[at + 1];
+    EXPECT_LE(at + 2 + size, pdu.size());
+    out.push_back(hex_text(id) + " " +
+                  std::string(pdu.begin() + static_cast<std::ptrdiff_t>(at) + 2,
+                              pdu.begin() + static_cast<std::ptrdiff_t>(at + 2 + size)));
+    at += 2 + size;
+  }
+  EXPECT_EQ(out.size(), pdu[6]);
+  return out;
+}
+
+class Identification : public ::testing::Test {
+ protected:
+  Desk desk;
+  Line plc{desk};
+};
+
+TEST_F(Identification, BasicNamesVendorProductAndRevision) {
+  const std::string reply = plc.ask("2B 0E 01 00");
+  EXPECT_EQ(reply.substr(0, 20), "2B 0E 01 83 00 00 03");
+  const auto objects = objects_in(reply);
+  ASSERT_EQ(objects.size(), 3U);
+  EXPECT_EQ(objects[0], "00 axisgate");
+  EXPECT_EQ(objects[1], "01 axisgate");
+  EXPECT_EQ(objects[2].substr(0, 3), "02 ");
+  EXPECT_GT(objects[2].size(), 5U) << "the version";
+}
+
+TEST_F(Identification, RegularAddsNamesAndLeavesOutWhatThereIsNot) {
+  const auto objects = objects_in(plc.ask("2B 0E 02 00"));
+  ASSERT_EQ(objects.size(), 6U);
+  EXPECT_EQ(objects[3].substr(0, 2), "04") << "no vendor URL";
+  EXPECT_EQ(objects[5].substr(0, 2), "06");
+}
+
+TEST_F(Identification, ExtendedAddsWhatIsOurs) {
+  const auto objects = objects_in(plc.ask("2B 0E 03 00"));
+  ASSERT_EQ(objects.size(), 10U);
+  EXPECT_EQ(objects[6], "80 3");
+  EXPECT_EQ(objects[7], "81 1");
+  EXPECT_EQ(objects[8], "82 high-first");
+  EXPECT_EQ(objects[9], "83 flat");
+}
+
+TEST_F(Identification, AStreamBeginsAtTheObjectAskedForOrAtTheFirst) {
+  EXPECT_EQ(objects_in(plc.ask("2B 0E 03 80")).front(), "80 3");
+  EXPECT_EQ(objects_in(plc.ask("2B 0E 03 7E")).front(), "00 axisgate") << "no such object";
+  EXPECT_EQ(objects_in(plc.ask("2B 0E 01 80")).front(), "00 axisgate") << "not of this level";
+  EXPECT_EQ(objects_in(plc.ask("2B 0E 01 02")).size(), 1U);
+}
+
+TEST_F(Identification, EachObjectIsReadAlone) {
+  EXPECT_EQ(plc.ask("2B 0E 04 80"), "2B 0E 04 83 00 00 01 80 01 33");
+  EXPECT_EQ(plc.ask("2B 0E 04 03"), "AB 02");
+  EXPECT_EQ(plc.ask("2B 0E 04 FF"), "AB 02");
+}
+
+TEST(IdentificationStreams, ContinueWhereOnePduIsFull) {
+  std::vector<IdentificationObject> objects;
+  for (int id = 0x80; id < 0x90; ++id) objects.push_back({static_cast<std::uint8_t>(id), std::string(60, 'x')});
+  Request request;
+  request.function = Function::encapsulated_interface;
+  request.identification = 3;
+  std::size_t seen = 0;
+  for (int answers = 0; answers < 10; ++answers) {
+    const Pdu pdu = answer_identification(request, objects);
+    EXPECT_LE(pdu.size(), kMaxPdu);
+    seen += objects_in(hex_text({pdu.data(), pdu.size()})).size();
+    if (pdu[4] == 0) {
+      EXPECT_EQ(pdu[5], 0);
+      break;
+    }
+    EXPECT_EQ(pdu[4], 0xFF);
+    request.object = pdu[5];
+  }
+  EXPECT_EQ(seen, objects.size());
+}
+
+TEST_F(Identification, GeneralReferenceIsOfAnotherVersion) {
+  EXPECT_EQ(plc.ask("2B 0D 00 00 01 10 08 00 00 00 00 00"), "AB 01");
+}
+
+}  // namespace
+}  // namespace axisgate::modbus_tcp::test

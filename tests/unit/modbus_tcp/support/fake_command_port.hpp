@@ -1,0 +1,63 @@
+// A CommandPort that a test plays: it keeps what is submitted and answers at once or when told.
+// Promises the port's own contract: one result each, callbacks never from inside submit().
+// Never decides anything by itself.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "gateway/image/command_port.hpp"
+
+namespace axisgate::modbus_tcp::test {
+
+class FakeCommandPort final : public CommandPort {
+ public:
+  struct Submitted {
+    AxisNumber axis;
+    Group group;
+  };
+
+  std::optional<GroupResult> submit(AxisNumber axis, const Group& group, GroupCallback on_result) override {
+    submitted.push_back({axis, group});
+    if (!at_once.empty()) {
+      const GroupResult result = at_once.front();
+      at_once.pop_front();
+      return result;
+    }
+    if (!slow) return GroupResult{};
+    waiting.push_back(std::move(on_result));
+    return std::nullopt;
+  }
+  void client_gone(ClientId client) override { gone.push_back(client); }
+  bool holds(AxisNumber axis, Quantity quantity, std::int64_t value) const override {
+    return held.contains({axis, quantity, value});
+  }
+  std::int32_t set_position_value(AxisNumber axis) const override {
+    const auto found = set_positions.find(axis);
+    return found == set_positions.end() ? 0 : found->second;
+  }
+
+  /// The oldest waiting group ends.
+  void finish(const Outcome& outcome = {}, std::uint32_t data = 0, std::uint8_t size = 0) {
+    const GroupCallback callback = std::move(waiting.front());
+    waiting.pop_front();
+    callback({outcome, data, size});
+  }
+  /// Takes the record of what was submitted.
+  [[nodiscard]] std::vector<Submitted> taken() { return std::exchange(submitted, {}); }
+
+  bool slow = false;                ///< true: results come by finish()
+  std::deque<GroupResult> at_once;  ///< used up first, whatever `slow` says
+  std::vector<Submitted> submitted;
+  std::deque<GroupCallback> waiting;
+  std::vector<ClientId> gone;
+  std::set<std::tuple<AxisNumber, Quantity, std::int64_t>> held;
+  std::map<AxisNumber, std::int32_t> set_positions;
+};
+
+}  // namespace axisgate::modbus_tcp::test

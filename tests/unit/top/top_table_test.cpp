@@ -1,0 +1,169 @@
+#include "gateway/app/top_table.hpp"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "gateway/app/top_screen.hpp"
+#include "gateway/image/process_image.hpp"
+
+namespace axisgate::app {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::SizeIs;
+using ::testing::StartsWith;
+
+void put32(AxisReading& axis, std::size_t offset, std::uint32_t value) {
+  axis.registers[offset] = static_cast<std::uint16_t>(value >> 16);
+  axis.registers[offset + 1] = static_cast<std::uint16_t>(value);
+}
+
+AxisReading good_axis(AxisNumber number) {
+  AxisReading axis;
+  axis.axis = number;
+  axis.registers[1] = 1;
+  put32(axis, 2, 123456);
+  put32(axis, 4, static_cast<std::uint32_t>(-12500));
+  axis.registers[6] = static_cast<std::uint16_t>(-5);
+  axis.registers[7] = 345;
+  axis.registers[18] = 2;
+  axis.registers[19] = 12;
+  put32(axis, 20, 0xFFFFFFFF);
+  put32(axis, 22, 0xFFFFFFFF);
+  axis.registers[31] = 2;
+  return axis;
+}
+
+TopReading reading_of(std::vector<AxisReading> axes) {
+  TopReading reading;
+  reading.server = "127.0.0.1:1502";
+  reading.gateway = {1, 2, 1, 2, 0, 3725, 0, 3, 0, 0, 0x0102, 0x0304};
+  reading.axes = std::move(axes);
+  return reading;
+}
+
+std::vector<std::string> lines_of(const std::string& table) {
+  std::vector<std::string> lines;
+  std::istringstream stream(table);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string axis_line(const AxisReading& axis) { return lines_of(render_table(reading_of({axis}))).at(2); }
+
+std::vector<std::string> words(const std::string& line) {
+  std::vector<std::string> words;
+  std::istringstream stream(line);
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+TEST(TopTable, TellsOfTheGatewayInItsFirstLine) {
+  EXPECT_EQ(lines_of(render_table(reading_of({good_axis(1)})))[0],
+            "axisgate 127.0.0.1:1502  running  axes online 2 of 2  up 1:02:05  role engineer  alarms: none");
+}
+
+TEST(TopTable, WritesAnAxisInItsUnits) {
+  EXPECT_THAT(words(axis_line(good_axis(7))), ElementsAre("7", "online", "discrete", "motion", "profile", "position",
+                                                          "123456", "-12.500", "-0.5", "3.45", "12", "none", "-"));
+}
+
+TEST(TopTable, PutsEveryNumberUnderItsColumn) {
+  const auto lines = lines_of(render_table(reading_of({good_axis(1)})));
+  for (const auto& [column, value] : {std::pair{"position  ", "123456  "},
+                                      {"velocity rpm  ", "-12.500  "},
+                                      {"torque %  ", "-0.5  "},
+                                      {"current A  ", "3.45  "},
+                                      {"age ms  ", "12  "}}) {
+    // The first column named position is of the mode; the header has it once.
+    EXPECT_EQ(lines[1].find(column) + std::string(column).size(), lines[2].find(value) + std::string(value).size())
+        << column;
+  }
+}
+
+TEST(TopTable, MarksValuesThatAreNotGoodNow) {
+  AxisReading axis = good_axis(1);
+  put32(axis, 22, 0);
+  axis.registers[18] = 4;
+  EXPECT_THAT(words(axis_line(axis)), ElementsAre("1", "offline", "discrete", "motion", "profile", "position?",
+                                                  "123456?", "-12.500?", "-0.5?", "3.45?", "12", "none", "-"));
+}
+
+TEST(TopTable, ShowsAQuestionMarkWhereThereNeverWasAValueAndADashWhereTheDriveHasNone) {
+  AxisReading axis = good_axis(1);
+  put32(axis, 2, 0x80000000);
+  axis.registers[1] = 0x8000;
+  put32(axis, 20, 0xFFFFFFFF & ~bit(Quantity::torque_actual));
+  const auto line = words(axis_line(axis));
+  EXPECT_EQ(line[4], "?") << "mode";
+  EXPECT_EQ(line[5], "?") << "position";
+  EXPECT_EQ(line[7], "-") << "torque";
+}
+
+TEST(TopTable, KeepsTheSignOfNumbersBelowOne) {
+  AxisReading axis = good_axis(1);
+  put32(axis, 4, static_cast<std::uint32_t>(-7));
+  EXPECT_THAT(axis_line(axis), HasSubstr("  -0.007  "));
+}
+
+TEST(TopTable, NamesAlarmsErrorsAndOwnModes) {
+  AxisReading axis = good_axis(1);
+  axis.registers[1] = static_cast<std::uint16_t>(-3);
+  axis.registers[10] = 0x3210;
+  put32(axis, 12, 0x40);
+  put32(axis, 34, bit(AxisAlarm::not_homed) | bit(AxisAlarm::stop_latched) | 1U << 31);
+  const std::string line = axis_line(axis);
+  EXPECT_THAT(line, HasSubstr("own -3"));
+  EXPECT_THAT(line, HasSubstr("0x3210 (0x40)"));
+  EXPECT_THAT(line, EndsWith("not_homed, stop_latched, bit 31"));
+}
+
+TEST(TopTable, SaysThatAValueIsOlderThanTheRegisterCanTell) {
+  AxisReading axis = good_axis(1);
+  axis.registers[19] = 0xFFFF;
+  EXPECT_THAT(axis_line(axis), HasSubstr(">65 s"));
+}
+
+TEST(TopTable, NamesTheGatewaysAlarmsAndState) {
+  TopReading reading = reading_of({});
+  reading.gateway[2] = static_cast<std::uint16_t>(GatewayState::degraded);
+  reading.gateway[6] =
+      1U << static_cast<unsigned>(GatewayAlarm::bus_down) | 1U << static_cast<unsigned>(GatewayAlarm::bus_overloaded);
+  const auto lines = lines_of(render_table(reading));
+  EXPECT_THAT(lines[0], HasSubstr("degraded"));
+  EXPECT_THAT(lines[0], EndsWith("alarms: bus down, bus overloaded"));
+  EXPECT_EQ(lines[2], "no axes");
+}
+
+TEST(TopTable, ReadsBothWordOrders) {
+  TopReading reading = reading_of({good_axis(1)});
+  const std::string high_first = render_table(reading);
+  std::swap(reading.gateway[4], reading.gateway[5]);
+  std::swap(reading.gateway[10], reading.gateway[11]);
+  for (const std::size_t pair : {2U, 4U, 8U, 12U, 20U, 22U, 34U}) {
+    std::swap(reading.axes[0].registers[pair], reading.axes[0].registers[pair + 1]);
+  }
+  EXPECT_EQ(word_order(reading.gateway), WordOrder::low_first);
+  EXPECT_EQ(render_table(reading), high_first);
+  reading.gateway[10] = 0;
+  EXPECT_EQ(word_order(reading.gateway), WordOrder::unknown);
+}
+
+TEST(TopTable, AnAxisOutOfReachIsShownOfflineWithItsLastValuesMarked) {
+  AxisReading axis = good_axis(1);
+  mark_out_of_reach(axis);
+  EXPECT_THAT(axis_line(axis), HasSubstr("offline"));
+  EXPECT_THAT(axis_line(axis), HasSubstr("123456?"));
+}
+
+TEST(TopScreen, AFrameIsCutToTheWindowAndWipesWhatWasThereBefore) {
+  const std::string frame = terminal_frame("abcdef\nx\nthird\n", 4, 2);
+  EXPECT_EQ(frame, "\x1b[Habcd\x1b[K\r\nx\x1b[K\x1b[J");
+}
+
+}  // namespace
+}  // namespace axisgate::app
