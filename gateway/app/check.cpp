@@ -58,6 +58,7 @@ bool add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::Dr
   out += fmt::format("\nBus {}: {} on {}, {} baud{}\n", bus.name, bus.adapter, bus.device, bus.baud,
                      bus.cascade ? ", drives in a chain" : "");
   std::vector<std::string> names;
+  names.reserve(drives.size());
   for (const auto& model : drives) names.push_back(fmt::format("{} at node {}", model.title, model.node));
   add_line(out, "drives", fmt::format("{}", fmt::join(names, ", ")));
   add_line(out, "polls", polls_text(budget));

@@ -58,7 +58,7 @@ bool ConfigNode::flag(std::string_view key, bool otherwise) const {
 
 Duration ConfigNode::milliseconds(std::string_view key, Duration otherwise) const {
   // The bound keeps a value that the schema has refused from overflowing nanoseconds.
-  constexpr std::int64_t kLongest = 24 * 3600 * 1000;
+  constexpr std::int64_t kLongest = 86'400'000;  // a day
   const auto value = integer(key);
   return value && *value >= 0 && *value <= kLongest ? std::chrono::milliseconds(*value) : otherwise;
 }

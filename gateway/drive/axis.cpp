@@ -188,8 +188,9 @@ bool Axis::passes_fence(bus::OrderId id) {
 }
 
 bool Axis::insists(bus::OrderId id) const {
-  const Pending* pending = find(id);
-  return pending != nullptr && pending->conversation->would_repeat();
+  return std::any_of(pending_.begin(), pending_.end(), [&](const Pending& p) {
+    return p.conversation->is_stop() && (p.id == id ? p.conversation->would_repeat() : !p.conversation->begun());
+  });
 }
 
 void Axis::on_result(bus::OrderId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted) {

@@ -53,7 +53,7 @@ class Axis {
   /// The order's next exchange; none: it waits or has just ended.
   [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::OrderId id);
   [[nodiscard]] bool passes_fence(bus::OrderId id);
-  /// A stop that goes out once more if the exchange on the wire stays without an answer.
+  /// A stop that has not been sent yet, or, of the order on the wire, one that will be sent once more.
   [[nodiscard]] bool insists(bus::OrderId id) const;
   void on_result(bus::OrderId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted);
   void on_order_ended(bus::OrderId id, Errc code);

@@ -29,6 +29,21 @@ bool upper_limit_first(const AxisCore& core, const Group& group) {
   return false;
 }
 
+// A target that comes with its own start goes with it, once the mode is the right one: a change of mode would make it doubtful.
+bool sent_with_start(Command command, Quantity quantity) {
+  switch (command) {
+    case Command::move_absolute:
+    case Command::move_relative:
+      return quantity == Quantity::target_position;
+    case Command::run_velocity:
+      return quantity == Quantity::target_velocity;
+    case Command::run_torque:
+      return quantity == Quantity::target_torque;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 bool limits_in_order(const AxisCore& core, const Group& group) {
@@ -55,20 +70,41 @@ bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Pl
   return true;
 }
 
+namespace {
+
+// Unconditionally, although it may be held: a panel or a PC at the drive's other port can have changed it since it was read, and
+// this is what keeps an enable from moving. Where a write wears out the drive's memory, it is looked at first.
+void add_running_target(const AxisCore& core, ObjectId id, std::int64_t raw, Plan& plan, bool& look_again) {
+  constexpr Duration kFresh = std::chrono::milliseconds(500);
+  const ObjectState& state = core.store[id];
+  if (state.refused) return;  // what the drive does not have holds nothing
+  if (core.object(id).nvm == Nvm::no || core.object(id).trigger) {
+    plan.add(Action::write(id, raw));
+  } else if (!state.held || core.now - state.sent_at > kFresh) {
+    plan.add(Action::read(id));
+    look_again = true;
+  } else if (state.number != raw) {
+    plan.add(Action::write(id, raw));
+  }
+}
+
+}  // namespace
+
 void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
+  bool look_again = false;
   for (const Quantity q : {Quantity::target_velocity, Quantity::target_torque}) {
     const Binding* binding = core.model.binding(q);
-    if (binding != nullptr && binding->writable)
-      static_cast<void>(add_write(core, q, keep_wanted ? core.running_target(q) : Wanted{}, plan));
+    if (binding == nullptr || !binding->writable) continue;
+    const Wanted wanted = keep_wanted ? core.running_target(q) : Wanted{};
+    const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, core.object(binding->object));
+    add_running_target(core, binding->object, raw.value_or(0), plan, look_again);
   }
-  // Those without a quantity on this axis are nobody's to ask for: 0 in any unit. What the drive does not have holds none.
-  for (const ObjectId id : core.model.zero_before_enable) {
-    const auto& bindings = core.model.bindings;
-    if (std::any_of(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.object == id && b.writable; }))
-      continue;
-    const ObjectState& state = core.store[id];
-    if (!state.refused && !(state.held && state.number == 0)) plan.add(Action::write(id, 0));
-  }
+  // Those without a quantity on this axis are nobody's to ask for: 0 in any unit.
+  const auto& bindings = core.model.bindings;
+  for (const ObjectId id : core.model.zero_before_enable)
+    if (std::none_of(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.object == id && b.writable; }))
+      add_running_target(core, id, 0, plan, look_again);
+  if (look_again) plan.add(Action::at(Mark::look_again));
 }
 
 void add_target_here(const AxisCore& core, Plan& plan) {
@@ -94,6 +130,7 @@ Plan plan_setpoints(const AxisCore& core, const Group& group) {
   Plan plan;
   const AxisFacts facts = core.facts();
   const auto add = [&](const Setpoint& sp) {
+    if (sent_with_start(group.command, sp.quantity)) return true;
     if (!core.motion.target_acts_now(sp.quantity, facts, core.held_back(sp.quantity))) return true;
     return add_write(core, sp.quantity, {sp.value, sp.exact}, plan);
   };
@@ -113,6 +150,13 @@ Plan plan_mode(const AxisCore& core, std::int16_t mode) {
   const ObjectState& asked = core.store[core.model.mode];
   const ObjectState& shown = core.store[display];
   if (asked.held && asked.number == *raw && shown.held && shown.number == *raw) return plan;
+  if (asked.known && asked.number == *raw && shown.known && shown.number == *raw && !asked.unsure) {
+    // Doubted only: to look is better than to write a mode in which something may be running.
+    plan.add(Action::read(core.model.mode));
+    if (display != core.model.mode) plan.add(Action::read(display));
+    plan.add(Action::at(Mark::look_again));
+    return plan;
+  }
   plan.add(Action::write(core.model.mode, *raw));
   plan.add(Action::at(Mark::values_doubtful, core.model.mode));
   plan.add(Action::wait(equals(display, *raw), kModeLimit));

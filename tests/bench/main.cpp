@@ -1,25 +1,111 @@
 // axisgate-bench: the figures of the design's section 8, each as a ratio to a bare loop of the same run.
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <array>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
+#include <filesystem>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
 
+#include "tests/bench/bench_options.hpp"
+#include "tests/bench/delayed_drive.hpp"
+#include "tests/bench/figures.hpp"
+#include "tests/bench/footprint.hpp"
+#include "tests/bench/immediate_drive.hpp"
 #include "tests/bench/modbus_reads.hpp"
+#include "tests/bench/shared_polling.hpp"
+#include "tests/bench/stop_latency.hpp"
+
+namespace {
+
+using namespace axisgate::bench;
+
+struct Bench {
+  std::string_view name;
+  std::string_view what;
+  void (*run)(const BenchOptions&);
+};
+
+constexpr std::array kBenches{
+    Bench{"immediate", "P2: time added to an exchange with a drive that answers at once", immediate_drive},
+    Bench{"delayed", "P2: share of a bare loop's rate with a drive that answers after 5 ms", delayed_drive},
+    Bench{"stops", "P4: exchanges before a stop, behind 32 busy clients", stop_latency},
+    Bench{"reads", "P5: Modbus reads per second beside a bare Asio echo server",
+          [](const BenchOptions& options) {
+            modbus_reads(options.quick ? ReadsOptions{3, 100} : ReadsOptions{});
+          }},
+    Bench{"sharing", "P6: exchanges on the bus with 0, 1 and 32 reading clients", shared_polling},
+    Bench{"footprint", "P8: memory and processor time", footprint},
+};
+
+/// A folder for one run; gone with the object.
+class RunFolder {
+ public:
+  RunFolder() : path_((std::filesystem::temp_directory_path() / "axisgate-bench-XXXXXX").string()) {
+    if (::mkdtemp(path_.data()) == nullptr) throw std::runtime_error("no folder for this run");
+  }
+  ~RunFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+int help(int status) {
+  fmt::print("usage: axisgate-bench [--quick] [--axisgate PROGRAM] [BENCH...]\nWithout a name, all of these run:\n");
+  for (const Bench& bench : kBenches) fmt::print("  {:<10} {}\n", bench.name, bench.what);
+  fmt::print("--quick shows in seconds that they work; its figures mean nothing.\n");
+  return status;
+}
+
+const Bench* find(std::string_view name) {
+  for (const Bench& bench : kBenches)
+    if (bench.name == name) return &bench;
+  return nullptr;
+}
+
+void run(const std::vector<const Bench*>& chosen, BenchOptions options) {
+  const RunFolder folder;
+  options.folder = folder.path();
+  for (const Bench* bench : chosen) {
+    fmt::print("--- {}: {}\n", bench->name, load_of_the_machine());
+    std::fflush(stdout);
+    bench->run(options);
+  }
+  fmt::print("--- end: {}\n", load_of_the_machine());
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  using namespace axisgate::bench;
-  ReadsOptions reads;
+  BenchOptions options;
+  options.program = AXISGATE_PROGRAM;
+  std::vector<const Bench*> chosen;
   for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--quick") == 0) {
-      reads = {3, 100};
+    const std::string_view word = argv[i];
+    if (word == "--help") return help(0);
+    if (word == "--quick") {
+      options.quick = true;
+    } else if (word == "--axisgate" && i + 1 < argc) {
+      options.program = argv[++i];
+    } else if (const Bench* bench = find(word)) {
+      chosen.push_back(bench);
     } else {
-      fmt::print("usage: axisgate-bench [--quick]\n");
-      return std::strcmp(argv[i], "--help") == 0 ? 0 : 2;
+      return help(2);
     }
   }
+  if (chosen.empty())
+    for (const Bench& bench : kBenches) chosen.push_back(&bench);
   try {
-    modbus_reads(reads);
+    run(chosen, options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "axisgate-bench: {}\n", error.what());
     return 1;

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 
 from modbus import ONLINE, Client, Refused
@@ -154,6 +155,20 @@ class Story(unittest.TestCase):
     def command_line(self, *arguments, answer=""):
         """axisgate as a user calls it, to its end."""
         return subprocess.run([AXISGATE, *arguments], input=answer, capture_output=True, text=True, timeout=NEVER, check=False)
+
+    def later(self, work, *arguments):
+        """Does it in a thread: a Future."""
+        if not hasattr(self, "threads"):
+            self.threads = ThreadPoolExecutor(max_workers=64)
+            self.addCleanup(self.threads.shutdown)
+        return self.threads.submit(work, *arguments)
+
+    def code_of(self, future):
+        """The exception code of a write done later; 0 where it went well."""
+        failed = future.exception(timeout=NEVER)
+        if failed is not None and not isinstance(failed, Refused):
+            raise failed
+        return failed.code if failed else 0
 
     @contextmanager
     def refused(self, *codes):

@@ -16,10 +16,19 @@ auto says(const std::string& pointer, const std::string& words) {
 }
 
 TEST(Refusals, ARequiredConstantNamesItsValues) {
-  EXPECT_THAT(refused(shipped("kinco-jd"), one_axis()),
-              ElementsAre(says("/constants/peak_current_a",
-                               "\"peak_current_a\" is required for profile \"kinco-jd\": peak current of "
-                               "the drive model in A: JD420 15, JD430 27.5, JD620 25")));
+  EXPECT_THAT(refused(valid_file("required-constant"), one_axis()),
+              ElementsAre(says("/constants/counts",
+                               "\"counts\" is required for profile \"required-constant\": counts of the encoder: 2500 or "
+                               "10000")));
+}
+
+TEST(Refusals, AKincoWithoutItsPeakCurrentHasNoCurrentsAndNoTorque) {
+  for (const std::string name : {"kinco-jd", "kinco-md"}) {
+    const DriveModel model = resolved(shipped(name), one_axis());
+    EXPECT_EQ(model.axes.at(0).binding(Quantity::current_actual), nullptr) << name;
+    EXPECT_EQ(model.axes.at(0).binding(Quantity::torque_actual), nullptr) << name;
+    EXPECT_NE(model.axes.at(0).binding(Quantity::position_actual), nullptr) << name;
+  }
 }
 
 TEST(Refusals, AnUnknownConstantSuggestsTheNearest) {

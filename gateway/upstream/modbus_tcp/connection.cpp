@@ -59,8 +59,6 @@ void Connection::on_deadline() {
   // Armed deadlines are not moved when the session's move later, so this may be too early: then only arm anew.
   if (session_->next_deadline() <= now) session_->on_deadline(now);
   take_turn(now);
-  // A client that does not take its reply is not waited for any longer, though output is left.
-  if (!ended_ && session_->finished()) end(session_->why_finished());
 }
 
 void Connection::take_turn_soon() {
@@ -82,9 +80,8 @@ void Connection::take_turn(Instant now) {
 
 void Connection::write_some(Instant now) {
   if (waiting_to_write_) return;
-  for (int writes = 0; writes < kWritesPerTurn; ++writes) {
-    const Bytes output = session_->output();
-    if (output.empty()) return;
+  // The session goes on with what it had to keep as its replies are taken, so that this may take a few rounds.
+  for (Bytes output = session_->output(); !output.empty(); output = session_->output()) {
     error_code error;
     const std::size_t sent = socket_.write_some(boost::asio::buffer(output.data(), output.size()), error);
     if (error == boost::asio::error::would_block) {
@@ -101,7 +98,6 @@ void Connection::write_some(Instant now) {
     if (error) return end({});
     session_->take_output(sent, now);
   }
-  if (!session_->output().empty()) take_turn_soon();
 }
 
 void Connection::arm_timer() {

@@ -14,10 +14,9 @@
 
 namespace axisgate::modbus_tcp {
 
-/// What one turn reads at most: more than twenty ordinary read requests, or one of the largest.
+/// What one turn reads at most: some twenty ordinary requests, or one of the largest. It bounds what a turn writes,
+/// too.
 inline constexpr std::size_t kReadPerTurn = kMaxAdu;
-/// What one turn writes at most, in calls: then the other connections have their turn.
-inline constexpr int kWritesPerTurn = 8;
 
 /// Not the type-erased executor of tcp::socket: it costs a few percent of each request.
 using ClientSocket = boost::asio::basic_stream_socket<boost::asio::ip::tcp, boost::asio::io_context::executor_type>;

@@ -105,7 +105,7 @@ void Rig::bring_to(Situation situation) {
       break;
     case Situation::suspect:
       enable();
-      faults().next(simulated::DriveFault::mute);
+      faults().next(simulated::DriveFault::mute, 2);  // the first fence as well
       expect(stage.run_until([&] { return axis().link_state == LinkState::suspect; }), "never suspect");
       break;
     case Situation::offline:

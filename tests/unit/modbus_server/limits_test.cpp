@@ -66,6 +66,22 @@ TEST(ModbusServerLimits, AClientThatDoesNotTakeItsRepliesIsCutAtItsDeadlineWhile
   EXPECT_EQ(served.server->counters().open, 1U);
 }
 
+TEST(ModbusServerLimits, AClientThatTakesItsRepliesLateButInTimeGetsThemAll) {
+  Served served;
+  served.start();
+  const auto late = TestClient::with_small_buffer(served);
+  const std::vector<Byte> request = read_request(1, 100, 125);
+  std::vector<Byte> requests;
+  for (int i = 0; i < 20'000; ++i) requests.insert(requests.end(), request.begin(), request.end());
+  // More than the system keeps between the two: the server has to stop in the middle of a reply and go on later.
+  const std::size_t asked = late->send_what_fits(requests) / request.size();
+  served.settle();
+  served.pass(std::chrono::seconds(4));
+  const std::size_t all = asked * read_reply_size(125);
+  EXPECT_LT(late->received_so_far(), all);
+  EXPECT_EQ(late->receive(all).size(), all);
+}
+
 TEST(ModbusServerLimits, AnIdleClientIsClosedAndABusyOneIsNot) {
   Served served;
   served.start();
@@ -78,6 +94,8 @@ TEST(ModbusServerLimits, AnIdleClientIsClosedAndABusyOneIsNot) {
   }
   EXPECT_TRUE(idle.closed_by_server());
   expect_served(busy);
+  served.pass(std::chrono::seconds(61));
+  EXPECT_TRUE(busy.closed_by_server()) << "once it is idle as well";
 }
 
 TEST(ModbusServerLimits, IdleTimeoutZeroIsNone) {
@@ -102,6 +120,25 @@ TEST(ModbusServerLimits, AClientThatVanishesLeavesRoom) {
   }
   EXPECT_EQ(served.server->counters().closed_by_peer, 2U);
   EXPECT_EQ(served.server->counters().refused_full, 0U);
+}
+
+TEST(ModbusServerLimits, ClientsLeaveInAnyOrder) {
+  Served served;
+  served.start();
+  std::vector<std::unique_ptr<TestClient>> clients;
+  for (int i = 0; i < 6; ++i) {
+    clients.push_back(std::make_unique<TestClient>(served));
+    expect_served(*clients.back());
+  }
+  std::uint32_t open = 6;
+  for (const std::size_t leaving : {0U, 5U, 2U, 4U, 1U}) {
+    clients[leaving].reset();
+    --open;
+    ASSERT_TRUE(served.await([&] { return served.server->counters().open == open; }));
+    for (auto& client : clients) {
+      if (client) expect_served(*client);
+    }
+  }
 }
 
 TEST(ModbusServerLimits, OverMaxClientsNewOnesAreClosedAtOnceAndTheOthersStay) {

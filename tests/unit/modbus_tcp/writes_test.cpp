@@ -144,8 +144,15 @@ TEST_F(Writes, ABlockMayCarryBackWhatAMissingRowReads) {
   EXPECT_TRUE(is_done(plc.write_block(146, "00 05 FF FF")));
   ASSERT_EQ(last().setpoints.size(), 1U);
   EXPECT_EQ(last().setpoints[0].quantity, Quantity::target_torque);
-  EXPECT_EQ(plc.write_block(146, "00 05 00 00"), "90 02") << "any other value is asked of the drive in earnest";
+  EXPECT_EQ(plc.write_block(146, "00 06 00 01"), "90 02") << "any other value is asked of the drive in earnest";
+  EXPECT_TRUE(is_done(plc.write_block(146, "00 07 00 00"))) << "0 asks nothing: one function block serves all axes";
   EXPECT_TRUE(is_done(plc.write_block(156, "00 07 00 00 00 00 00 00"))) << "jog_velocity 0";
+}
+
+TEST_F(Writes, Mode0InABlockLeavesTheModeToTheCommands) {
+  EXPECT_TRUE(is_done(plc.write_block(141, "00 00 00 00 00 07")));
+  EXPECT_FALSE(last().mode.has_value()) << "CiA 402: no mode change";
+  ASSERT_EQ(last().setpoints.size(), 1U);
 }
 
 TEST_F(Writes, UnknownCommandsAndTheNumberThatMeansNoneAre0x03) {

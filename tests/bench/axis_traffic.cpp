@@ -1,0 +1,53 @@
+#include "tests/bench/axis_traffic.hpp"
+
+#include <array>
+#include <thread>
+
+namespace axisgate::bench {
+namespace {
+
+// profile_velocity, profile_acceleration, profile_deceleration, homing_speed_switch, _zero, homing_acceleration
+constexpr std::array<std::uint16_t, ParameterWriter::kParameters> kOffsets{48, 50, 52, 62, 64, 66};
+
+constexpr std::array<DriveObject, 16> kObjects{{{0x6041, 0, 2},
+                                                {0x6063, 0, 4},
+                                                {0x606C, 0, 2},
+                                                {0x6078, 0, 2},
+                                                {0x60FD, 0, 4},
+                                                {0x2010, 0x0A, 2},
+                                                {0x2010, 0x14, 2},
+                                                {0x2601, 0, 2},
+                                                {0x2602, 0, 2},
+                                                {0x607A, 0, 4},
+                                                {0x6081, 0, 4},
+                                                {0x6083, 0, 4},
+                                                {0x6084, 0, 4},
+                                                {0x60FF, 0, 4},
+                                                {0x6073, 0, 2},
+                                                {0x6080, 0, 2}}};
+
+std::uint16_t address_of(int axis, int offset) { return static_cast<std::uint16_t>(100 * axis + offset); }
+
+}  // namespace
+
+DriveObject readable_object(int number) { return kObjects[static_cast<std::size_t>(number) % kObjects.size()]; }
+
+ParameterWriter::ParameterWriter(int axis, int parameter)
+    : address_(address_of(axis, kOffsets[static_cast<std::size_t>(parameter % kParameters)])) {}
+
+int ParameterWriter::write(ModbusClient& client) {
+  return client.write(address_, registers_of(100'000 + 10'000 * (turn_++ % 2)));
+}
+
+bool read_object(ModbusClient& client, int axis, const DriveObject& object, std::chrono::microseconds pause) {
+  constexpr std::uint16_t kRead = 1, kBusy = 1, kDone = 2;
+  const std::array<std::uint16_t, 4> request{kRead, object.index, object.subindex, object.size};
+  if (client.write(address_of(axis, 80), request) != 0) return false;
+  for (;;) {
+    const std::uint16_t status = client.read(address_of(axis, 84), 3)[2];
+    if (status != kBusy) return status == kDone;
+    if (pause.count() > 0) std::this_thread::sleep_for(pause);
+  }
+}
+
+}  // namespace axisgate::bench

@@ -1,0 +1,137 @@
+#include "tests/bench/drive_process.hpp"
+
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "tests/axisgate_sim/pty.hpp"
+#include "tests/bench/server_process.hpp"
+#include "tests/simulated/frame_receiver.hpp"
+#include "tests/simulated/kinco_drive.hpp"
+
+namespace axisgate::bench {
+namespace {
+
+using simulated::Time;
+
+Time steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
+
+struct Line {
+  std::unique_ptr<simulated::Pty> port;
+  std::vector<std::unique_ptr<simulated::KincoDrive>> drives;
+  simulated::FrameReceiver receiver;
+  std::optional<simulated::TenByteFrame> reply;  // waits for its time
+  TappedExchange exchange;
+};
+
+class Responder {
+ public:
+  Responder(std::vector<Line> lines, Time reply_after, ExchangeTap& tap)
+      : lines_(std::move(lines)), reply_after_(reply_after), tap_(tap) {}
+
+  [[noreturn]] void serve() {
+    std::vector<pollfd> watched;
+    for (const Line& line : lines_) watched.push_back({line.port->readable(), POLLIN, 0});
+    for (;;) {
+      const timespec wait = until_next_reply();
+      static_cast<void>(::ppoll(watched.data(), watched.size(), &wait, nullptr));
+      for (std::size_t i = 0; i < lines_.size(); ++i) {
+        if (watched[i].revents != 0) hear(lines_[i], i);
+        if (lines_[i].reply && steady_now() >= due(lines_[i])) answer(lines_[i]);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] Time due(const Line& line) const { return Time(line.exchange.asked_at) + reply_after_; }
+
+  [[nodiscard]] timespec until_next_reply() const {
+    Time wait = std::chrono::milliseconds(100);
+    const Time now = steady_now();
+    for (const Line& line : lines_)
+      if (line.reply) wait = std::min(wait, std::max(due(line) - now, Time{}));
+    return {wait / std::chrono::seconds(1), (wait % std::chrono::seconds(1)).count()};
+  }
+
+  void hear(Line& line, std::size_t number) {
+    const auto bytes = line.port->read();
+    const Time now = steady_now();
+    for (const std::uint8_t byte : bytes) {
+      const auto request = line.receiver.receive(byte, now);
+      if (!request) continue;
+      for (const auto& drive : line.drives) {
+        if (drive->station() != simulated::station_of(*request)) continue;
+        line.exchange = {now.count(), 0, *request, static_cast<std::uint8_t>(number)};
+        line.reply = drive->answer(*request, 0, now);
+      }
+    }
+  }
+
+  void answer(Line& line) {
+    line.exchange.answered_at = steady_now().count();
+    tap_.record(line.exchange);
+    line.port->write(*std::exchange(line.reply, std::nullopt));
+  }
+
+  std::vector<Line> lines_;
+  Time reply_after_;
+  ExchangeTap& tap_;
+};
+
+Line make_line(const std::string& device, int drives) {
+  Line line;
+  line.port = std::make_unique<simulated::Pty>(device);
+  for (int station = 1; station <= drives; ++station) {
+    simulated::DriveOptions options;
+    options.station = static_cast<std::uint8_t>(station);
+    line.drives.push_back(std::make_unique<simulated::KincoDrive>(options));
+    line.drives.back()->advance(steady_now());
+  }
+  return line;
+}
+
+}  // namespace
+
+DriveProcess::DriveProcess(const DriveLines& shape, const std::string& folder) : shape_(shape) {
+  for (int i = 0; i < shape.lines; ++i) devices_.push_back(folder + "/line" + std::to_string(i));
+  int ready[2];
+  if (::pipe(ready) != 0) throw std::runtime_error("no pipe");
+  std::fflush(nullptr);
+  process_ = ::fork();
+  if (process_ < 0) throw std::runtime_error("no process");
+  if (process_ == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    ::prctl(PR_SET_TIMERSLACK, 1UL);  // else replies would come 50 us late
+    stay_on_processor(shape.processor);
+    try {
+      std::vector<Line> lines;
+      for (const std::string& device : devices_) lines.push_back(make_line(device, shape.drives_per_line));
+      static_cast<void>(!::write(ready[1], "", 1));
+      Responder(std::move(lines), shape.reply_after, *tap_.operator->()).serve();
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "drives: %s\n", error.what());
+    }
+    ::_exit(1);
+  }
+  ::close(ready[1]);
+  char byte = 0;
+  const bool there = ::read(ready[0], &byte, 1) == 1;
+  ::close(ready[0]);
+  if (!there) throw std::runtime_error("the simulated drives did not start");
+}
+
+DriveProcess::~DriveProcess() {
+  ::kill(process_, SIGKILL);
+  ::waitpid(process_, nullptr, 0);
+  for (const std::string& device : devices_) static_cast<void>(::unlink(device.c_str()));
+}
+
+}  // namespace axisgate::bench

@@ -1,0 +1,42 @@
+// Simulated Kinco JD drives on pseudo-terminals, in a process of their own that does as little as possible per
+// exchange. Promises the answers of tests/simulated, each after the same time, and a record of every exchange in the
+// tap. Never outlives the bench, and never echoes, breaks or delays a frame.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "tests/bench/exchange_tap.hpp"
+
+namespace axisgate::bench {
+
+struct DriveLines {
+  int lines = 1;
+  int drives_per_line = 1;                  ///< stations 1, 2, ... on each
+  std::chrono::nanoseconds reply_after{0};  ///< from the request's last byte to the reply's first
+  unsigned processor = 1;
+};
+
+class DriveProcess {
+ public:
+  /// `folder`: for the links to the ports.
+  DriveProcess(const DriveLines& shape, const std::string& folder);
+  ~DriveProcess();
+  DriveProcess(const DriveProcess&) = delete;
+  DriveProcess& operator=(const DriveProcess&) = delete;
+
+  [[nodiscard]] const DriveLines& shape() const { return shape_; }
+  [[nodiscard]] const std::string& device(int line = 0) const { return devices_.at(static_cast<std::size_t>(line)); }
+  [[nodiscard]] const ExchangeTap& tap() const { return *tap_; }
+
+ private:
+  DriveLines shape_;
+  std::vector<std::string> devices_;
+  SharedTap tap_;
+  pid_t process_ = -1;
+};
+
+}  // namespace axisgate::bench

@@ -1,0 +1,54 @@
+// What the simulated drives saw and when, in memory that the bench shares with their process.
+// Promises that a record is whole before it is counted; times are of the steady clock, which all processes share.
+// Never blocks the drives: the oldest records are overwritten, and a reader that comes too late is told.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "tests/simulated/ten_byte_frame.hpp"
+
+namespace axisgate::bench {
+
+struct TappedExchange {
+  std::int64_t asked_at = 0;     ///< ns of the steady clock: the request's last byte was read
+  std::int64_t answered_at = 0;  ///< just before the reply was written
+  simulated::TenByteFrame request{};
+  std::uint8_t line = 0;
+};
+
+class ExchangeTap {
+ public:
+  static constexpr std::uint64_t kKept = 1U << 17;
+
+  void record(const TappedExchange& exchange) {
+    const std::uint64_t number = recorded_.load(std::memory_order_relaxed);
+    kept_[number % kKept] = exchange;
+    recorded_.store(number + 1, std::memory_order_release);
+  }
+  [[nodiscard]] std::uint64_t recorded() const { return recorded_.load(std::memory_order_acquire); }
+  /// From the one that `recorded()` counted as the first'th on. Throws std::runtime_error if they are gone.
+  [[nodiscard]] std::vector<TappedExchange> since(std::uint64_t first) const;
+
+ private:
+  std::atomic<std::uint64_t> recorded_{0};
+  std::array<TappedExchange, kKept> kept_;
+};
+
+/// Shared with every process that is forked afterwards; gone with the object.
+class SharedTap {
+ public:
+  SharedTap();
+  ~SharedTap();
+  SharedTap(const SharedTap&) = delete;
+  SharedTap& operator=(const SharedTap&) = delete;
+  ExchangeTap* operator->() { return tap_; }
+  const ExchangeTap& operator*() const { return *tap_; }
+
+ private:
+  ExchangeTap* tap_;
+};
+
+}  // namespace axisgate::bench

@@ -1,0 +1,140 @@
+#include "tests/bench/gateway_process.hpp"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+#include "tests/bench/modbus_client.hpp"
+#include "tests/bench/server_process.hpp"
+
+namespace axisgate::bench {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+std::uint16_t free_port() {
+  const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in here{};
+  here.sin_family = AF_INET;
+  here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof here;
+  auto* address = reinterpret_cast<sockaddr*>(&here);
+  const bool bound = ::bind(socket, address, size) == 0 && ::getsockname(socket, address, &size) == 0;
+  ::close(socket);
+  if (!bound) throw std::runtime_error("no free port");
+  return ntohs(here.sin_port);
+}
+
+std::string configuration(std::uint16_t port, const DriveProcess& drives, const PollPeriods& periods) {
+  std::string buses;
+  int axis = 0;
+  for (int line = 0; line < drives.shape().lines; ++line) {
+    std::string entries;
+    for (int station = 1; station <= drives.shape().drives_per_line; ++station) {
+      entries += fmt::format(
+          R"({}{{"profile": "kinco-jd", "node": {}, "constants": {{"peak_current_a": 27.5}}, "axes": [{{"axis": {}}}]}})",
+          station == 1 ? "" : ", ", station, ++axis);
+    }
+    buses += fmt::format(
+        R"({}{{"name": "line{}", "adapter": "kinco-serial", "device": "{}", "rs485": "off", "baud": 38400,)"
+        R"( "poll": {{"fast": {}, "normal": {}, "slow": {}}}, "drives": [{}]}})",
+        line == 0 ? "" : ",\n", line, drives.device(line), periods.fast, periods.normal, periods.slow, entries);
+  }
+  return fmt::format("{{\"modbus_tcp\": [{{\"listen\": \"127.0.0.1:{}\"}}],\n\"buses\": [{}]}}\n", port, buses);
+}
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+GatewayProcess::GatewayProcess(const std::string& program, const std::string& folder, const DriveProcess& drives,
+                               const PollPeriods& periods, unsigned processor)
+    : axes_(drives.shape().lines * drives.shape().drives_per_line), port_(free_port()) {
+  const std::string config = folder + "/gateway.json";
+  const std::string log = folder + "/gateway.log";
+  std::ofstream(config) << configuration(port_, drives, periods);
+  begin(program, config, log, processor);
+  try {
+    await_axes();
+  } catch (const std::exception& error) {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+    throw std::runtime_error(fmt::format("{}; it said:\n{}", error.what(), text_of(log)));
+  }
+}
+
+void GatewayProcess::begin(const std::string& program, const std::string& config, const std::string& log,
+                           unsigned processor) {
+  std::fflush(nullptr);
+  process_ = ::fork();
+  if (process_ < 0) throw std::runtime_error("no process");
+  if (process_ != 0) return;
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  stay_on_processor(processor);
+  const int out = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  ::dup2(out, STDOUT_FILENO);
+  ::dup2(out, STDERR_FILENO);
+  ::execl(program.c_str(), "axisgate", "run", config.c_str(), "--log-level", "warning", nullptr);
+  std::perror(program.c_str());
+  ::_exit(127);
+}
+
+void GatewayProcess::await_axes() const {
+  const auto end = SteadyClock::now() + std::chrono::seconds(30);
+  int online = 0;
+  while (SteadyClock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    try {
+      ModbusClient client(port_);
+      online = client.read(3, 1).front();
+      if (online < axes_) continue;
+      int ready = 0;
+      for (int axis = 1; axis <= axes_; ++axis)
+        ready += client.read(static_cast<std::uint16_t>(100 * axis + 18), 1).front() == 2 ? 1 : 0;
+      if (ready == axes_) return;
+    } catch (const std::exception&) {
+      if (::waitpid(process_, nullptr, WNOHANG) == process_) throw std::runtime_error("the gateway ended");
+    }
+  }
+  throw std::runtime_error(fmt::format("{} of {} axes online after 30 s", online, axes_));
+}
+
+GatewayProcess::~GatewayProcess() {
+  ::kill(process_, SIGTERM);
+  ::waitpid(process_, nullptr, 0);
+}
+
+std::chrono::nanoseconds GatewayProcess::processor_time() const {
+  clockid_t clock{};
+  timespec time{};
+  if (::clock_getcpuclockid(process_, &clock) != 0 || ::clock_gettime(clock, &time) != 0)
+    throw std::runtime_error("the gateway's processor time is not told");
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+GatewayProcess::Memory GatewayProcess::memory() const {
+  std::ifstream in(fmt::format("/proc/{}/status", process_));
+  Memory memory;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("VmRSS:")) memory.resident = std::stoul(line.substr(6));
+    if (line.starts_with("RssAnon:")) memory.anonymous = std::stoul(line.substr(8));
+  }
+  if (memory.resident == 0) throw std::runtime_error("the gateway's memory is not told");
+  return memory;
+}
+
+}  // namespace axisgate::bench

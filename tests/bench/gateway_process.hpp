@@ -1,0 +1,53 @@
+// The gateway program itself, `axisgate run`, in a process of its own, with simulated drives behind it.
+// Promises that every axis is online when it is made, and that it ends with the object.
+// Never listens on anything but loopback.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "tests/bench/drive_process.hpp"
+
+namespace axisgate::bench {
+
+/// Milliseconds between two reads of a value, by class.
+struct PollPeriods {
+  int fast = 50;
+  int normal = 250;
+  int slow = 2500;
+};
+inline constexpr PollPeriods kHardlyPolled{60'000, 60'000, 600'000};
+
+class GatewayProcess {
+ public:
+  /// Axes 1, 2, ... are the drives of the lines in order. Throws std::runtime_error.
+  GatewayProcess(const std::string& program, const std::string& folder, const DriveProcess& drives,
+                 const PollPeriods& periods, unsigned processor = 0);
+  ~GatewayProcess();
+  GatewayProcess(const GatewayProcess&) = delete;
+  GatewayProcess& operator=(const GatewayProcess&) = delete;
+
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] int axes() const { return axes_; }
+  [[nodiscard]] std::chrono::nanoseconds processor_time() const;
+  /// In KiB, as /proc tells: all of it, and the part that is no file's.
+  struct Memory {
+    std::size_t resident = 0;
+    std::size_t anonymous = 0;
+  };
+  [[nodiscard]] Memory memory() const;
+
+ private:
+  void begin(const std::string& program, const std::string& config, const std::string& log, unsigned processor);
+  void await_axes() const;
+
+  int axes_ = 0;
+  std::uint16_t port_ = 0;
+  pid_t process_ = -1;
+};
+
+}  // namespace axisgate::bench

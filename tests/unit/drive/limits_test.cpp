@@ -1,0 +1,220 @@
+// Limits whatever the way in, the object mailbox's raw units, homing and set_position (design 3.1, 3.3, 3.4).
+#include <gmock/gmock.h>
+
+#include "tests/unit/drive/rig.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using namespace std::chrono_literals;
+using simulated::DriveFault;
+using enum Situation;
+
+RigOptions limited() {
+  RigOptions options;
+  options.axis.position_limits = Range{-20'000, 20'000};
+  options.axis.velocity_limit = 1'000'000;
+  return options;
+}
+
+Group raw(std::uint16_t word) {
+  Group group;
+  group.client = 7;
+  group.controlword = word;
+  group.single_controlword = true;
+  return group;
+}
+
+TEST(Limits, HoldForEveryWayIn) {
+  Rig rig(KincoType::jd, limited());
+  rig.bring_to(enabled);
+  EXPECT_EQ(rig.write(Quantity::target_position, 20'001).outcome.code, Errc::bad_value);
+  EXPECT_EQ(rig.write(Quantity::target_velocity, -1'000'001).outcome.code, Errc::bad_value);
+  EXPECT_EQ(rig.mailbox_write(0x607A, 0, 4, 20'001).outcome.code, Errc::bad_value);
+  EXPECT_EQ(rig.mailbox_write(0x607A, 0, 2, 100).outcome.code, Errc::bad_value) << "another width would cut the value";
+  EXPECT_EQ(rig.mailbox_write(0x6060, 0, 1, 99).outcome.code, Errc::bad_value);
+  EXPECT_TRUE(rig.writes().empty());
+  ASSERT_EQ(rig.ask(with_command(Command::move_absolute, {{Quantity::target_position, 15'000}})).outcome.code, Errc::ok);
+  ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().motion_state == MotionState::completed; }));
+  rig.mark();
+  EXPECT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 6'000}})).outcome.code, Errc::bad_value);
+  EXPECT_TRUE(rig.writes_of(kControlword).empty()) << "known before sending";
+  ASSERT_EQ(rig.ask(raw(0x004F)).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.ask(raw(0x005F)).outcome.code, Errc::bad_value);
+}
+
+TEST(Limits, OfATargetThatTheDriveHoldsFromElsewhereHoldToo) {
+  Rig rig(KincoType::jd, limited());
+  rig.motor().poke({0x607A, 0}, 500'000);
+  rig.online();
+  ASSERT_EQ(rig.write(Quantity::mode, 1).outcome.code, Errc::ok);
+  ASSERT_EQ(rig.ask(raw(0x0006)).outcome.code, Errc::ok);
+  ASSERT_EQ(rig.ask(raw(0x000F)).outcome.code, Errc::ok);
+  ASSERT_TRUE(rig.stage.run_until([&] { return rig.motor_enabled(); }));
+  rig.stage.run(100ms);
+  ASSERT_EQ(rig.ask(raw(0x002F)).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.ask(raw(0x003F)).outcome.code, Errc::bad_value);
+  EXPECT_EQ(rig.command(Command::move_absolute).outcome.code, Errc::bad_value);
+  EXPECT_FALSE(rig.turns());
+}
+
+TEST(Limits, ThePairIsCheckedTogetherAndNeverStandsTheWrongWayRound) {
+  Rig rig(KincoType::md);
+  rig.bring_to(disabled);
+  const Quantity low = Quantity::position_limit_min, high = Quantity::position_limit_max;
+  EXPECT_EQ(rig.ask(setpoints({{low, 5'000}, {high, 4'000}})).outcome.code, Errc::bad_value);
+  ASSERT_EQ(rig.ask(setpoints({{low, -1'000}, {high, 1'000}})).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.write(high, -2'000).outcome.code, Errc::bad_value);
+  rig.mark();
+  ASSERT_EQ(rig.ask(setpoints({{low, 2'000}, {high, 3'000}})).outcome.code, Errc::ok);
+  const auto writes = rig.writes();
+  ASSERT_EQ(writes.size(), 2U);
+  EXPECT_EQ(writes[0].sub, 1) << "the upper one first";
+}
+
+TEST(Limits, AreJudgedAgainWhenTheTurnHasCome) {
+  Rig rig(KincoType::md);
+  rig.bring_to(disabled);
+  ASSERT_EQ(rig.ask(setpoints({{Quantity::position_limit_min, 0}, {Quantity::position_limit_max, 10'000}})).outcome.code,
+            Errc::ok);
+  const auto first = rig.stage.begin(1, setpoints({{Quantity::position_limit_max, 1'000}}));
+  const auto second = rig.stage.begin(1, setpoints({{Quantity::position_limit_min, 5'000}}));
+  rig.stage.run(300ms);
+  EXPECT_EQ((*first)->outcome.code, Errc::ok);
+  EXPECT_EQ((*second)->outcome.code, Errc::bad_value);
+}
+
+TEST(Mailbox, AWriteOfAQuantitysObjectReachesTheWireExactly) {
+  Rig rig(KincoType::jd);
+  rig.bring_to(enabled);
+  // 123456 DEC is no whole number of 0.001 rpm: the raw number must not take the way through register units.
+  ASSERT_EQ(rig.mailbox_write(0x6081, 0, 4, 123'456).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.object(0x6081), 123'456);
+  ASSERT_EQ(rig.write(Quantity::mode, 3).outcome.code, Errc::ok);
+  rig.mark();
+  ASSERT_EQ(rig.mailbox_write(0x60FF, 0, 4, 7'777).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.object(0x60FF), 7'777) << "a raw mode runs: it acts at once";
+  ASSERT_EQ(rig.command(Command::halt).outcome.code, Errc::ok);
+  ASSERT_EQ(rig.mailbox_write(0x60FF, 0, 4, 8'888).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.object(0x60FF), 0) << "kept: the halt has ended the run";
+  ASSERT_EQ(rig.command(Command::run_velocity).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.object(0x60FF), 8'888);
+}
+
+TEST(Mailbox, AControlwordObeysTheLatch) {
+  Rig rig(KincoType::jd);
+  rig.bring_to(latched);
+  EXPECT_EQ(rig.mailbox_write(0x6040, 0, 2, 0x0F).outcome.code, Errc::state_unsuitable);
+  EXPECT_TRUE(rig.writes().empty());
+}
+
+TEST(Mailbox, AReadGivesTheDrivesBytesAndARefusalItsCode) {
+  Rig rig(KincoType::jd);
+  rig.bring_to(disabled);
+  Group group;
+  group.object = ObjectRequest{false, 0x6063, 0, 4, 0};
+  GroupResult result = rig.ask(group);
+  EXPECT_EQ(result.outcome.code, Errc::ok);
+  EXPECT_EQ(result.object_size, 4);
+  group.object = ObjectRequest{false, 0x5F00, 0, 4, 0};
+  result = rig.ask(group);
+  EXPECT_EQ(result.outcome.code, Errc::refused_by_drive);
+  EXPECT_EQ(result.outcome.detail, 0x06020000U);
+}
+
+TEST(Clamping, IsFoundByReadingBackAndTold) {
+  Rig rig(KincoType::jd);
+  rig.bring_to(enabled);
+  rig.mailbox_write(0x6073, 0, 2, 60'000);
+  rig.stage.run(500ms);
+  const bool clamped = rig.object(0x6073) != 60'000;
+  EXPECT_EQ((rig.axis().alarms & bit(AxisAlarm::clamped)) != 0, clamped);
+  ASSERT_EQ(rig.mailbox_write(0x6073, 0, 2, 1'000).outcome.code, Errc::ok);
+  rig.stage.run(500ms);
+  EXPECT_EQ(rig.axis().alarms & bit(AxisAlarm::clamped), 0U);
+}
+
+TEST(Homing, NeedsAMethodThatSomebodyChose) {
+  Rig rig(KincoType::jd);
+  rig.bring_to(enabled);
+  EXPECT_EQ(rig.command(Command::home).outcome.code, Errc::bad_value) << "the drive's own is nobody's choice";
+  EXPECT_EQ(rig.write(Quantity::homing_method, 15).outcome.code, Errc::bad_value) << "not in the profile's list";
+  EXPECT_TRUE(rig.writes().empty());
+  RigOptions options;
+  options.axis.homing_method = 35;
+  Rig configured(KincoType::jd, options);
+  configured.bring_to(enabled);
+  EXPECT_EQ(configured.command(Command::home).outcome.code, Errc::ok);
+  EXPECT_EQ(configured.object(0x6098), 35);
+  EXPECT_TRUE(configured.stage.run_until([&] { return configured.axis().motion_state == MotionState::completed; }));
+  configured.stage.run(50ms);
+  EXPECT_TRUE(configured.axis().has(AxisInput::homed));
+  EXPECT_EQ(configured.axis().alarms & bit(AxisAlarm::not_homed), 0U);
+  EXPECT_TRUE(configured.has_event(EventKind::homed, "homed"));
+}
+
+TEST(Homing, ThatTakesTooLongIsHalted) {
+  for (const KincoType type : {KincoType::jd, KincoType::md}) {
+    RigOptions options;
+    options.axis.homing_timeout = 2s;
+    Rig rig(type, options);
+    rig.bring_to(homing);
+    ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().motion_state == MotionState::failed; }, 3s));
+    const Instant failed = rig.stage.runtime().now();
+    ASSERT_TRUE(rig.stage.run_until([&] { return !rig.writes_of(kControlword).empty(); }, 1s));
+    EXPECT_LE(rig.stage.runtime().now() - failed, 30ms) << "at once";
+    EXPECT_TRUE(rig.stage.run_until([&] { return !rig.turns(); }, 3s));
+    EXPECT_EQ(rig.axis().motion_state, MotionState::failed);
+    EXPECT_TRUE(rig.has_event(EventKind::warning, "homing"));
+  }
+}
+
+TEST(SetPosition, IsZeroOnlyAndPutsEverythingBack) {
+  Rig rig(KincoType::md);
+  rig.bring_to(enabled);
+  ASSERT_EQ(rig.ask(setpoints({{Quantity::homing_method, 19}, {Quantity::homing_offset, 700}})).outcome.code, Errc::ok);
+  const auto offset = rig.object(0x607C);
+  Group group = with_command(Command::set_position);
+  group.set_position_value = 500;
+  EXPECT_EQ(rig.ask(group).outcome.code, Errc::bad_value);
+  group.set_position_value = 0;
+  EXPECT_EQ(rig.ask(group).outcome.code, Errc::ok);
+  EXPECT_NEAR(static_cast<double>(rig.axis()[Quantity::position_actual].value), 0, 5);
+  EXPECT_EQ(rig.object(0x6098), 19);
+  EXPECT_EQ(rig.object(0x607C), offset);
+  EXPECT_EQ(rig.object(kMode), 1);
+  EXPECT_TRUE(rig.motor_enabled());
+  EXPECT_FALSE(rig.turns());
+}
+
+TEST(SetPosition, ThatFailedHalfWayDoesNotSpoilTheNextHoming) {
+  Rig rig(KincoType::jd);
+  rig.bring_to(enabled);
+  ASSERT_EQ(rig.ask(setpoints({{Quantity::homing_method, 19}, {Quantity::homing_offset, 700}})).outcome.code, Errc::ok);
+  const auto offset = rig.object(0x607C);
+  rig.stage.run(300ms);
+  rig.stage.link(0).on_traffic = [&](bool to_drive, Bytes bytes) {
+    const WireRequest r = decoded(kLongAgo, bytes);
+    if (to_drive && r.write && r.index == kControlword && r.data == 0x1F) rig.stage.link(0).fate = SimLink::Fate::refused;
+  };
+  EXPECT_EQ(rig.command(Command::set_position).outcome.code, Errc::refused_by_drive);
+  EXPECT_EQ(rig.object(0x6098), 35);
+  rig.stage.link(0).on_traffic = [](bool, Bytes) {};
+  ASSERT_EQ(rig.command(Command::home).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.object(0x6098), 19);
+  EXPECT_EQ(rig.object(0x607C), offset);
+}
+
+TEST(RunTorque, NeedsAMaxVelocityThatTheDriveHolds) {
+  Rig rig(KincoType::jd);
+  rig.bring_to(enabled);
+  ASSERT_EQ(rig.ask(with_command(Command::run_torque, {{Quantity::target_torque, 100}})).outcome.code, Errc::ok);
+  EXPECT_TRUE(rig.turns());
+  ASSERT_EQ(rig.write(Quantity::target_torque, 0).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.object(0x60F6, 8), 0) << "acts at once while it runs";
+  ASSERT_EQ(rig.command(Command::halt).outcome.code, Errc::ok);
+  EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched)) << "no halt in torque mode";
+}
+
+}  // namespace
+}  // namespace axisgate::test
