@@ -11,8 +11,8 @@ namespace axisgate::drive {
 
 /// Turning points that a plan reaches between its exchanges.
 enum class Mark : std::uint8_t {
-  enabled,             ///< the stop latch is cleared
-  start_discrete,      ///< the drive has acknowledged the start of such a motion
+  enabled,         ///< the stop latch is cleared
+  start_discrete,  ///< the drive has acknowledged the start of such a motion
   start_velocity,
   start_torque,
   start_homing,
@@ -21,22 +21,22 @@ enum class Mark : std::uint8_t {
   halted,              ///< bit 8 of a raw controlword: the motion is cancelled, as by command 4
   run_raw,             ///< raw modes 3, 4, 9, 10 run: set-points act at once
   mode_changed,
-  values_doubtful,     ///< nothing is taken as held any more, but Action::object
+  values_doubtful,  ///< nothing is taken as held any more, but Action::object
   not_homed,
-  borrow_homing,       ///< set_position is about to change method and offset
-  return_homing,       ///< and has put them back
-  look_again,          ///< the rest of this part is planned anew with what was just read
+  borrow_homing,  ///< set_position is about to change method and offset
+  return_homing,  ///< and has put them back
+  look_again,     ///< the rest of this part is planned anew with what was just read
 };
 
 struct Action {
   enum class Kind : std::uint8_t { write, read, wait, mark };
   Kind kind = Kind::write;
-  ObjectId object = kNoObject;      ///< write, read; see Mark::values_doubtful
-  std::int64_t number = 0;          ///< write: as the drive counts
-  ObjectId copy_of = kNoObject;     ///< write: the newest number of this object instead
-  Condition until;                  ///< wait: must hold on a sample asked for after the last acknowledgement
-  Duration limit{};                 ///< wait
-  bool optional = false;            ///< a wait that runs out is no failure
+  ObjectId object = kNoObject;   ///< write, read; see Mark::values_doubtful
+  std::int64_t number = 0;       ///< write: as the drive counts
+  ObjectId copy_of = kNoObject;  ///< write: the newest number of this object instead
+  Condition until;               ///< wait: must hold on a sample asked for after the last acknowledgement
+  Duration limit{};              ///< wait
+  bool optional = false;         ///< a wait that runs out is no failure
   Errc otherwise = Errc::not_reached;
   Mark mark{};
 
@@ -78,6 +78,12 @@ struct Action {
 };
 
 inline constexpr std::size_t kMaxActions = 48;
+
+/// The low `size` bytes of a number, as they go on the wire.
+[[nodiscard]] constexpr std::uint32_t wire_bits(std::int64_t number, std::uint8_t size) {
+  const std::uint32_t mask = size >= 4 ? ~0U : (1U << (8U * size)) - 1U;
+  return static_cast<std::uint32_t>(static_cast<std::uint64_t>(number)) & mask;
+}
 
 /// What a part of a group comes to: refused, with the reason, or a list of actions (empty: nothing needs to be sent).
 struct Plan {

@@ -72,8 +72,7 @@ bool stop_latches(const AxisCore& core, const Group& group) {
 
 bool starts_motion(const AxisCore& core, const Group& group) {
   if (group.command >= Command::move_absolute && group.command <= Command::home) return true;
-  return group.controlword &&
-         (*group.controlword & ~core.controlword() & controlword::kStart) != 0;
+  return group.controlword && (*group.controlword & ~core.controlword() & controlword::kStart) != 0;
 }
 
 Translated as_quantities(const AxisCore& core, const Group& group) {

@@ -19,8 +19,8 @@ namespace axisgate::drive {
 [[nodiscard]] bool stop_latches(const AxisCore& core, const Group& group);
 /// The group starts a motion: target_reached reads 0 until it has its result.
 [[nodiscard]] bool starts_motion(const AxisCore& core, const Group& group);
-/// A mailbox write of an object that a quantity uses becomes a write of that quantity, with its limits, latch and edges;
-/// bad_value where it cannot stand for one.
+/// A mailbox write of an object that a quantity uses becomes a write of that quantity, with its limits, latch and
+/// edges; bad_value where it cannot stand for one.
 struct Translated {
   Group group;
   Errc code = Errc::ok;

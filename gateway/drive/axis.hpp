@@ -1,6 +1,6 @@
-// One axis at work: takes groups, queues them with the bus, carries them out one after another and shows the axis's image.
-// Promises each group one result; a stop taken at any time, ahead of everything; callbacks only after the image shows what
-// they tell. Never enables or moves the axis by itself (a homing out of time is halted, nothing else).
+// One axis at work: takes groups, queues them with the bus, carries them out one after another and shows the axis's
+// image. Promises each group one result; a stop taken at any time, ahead of everything; callbacks only after the image
+// shows what they tell. Never enables or moves the axis by itself (a homing out of time is halted, nothing else).
 #pragma once
 
 #include <memory>

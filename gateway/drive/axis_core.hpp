@@ -14,14 +14,14 @@ struct AxisCore {
   const AxisModel& model;
   ObjectStore& store;
   Motion motion{};
-  Instant now = kLongAgo;                     ///< of the turn in which this is looked at
-  std::uint32_t alarms = 0;                   ///< AxisAlarm bits found by checks and by what was seen
-  LinkState link = LinkState::unknown;        ///< the drive's
+  Instant now = kLongAgo;                       ///< of the turn in which this is looked at
+  std::uint32_t alarms = 0;                     ///< AxisAlarm bits found by checks and by what was seen
+  LinkState link = LinkState::unknown;          ///< the drive's
   std::optional<std::int64_t> homing_method{};  ///< written or configured since bring-up
-  std::optional<std::int64_t> offset_owed{};  ///< homing offset that set_position could not put back yet
-  bool mode_chosen = false;                   ///< a client has chosen the mode since bring-up
-  bool homed = false;                         ///< latched (design 3.1, discrete input 6)
-  std::int32_t set_position_value = 0;        ///< row 78, the gateway's own
+  std::optional<std::int64_t> offset_owed{};    ///< homing offset that set_position could not put back yet
+  bool mode_chosen = false;                     ///< a client has chosen the mode since bring-up
+  bool homed = false;                           ///< latched (design 3.1, discrete input 6)
+  std::int32_t set_position_value = 0;          ///< row 78, the gateway's own
 
   /// link_state online or suspect.
   [[nodiscard]] bool reachable() const { return link == LinkState::online || link == LinkState::suspect; }

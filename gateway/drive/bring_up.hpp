@@ -1,6 +1,6 @@
-// Bring-up of a drive (design 7, point 7): its state is read first; then everything the image needs, the checks, the setup.
-// Promises that a drive found enabled is adopted: nothing is written to it; and that a setup value is written only where the
-// drive holds another, and read back. Never enables, moves or stops anything.
+// Bring-up of a drive (design 7, point 7): its state is read first; then everything the image needs, the checks, the
+// setup. Promises that a drive found enabled is adopted: nothing is written to it; and that a setup value is written
+// only where the drive holds another, and read back. Never enables, moves or stops anything.
 #pragma once
 
 #include <optional>

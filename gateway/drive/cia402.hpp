@@ -55,8 +55,8 @@ enum class Request402 : std::uint8_t {
 /// A stop by design 3.4: bit 1 = 0 or bit 2 = 0 always; bits 0..3 = 6 or 7 only in a single write.
 [[nodiscard]] bool is_stop(std::uint16_t controlword, bool single_write);
 
-/// Modes in which a target velocity or torque acts at once (design 3.4): 3, 4, 9, 10 and the drives' own immediate velocity
-/// mode, which Kinco numbers -3.
+/// Modes in which a target velocity or torque acts at once (design 3.4): 3, 4, 9, 10 and the drives' own immediate
+/// velocity mode, which Kinco numbers -3.
 [[nodiscard]] constexpr bool is_continuous(int mode) {
   return mode == 3 || mode == 4 || mode == 9 || mode == 10 || mode == -3;
 }

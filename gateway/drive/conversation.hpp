@@ -1,7 +1,7 @@
-// A conversation: one group carried out, exchange by exchange (design 3.3). Pure: results and instants in, the next move out.
-// Promises the fixed order set-points, mode, controlword, command, object; an end at the first failure; a statusword sampled
-// after the last acknowledgement before it is done; no write repeated but a stop, three times at most.
-// Never decides whose turn the wire is, and never calls anybody.
+// A conversation: one group carried out, exchange by exchange (design 3.3). Pure: results and instants in, the next
+// move out. Promises the fixed order set-points, mode, controlword, command, object; an end at the first failure; a
+// statusword sampled after the last acknowledgement before it is done; no write repeated but a stop, three times at
+// most. Never decides whose turn the wire is, and never calls anybody.
 #pragma once
 
 #include "adapters/bus/exchange.hpp"
@@ -11,8 +11,8 @@ namespace axisgate::drive {
 
 class Conversation {
  public:
-  /// `core` outlives it. `stop`: the group is a stop by design 3.4; its stop is carried out before everything else in it.
-  /// `by_mailbox`: after its writes nothing else counts as held (design 3.3).
+  /// `core` outlives it. `stop`: the group is a stop by design 3.4; its stop is carried out before everything else in
+  /// it. `by_mailbox`: after its writes nothing else counts as held (design 3.3).
   Conversation(AxisCore& core, const Group& group, bool stop, bool by_mailbox = false);
 
   struct Move {
@@ -27,7 +27,8 @@ class Conversation {
   };
   /// Goes as far as it can without the wire. The exchange of the answer is only for looking ahead.
   [[nodiscard]] Move advance(Instant now);
-  /// As advance(), and its exchange goes on the wire now: what is only planned is planned anew, with what is known by now.
+  /// As advance(), and its exchange goes on the wire now: what is only planned is planned anew, with what is known by
+  /// now.
   [[nodiscard]] Move granted(Instant now);
   /// The result of the exchange given last. `sent_at`: when it was sent. `trusted`: the drive was not suspect; else an
   /// acknowledgement proves no write, and the object is read back.
@@ -93,9 +94,9 @@ class Conversation {
   bool sent_of_plan_ = false;  ///< something of this plan was sent: it is carried to its end
   bool begun_ = false;
   bool handed_over_ = false;
-  bool verifying_ = false;  ///< a write was not acknowledged: its object is read back
-  int attempts_ = 0;        ///< of a stop, beyond the first
-  int mode_before_ = 0;
+  bool verifying_ = false;          ///< a write was not acknowledged: its object is read back
+  int attempts_ = 0;                ///< of a stop, beyond the first
+  std::optional<int> mode_before_;  ///< in force before the first preparation
   std::vector<Action> todo_;
   std::size_t at_ = 0;
   std::uint64_t last_acknowledged_ = 0;  ///< exchange of the last write: samples asked for earlier are too old

@@ -45,7 +45,7 @@ void Drive::event(AxisNumber axis, EventKind kind, std::uint32_t code, std::stri
   events_.add(now(), axis, kind, code, std::move(text));
 }
 
-// --- What goes on the wire ---------------------------------------------------------------------------------------------
+// --- What goes on the wire -----------------------------------------------------------------------------------------
 
 bus::Exchange Drive::read(ObjectId object) const {
   return {model_.node, bus::Access::read, model_.object(object).address, model_.object(object).size, 0};
@@ -116,21 +116,7 @@ std::optional<bus::Exchange> Drive::poll() {
   return read(*object);
 }
 
-std::optional<bus::Exchange> Drive::next_of_bring_up() {
-  const auto next = bring_up_.next(store_);
-  if (!next) {
-    end_bring_up();
-    return std::nullopt;
-  }
-  bus::Exchange exchange = read(next->object);
-  if (next->write) {
-    exchange.access = bus::Access::write;
-    exchange.raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(next->number));
-  }
-  return exchange;
-}
-
-// --- What comes back ---------------------------------------------------------------------------------------------------
+// --- What comes back -----------------------------------------------------------------------------------------------
 
 void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
   const OnWire asked = on_wire_;
@@ -208,7 +194,8 @@ void Drive::on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& 
 void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
   if (exchange.access != bus::Access::read) return;
   if (result.code == Errc::refused_by_drive) {
-    // Unsupported: not asked again until the next bring-up. The statusword is asked for ever: without it there is no axis.
+    // Unsupported: not asked again until the next bring-up. The statusword is asked for ever: without it there is no
+    // axis.
     const ObjectId id = model_.find(exchange.object);
     if (id == kNoObject) return;
     plan_.done(id, now());
@@ -238,82 +225,7 @@ void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResul
   }
 }
 
-// --- Bring-up ------------------------------------------------------------------------------------------------------------
-
-void Drive::begin_bring_up(bool restarted) {
-  set_state(LinkState::setup);
-  store_.forget_all();
-  fence_.answered();
-  backoff_.reset();
-  bring_up_.begin();
-  plan_.restart(now());
-  if (restarted)
-    for (auto& axis : axes_) axis->on_bring_up();
-  bus::Order order;
-  order.priority = bus::Priority::setup;
-  order.axis = bus::kNoAxis;
-  const Queued queued = queue(std::move(order));
-  setup_order_ = queued.code == Errc::ok ? queued.id : 0;
-  // A full queue empties by its deadlines: try again after a probe's pause.
-  if (setup_order_ == 0) {
-    set_state(LinkState::unknown);
-    probe_due_ = now() + bus::Backoff::kFirst;
-  }
-}
-
-void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
-  if (state_ != LinkState::setup) return;
-  const bool was_write = exchange.access == bus::Access::write;
-  if (was_write) {
-    if (result.code == Errc::refused_by_drive)
-      bring_up_.write_refused();
-    else
-      bring_up_.written();
-  } else if (result.code == Errc::ok) {
-    bring_up_.read_back_answered();
-  }
-  const bool state_refused = !was_write && result.code == Errc::refused_by_drive &&
-                             exchange.object == model_.object(model_.axes.front().statusword).address;
-  // A drive that refuses its statusword is none we can speak for: it stays in setup and is asked again, slowly.
-  if (state_refused) bus_.wait(setup_order_, now() + std::chrono::seconds(1));
-}
-
-void Drive::end_bring_up() {
-  bus_.finish(setup_order_);
-  setup_order_ = 0;
-  adopted_ = bring_up_.adopted();
-  for (const ObjectId id : bring_up_.unheld())
-    event(axes_.front()->core().model.number, EventKind::warning, 0,
-          "setup: the drive does not hold what was written to " + model_.object(id).name);
-  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, adopted_);
-  set_state(LinkState::online);
-  for (const auto& axis : axes_)
-    event(axis->core().model.number, EventKind::boot, 0, adopted_ ? "online, found enabled: adopted" : "online");
-}
-
-void Drive::judge_checks() {
-  for (const Check& check : model_.checks) {
-    const ObjectState& s = store_[check.bad.object];
-    if (!s.known) continue;
-    for (auto& axis : axes_) {
-      const bool mine = check.slot == bus::kNoAxis || &axis == &axes_[check.slot];
-      if (!mine || !check.bad.holds(model_.object(check.bad.object), static_cast<std::uint32_t>(s.number))) continue;
-      axis->set_alarm(check.alarm, true);
-    }
-  }
-}
-
-// Full bring-up at the first disabled state after an adoption.
-void Drive::leave_adoption() {
-  const bool enabled =
-      std::any_of(axes_.begin(), axes_.end(), [](const auto& a) { return a->core().facts().enabled(); });
-  if (!adopted_ || enabled) return;
-  adopted_ = false;
-  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, false);
-  if (bring_up_.has_setup()) begin_bring_up(false);
-}
-
-// --- Link and time -------------------------------------------------------------------------------------------------------
+// --- Link and time -------------------------------------------------------------------------------------------------
 
 void Drive::on_link(bool up) {
   mute_ = 0;

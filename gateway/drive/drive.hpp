@@ -1,6 +1,6 @@
 // One drive on its bus: link state, bring-up, polling, the fence after a timeout, and its axes.
-// Promises that no value of a suspect drive is stored, no write but a stop is sent to one, and that a mute drive costs its bus
-// one probe per back-off step. Never enables anything.
+// Promises that no value of a suspect drive is stored, no write but a stop is sent to one, and that a mute drive costs
+// its bus one probe per back-off step. Never enables anything.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
-// The fence against late replies (design 7, point 4): after a timeout a drive is suspect until a read was answered whose
-// reply cannot be the reply to anything lost. Promises that no candidate is used whose reply a lost one could pass for.
-// Never sends: it says which object to read, or how long to keep silent.
+// The fence against late replies (design 7, point 4): after a timeout a drive is suspect until a read was answered
+// whose reply cannot be the reply to anything lost. Promises that no candidate is used whose reply a lost one could
+// pass for. Never sends: it says which object to read, or how long to keep silent.
 #pragma once
 
 #include <boost/container/static_vector.hpp>
@@ -31,7 +31,9 @@ class Fence {
   [[nodiscard]] std::optional<ObjectId> candidate() const;
   void fence_sent() { ++fences_; }
   /// From then on every reply still owed by the drive would break its worst_reply: a plain read is safe.
-  [[nodiscard]] Instant silent_until() const { return last_lost_ == kLongAgo ? kLongAgo : last_lost_ + facts_.worst_reply; }
+  [[nodiscard]] Instant silent_until() const {
+    return last_lost_ == kLongAgo ? kLongAgo : last_lost_ + facts_.worst_reply;
+  }
   /// Silence was kept until silent_until(): nothing can be owed any more.
   void waited_out() { answered(); }
 

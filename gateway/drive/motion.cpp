@@ -5,8 +5,8 @@
 namespace axisgate::drive {
 namespace {
 
-// A reference bit may still stand from the homing before, and no sheet says when it falls: homing counts as attained when the
-// bit is set and the axis stands, this long after the start at the earliest.
+// A reference bit may still stand from the homing before, and no sheet says when it falls: homing counts as attained
+// when the bit is set and the axis stands, this long after the start at the earliest.
 constexpr Duration kHomingSettle = std::chrono::milliseconds(500);
 // A Kinco JD samples its velocity each 200 ms: for so long after a change it may still show what was before.
 constexpr Duration kVelocityLag = std::chrono::milliseconds(300);
@@ -28,7 +28,7 @@ std::optional<Target> target_of(Quantity quantity) {
 
 }  // namespace
 
-// Stops ---------------------------------------------------------------------------------------------------------------
+// Stops -------------------------------------------------------------------------------------------------------------
 
 void Motion::stop(bool latch, Instant now) {
   end(MotionState::aborted);
@@ -60,7 +60,7 @@ void Motion::passed(Request402 request) {
   if (request == Request402::enable_operation && unlatch_armed_) enabled();
 }
 
-// What runs -----------------------------------------------------------------------------------------------------------
+// What runs ---------------------------------------------------------------------------------------------------------
 
 void Motion::start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t exchange) {
   assert(kind != MotionKind::none);
@@ -82,8 +82,8 @@ void Motion::mode_changed() {
   raw_run_ = false;
 }
 
-// What survives: nothing. A fault, a drive restart, a disable, the loss of the drive and a stop end every motion for good;
-// velocity, torque and start are needed anew.
+// What survives: nothing. A fault, a drive restart, a disable, the loss of the drive and a stop end every motion for
+// good; velocity, torque and start are needed anew.
 void Motion::end(MotionState how) {
   if (kind_ != MotionKind::none) state_ = how;
   kind_ = MotionKind::none;
@@ -110,7 +110,8 @@ void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
   was_reachable_ = facts.reachable;
   was_enabled_ = facts.enabled();
   if (!facts.enabled()) {
-    if (newly_faulted || newly_lost || newly_disabled || kind_ != MotionKind::none || raw_run_) end(MotionState::failed);
+    if (newly_faulted || newly_lost || newly_disabled || kind_ != MotionKind::none || raw_run_)
+      end(MotionState::failed);
     return;
   }
   const bool seen_after_start = facts.statusword_exchange > started_by_ && !target_reached_masked_;
@@ -183,8 +184,8 @@ bool Motion::move_under_way(const AxisFacts& facts) const {
 
 bool Motion::target_acts_now(Quantity target, const AxisFacts& facts, bool held_back) const {
   const auto t = target_of(target);
-  if (!t) return true;           // a parameter
-  if (latched_) return false;    // kept, not sent
+  if (!t) return true;         // a parameter
+  if (latched_) return false;  // kept, not sent
   switch (*t) {
     case kPosition:
       // In modes 7 and 8 the target is the demand of every cycle; elsewhere a write must not disturb or start a move.

@@ -1,6 +1,7 @@
-// The motion rules of design 3.4 for one axis, the same on every drive: the stop latch, what runs, what survives, and which
-// set-points may reach the drive now. Promises that only start() begins a motion, that every stop, fault, disable, restart and
-// loss of the drive ends it for good, and that a latched axis starts nothing. Never sends: planners ask it, the axis tells it.
+// The motion rules of design 3.4 for one axis, the same on every drive: the stop latch, what runs, what survives, and
+// which set-points may reach the drive now. Promises that only start() begins a motion, that every stop, fault,
+// disable, restart and loss of the drive ends it for good, and that a latched axis starts nothing. Never sends:
+// planners ask it, the axis tells it.
 #pragma once
 
 #include <array>
@@ -27,9 +28,7 @@ struct AxisFacts {
   std::uint64_t statusword_exchange = 0;  ///< the exchange that gave the newest statusword
 
   [[nodiscard]] bool enabled() const { return reachable && state == State402::operation_enabled; }
-  [[nodiscard]] bool faulted() const {
-    return state == State402::fault || state == State402::fault_reaction_active;
-  }
+  [[nodiscard]] bool faulted() const { return state == State402::fault || state == State402::fault_reaction_active; }
 };
 
 /// A target as a client asked for it.
@@ -42,9 +41,11 @@ class Motion {
  public:
   // --- Stops and the stop latch -------------------------------------------------------------------------------------
 
-  /// A stop was accepted: the motion is over, velocity and torque are needed anew. `latch`: quick_stop and lease actions.
+  /// A stop was accepted: the motion is over, velocity and torque are needed anew. `latch`: quick_stop and lease
+  /// actions.
   void stop(bool latch, Instant now);
-  /// How many stops were accepted: what a group that was accepted before the newest one starts or enables does not count.
+  /// How many stops were accepted: what a group that was accepted before the newest one starts or enables does not
+  /// count.
   [[nodiscard]] std::uint64_t stops() const { return stops_; }
   /// An enable accepted after the stop has been carried out (command 1, coil 0).
   void enabled() {
@@ -93,8 +94,8 @@ class Motion {
   void want(Quantity target, Wanted wanted);
   /// What clients asked for last. Velocity and torque: none after anything that ended a motion for good.
   [[nodiscard]] std::optional<Wanted> wanted(Quantity target) const;
-  /// Whether a write of this quantity may go to the drive now. `held_back`: by this drive the write itself would move the axis
-  /// (profile `trigger`, or a maker's bit in the controlword in effect).
+  /// Whether a write of this quantity may go to the drive now. `held_back`: by this drive the write itself would move
+  /// the axis (profile `trigger`, or a maker's bit in the controlword in effect).
   [[nodiscard]] bool target_acts_now(Quantity target, const AxisFacts& facts, bool held_back) const;
 
  private:
@@ -114,8 +115,9 @@ class Motion {
   MotionState state_ = MotionState::none;
   std::uint16_t id_ = 0;
   Instant started_ = kLongAgo;
-  Instant settled_from_ = kLongAgo;  ///< the sampled velocity tells the truth of the newest start, stop or end from then on
-  std::uint64_t started_by_ = 0;     ///< exchange: only statuswords sampled after it tell of this motion
+  Instant settled_from_ =
+      kLongAgo;  ///< the sampled velocity tells the truth of the newest start, stop or end from then on
+  std::uint64_t started_by_ = 0;  ///< exchange: only statuswords sampled after it tell of this motion
   Instant homing_until_ = kNever;
   bool was_faulted_ = false;
   bool was_reachable_ = false;

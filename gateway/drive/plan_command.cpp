@@ -103,7 +103,8 @@ Plan plan_enable(const AxisCore& core) {
 // What a step that names a quantity is to write.
 std::optional<Wanted> asked_for(const AxisCore& core, Quantity quantity) {
   if (quantity == Quantity::target_position) return core.target_position();
-  if (quantity == Quantity::target_velocity || quantity == Quantity::target_torque) return core.running_target(quantity);
+  if (quantity == Quantity::target_velocity || quantity == Quantity::target_torque)
+    return core.running_target(quantity);
   if (const auto held = core.value(quantity)) return Wanted{*held};
   return std::nullopt;
 }

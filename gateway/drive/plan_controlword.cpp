@@ -60,7 +60,8 @@ Plan plan_controlword(const AxisCore& core, std::uint16_t word) {
 
   plan.add(Action::write(core.model.controlword, word));
   plan.add(Action::at(Mark::controlword_passed));
-  if (rising(before, word, controlword::kFaultReset)) plan.add(Action::at(Mark::values_doubtful, core.model.controlword));
+  if (rising(before, word, controlword::kFaultReset))
+    plan.add(Action::at(Mark::values_doubtful, core.model.controlword));
   if (halts) plan.add(Action::at(Mark::halted));
   if (moves) plan.add(Action::at(Mark::start_discrete));
   if (homes) plan.add(Action::at(Mark::start_homing));

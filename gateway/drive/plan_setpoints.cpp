@@ -21,7 +21,8 @@ const std::int64_t* raw_mode(const AxisCore& core, std::int16_t mode) {
   return nullptr;
 }
 
-// New limits above the old ones: the upper one goes first, so that the pair never stands the wrong way round in the drive.
+// New limits above the old ones: the upper one goes first, so that the pair never stands the wrong way round in the
+// drive.
 bool upper_limit_first(const AxisCore& core, const Group& group) {
   const auto old_max = core.value(Quantity::position_limit_max);
   for (const Setpoint& sp : group.setpoints)
@@ -29,7 +30,8 @@ bool upper_limit_first(const AxisCore& core, const Group& group) {
   return false;
 }
 
-// A target that comes with its own start goes with it, once the mode is the right one: a change of mode would make it doubtful.
+// A target that comes with its own start goes with it, once the mode is the right one: a change of mode would make it
+// doubtful.
 bool sent_with_start(Command command, Quantity quantity) {
   switch (command) {
     case Command::move_absolute:
@@ -72,8 +74,9 @@ bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Pl
 
 namespace {
 
-// Unconditionally, although it may be held: a panel or a PC at the drive's other port can have changed it since it was read, and
-// this is what keeps an enable from moving. Where a write wears out the drive's memory, it is looked at first.
+// Unconditionally, although it may be held: a panel or a PC at the drive's other port can have changed it since it was
+// read, and this is what keeps an enable from moving. Where a write wears out the drive's memory, it is looked at
+// first.
 void add_running_target(const AxisCore& core, ObjectId id, std::int64_t raw, Plan& plan, bool& look_again) {
   constexpr Duration kFresh = std::chrono::milliseconds(500);
   const ObjectState& state = core.store[id];

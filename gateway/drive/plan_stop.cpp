@@ -47,8 +47,8 @@ Plan disable(const AxisCore& core) {
   return plan;
 }
 
-// A halt must never enable: not the axis whose disable is still on its way, not the drive that has just restarted. What stops
-// without that risk is the quick stop; and an axis without torque needs no halt at all.
+// A halt must never enable: not the axis whose disable is still on its way, not the drive that has just restarted. What
+// stops without that risk is the quick stop; and an axis without torque needs no halt at all.
 Plan halt(const AxisCore& core) {
   if (halt_is_quick_stop(core)) return quick_stop(core);
   const Steps* steps = steps_of(core, Command::halt);
@@ -91,7 +91,8 @@ Plan by_controlword(const AxisCore& core, std::uint16_t word) {
 
 Plan plan_stop(const AxisCore& core, const Group& group) {
   const bool commanded = is_stop(group.command);
-  if (!group.controlword || !is_stop(*group.controlword, group.single_controlword)) return by_command(core, group.command);
+  if (!group.controlword || !is_stop(*group.controlword, group.single_controlword))
+    return by_command(core, group.command);
   Plan plan = by_controlword(core, *group.controlword);
   // Both: in the order of the group. A halt asks for less than any stop by controlword does.
   if (commanded && group.command != Command::halt) static_cast<void>(append(plan, by_command(core, group.command)));
@@ -119,8 +120,8 @@ void add_end_of_halt(const AxisCore& core, Plan& plan) {
   add_running_targets(core, false, plan);
   const Binding* target = core.model.binding(Quantity::target_position);
   if (!is_continuous(core.mode_in_force()) && target != nullptr && !core.object(target->object).trigger) {
-    // A halted homing would go on, and so would a move whose target was merely overwritten: the drive must have taken the new
-    // set-point, the present position, before bit 8 falls.
+    // A halted homing would go on, and so would a move whose target was merely overwritten: the drive must have taken
+    // the new set-point, the present position, before bit 8 falls.
     if (core.mode_in_force() != 1) static_cast<void>(append(plan, plan_mode(core, 1)));
     plan.add(Action::write(core.model.controlword, controlword::kHalt | kEnabled));
     add_target_here(core, plan);

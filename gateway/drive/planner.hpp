@@ -1,6 +1,6 @@
-// The planners: what each part of a group comes to on this axis, now (design 3.3 and 3.4). Pure: rules and facts in, a plan out.
-// Promise that no plan moves the axis unless a start was asked for, that no stop enables it, and that a set-point the drive is
-// known to hold is not sent again. Never carry a plan out: the conversation does.
+// The planners: what each part of a group comes to on this axis, now (design 3.3 and 3.4). Pure: rules and facts in, a
+// plan out. Promise that no plan moves the axis unless a start was asked for, that no stop enables it, and that a
+// set-point the drive is known to hold is not sent again. Never carry a plan out: the conversation does.
 #pragma once
 
 #include "gateway/drive/action.hpp"
@@ -23,7 +23,7 @@ void remember_setpoints(AxisCore& core, const Group& group);
 /// Parameters, set-points and mode alone, and the drive is known to hold them all: the wire is not needed.
 [[nodiscard]] bool nothing_to_send(const AxisCore& core, const Group& group);
 
-// --- Starts ------------------------------------------------------------------------------------------------------------
+// --- Starts --------------------------------------------------------------------------------------------------------
 
 /// A raw controlword that is no stop.
 [[nodiscard]] Plan plan_controlword(const AxisCore& core, std::uint16_t controlword);
@@ -36,7 +36,7 @@ void remember_setpoints(AxisCore& core, const Group& group);
 /// Command 11: by the drive's own homing on the present position; what it needs for that is put back afterwards.
 [[nodiscard]] Plan plan_set_position(const AxisCore& core, int mode_before);
 
-// --- Stops -------------------------------------------------------------------------------------------------------------
+// --- Stops ---------------------------------------------------------------------------------------------------------
 
 /// The stop of a group: commands 2, 3, 4, a raw controlword, or both.
 [[nodiscard]] Plan plan_stop(const AxisCore& core, const Group& group);
@@ -45,7 +45,7 @@ void remember_setpoints(AxisCore& core, const Group& group);
 /// What must be written before a halt may end, and the controlword without bit 8.
 void add_end_of_halt(const AxisCore& core, Plan& plan);
 
-// --- Building blocks ---------------------------------------------------------------------------------------------------
+// --- Building blocks -----------------------------------------------------------------------------------------------
 
 /// Appends another plan; false where that one is refused (its refusal becomes this plan's).
 bool append(Plan& plan, Plan more);
@@ -53,9 +53,11 @@ bool append(Plan& plan, Plan more);
 void add_steps(const AxisCore& core, const Steps& steps, Plan& plan);
 /// Appends the command's steps in the mode in force; false (and refused) where the drive has none.
 bool add_command_steps(const AxisCore& core, Command command, Plan& plan);
-/// Writes the quantity's value unless the drive is known to hold it. False where it cannot be had in the drive's numbers.
+/// Writes the quantity's value unless the drive is known to hold it. False where it cannot be had in the drive's
+/// numbers.
 [[nodiscard]] bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan);
-/// Makes the velocity and torque set-points in the drive 0, or, with `keep_wanted`, what was asked for since the last stop.
+/// Makes the velocity and torque set-points in the drive 0, or, with `keep_wanted`, what was asked for since the last
+/// stop.
 void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan);
 /// Makes the position set-point the actual position.
 void add_target_here(const AxisCore& core, Plan& plan);

@@ -80,8 +80,8 @@ void PollPlan::done(ObjectId object, Instant now) {
     e->due = kNever;
     return;
   }
-  // On time: keep the beat. Read early by somebody else, or late (an overloaded bus stretches instead of piling up): one
-  // period from now.
+  // On time: keep the beat. Read early by somebody else, or late (an overloaded bus stretches instead of piling up):
+  // one period from now.
   const bool on_time = now >= e->due && now - e->due < e->period;
   e->due = (on_time ? e->due : now) + e->period;
 }

@@ -34,7 +34,8 @@ class PollPlan {
   void drop(ObjectId object);
   /// A write of it was acknowledged: if it is of class once, it is read once more as soon as its turn comes.
   void written(ObjectId object, Instant now);
-  /// What the drive holds was doubted: those of class once are read again, one by one, so that the others keep their beat.
+  /// What the drive holds was doubted: those of class once are read again, one by one, so that the others keep their
+  /// beat.
   void refresh(Instant now);
   /// 0 for class once.
   [[nodiscard]] Duration period(ObjectId object) const;

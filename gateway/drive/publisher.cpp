@@ -63,8 +63,8 @@ std::uint16_t inputs_of(const AxisCore& core, const AxisImage& image, const Axis
   const std::int64_t digital = image[Quantity::digital_inputs].value;
   const bool limits_valid = image[Quantity::digital_inputs].valid;
   constexpr std::int64_t kLimitInputs = 0x3;
-  const bool ready = !facts.faulted() && !core.alarm(AxisAlarm::local_control) &&
-                     !core.alarm(AxisAlarm::identity_mismatch);
+  const bool ready =
+      !facts.faulted() && !core.alarm(AxisAlarm::local_control) && !core.alarm(AxisAlarm::identity_mismatch);
   std::uint16_t out = 0;
   const auto set = [&](AxisInput input, bool on) { out = on ? static_cast<std::uint16_t>(out | bit(input)) : out; };
   set(AxisInput::stop_latched, core.motion.latched());
@@ -99,7 +99,8 @@ void show_model(const AxisModel& model, AxisImage& image) {
   image.writable = model.writable;
   image.supported_commands = model.supported_commands;
   image.supported_modes = model.supported_modes;
-  for (const QuantityRow& row : quantity_table()) image.limits[static_cast<std::size_t>(row.quantity)] = range_of(row.type);
+  for (const QuantityRow& row : quantity_table())
+    image.limits[static_cast<std::size_t>(row.quantity)] = range_of(row.type);
   for (const Binding& binding : model.bindings)
     image.limits[static_cast<std::size_t>(binding.quantity)] = binding.limits;
 }
@@ -111,7 +112,8 @@ void show_state(const AxisCore& core, AxisImage& image, Instant now) {
     Sample& sample = image[binding.quantity];
     // What the drive refused is not supported; a drive changed for another may have it again.
     const std::uint32_t mask = bit(binding.quantity);
-    image.supported = refused(core, binding) ? image.supported & ~mask : image.supported | (core.model.supported & mask);
+    image.supported =
+        refused(core, binding) ? image.supported & ~mask : image.supported | (core.model.supported & mask);
     const Instant at = confirmed_at(core, binding);
     const auto value = at == kLongAgo ? std::nullopt : shown_value(core, facts, binding);
     const Range fits = range_of(row(binding.quantity).type);

@@ -61,7 +61,8 @@ DriveOptions parse_drive(std::string_view text, DriveOptions drive) {
   const auto words = split(text, '+');
   const std::size_t at = words.front().find('@');
   const std::string_view type = words.front().substr(0, at);
-  const auto station = at == std::string_view::npos ? std::nullopt : number(words.front().substr(at + 1));
+  const auto written = at == std::string_view::npos ? std::nullopt : number(words.front().substr(at + 1));
+  const auto station = written.value_or(0);
   if (type == "jd") {
     drive.type = KincoType::jd;
   } else if (type == "md") {
@@ -69,8 +70,8 @@ DriveOptions parse_drive(std::string_view text, DriveOptions drive) {
   } else {
     refuse("drive", text, "write TYPE@STATION with type jd or md, for example jd@1");
   }
-  if (!station || *station < 1 || *station > 127) refuse("drive", text, "the station is a number from 1 to 127");
-  drive.station = static_cast<std::uint8_t>(*station);
+  if (station < 1 || station > 127) refuse("drive", text, "the station is a number from 1 to 127");
+  drive.station = static_cast<std::uint8_t>(station);
   for (std::size_t i = 1; i < words.size(); ++i) modify(drive, words[i]);
   return drive;
 }

@@ -52,8 +52,8 @@ void Recorder::say(const std::string& text) { text_ += "# " + text + "\n"; }
 void Recorder::show_image() {
   const AxisImage& axis = stage_.axis(1);
   std::map<std::string, std::string> now;
-  now["link_state"] = text(axis.link_state);
-  now["axis_state"] = text(axis.axis_state);
+  now["link_state"] = axisgate::text(axis.link_state);
+  now["axis_state"] = axisgate::text(axis.axis_state);
   now["motion_state"] = number_text("%lld", static_cast<int>(axis.motion_state));
   now["alarms"] = number_text("0x%llX", axis.alarms);
   now["inputs"] = number_text("0x%04llX", axis.inputs);

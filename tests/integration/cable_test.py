@@ -2,7 +2,7 @@
 import os
 import signal
 
-from modbus import (ALARM_ADOPTED, COMPLETED, CONTINUOUS, DISABLED, FAILED, LINK_DOWN, NO_ANSWER, NO_PATH, ONLINE, REFUSED, SETUP,
+from modbus import (ALARM_ADOPTED, COMPLETED, CONTINUOUS, DISABLED, ERROR_STOP, FAILED, LINK_DOWN, NO_ANSWER, NO_PATH, ONLINE, REFUSED, SETUP,
                     STANDSTILL, SUSPECT)
 from processes import Program, until
 from stage import Story, bus, drive, main
@@ -139,6 +139,18 @@ class PulledWhile(Cable):
         self.lift.command("quick_stop")  # now it gets through
         self.lift.until_input("enabled", False)
 
+    def test_faulted(self):
+        self.enable()
+        self.sim.ask("fault lift/1 2601 0x0020")
+        self.lift.until(axis_state=ERROR_STOP, error_code=0x3210)
+        self.pull()
+        self.assertEqual(self.lift.get("error_code"), 0x3210, "the drive's last word stays")
+        self.sim.ask("clear lift/1 2601 0x0020")
+        self.put_back()
+        self.lift.until(axis_state=ERROR_STOP, error_code=0x3210)
+        self.lift.command("fault_reset")
+        self.lift.until(axis_state=DISABLED, error_code=0)
+
     def test_pulled_again_and_again(self):
         for count in range(1, 4):
             self.pull()
@@ -148,6 +160,27 @@ class PulledWhile(Cable):
         self.lift.set(profile_velocity=600 * RPM, target_position=TURN)
         self.lift.command("move_absolute")
         self.lift.until(motion_state=COMPLETED)
+
+
+class PulledWhileOnAnMd(PulledWhile):
+    """The same stories with the types changed about."""
+
+    lines = {"lift": "md@1", "feeder": "jd@1"}
+
+    def buses(self):
+        return [bus(self.path("lift"), drive("md", 1, 1)), bus(self.path("feeder"), drive("jd", 1, 2))]
+
+    def test_halted(self):
+        self.enable()
+        self.lift.set(target_position=FAR)
+        self.lift.command("move_absolute")
+        self.lift.until_input("moving")
+        self.lift.command("halt")
+        self.lift.until_input("moving", False)
+        self.pull_and_put_back()
+        where = self.sim.object("lift/1", "6063.00")
+        self.assert_adopted_until_disabled()
+        self.assertAlmostEqual(self.sim.object("lift/1", "6063.00"), where, delta=100)
 
 
 class PulledOnAQuietLine(Cable):

@@ -135,10 +135,10 @@ class FirstContact(Story):
                 self.client.write(entry["address"], *[0] * entry["count"])
 
     def read_coils(self, address, count):
-        return self.client.checked(self.client.tcp.read_coils(address, count, slave=1)).bits[:count]
+        return self.client.ask(self.client.tcp.read_coils, address, count).bits[:count]
 
     def read_inputs(self, address, count):
-        return self.client.checked(self.client.tcp.read_discrete_inputs(address, count, slave=1)).bits[:count]
+        return self.client.ask(self.client.tcp.read_discrete_inputs, address, count).bits[:count]
 
     def test_another_configuration_on_the_same_port_is_refused_and_names_the_port(self):
         second = self.command_line("run", self.config)

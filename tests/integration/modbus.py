@@ -1,8 +1,10 @@
 """The register map of the contract, written down anew, and two clients that nobody here wrote: pymodbus and mbpoll."""
+import logging
 import re
 import subprocess
 
 from pymodbus.client import ModbusTcpClient
+from pymodbus.exceptions import ConnectionException
 from pymodbus.pdu import ExceptionResponse
 
 from processes import NEVER, until
@@ -45,6 +47,9 @@ ALARM_ADOPTED, ALARM_LOCAL_CONTROL, ALARM_STOP_LATCHED = 1 << 1, 1 << 3, 1 << 7
 NO_FUNCTION, NO_ADDRESS, BAD_VALUE, REFUSED, BUSY, NO_PATH, NO_ANSWER = 0x01, 0x02, 0x03, 0x04, 0x06, 0x0A, 0x0B
 
 
+logging.getLogger("pymodbus").setLevel(logging.CRITICAL)  # what it meets is asserted, not logged
+
+
 class Refused(Exception):
     def __init__(self, code):
         super().__init__(f"exception {code:#04x}")
@@ -81,6 +86,14 @@ class Client:
     def close(self):
         self.tcp.close()
 
+    def ask(self, function, *arguments):
+        """Calls a function of pymodbus's client for our unit."""
+        try:
+            reply = function(*arguments, slave=self.unit)
+        except (ConnectionException, OSError) as failed:
+            raise Closed(str(failed)) from None
+        return self.checked(reply)
+
     def checked(self, reply):
         if isinstance(reply, ExceptionResponse):
             raise Refused(reply.exception_code)
@@ -92,14 +105,14 @@ class Client:
         return self.checked(self.tcp.execute(request))
 
     def registers(self, address, count=1):
-        return self.checked(self.tcp.read_holding_registers(address, count, slave=self.unit)).registers
+        return self.ask(self.tcp.read_holding_registers, address, count).registers
 
     def write(self, address, *values):
         """FC 6 for one register, FC 16 for more."""
         if len(values) == 1:
-            self.checked(self.tcp.write_register(address, values[0], slave=self.unit))
+            self.ask(self.tcp.write_register, address, values[0])
         else:
-            self.checked(self.tcp.write_registers(address, list(values), slave=self.unit))
+            self.ask(self.tcp.write_registers, address, list(values))
 
     def table(self, rows, first):
         """All rows of a table as one read shows them."""
@@ -153,14 +166,14 @@ class Axis:
 
     def coil(self, name, on=True):
         address = self.first + COILS.index(name)
-        self.client.checked(self.client.tcp.write_coil(address, on, slave=self.client.unit))
+        self.client.ask(self.client.tcp.write_coil, address, on)
 
     def coils(self):
-        bits = self.client.checked(self.client.tcp.read_coils(self.first, len(COILS), slave=self.client.unit)).bits
+        bits = self.client.ask(self.client.tcp.read_coils, self.first, len(COILS)).bits
         return {name for name, bit in zip(COILS, bits) if bit}
 
     def inputs(self):
-        reply = self.client.checked(self.client.tcp.read_discrete_inputs(self.first, len(INPUTS), slave=self.client.unit))
+        reply = self.client.ask(self.client.tcp.read_discrete_inputs, self.first, len(INPUTS))
         return {name for name, bit in zip(INPUTS, reply.bits) if bit}
 
     def until(self, **wanted):

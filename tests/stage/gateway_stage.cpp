@@ -9,7 +9,8 @@ namespace {
 
 drive::DriveModel model_of(const StageDrive& staged, const std::optional<std::array<Duration, 3>>& poll) {
   const bool jd = staged.options.type == simulated::KincoType::jd;
-  const std::string file = std::string(AXISGATE_SOURCE_DIR "/schemas/drives/") + (jd ? "kinco-jd" : "kinco-md") + ".json";
+  const std::string file =
+      std::string(AXISGATE_SOURCE_DIR "/schemas/drives/") + (jd ? "kinco-jd" : "kinco-md") + ".json";
   const drive::LoadedProfile loaded = drive::load_profile(file);
   if (!loaded.faults.empty()) throw std::runtime_error(text(loaded.faults.front()));
   drive::ResolveInput input;
@@ -39,7 +40,8 @@ GatewayStage::Line line_of(simulated::KincoType type, AxisNumber axis) {
 
 GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
     : log_([this](LogLevel level, std::string_view source, std::string_view message) {
-        log_lines_.push_back(std::string(axisgate::text(level)) + " " + std::string(source) + ": " + std::string(message));
+        log_lines_.push_back(std::string(axisgate::text(level)) + " " + std::string(source) + ": " +
+                             std::string(message));
       }) {
   app::Config config;
   app::Models models;

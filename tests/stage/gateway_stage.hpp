@@ -1,6 +1,5 @@
-// The shipped gateway core on a stage: manual time, simulated lines, shipped profiles; a client speaks to the command port.
-// Promises that nothing happens but by the clock that the test moves.
-// Never opens a device or a socket.
+// The shipped gateway core on a stage: manual time, simulated lines, shipped profiles; a client speaks to the command
+// port. Promises that nothing happens but by the clock that the test moves. Never opens a device or a socket.
 #pragma once
 
 #include <map>

@@ -1,6 +1,6 @@
 // The cable between the gateway and a simulated line: a ByteLink whose far end is a SerialLine, in manual time.
-// Promises bytes at the instants the line says, a cut that loses what is under way, and a check that at most one request is
-// outstanding. Never delivers a byte from inside send().
+// Promises bytes at the instants the line says, a cut that loses what is under way, and a check that at most one
+// request is outstanding. Never delivers a byte from inside send().
 #pragma once
 
 #include <cstdint>
@@ -39,9 +39,9 @@ class SimLink final : public bus::ByteLink {
   /// From inside on_traffic(): what becomes of the request just told.
   enum class Fate : std::uint8_t {
     delivered,
-    refused,       ///< the drive does not see it; the answer is an error (0x80, detail 0x06090030)
-    cut_before,    ///< the cable is pulled before it arrives
-    cut_after,     ///< the drive acts, then the cable is pulled
+    refused,     ///< the drive does not see it; the answer is an error (0x80, detail 0x06090030)
+    cut_before,  ///< the cable is pulled before it arrives
+    cut_after,   ///< the drive acts, then the cable is pulled
   };
   Fate fate = Fate::delivered;
   std::function<void()> on_unplugged = [] {};

@@ -38,13 +38,18 @@ const std::vector<Row> kTable{
 // clang-format on
 
 Errc expected(const Row& row, Command command) {
-  const std::map<Command, Errc> codes{
-      {Command::enable, row.enable},           {Command::disable, row.disable},
-      {Command::quick_stop, row.quick_stop},   {Command::halt, row.halt},
-      {Command::fault_reset, row.fault_reset}, {Command::move_absolute, row.absolute},
-      {Command::move_relative, row.relative},  {Command::run_velocity, row.velocity},
-      {Command::run_torque, row.torque},       {Command::home, row.home},
-      {Command::set_position, row.set_position}, {Command::save_parameters, row.save}};
+  const std::map<Command, Errc> codes{{Command::enable, row.enable},
+                                      {Command::disable, row.disable},
+                                      {Command::quick_stop, row.quick_stop},
+                                      {Command::halt, row.halt},
+                                      {Command::fault_reset, row.fault_reset},
+                                      {Command::move_absolute, row.absolute},
+                                      {Command::move_relative, row.relative},
+                                      {Command::run_velocity, row.velocity},
+                                      {Command::run_torque, row.torque},
+                                      {Command::home, row.home},
+                                      {Command::set_position, row.set_position},
+                                      {Command::save_parameters, row.save}};
   return codes.at(command);
 }
 
@@ -144,8 +149,8 @@ TEST_P(CommandInSituation, EndsAsTheContractSays) {
     }
     case Command::run_velocity:
       EXPECT_EQ(rig.axis().axis_state, AxisState::continuous_motion);
-      EXPECT_TRUE(rig.stage.run_until(
-          [&] { return std::abs(rig.axis()[Quantity::velocity_actual].value - 100'000) < 2'000; }));
+      EXPECT_TRUE(
+          rig.stage.run_until([&] { return std::abs(rig.axis()[Quantity::velocity_actual].value - 100'000) < 2'000; }));
       break;
     case Command::run_torque:
       EXPECT_EQ(rig.object(kMode), 4);
@@ -168,19 +173,21 @@ TEST_P(CommandInSituation, EndsAsTheContractSays) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Table, CommandInSituation,
-    testing::Combine(testing::Values(KincoType::jd, KincoType::md), testing::ValuesIn(kTable),
-                     testing::Values(Command::enable, Command::disable, Command::quick_stop, Command::halt,
-                                     Command::fault_reset, Command::move_absolute, Command::move_relative,
-                                     Command::run_velocity, Command::run_torque, Command::home, Command::set_position,
-                                     Command::save_parameters)),
-    [](const auto& case_of) {
-      std::string out = name(std::get<0>(case_of.param)) + "_" + name(std::get<1>(case_of.param).situation) + "_" +
-                        std::string(text(std::get<2>(case_of.param)));
-      std::ranges::replace_if(out, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
-      return out;
-    });
+INSTANTIATE_TEST_SUITE_P(Table, CommandInSituation,
+                         testing::Combine(testing::Values(KincoType::jd, KincoType::md), testing::ValuesIn(kTable),
+                                          testing::Values(Command::enable, Command::disable, Command::quick_stop,
+                                                          Command::halt, Command::fault_reset, Command::move_absolute,
+                                                          Command::move_relative, Command::run_velocity,
+                                                          Command::run_torque, Command::home, Command::set_position,
+                                                          Command::save_parameters)),
+                         [](const auto& case_of) {
+                           std::string out = name(std::get<0>(case_of.param)) + "_" +
+                                             name(std::get<1>(case_of.param).situation) + "_" +
+                                             std::string(text(std::get<2>(case_of.param)));
+                           std::ranges::replace_if(
+                               out, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+                           return out;
+                         });
 
 }  // namespace
 }  // namespace axisgate::test

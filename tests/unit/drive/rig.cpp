@@ -36,7 +36,8 @@ void expect(bool what, const char* why) {
 WireRequest decoded(Instant at, Bytes frame) {
   simulated::TenByteFrame f{};
   std::copy_n(frame.begin(), f.size(), f.begin());
-  WireRequest out{.at = at, .index = simulated::index_of(f), .sub = simulated::sub_of(f), .data = simulated::data_of(f)};
+  WireRequest out{
+      .at = at, .index = simulated::index_of(f), .sub = simulated::sub_of(f), .data = simulated::data_of(f)};
   const auto command = simulated::command_of(f);
   out.write = command != simulated::FrameCommand::read;
   out.size = command == simulated::FrameCommand::write_4 ? 4 : command == simulated::FrameCommand::write_2 ? 2 : 1;
@@ -46,7 +47,7 @@ WireRequest decoded(Instant at, Bytes frame) {
 std::string name(KincoType type) { return type == KincoType::jd ? "JD" : "MD"; }
 
 std::string name(Situation situation) {
-  static const std::vector<std::string> names{"disabled", "enabled", "moving",  "running", "homing",  "halted",
+  static const std::vector<std::string> names{"disabled", "enabled", "moving",   "running", "homing",  "halted",
                                               "latched",  "faulted", "in setup", "suspect", "offline", "link down"};
   return names[static_cast<std::size_t>(situation)];
 }
@@ -61,7 +62,9 @@ void Rig::bring_to(Situation situation) {
     return;
   }
   online();
-  const auto done = [&](const GroupResult& r) { expect(r.outcome.code == Errc::ok, "the way to the situation failed"); };
+  const auto done = [&](const GroupResult& r) {
+    expect(r.outcome.code == Errc::ok, "the way to the situation failed");
+  };
   const auto enable = [&] { done(command(Command::enable)); };
   switch (situation) {
     case Situation::disabled:

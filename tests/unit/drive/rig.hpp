@@ -1,6 +1,6 @@
-// One simulated Kinco drive behind the shipped core, with the words in which these tests speak: bring it to a state, ask, look at
-// what reached the wire and what the motor does. Promises a fresh world per rig.
-// Never decides what is right: the tests do.
+// One simulated Kinco drive behind the shipped core, with the words in which these tests speak: bring it to a state,
+// ask, look at what reached the wire and what the motor does. Promises a fresh world per rig. Never decides what is
+// right: the tests do.
 #pragma once
 
 #include <string>
@@ -33,11 +33,11 @@ inline constexpr std::uint32_t kControlword = 0x6040, kStatusword = 0x6041, kMod
 enum class Situation : std::uint8_t {
   disabled,
   enabled,
-  moving,      ///< a long absolute move
-  running,     ///< command 8
-  homing,      ///< after a switch that never comes
+  moving,   ///< a long absolute move
+  running,  ///< command 8
+  homing,   ///< after a switch that never comes
   halted,
-  latched,     ///< quick-stopped
+  latched,  ///< quick-stopped
   faulted,
   in_setup,
   suspect,

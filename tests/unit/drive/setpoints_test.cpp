@@ -132,9 +132,11 @@ TEST(TargetPosition, NeverMovesADriveThatFollowsIt) {
   EXPECT_FALSE(rig.turns());
   // And a distance is not taken for a place.
   rig.stage.run(500ms);
-  ASSERT_EQ(rig.ask(with_command(Command::move_absolute, {{Quantity::target_position, 10'000}})).outcome.code, Errc::ok);
+  ASSERT_EQ(rig.ask(with_command(Command::move_absolute, {{Quantity::target_position, 10'000}})).outcome.code,
+            Errc::ok);
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().motion_state == MotionState::completed; }));
-  ASSERT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 10'000}})).outcome.code, Errc::ok);
+  ASSERT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 10'000}})).outcome.code,
+            Errc::ok);
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().motion_state == MotionState::completed; }));
   rig.stage.run(300ms);
   EXPECT_NEAR(rig.motor().position(), 20'000, 5);
@@ -198,7 +200,8 @@ TEST(TargetVelocity, IsNeededAnewAfterAnythingThatEndsTheMotionForGood) {
 TEST(TargetVelocity, OfAReplacedRunStays) {
   Rig rig(KincoType::jd);
   rig.bring_to(running);
-  ASSERT_EQ(rig.ask(with_command(Command::move_absolute, {{Quantity::target_position, 100'000}})).outcome.code, Errc::ok);
+  ASSERT_EQ(rig.ask(with_command(Command::move_absolute, {{Quantity::target_position, 100'000}})).outcome.code,
+            Errc::ok);
   ASSERT_EQ(rig.command(Command::run_velocity).outcome.code, Errc::ok);
   EXPECT_TRUE(rig.turns()) << "replaced, not ended for good";
 }
@@ -206,7 +209,8 @@ TEST(TargetVelocity, OfAReplacedRunStays) {
 TEST(RelativeMove, IsRefusedWhileMovingAndNeverAdded) {
   Rig rig(KincoType::jd);
   rig.bring_to(moving);
-  EXPECT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 1'000}})).outcome.code, Errc::busy);
+  EXPECT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 1'000}})).outcome.code,
+            Errc::busy);
   EXPECT_EQ(rig.ask(raw(0x004F)).outcome.code, Errc::ok);
   EXPECT_EQ(rig.ask(raw(0x005F)).outcome.code, Errc::busy);
   EXPECT_EQ(rig.count(kControlword, 0x5F), 0U);
@@ -217,7 +221,8 @@ TEST(RelativeMove, AddsUpMoveByMoveAtStandstill) {
   rig.bring_to(enabled);
   const double from = static_cast<double>(rig.axis()[Quantity::position_actual].value);
   for (int i = 1; i <= 3; ++i) {
-    ASSERT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 2'000}})).outcome.code, Errc::ok);
+    ASSERT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 2'000}})).outcome.code,
+              Errc::ok);
     ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().motion_state == MotionState::completed; }));
     rig.stage.run(200ms);
     EXPECT_NEAR(static_cast<double>(rig.axis()[Quantity::position_actual].value), from + 2'000 * i, 40);

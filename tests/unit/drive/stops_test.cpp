@@ -134,7 +134,8 @@ TEST(Stops, OfTheSameClientAbortItsOwnGroupAsDropped) {
 TEST(Stops, AGroupThatHoldsOneStopsFirstAndWritesTheRestAfterwards) {
   Rig rig(KincoType::md);
   rig.bring_to(running);
-  const Group group = with_command(Command::halt, {{Quantity::target_velocity, 50'000}, {Quantity::profile_velocity, 70'000}});
+  const Group group =
+      with_command(Command::halt, {{Quantity::target_velocity, 50'000}, {Quantity::profile_velocity, 70'000}});
   EXPECT_EQ(rig.ask(group).outcome.code, Errc::ok);
   const auto writes = rig.writes();
   ASSERT_GE(writes.size(), 2U);
@@ -182,6 +183,29 @@ TEST(Stops, ToASuspectDriveGoesOutAtOnceAndAnAcknowledgementProvesNothing) {
     for (const WireRequest& r : rig.requests()) read_back = read_back || (!r.write && r.index == kControlword);
     EXPECT_TRUE(read_back);
   }
+}
+
+TEST(Stops, RightAfterTheLinksReturnIsWorthItsTry) {
+  Rig rig(KincoType::jd);
+  rig.bring_to(running);
+  rig.stage.link(0).unplug();
+  rig.stage.run(300ms);
+  rig.stage.link(0).plug();
+  ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().link_state != LinkState::link_down; }));
+  ASSERT_NE(rig.axis().link_state, LinkState::online);
+  EXPECT_EQ(rig.command(Command::quick_stop).outcome.code, Errc::ok);
+  EXPECT_TRUE(rig.stage.run_until([&] { return !rig.motor_enabled(); }, 2s));
+  rig.online();
+}
+
+TEST(Stops, GoOnAfterTheirClientHasItsAnswer) {
+  Rig rig(KincoType::jd);
+  rig.bring_to(running);
+  rig.faults().next(DriveFault::mute, 1);
+  Group group = with_command(Command::quick_stop);
+  group.answer_by = rig.stage.runtime().now() + 20ms;
+  EXPECT_EQ(rig.ask(group).outcome.code, Errc::timed_out);
+  EXPECT_TRUE(rig.stage.run_until([&] { return !rig.motor_enabled(); }, 2s));
 }
 
 TEST(Stops, AHaltNeverEnables) {

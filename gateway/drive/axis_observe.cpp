@@ -1,0 +1,76 @@
+// What an axis sees in its drive's newest samples, and shows in its image.
+#include <algorithm>
+#include <string>
+
+#include "gateway/drive/axis.hpp"
+#include "gateway/drive/publisher.hpp"
+
+namespace axisgate::drive {
+
+void Axis::observe(Instant now) {
+  core_.now = now;
+  core_.link = host_.link_state();
+  const AxisFacts facts = core_.facts();
+  core_.motion.observe(facts, core_.model.homing_timeout);
+  const bool homing = core_.motion.running() == MotionKind::homing;
+  if (core_.link == LinkState::online && core_.model.homed && core_.store[core_.model.homed->object].held) {
+    if (facts.reference && !homing) core_.homed = true;
+    // A drive that was silent and has lost its reference since has restarted, too quickly to go offline.
+    if (reference_doubted_ && !facts.reference) core_.homed = false;
+    reference_doubted_ = false;
+  }
+  bool clamped = false;
+  for (const Binding& binding : core_.model.bindings)
+    if (binding.object != kNoObject && binding.object != core_.model.controlword)
+      clamped = clamped || core_.store[binding.object].clamped;
+  set_alarm(AxisAlarm::clamped, clamped);
+  if (!core_.motion.take_homing_timeout()) return;
+  host_.event(image_.number, EventKind::warning, 0, "homing took longer than its timeout: halted");
+  Group halt;
+  halt.role = Role::engineer;
+  halt.command = Command::halt;
+  static_cast<void>(submit(halt, [](const GroupResult&) {}));
+}
+
+// --- The image -----------------------------------------------------------------------------------------------------
+
+void Axis::publish(Instant now) {
+  const Instant statusword_at = core_.store[core_.model.statusword].sent_at;
+  if (statusword_at > last_statusword_) {
+    if (last_statusword_ != kLongAgo) cycle_ = statusword_at - last_statusword_;
+    last_statusword_ = statusword_at;
+  }
+  core_.now = now;
+  core_.link = host_.link_state();
+  core_.motion.observe(core_.facts(), core_.model.homing_timeout);
+  const AxisImage before = image_;
+  image_.link_state = host_.link_state();
+  show_state(core_, image_, now);
+  if (!shows_the_same(before, image_)) {
+    ++image_.sequence;
+    tell_changes(before);
+  }
+}
+
+void Axis::tell_changes(const AxisImage& before) {
+  if (before.link_state != image_.link_state)
+    host_.event(image_.number, EventKind::link, static_cast<std::uint32_t>(image_.link_state),
+                "link " + std::string(text(before.link_state)) + " -> " + std::string(text(image_.link_state)));
+  if (!image_.reachable()) return;
+  if (image_.has(AxisInput::fault) && !before.has(AxisInput::fault)) {
+    const AlarmRow* row = active_alarm(core_);
+    const auto code = static_cast<std::uint32_t>(image_[Quantity::error_code].value);
+    host_.event(image_.number, EventKind::fault, code,
+                row == nullptr ? "the drive reports a fault" : row->text + "; " + row->remedy);
+  }
+  if (image_.has(AxisInput::homed) && !before.has(AxisInput::homed))
+    host_.event(image_.number, EventKind::homed, 0, "homed");
+  const std::uint32_t raised = image_.alarms & ~before.alarms;
+  for (std::size_t i = 0; i < kAxisAlarmCount; ++i) {
+    const auto alarm = static_cast<AxisAlarm>(i);
+    if ((raised & bit(alarm)) != 0)
+      host_.event(image_.number, EventKind::warning, static_cast<std::uint32_t>(i), alarm_text(core_, alarm));
+  }
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,213 @@
+"""Bad input: what is no Modbus, what is Modbus and wrong, a wrong configuration, a device that somebody else has."""
+import json
+import random
+import socket
+import struct
+
+from pymodbus.diag_message import ReturnBusCommunicationErrorCountRequest, ReturnQueryDataRequest
+
+from modbus import AXIS, BAD_VALUE, NO_ADDRESS, NO_FUNCTION, ONLINE, Closed
+from processes import NEVER, until
+from stage import Gateway, Story, drive, main
+
+KNOWN_FUNCTIONS = {1, 2, 3, 4, 5, 6, 8, 15, 16, 22, 23, 43}
+
+
+class WrongBytes(Story):
+    def setUp(self):
+        super().setUp()
+        self.start()
+
+    def open(self):
+        connection = socket.create_connection(("127.0.0.1", self.ports[0]), timeout=NEVER)
+        self.addCleanup(connection.close)
+        return connection
+
+    def is_closed(self, connection):
+        try:
+            return connection.recv(1) == b""
+        except ConnectionResetError:
+            return True
+
+    def malformed(self):
+        return self.client.execute(ReturnBusCommunicationErrorCountRequest(0, unit=1)).message[0]
+
+    def answer(self, pdu, unit=1):
+        """The answer's PDU; a connection that was closed is none."""
+        if not hasattr(self, "raw"):
+            self.raw = self.open()
+        self.raw.sendall(struct.pack(">HHHB", 7, 0, len(pdu) + 1, unit) + pdu)
+        head = self.raw.recv(7, socket.MSG_WAITALL)
+        if len(head) < 7:
+            raise Closed("by the gateway")
+        number, protocol, length, answered = struct.unpack(">HHHB", head)
+        self.assertEqual((number, protocol, answered), (7, 0, unit))
+        return self.raw.recv(length - 1, socket.MSG_WAITALL)
+
+    def assert_exception(self, pdu, code):
+        self.assertEqual(self.answer(pdu), bytes([pdu[0] | 0x80, code]), pdu.hex(" "))
+
+    def test_what_is_no_frame_closes_its_connection_and_is_counted(self):
+        wrong = {"protocol 1": struct.pack(">HHHBBHH", 1, 1, 6, 1, 3, 0, 1), "length 0": struct.pack(">HHHB", 1, 0, 0, 1),
+                 "length 1": struct.pack(">HHHB", 1, 0, 1, 1), "length 255": struct.pack(">HHHB", 1, 0, 255, 1) + bytes(254),
+                 "length 65535": struct.pack(">HHHB", 1, 0, 65535, 1), "a web browser": b"GET / HTTP/1.1\r\nHost: drive\r\n\r\n"}
+        for count, (name, sent) in enumerate(wrong.items(), 1):
+            with self.subTest(name):
+                connection = self.open()
+                connection.sendall(sent)
+                self.assertTrue(self.is_closed(connection))
+                self.assertEqual(self.malformed(), count)
+                self.assertEqual(self.client.gateway()["map_version"], 1)
+
+    def test_a_good_request_before_the_wrong_one_is_answered(self):
+        connection = self.open()
+        connection.sendall(struct.pack(">HHHBBHH", 1, 0, 6, 1, 3, 0, 1) + struct.pack(">HHHBBHH", 2, 9, 6, 1, 3, 0, 1))
+        self.assertEqual(connection.recv(11, socket.MSG_WAITALL), struct.pack(">HHHBBBH", 1, 0, 5, 1, 3, 2, 1))
+        self.assertTrue(self.is_closed(connection))
+
+    def test_random_bytes_stop_nobody(self):
+        chance = random.Random(20)
+        for _ in range(200):
+            connection = self.open()
+            try:
+                connection.sendall(chance.randbytes(chance.randrange(1, 300)))
+                connection.shutdown(socket.SHUT_WR)
+                while connection.recv(4096):
+                    pass
+            except OSError:
+                pass  # closed while we talked
+            connection.close()
+        for number in (1, 2):
+            self.assertEqual(self.axis(number).get("link_state"), ONLINE)
+            self.assertNotIn("enabled", self.axis(number).inputs())
+
+    def test_random_requests_are_all_answered(self):
+        chance = random.Random(21)
+        reading = [1, 2, 3, 4, 7, 8, 20, 24, 43, 90]
+        for _ in range(500):
+            pdu = bytes([chance.choice(reading)]) + chance.randbytes(chance.randrange(0, 40))
+            answer = self.answer(pdu)
+            self.assertIn(answer[0] & 0x7F, reading)
+        self.assert_online(self.axis(1))
+
+    def test_unknown_functions(self):
+        for function in sorted(set(range(1, 128)) - KNOWN_FUNCTIONS):
+            self.assert_exception(bytes([function]) + bytes(4), NO_FUNCTION)
+        self.assert_exception(bytes([43, 99, 1, 0]), NO_FUNCTION)
+        self.assert_exception(struct.pack(">BHH", 8, 99, 0), NO_FUNCTION)
+
+    def test_addresses_that_are_not_there(self):
+        for pdu in (struct.pack(">BHH", 3, 300, 1), struct.pack(">BHH", 3, 65535, 2), struct.pack(">BHH", 1, 300, 1),
+                    struct.pack(">BHH", 2, 50, 1), struct.pack(">BHH", 6, 100, 1), struct.pack(">BHH", 6, 157, 1),
+                    struct.pack(">BHH", 5, 300, 0xFF00), struct.pack(">BHHBH", 16, 300, 1, 2, 1)):
+            self.assert_exception(pdu, NO_ADDRESS)
+
+    def test_half_of_every_32_bit_value(self):
+        for name, (offset, kind) in AXIS.items():
+            if offset < 40 or not kind.endswith("32"):
+                continue
+            for address in (100 + offset, 101 + offset):
+                with self.subTest(name, address=address), self.refused(NO_ADDRESS):
+                    self.client.write(address, 1)
+
+    def test_impossible_values(self):
+        for pdu in (struct.pack(">BHH", 3, 100, 0), struct.pack(">BHH", 3, 100, 126), struct.pack(">BHH", 1, 100, 2001),
+                    struct.pack(">BHH", 5, 100, 1), struct.pack(">BHHBH", 16, 142, 2, 2, 1), struct.pack(">BHHB", 16, 142, 0, 0),
+                    struct.pack(">BHHB", 15, 100, 3, 2) + bytes(2), struct.pack(">BHH", 6, 154, 99), struct.pack(">BHH", 6, 141, 99)):
+            self.assert_exception(pdu, BAD_VALUE)
+        axis = self.axis(1)
+        for values in ({"homing_method": 99}, {"target_position": -2147483648}, {"profile_velocity": 4294967295}):
+            with self.subTest(values), self.refused(BAD_VALUE):
+                axis.set(**values)
+        self.assertEqual(self.sim.writes("lift/1"), 0)
+
+    def test_requests_that_are_cut_short(self):
+        for pdu in (b"\x03", b"\x03\x00", b"\x03\x00\x64\x00", b"\x06\x00\x8e\x00", b"\x10\x00\x8e\x00\x02\x04\x00\x00", b"\x16\x00", b"\x17\x00"):
+            self.assert_exception(pdu, BAD_VALUE)
+
+    def test_an_echo_brings_back_what_was_sent(self):
+        self.assertEqual(self.client.execute(ReturnQueryDataRequest(0xBEEF, unit=1)).message, (0xBEEF,))
+
+
+class WrongConfiguration(Story):
+    def write(self, config):
+        path = self.path("gateway.json")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(config if isinstance(config, str) else json.dumps(config))
+        return path
+
+    def assert_nothing_opened(self, listener):
+        self.assertEqual(self.sim.ask("exchanges lift"), "0")
+        with socket.socket() as probe:
+            self.assertNotEqual(probe.connect_ex(("127.0.0.1", int(listener["listen"].rpartition(":")[2]))), 0)
+
+    def test_every_mistake_is_named_at_once_and_nothing_is_opened(self):
+        self.simulate()
+        listener = self.listener()
+        buses = self.buses()
+        wrong = {"modbus_tcp": [{**listener, "word_order": "middle-first"}], "buses": buses, "colour": "red"}
+        buses[0]["baud"] = "fast"
+        buses[0]["drives"][0]["axes"][0]["axis"] = 500
+        buses[1]["drives"][0]["profile"] = "kinco-jdd"
+        path = self.write(wrong)
+        for command in ("run", "check", "map"):
+            done = self.command_line(command, path)
+            self.assertEqual((done.returncode, done.stdout), (1, ""), done.stderr)
+            for pointer in ("/modbus_tcp/0/word_order", "/colour", "/buses/0/baud", "/buses/0/drives/0/axes/0/axis"):
+                self.assertRegex(done.stderr, rf"(?m)^{path}: {pointer}\b.*")
+            self.assert_nothing_opened(listener)
+
+    def test_mistakes_between_places_are_named_all_at_once(self):
+        self.simulate()
+        listener = self.listener()
+        buses = self.buses()
+        buses[1]["drives"] = [drive("md", 1, 1), drive("md", 1, 7)]  # axis 1 again, node 1 twice
+        buses[1]["name"] = buses[0]["name"]
+        done = self.command_line("run", self.write({"modbus_tcp": [listener], "buses": buses}))
+        self.assertEqual(done.returncode, 1)
+        for pointer in ("/buses/1/name", "/buses/1/drives/0/axes/0/axis", "/buses/1/drives/1/node"):
+            self.assertIn(f"{self.path('gateway.json')}: {pointer}: ", done.stderr)
+        self.assert_nothing_opened(listener)
+
+    def test_what_is_no_json_is_named_with_its_line(self):
+        done = self.command_line("run", self.write('{\n  "buses": [\n    {"name": }\n  ]\n}'))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("gateway.json", done.stderr)
+        self.assertRegex(done.stderr, r"\b3\b")
+
+    def test_a_file_that_is_not_there(self):
+        done = self.command_line("run", self.path("none.json"))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(self.path("none.json"), done.stderr)
+
+    def test_an_unknown_profile_is_named(self):
+        buses = self.buses()
+        buses[0]["drives"][0]["profile"] = "kinco-jdd"
+        done = self.command_line("run", self.write({"modbus_tcp": [self.listener()], "buses": buses}))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("/buses/0/drives/0/profile: ", done.stderr)
+        self.assertIn("kinco-jdd", done.stderr)
+
+
+class TakenDevice(Story):
+    def test_a_second_gateway_says_who_is_in_its_way_and_spoils_nothing(self):
+        self.start()
+        first = self.config
+        self.configure(name="second.json")
+        second = self.keep(Gateway(self.config)).wait_until_it_listens()
+        told = second.wait_for(r"warning bus lift: (.*)")[0][1]
+        self.assertIn(self.path("lift"), told)
+        self.assertRegex(told, "in use|busy|another")
+        self.assertEqual(self.connect().axis(1).get("link_state"), 5)
+        # It takes over when the first one has ended.
+        for number in (1, 2):
+            self.assert_online(self.axis(number))
+        self.assertEqual(self.client.bus(0)["timeouts"], 0)
+        self.assertNotEqual(first, self.config)
+        self.gateway.terminate()
+        heir = self.connect()
+        until("both axes are the second gateway's", lambda: heir.gateway()["axes_online"] == 2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,209 @@
+"""Before the first run: check a configuration and a profile, commission a drive as it left the factory, look at the table."""
+import json
+import shutil
+
+from modbus import ALARM_LOCAL_CONTROL, COMPLETED, NO_ANSWER, ONLINE, REFUSED, STANDSTILL
+from processes import until
+from stage import SOURCE, Story, bus, drive, main
+
+TURN = 10000
+RPM = 1000
+# What decides over the bus on a JD: the functions of DIN1 to DIN8, and the store command.
+SETTINGS = ["2010.03", "2010.04", "2010.05", "2010.06", "2010.07", "2010.08", "2010.09", "2010.1D", "2FF0.01", "6040.00", "6060.00"]
+ENABLE_FUNCTION = 1
+
+
+class FactoryFresh(Story):
+    lines = {"lift": "jd@1+fresh"}
+
+    def buses(self):
+        return [bus(self.path("lift"), drive("jd", 1, 1))]
+
+    def commission(self, *options, answer=""):
+        return self.command_line("commission", self.config, "1", *options, answer=answer)
+
+    def stores(self):
+        return int(self.sim.ask("stores lift/1"))
+
+    def test_it_cannot_be_enabled_and_says_why(self):
+        self.start()
+        axis = self.axis(1)
+        self.assertTrue(axis.get("axis_alarms") & ALARM_LOCAL_CONTROL)
+        self.assertTrue(self.client.gateway()["alarms"] & 1 << 5)
+        self.assertIn("warning", axis.inputs())
+        self.gateway.wait_for("DIN1 has the function drive enable")
+        with self.refused(REFUSED):
+            axis.command("enable")
+        self.assertNotIn("operation", self.sim.state("lift/1"))
+        self.assertEqual(self.sim.writes("lift/1", *SETTINGS[:-2]), 0, "a person decides over these")
+
+    def test_no_writes_nothing(self):
+        self.simulate()
+        self.configure()
+        for answer in ("no\n", "\n", "", "y\n", "YES\n"):
+            done = self.commission(answer=answer)
+            self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+            self.assertIn("BAD  din1_local_control", done.stdout)
+            self.assertIn("nothing was written", done.stdout)
+        self.assertEqual(self.sim.writes("lift/1", *SETTINGS), 0)
+        self.assertEqual(self.stores(), 0)
+
+    def cured(self, *options, answer=""):
+        self.simulate()
+        self.configure()
+        self.assertEqual(self.sim.object("lift/1", "2010.03"), ENABLE_FUNCTION)
+        done = self.commission(*options, answer=answer)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("din1_local_control: ok now", done.stdout)
+        self.assertEqual(self.sim.object("lift/1", "2010.03"), 0)
+        self.assertNotIn("operation", self.sim.state("lift/1"))
+        until("stored", lambda: self.stores() >= 1)
+
+    def use(self):
+        self.run_gateway()
+        self.client = self.connect()
+        self.until_online()
+        axis = self.axis(1)
+        self.assertFalse(axis.get("axis_alarms") & ALARM_LOCAL_CONTROL)
+        axis.set(profile_velocity=600 * RPM, target_position=TURN)
+        axis.command("enable")
+        axis.command("move_absolute")
+        axis.until(motion_state=COMPLETED)
+        axis.command("disable")
+
+    def test_yes_cures_it_and_it_stays_cured(self):
+        self.cured("--yes")
+        self.use()
+        restarts = int(self.sim.ask("restarts lift/1"))
+        self.sim.ask("restart lift/1")
+        axis = self.axis(1)
+        until("the restart", lambda: int(self.sim.ask("restarts lift/1")) > restarts and axis.get("link_state") != ONLINE)
+        axis.until(link_state=ONLINE)
+        axis.command("enable")
+        self.assertEqual(axis.get("axis_state"), STANDSTILL)
+
+    def test_a_typed_yes_does_as_well(self):
+        self.cured(answer="yes\n")
+        done = self.commission()
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("nothing to remedy", done.stdout)
+        self.use()
+
+    def test_beside_a_running_gateway_it_gives_up_and_spoils_nothing(self):
+        self.start()
+        done = self.commission("--yes")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("the gateway stopped", done.stderr)
+        self.assertEqual(self.stores(), 0)
+        self.assert_online(self.axis(1))
+        self.assertEqual(self.client.bus(0)["timeouts"], 0)
+
+    def test_an_axis_that_is_not_configured(self):
+        self.configure()
+        done = self.command_line("commission", self.config, "9")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no axis 9", done.stderr)
+
+    def test_an_enabled_drive_is_not_touched(self):
+        self.simulate()
+        self.configure()
+        for setting in ("2010.03", "2010.05", "2010.07", "2010.08"):
+            self.sim.ask(f"set lift/1 {setting} 0")
+        self.run_gateway()
+        self.client = self.connect()
+        self.until_online()
+        self.axis(1).command("enable")
+        self.gateway.terminate()
+        self.sim.ask("set lift/1 2000.00 1")  # enables itself at power-up: something to remedy
+        before = self.sim.writes("lift/1", *SETTINGS, "2000.00")
+        done = self.commission("--yes")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("disable it first", done.stderr)
+        self.assertEqual(self.sim.writes("lift/1", *SETTINGS, "2000.00"), before)
+
+
+class AtTheDesk(Story):
+    def test_check_prints_the_plan_of_each_bus(self):
+        self.configure()
+        done = self.command_line("check", self.config)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for word in ("lift", "feeder", "jd-1", "md-2", "%"):
+            self.assertIn(word, done.stdout)
+
+    def test_profile_check_takes_what_is_shipped(self):
+        for name in ("kinco-jd", "kinco-md"):
+            done = self.command_line("profile", "check", f"{SOURCE}/schemas/drives/{name}.json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("is valid", done.stdout)
+
+    def test_profile_check_names_file_and_place_of_each_mistake(self):
+        path = self.path("mine.json")
+        with open(f"{SOURCE}/schemas/drives/kinco-jd.json", encoding="utf-8") as file:
+            profile = json.load(file)
+        profile["objects"]["statusword"]["type"] = "u17"
+        profile["quantities"]["position_actual"]["object"] = "nowhere"
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(profile, file)
+        done = self.command_line("profile", "check", path)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, f"(?m)^{path}: /objects/statusword/type: ")
+
+    def test_a_profile_of_ones_own_beside_the_configuration(self):
+        shutil.copy(f"{SOURCE}/schemas/drives/kinco-jd.json", self.folder)
+        buses = self.buses()
+        buses[0]["drives"][0]["profile"] = self.path("kinco-jd.json")
+        self.start(buses=buses)
+        self.axis(1).command("enable")
+        self.assertEqual(self.axis(1).get("axis_state"), STANDSTILL)
+
+
+class Top(Story):
+    def table(self, *options):
+        return self.command_line("top", f"127.0.0.1:{self.ports[0]}", "--plain", "--count", "1", *options)
+
+    def test_it_shows_all_axes_whatever_the_word_order(self):
+        self.simulate()
+        for order, turns in (("high-first", 7), ("low-first", -9)):
+            with self.subTest(order):
+                self.configure([self.listener(word_order=order), self.listener()])
+                self.run_gateway()
+                self.client = self.connect(1)
+                self.until_online()
+                self.move(self.axis(2), turns * TURN)
+                shown = self.table()
+                self.assertEqual(shown.returncode, 0, shown.stderr)
+                self.assertIn("axes online 2 of 2", shown.stdout)
+                rows = {line.split()[0]: line for line in shown.stdout.splitlines() if line.split()[:1] in (["1"], ["2"])}
+                self.assertEqual(sorted(rows), ["1", "2"], shown.stdout)
+                self.assertRegex(rows["2"], rf" {turns}000[0-5] | {turns - abs(turns) // turns}999[5-9] ")
+                self.gateway.terminate()
+
+    def move(self, axis, target):
+        axis.set(profile_velocity=600 * RPM, target_position=target)
+        axis.command("enable")
+        axis.command("move_absolute")
+        axis.until(motion_state=COMPLETED)
+        until("it is there", lambda: abs(axis.get("position_actual") - target) <= 5)
+        axis.command("disable")
+
+    def test_it_shows_what_is_out_of_reach(self):
+        self.start([self.listener(offline_reads="exception"), self.listener()])
+        self.sim.ask("unplug lift")
+        self.axis(2).until(link_state=ONLINE)
+        other = self.connect(1).axis(1)
+        other.until(link_state=5)
+        with self.refused(NO_ANSWER):
+            self.axis(1).block()
+        shown = self.table()
+        self.assertEqual(shown.returncode, 0, shown.stderr)
+        self.assertIn("axes online 1 of 2", shown.stdout)
+
+    def test_without_a_gateway_it_says_so(self):
+        self.configure()
+        done = self.table()
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(f"cannot read 127.0.0.1:{self.ports[0]}", done.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,153 @@
+"""How a gateway ends, and how the next one finds an axis that runs."""
+import signal
+import socket
+
+from modbus import ALARM_ADOPTED, COMPLETED, CONTINUOUS, DISABLED, NO_MOTION, STANDSTILL, Closed
+from processes import NEVER, until
+from stage import Story, main
+
+TURN = 10000
+FAR = 20000 * TURN
+RPM = 1000
+DRIVES = {1: "lift/1", 2: "feeder/1"}
+
+
+class End(Story):
+    def setUp(self):
+        super().setUp()
+        self.start()
+
+    def run_velocity(self, axis):
+        axis.set(profile_acceleration=30000, profile_deceleration=30000, target_velocity=100 * RPM)
+        axis.command("enable")
+        axis.command("run_velocity")
+        axis.until(axis_state=CONTINUOUS)
+
+    def end(self, number):
+        self.gateway.send(number)
+        return self.gateway.ended()
+
+    def again(self):
+        """The same configuration, on the same port."""
+        self.run_gateway()
+        self.client = self.connect()
+        self.until_online()
+
+    def until_it_stands(self, drive):
+        places = []
+
+        def look():
+            places.append(self.sim.object(drive, "6063.00"))
+            return len(places) > 5 and len(set(places[-5:])) == 1
+
+        until(f"{drive} stands", look)
+
+    def runs(self, drive):
+        before = self.sim.object(drive, "6063.00")
+        until(f"{drive} turns", lambda: self.sim.object(drive, "6063.00") > before)
+        return "operation" in self.sim.state(drive)
+
+
+class Told(End):
+    def ends_orderly(self, number):
+        for axis in (self.axis(1), self.axis(2)):
+            self.run_velocity(axis)
+        writes = {drive: self.sim.writes(drive) for drive in DRIVES.values()}
+        waiting = socket.create_connection(("127.0.0.1", self.ports[0]), timeout=NEVER)
+        self.addCleanup(waiting.close)
+        self.assertEqual(self.end(number), 0)
+        self.assertRegex(self.gateway.text(), f"signal {int(number)}: ending; the drives keep what they do")
+        self.assertEqual(waiting.recv(1), b"", "clients are told by their connection")
+        with self.assertRaises(Closed):
+            self.client.gateway()
+        with self.assertRaises(Closed):
+            self.connect()
+        for drive in DRIVES.values():
+            self.assertTrue(self.runs(drive))
+            self.assertEqual(self.sim.writes(drive), writes[drive])
+
+    def test_sigterm(self):
+        self.ends_orderly(signal.SIGTERM)
+
+    def test_sigint(self):
+        self.ends_orderly(signal.SIGINT)
+
+    def test_sigterm_while_a_write_waits_for_a_mute_drive(self):
+        self.sim.ask("mute lift/1 on")
+        write = self.later(lambda: self.axis(1).set(target_velocity=5))
+        until("it is on the wire", lambda: self.sim.ask("exchanges lift"))
+        self.assertEqual(self.end(signal.SIGTERM), 0)
+        self.assertIsNotNone(write.exception(timeout=NEVER))
+
+    def test_the_port_is_free_at_once(self):
+        for _ in range(3):
+            self.assertEqual(self.end(signal.SIGTERM), 0)
+            self.again()
+
+
+class Killed(End):
+    def test_an_axis_that_runs_is_adopted_and_left_alone(self):
+        self.run_velocity(self.axis(1))
+        writes = self.sim.writes("lift/1")
+        self.assertEqual(self.end(signal.SIGKILL), -signal.SIGKILL)
+        self.again()
+        axis = self.axis(1)
+        block = axis.block()
+        self.assertTrue(block["axis_alarms"] & ALARM_ADOPTED)
+        self.assertTrue(self.client.gateway()["alarms"] & 1 << 6)
+        self.assertIn("warning", axis.inputs())
+        self.assertIn("enabled", axis.inputs())
+        self.assertNotIn("adopted", self.gateway.found("axis 2: .*"))
+        until("its speed is shown", lambda: abs(axis.get("velocity_actual") - 100 * RPM) < 2 * RPM)
+        self.assertEqual(axis.get("motion_state"), NO_MOTION)
+        self.assertTrue(self.runs("lift/1"))
+        self.assertEqual(self.sim.writes("lift/1"), writes, "nothing is written until it is disabled")
+
+    def test_an_adopted_axis_is_stopped_and_works_again(self):
+        for stop in ("quick_stop", "disable", "halt"):
+            with self.subTest(stop):
+                self.run_velocity(self.axis(1))
+                self.end(signal.SIGKILL)
+                self.again()
+                axis = self.axis(1)
+                axis.command(stop)
+                self.until_it_stands("lift/1")
+                axis.command("disable")
+                axis.until_input("enabled", False)
+                until("no longer adopted", lambda: not axis.get("axis_alarms") & ALARM_ADOPTED)
+                axis.command("enable")
+                self.assertEqual(axis.get("axis_state"), STANDSTILL)
+                self.until_it_stands("lift/1")  # the old velocity is gone
+                self.assertIn("operation", self.sim.state("lift/1"))
+                axis.command("disable")
+
+    def test_an_adopted_move_arrives(self):
+        for number, drive in DRIVES.items():
+            axis = self.axis(number)
+            axis.set(profile_velocity=60 * RPM, target_position=3 * TURN)
+            axis.command("enable")
+            axis.command("move_absolute")
+        self.end(signal.SIGKILL)
+        self.again()
+        for number, drive in DRIVES.items():
+            axis = self.axis(number)
+            self.assertTrue(axis.get("axis_alarms") & ALARM_ADOPTED)
+            until("the move begun by the old gateway arrives", lambda axis=axis: abs(axis.get("position_actual") - 3 * TURN) <= 20)
+            axis.command("disable")
+            axis.until(axis_state=DISABLED)
+            axis.set(profile_velocity=600 * RPM, target_position=0)
+            axis.command("enable")
+            axis.command("move_absolute")
+            axis.until(motion_state=COMPLETED)
+
+    def test_an_axis_that_was_disabled_is_not_adopted(self):
+        self.end(signal.SIGKILL)
+        self.again()
+        for number, drive in DRIVES.items():
+            self.assertFalse(self.axis(number).get("axis_alarms") & ALARM_ADOPTED)
+            self.assertNotIn("operation", self.sim.state(drive))
+            self.assertEqual(self.sim.writes(drive, "6040.00"), 0)
+
+
+if __name__ == "__main__":
+    main()

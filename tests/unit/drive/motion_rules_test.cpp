@@ -1,0 +1,197 @@
+// The motion rules alone, beside design 3.4: no drive, no wire, only samples and instants.
+#include <gmock/gmock.h>
+
+#include "gateway/drive/motion.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr Instant kStart = Instant{} + 1h;
+constexpr Duration kTimeout = 60s;
+
+struct Stage {
+  Motion motion;
+  AxisFacts facts;
+  Stage() {
+    facts.at = kStart;
+    facts.reachable = true;
+    facts.state = State402::operation_enabled;
+    facts.mode = 1;
+    facts.statusword_exchange = 10;
+    see();
+  }
+  void see(Duration later = 1ms) {
+    facts.at += later;
+    ++facts.statusword_exchange;
+    motion.observe(facts, kTimeout);
+  }
+  void start(MotionKind kind) { motion.start(kind, 5, facts.at, facts.statusword_exchange); }
+};
+
+TEST(MotionRules, AMoveEndsWhenTheDriveSaysSoAfterItsStart) {
+  Stage s;
+  s.facts.target_reached = true;
+  s.start(MotionKind::discrete);
+  s.motion.observe(s.facts, kTimeout);
+  EXPECT_EQ(s.motion.state(), MotionState::active) << "that was the move before";
+  s.facts.target_reached = false;
+  s.see();
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::discrete_motion);
+  s.facts.target_reached = true;
+  s.see();
+  EXPECT_EQ(s.motion.state(), MotionState::completed);
+  EXPECT_EQ(s.motion.id(), 5);
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::standstill);
+}
+
+TEST(MotionRules, EverythingThatEndsAMotionForGoodEndsItForGood) {
+  const std::vector<std::pair<std::function<void(Stage&)>, MotionState>> ends{
+      {[](Stage& s) { s.motion.stop(false, s.facts.at); }, MotionState::aborted},
+      {[](Stage& s) { s.facts.state = State402::fault, s.see(); }, MotionState::failed},
+      {[](Stage& s) { s.facts.state = State402::switch_on_disabled, s.see(); }, MotionState::failed},
+      {[](Stage& s) { s.facts.reachable = false, s.see(); }, MotionState::failed}};
+  for (const MotionKind kind : {MotionKind::discrete, MotionKind::velocity, MotionKind::torque, MotionKind::homing}) {
+    for (const auto& [end, how] : ends) {
+      Stage s;
+      s.motion.want(Quantity::target_velocity, {1'000});
+      s.motion.want(Quantity::target_position, {2'000});
+      s.start(kind);
+      s.see();
+      end(s);
+      EXPECT_EQ(s.motion.running(), MotionKind::none);
+      EXPECT_EQ(s.motion.state(), how);
+      EXPECT_FALSE(s.motion.wanted(Quantity::target_velocity));
+      EXPECT_TRUE(s.motion.wanted(Quantity::target_position)) << "a place is no start";
+    }
+  }
+}
+
+TEST(MotionRules, AReplacedMotionIsNotEndedForGood) {
+  Stage s;
+  s.motion.want(Quantity::target_velocity, {1'000});
+  s.start(MotionKind::velocity);
+  s.start(MotionKind::discrete);
+  EXPECT_TRUE(s.motion.wanted(Quantity::target_velocity));
+}
+
+TEST(MotionRules, TargetsWrittenWhileDisabledAreKeptForTheStart) {
+  Stage s;
+  s.facts.state = State402::switch_on_disabled;
+  s.see();
+  s.motion.want(Quantity::target_velocity, {1'000});
+  for (int i = 0; i < 5; ++i) s.see();
+  s.facts.state = State402::operation_enabled;
+  s.see();
+  ASSERT_TRUE(s.motion.wanted(Quantity::target_velocity));
+  s.facts.state = State402::switch_on_disabled;
+  s.see();
+  EXPECT_FALSE(s.motion.wanted(Quantity::target_velocity)) << "a disable came after";
+}
+
+TEST(MotionRules, WhatMayReachTheDriveNow) {
+  Stage s;
+  const auto acts = [&](Quantity q, bool held_back = false) { return s.motion.target_acts_now(q, s.facts, held_back); };
+  EXPECT_TRUE(acts(Quantity::target_position));
+  EXPECT_FALSE(acts(Quantity::target_position, true));
+  EXPECT_FALSE(acts(Quantity::target_velocity));
+  EXPECT_FALSE(acts(Quantity::target_torque));
+  s.start(MotionKind::velocity);
+  EXPECT_TRUE(acts(Quantity::target_velocity));
+  EXPECT_FALSE(acts(Quantity::target_torque));
+  s.start(MotionKind::discrete);
+  EXPECT_FALSE(acts(Quantity::target_position));
+  EXPECT_FALSE(acts(Quantity::target_velocity));
+  s.motion.stop(false, s.facts.at);
+  s.facts.mode = 3;
+  s.motion.run_raw();
+  EXPECT_TRUE(acts(Quantity::target_velocity) && acts(Quantity::target_torque));
+  s.facts.mode = 8;
+  EXPECT_TRUE(acts(Quantity::target_position, true)) << "the demand of every cycle";
+  s.motion.stop(true, s.facts.at);
+  for (const Quantity q : {Quantity::target_position, Quantity::target_velocity, Quantity::target_torque})
+    EXPECT_FALSE(acts(q));
+  EXPECT_TRUE(acts(Quantity::profile_velocity)) << "a parameter moves nothing";
+}
+
+TEST(MotionRules, TheLatchIsLeftByTheTwoStepsInTheirOrder) {
+  Stage s;
+  s.motion.stop(true, s.facts.at);
+  EXPECT_FALSE(s.motion.may_start(s.facts));
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::stopping);
+  EXPECT_EQ(s.motion.pass(Request402::enable_operation), Motion::Pass::refused);
+  EXPECT_EQ(s.motion.pass(Request402::other), Motion::Pass::refused);
+  s.motion.passed(Request402::enable_operation);
+  EXPECT_TRUE(s.motion.latched());
+  s.motion.passed(Request402::quick_stop);
+  EXPECT_EQ(s.motion.pass(Request402::enable_operation), Motion::Pass::refused);
+  s.motion.passed(Request402::shutdown);
+  EXPECT_EQ(s.motion.pass(Request402::enable_operation), Motion::Pass::passes_and_unlatches);
+  s.motion.stop(true, s.facts.at);
+  EXPECT_EQ(s.motion.pass(Request402::enable_operation), Motion::Pass::refused) << "another stop came between";
+  s.motion.passed(Request402::switch_on);
+  s.motion.passed(Request402::enable_operation);
+  EXPECT_FALSE(s.motion.latched());
+}
+
+TEST(MotionRules, HomingEndsByReferenceByErrorOrByTime) {
+  Stage s;
+  s.facts.mode = 6;
+  s.facts.reference = true;
+  s.start(MotionKind::homing);
+  s.see();
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::homing) << "the bit may be that of the homing before";
+  s.see(600ms);
+  EXPECT_EQ(s.motion.state(), MotionState::completed);
+  s.start(MotionKind::homing);
+  s.facts.reference = false;
+  s.facts.homing_failed = true;
+  s.see();
+  EXPECT_EQ(s.motion.state(), MotionState::failed);
+  EXPECT_FALSE(s.motion.take_homing_timeout());
+  s.facts.homing_failed = false;
+  s.start(MotionKind::homing);
+  s.see();
+  EXPECT_LE(s.motion.deadline(), s.facts.at + kTimeout);
+  s.see(kTimeout);
+  EXPECT_EQ(s.motion.state(), MotionState::failed);
+  EXPECT_TRUE(s.motion.take_homing_timeout());
+  EXPECT_FALSE(s.motion.take_homing_timeout()) << "once";
+}
+
+TEST(MotionRules, StandstillIsWhatTheDriveSaysBeforeTheSampledVelocityDoes) {
+  Stage s;
+  s.start(MotionKind::discrete);
+  s.facts.moving = true;
+  s.see(1s);
+  EXPECT_FALSE(s.motion.at_rest(s.facts));
+  s.facts.target_reached = true;
+  s.see();
+  EXPECT_TRUE(s.motion.at_rest(s.facts)) << "mode 1: target reached";
+  s.facts.mode = 3;
+  s.facts.moving = false;
+  s.start(MotionKind::velocity);
+  s.motion.stop(false, s.facts.at);
+  s.see();
+  EXPECT_FALSE(s.motion.at_rest(s.facts)) << "a velocity sampled each 200 ms may be of before the start";
+  s.see(300ms);
+  EXPECT_TRUE(s.motion.at_rest(s.facts));
+}
+
+TEST(MotionRules, AnAxisThatMovesWithoutAStartOfOursIsNotSaidToStand) {
+  Stage s;
+  s.facts.moving = true;
+  s.see();
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::discrete_motion);
+  s.facts.mode = 3;
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::continuous_motion);
+  s.motion.stop(false, s.facts.at);
+  s.see();
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::stopping);
+  s.facts.state = State402::switch_on_disabled;
+  s.see();
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::disabled);
+}
+
+}  // namespace
+}  // namespace axisgate::drive

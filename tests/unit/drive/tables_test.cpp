@@ -1,0 +1,220 @@
+// The pure deciders alone: CiA 402 tables, fence, poll plan, admission.
+#include <gmock/gmock.h>
+
+#include "gateway/drive/admission.hpp"
+#include "gateway/drive/fence.hpp"
+#include "gateway/drive/poll_plan.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+
+TEST(Cia402, EachStatuswordFallsOnOneRowOfTheStandardsTable) {
+  struct Row {
+    std::uint16_t mask, value;
+    State402 state;
+  };
+  // IEC 61800-7-201 table 30, as printed: xxxx xxxx x0xx 0000 and so on.
+  const std::vector<Row> table{
+      {0x4F, 0x00, State402::not_ready_to_switch_on}, {0x4F, 0x40, State402::switch_on_disabled},
+      {0x6F, 0x21, State402::ready_to_switch_on},     {0x6F, 0x23, State402::switched_on},
+      {0x6F, 0x27, State402::operation_enabled},      {0x6F, 0x07, State402::quick_stop_active},
+      {0x4F, 0x0F, State402::fault_reaction_active},  {0x4F, 0x08, State402::fault}};
+  for (std::uint32_t w = 0; w <= 0xFFFF; ++w) {
+    const auto word = static_cast<std::uint16_t>(w);
+    std::vector<State402> rows;
+    for (const Row& row : table)
+      if ((word & row.mask) == row.value) rows.push_back(row.state);
+    ASSERT_LE(rows.size(), 1U);
+    if (!rows.empty()) {
+      ASSERT_EQ(state_of(word), rows.front()) << std::hex << w;
+    } else {
+      // Impossible words: a fault bit is a fault, and no torque is ever concluded from the rest.
+      ASSERT_EQ(state_of(word), (word & 8) != 0 ? State402::fault : State402::not_ready_to_switch_on) << std::hex << w;
+    }
+  }
+}
+
+TEST(Cia402, EachControlwordAsksForOneThing) {
+  for (std::uint32_t w = 0; w <= 0xFFFF; ++w) {
+    const auto word = static_cast<std::uint16_t>(w);
+    const Request402 request = request_of(word);
+    ASSERT_EQ(request == Request402::disable_voltage, (word & 2) == 0);
+    ASSERT_EQ(request == Request402::quick_stop, (word & 6) == 2);
+    ASSERT_EQ(request == Request402::shutdown, (word & 0xF) == 6);
+    ASSERT_EQ(request == Request402::switch_on, (word & 0xF) == 7);
+    ASSERT_EQ(request == Request402::enable_operation, (word & 0xF) == 0xF);
+    ASSERT_EQ(is_stop(word, false), (word & 2) == 0 || (word & 4) == 0);
+    ASSERT_EQ(is_stop(word, true), (word & 2) == 0 || (word & 4) == 0 || (word & 0xF) == 6 || (word & 0xF) == 7);
+  }
+}
+
+constexpr Instant kStart = Instant{} + 1h;
+
+DriveModel five_objects() {
+  DriveModel model;
+  for (std::uint16_t i = 0; i < 5; ++i) {
+    ObjectDef object;
+    object.name = "o" + std::to_string(i);
+    object.address = {static_cast<std::uint16_t>(0x2000 + i), 0};
+    model.objects.push_back(object);
+  }
+  model.fence.candidates = {1, 2, 3};
+  return model;
+}
+
+TEST(Fence, NeverUsesAnObjectWhoseReplyMayStillCome) {
+  const DriveModel model = five_objects();
+  Fence fence(model.fence, model.objects);
+  EXPECT_FALSE(fence.suspect());
+  fence.lost({0x2001, 0}, kStart);
+  EXPECT_TRUE(fence.suspect());
+  EXPECT_EQ(fence.candidate(), ObjectId{2});
+  fence.fence_sent();
+  fence.lost({0x2002, 0}, kStart + 100ms);
+  EXPECT_EQ(fence.candidate(), ObjectId{3});
+  EXPECT_FALSE(fence.exhausted());
+  fence.fence_sent();
+  EXPECT_TRUE(fence.exhausted());
+  fence.lost({0x2003, 0}, kStart + 200ms);
+  EXPECT_EQ(fence.candidate(), std::nullopt);
+  EXPECT_EQ(fence.silent_until(), kStart + 200ms + model.fence.worst_reply);
+  fence.waited_out();
+  EXPECT_FALSE(fence.suspect());
+  EXPECT_FALSE(fence.exhausted());
+}
+
+TEST(Fence, AnAnsweredOneProvesThatNothingOlderIsLeft) {
+  const DriveModel model = five_objects();
+  Fence fence(model.fence, model.objects);
+  fence.lost({0x2001, 0}, kStart);
+  fence.lost({0x2004, 0}, kStart);
+  fence.fence_sent();
+  fence.answered();
+  EXPECT_FALSE(fence.suspect());
+  fence.lost({0x2000, 0}, kStart + 1s);
+  EXPECT_EQ(fence.candidate(), ObjectId{1});
+}
+
+DriveModel polled() {
+  DriveModel model = five_objects();
+  model.axes.resize(1);
+  AxisModel& axis = model.axes[0];
+  axis.statusword = 0;
+  const auto bind = [&](Quantity quantity, ObjectId object, PollClass poll) {
+    Binding binding;
+    binding.quantity = quantity;
+    binding.object = object;
+    binding.poll = poll;
+    axis.bindings.push_back(binding);
+  };
+  bind(Quantity::statusword, 0, PollClass::slow);
+  bind(Quantity::velocity_actual, 1, PollClass::normal);
+  bind(Quantity::drive_temperature, 2, PollClass::slow);
+  bind(Quantity::profile_velocity, 3, PollClass::once);
+  return model;
+}
+
+TEST(PollPlan, TheObjectLongestOverdueGoesFirst) {
+  const DriveModel model = polled();
+  PollPlan plan(model);
+  EXPECT_EQ(plan.next(kStart), std::nullopt);
+  plan.restart(kStart);
+  for (ObjectId id = 0; id < 4; ++id) {
+    ASSERT_EQ(plan.next(kStart), id);
+    plan.done(id, kStart);
+  }
+  EXPECT_EQ(plan.next(kStart), std::nullopt);
+  EXPECT_EQ(plan.next_due(), kStart + 20ms) << "the statusword is never slower than fast";
+  EXPECT_EQ(plan.next(kStart + 5s), ObjectId{0});
+  plan.done(0, kStart + 5s);
+  EXPECT_EQ(plan.next(kStart + 5s), ObjectId{1});
+}
+
+TEST(PollPlan, KeepsItsBeatButNeverCatchesUp) {
+  const DriveModel model = polled();
+  PollPlan plan(model);
+  plan.restart(kStart);
+  plan.done(0, kStart + 3ms);
+  for (ObjectId id = 1; id < 4; ++id) plan.done(id, kStart);
+  EXPECT_EQ(plan.next_due(), kStart + 20ms);
+  plan.done(0, kStart + 26ms);
+  EXPECT_EQ(plan.next_due(), kStart + 40ms);
+  plan.done(0, kStart + 95ms);
+  plan.done(1, kStart + 100ms);
+  EXPECT_EQ(plan.next_due(), kStart + 115ms) << "late by more than a period: it stretches";
+  plan.done(0, kStart + 97ms);
+  EXPECT_EQ(plan.next_due(), kStart + 117ms) << "read early by somebody else";
+}
+
+TEST(PollPlan, OnceMeansOnceAndAgainAfterAWriteOrADoubt) {
+  const DriveModel model = polled();
+  PollPlan plan(model);
+  plan.restart(kStart);
+  for (ObjectId id = 0; id < 4; ++id) plan.done(id, kStart);
+  plan.written(1, kStart);
+  EXPECT_EQ(plan.next(kStart + 1ms), std::nullopt) << "what is polled anyway keeps its beat";
+  plan.written(3, kStart);
+  EXPECT_EQ(plan.next(kStart + 1ms), ObjectId{3});
+  plan.done(3, kStart + 1ms);
+  plan.refresh(kStart + 1ms);
+  plan.done(0, kStart + 30ms);
+  EXPECT_EQ(plan.next(kStart + 30ms), ObjectId{3});
+}
+
+TEST(PollPlan, WhatTheDriveRefusesIsNotAskedForUntilTheNextBringUp) {
+  const DriveModel model = polled();
+  PollPlan plan(model);
+  plan.restart(kStart);
+  plan.drop(0);
+  plan.drop(3);
+  plan.written(3, kStart);
+  plan.refresh(kStart);
+  plan.done(1, kStart);
+  plan.done(2, kStart);
+  EXPECT_EQ(plan.next(kStart + 50ms), std::nullopt);
+  plan.restart(kStart + 1s);
+  EXPECT_EQ(plan.next(kStart + 1s), ObjectId{0});
+}
+
+TEST(Admission, KnowsAStopWhereverItStands) {
+  Group group;
+  EXPECT_FALSE(holds_stop(group));
+  group.command = Command::halt;
+  EXPECT_TRUE(holds_stop(group));
+  group.command = Command::enable;
+  group.controlword = 0x0006;
+  EXPECT_FALSE(holds_stop(group)) << "in a block write 6 is a step of the state machine";
+  group.single_controlword = true;
+  EXPECT_TRUE(holds_stop(group));
+  group.setpoints.push_back({Quantity::profile_velocity, 1});
+  group.mode = 3;
+  const Group alone = stop_alone(group);
+  EXPECT_TRUE(alone.setpoints.empty() && !alone.mode && alone.command == Command::none);
+  EXPECT_EQ(alone.controlword, std::optional<std::uint16_t>(6));
+}
+
+TEST(Admission, TellsTheArbiterWhatAGroupIs) {
+  const DriveModel model = polled();
+  ObjectStore store(model.objects.size());
+  AxisCore core{model, model.axes[0], store};
+  Group group;
+  group.start_by = kStart;
+  group.object = ObjectRequest{false, 0x2001, 0, 2, 0};
+  bus::Order order = order_for(core, group, false);
+  EXPECT_EQ(order.priority, bus::Priority::interactive);
+  EXPECT_TRUE(order.read.has_value() && order.survives_stop);
+  group.object.reset();
+  group.command = Command::enable;
+  order = order_for(core, group, false);
+  EXPECT_EQ(order.priority, bus::Priority::command);
+  EXPECT_FALSE(order.setpoints_only || order.survives_stop);
+  order = order_for(core, group, true);
+  EXPECT_EQ(order.priority, bus::Priority::stop);
+  EXPECT_EQ(order.start_by, kNever) << "a stop is never given up for being late";
+}
+
+}  // namespace
+}  // namespace axisgate::drive
