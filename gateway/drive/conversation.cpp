@@ -1,10 +1,14 @@
 #include "gateway/drive/conversation.hpp"
 
+#include <algorithm>
+
 namespace axisgate::drive {
 namespace {
 
-// Between two looks at an awaited condition, so that a waiting group leaves the wire to others.
+// Between two looks at an awaited condition, from the answer to the next request: a stop that waits for its ramp must
+// leave the wire to the commands of other drives. Doubles with each look.
 constexpr Duration kLookAgain = std::chrono::milliseconds(5);
+constexpr Duration kLookSeldom = std::chrono::milliseconds(20);
 // How long a stop may take to show before it is sent once more.
 constexpr Duration kStopShows = std::chrono::milliseconds(250);
 
@@ -164,6 +168,7 @@ Conversation::Move Conversation::exchange_for(const Action& action) const {
 std::optional<Conversation::Move> Conversation::advance_wait(const Action& action, Instant now) {
   if (wait_until_ == kNever) {
     wait_until_ = now + action.limit;
+    look_pause_ = kLookAgain;
     if (phase_ == Phase::stop) {
       // However often the stop is repeated: the time it has in all began with its first look.
       if (stop_until_ == kNever) stop_until_ = wait_until_;
@@ -177,8 +182,13 @@ std::optional<Conversation::Move> Conversation::advance_wait(const Action& actio
     pop();
     return std::nullopt;
   }
+  if (fresh && looked_at_ != state.exchange) {
+    looked_at_ = state.exchange;
+    look_after_ = now + look_pause_;
+    look_pause_ = std::min(2 * look_pause_, kLookSeldom);
+  }
   // A fence may have kept the look away until the time was over: one look there is in any case.
-  const bool looked = fresh && state.sent_at + kLookAgain >= std::min(now, wait_until_);
+  const bool looked = fresh && state.sent_at + kLookSeldom >= std::min(now, wait_until_);
   if (now >= wait_until_ && (looked || (fresh && action.limit == Duration{}))) {
     if (action.optional) {
       pop();
@@ -188,7 +198,7 @@ std::optional<Conversation::Move> Conversation::advance_wait(const Action& actio
     return std::nullopt;
   }
   if (fresh && phase_ == Phase::stop && !action.optional && now >= repeat_at_ && repeat_stop()) return std::nullopt;
-  if (fresh && now < state.sent_at + kLookAgain) return Move{Move::Kind::wait, {}, state.sent_at + kLookAgain};
+  if (fresh && now < look_after_) return Move{Move::Kind::wait, {}, look_after_};
   return exchange_for(Action::read(action.until.object));
 }
 

@@ -103,6 +103,9 @@ class Conversation {
   Instant wait_until_ = kNever;          ///< of the wait under way; kNever: not begun
   Instant stop_until_ = kNever;          ///< of the stop's waits together, however often it is repeated
   Instant repeat_at_ = kNever;           ///< of a stop: sent once more if it has not shown by then
+  std::uint64_t looked_at_ = 0;          ///< exchange of the sample that the wait under way has judged last
+  Instant look_after_ = kLongAgo;
+  Duration look_pause_{};
   bool object_done_ = false;
 };
 

@@ -78,17 +78,18 @@ void measure(const BenchOptions& options, std::chrono::nanoseconds reply_after, 
     one_stop(client, drives.tap(), stops);
   }
   const double seconds = std::chrono::duration<double>(SteadyClock::now() - began).count();
-  const auto exchanges = drives.tap().since(before);
+  const std::uint64_t after = drives.tap().recorded();
+  const auto newest = drives.tap().since(std::max(before, after - std::min(after, ExchangeTap::kKept / 2)));
   clients.stop();
-  const auto writes = std::count_if(exchanges.begin(), exchanges.end(), [](const TappedExchange& e) {
+  const auto writes = std::count_if(newest.begin(), newest.end(), [](const TappedExchange& e) {
     return simulated::command_of(e.request) != simulated::FrameCommand::read;
   });
 
   fmt::print(
       "drive answers after {:>5} ms: {} stops in {:.0f} exchanges/s, {:.0f} % of them writes, {:.0f} orders waiting",
       shown(std::chrono::duration<double, std::milli>(reply_after).count()), count,
-      static_cast<double>(exchanges.size()) / seconds,
-      100 * static_cast<double>(writes) / static_cast<double>(exchanges.size()), median(stops.waiting));
+      static_cast<double>(after - before) / seconds,
+      100 * static_cast<double>(writes) / static_cast<double>(newest.size()), median(stops.waiting));
   fmt::print("\n  exchanges sent first:");
   for (const auto& [number, times] : stops.before) fmt::print(" {} ({}x)", number, times);
   fmt::print(

@@ -86,7 +86,7 @@ class PulledWhile(Cable):
         self.pull_and_put_back()
         self.assertEqual(self.lift.get("axis_state"), DISABLED)
         self.lift.command("enable")
-        self.assertEqual(self.lift.get("axis_state"), STANDSTILL)
+        self.lift.until(axis_state=STANDSTILL)
 
     def test_enabled(self):
         self.enable()
@@ -114,7 +114,7 @@ class PulledWhile(Cable):
         until("standstill", lambda: self.lift.get("velocity_actual") == 0)
         self.lift.command("disable")
         self.lift.command("enable")
-        self.assertEqual(self.lift.get("axis_state"), STANDSTILL)
+        self.lift.until(axis_state=STANDSTILL)
         self.assertEqual(self.sim.object("lift/1", "60FF.00"), 0, "velocity is needed anew")
 
     def assert_adopted_until_disabled(self):
@@ -124,7 +124,7 @@ class PulledWhile(Cable):
         until("no longer adopted", lambda: not self.lift.get("axis_alarms") & ALARM_ADOPTED)
         self.lift.until(axis_state=DISABLED)
         self.lift.command("enable")
-        self.assertEqual(self.lift.get("axis_state"), STANDSTILL)
+        self.lift.until(axis_state=STANDSTILL)
 
     def test_a_quick_stop_that_cannot_be_sent_latches_all_the_same(self):
         self.enable()
@@ -245,7 +245,7 @@ class PulledAtStart(Cable):
         self.sim.ask("reply-delay lift 0")
         self.put_back()
         self.lift.command("enable")
-        self.assertEqual(self.lift.get("axis_state"), STANDSTILL)
+        self.lift.until(axis_state=STANDSTILL)
 
     def test_a_device_that_is_not_there_is_picked_up_when_it_appears(self):
         self.simulate()
@@ -260,7 +260,7 @@ class PulledAtStart(Cable):
         self.assert_unaffected(self.feeder)
         self.put_back()
         self.lift.command("enable")
-        self.assertEqual(self.lift.get("axis_state"), STANDSTILL)
+        self.lift.until(axis_state=STANDSTILL)
         self.assertEqual(len(self.gateway.found("trying again")), 1, "said once, not each second")
 
     def test_drives_that_are_switched_on_after_the_gateway(self):
@@ -307,7 +307,7 @@ class SocatCable(Cable):
         self.lift.until(link_state=ONLINE)
         self.assert_back(self.lift)
         self.lift.command("enable")
-        self.assertEqual(self.lift.get("axis_state"), STANDSTILL)
+        self.lift.until(axis_state=STANDSTILL)
 
     def test_a_cable_that_takes_its_name_along(self):
         self.through_the_cable(self.cable.terminate)

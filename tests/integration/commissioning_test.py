@@ -80,7 +80,7 @@ class FactoryFresh(Story):
         until("the restart", lambda: int(self.sim.ask("restarts lift/1")) > restarts and axis.get("link_state") != ONLINE)
         axis.until(link_state=ONLINE)
         axis.command("enable")
-        self.assertEqual(axis.get("axis_state"), STANDSTILL)
+        axis.until(axis_state=STANDSTILL)
 
     def test_a_typed_yes_does_as_well(self):
         self.cured(answer="yes\n")
@@ -154,7 +154,7 @@ class AtTheDesk(Story):
         buses[0]["drives"][0]["profile"] = self.path("kinco-jd.json")
         self.start(buses=buses)
         self.axis(1).command("enable")
-        self.assertEqual(self.axis(1).get("axis_state"), STANDSTILL)
+        self.axis(1).until(axis_state=STANDSTILL)
 
 
 class Top(Story):

@@ -117,7 +117,7 @@ class Line(Story):
         with self.refused(REFUSED):
             self.middle.command("move_absolute")
         for axis in self.others:
-            self.assertIn("enabled", axis.inputs(), "another drive's restart is no reason to stop")
+            axis.until_input("enabled")  # another drive's restart is no reason to stop
             axis.command("disable")
         self.middle.set(profile_velocity=600 * RPM)
         self.targets[2] = self.middle.get("position_actual")
@@ -229,7 +229,7 @@ class Chain(Line):
             self.assertEqual(set(block), set(AXIS))
             self.assertEqual(block["axis_state"], DISABLED)
             axis.command("enable")
-            self.assertEqual(axis.get("axis_state"), STANDSTILL)
+            axis.until(axis_state=STANDSTILL)
 
 
 class Rs485(Line):

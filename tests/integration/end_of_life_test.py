@@ -116,7 +116,7 @@ class Killed(End):
                 axis.until_input("enabled", False)
                 until("no longer adopted", lambda: not axis.get("axis_alarms") & ALARM_ADOPTED)
                 axis.command("enable")
-                self.assertEqual(axis.get("axis_state"), STANDSTILL)
+                axis.until(axis_state=STANDSTILL)
                 self.until_it_stands("lift/1")  # the old velocity is gone
                 self.assertIn("operation", self.sim.state("lift/1"))
                 axis.command("disable")

@@ -62,6 +62,36 @@ TEST(Stops, GoesNextOnTheWireBehindFullQueues) {
   }
 }
 
+TEST(Stops, ThatRampForLongLeaveTheWireToOtherDrives) {
+  GatewayStage::Line line;
+  line.name = "rs485";
+  line.options.wiring = simulated::Wiring::rs485;
+  line.options.reply_delay = 10ms;  // longer than any pause between two looks at the start
+  for (std::uint8_t i = 1; i <= 2; ++i) {
+    StageDrive staged;
+    staged.options.type = KincoType::md;
+    staged.options.station = i;
+    staged.axis.number = i;
+    staged.axis.name = "m" + std::to_string(i);
+    line.drives.push_back(staged);
+  }
+  GatewayStage stage({line});
+  ASSERT_TRUE(stage.come_online());
+  stage.drive(0, 0).poke({0x605B, 0}, 1);
+  stage.drive(0, 0).poke({0x6084, 0}, 2'000);
+  ASSERT_EQ(stage.command(1, Command::enable).outcome.code, Errc::ok);
+  ASSERT_EQ(stage.ask(1, with_command(Command::run_velocity, {{Quantity::target_velocity, 500'000}})).outcome.code,
+            Errc::ok);
+  stage.run(2s);
+  const auto stop = stage.begin(1, with_command(Command::disable));
+  for (int i = 0; i < 10; ++i) {
+    const Instant asked = stage.runtime().now();
+    ASSERT_EQ(stage.ask(2, setpoints({{Quantity::profile_velocity, 100'000 + i * 1'000}})).outcome.code, Errc::ok);
+    EXPECT_LE(stage.runtime().now() - asked, 80ms) << "its own two exchanges, a look, a poll and what was on the wire";
+  }
+  EXPECT_TRUE(stage.drive(0, 0).state() == simulated::Cia402State::operation_enabled) << "it still ramps";
+}
+
 TEST(Stops, TwoWaitingIdenticalOnesAreOneOnTheWire) {
   Rig rig(KincoType::md);
   rig.bring_to(running);

@@ -180,14 +180,17 @@ TEST(ModbusServer, ClientSocketsAreMovedAbove1023) {
   served.settle();
   ASSERT_EQ(served.server->counters().open, 1U);
   // The server's end of the first connection had the lowest free number only for a moment.
+  // The numbers need not follow on one another: a test runner leaves descriptors of its own open.
   const int lowest_free = ::dup(0);
-  ASSERT_GE(lowest_free, 0);
+  const int next_free = ::dup(0);
+  ASSERT_GE(next_free, 0);
   ::close(lowest_free);
+  ::close(next_free);
   TestClient second(served);
   served.settle();
   ASSERT_EQ(served.server->counters().open, 2U);
   const int still_lowest_but_for_the_client = ::dup(0);
-  EXPECT_EQ(still_lowest_but_for_the_client, lowest_free + 1);
+  EXPECT_EQ(still_lowest_but_for_the_client, next_free);
   ::close(still_lowest_but_for_the_client);
 }
 
