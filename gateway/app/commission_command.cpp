@@ -121,12 +121,12 @@ int commission(const LoadedConfig& loaded, const Place& place, const CommissionO
   std::fflush(stdout);
   const AxisImage& image = *bench.gateway().image().find(options.axis);
   if (!bench.run_until([&] { return image.link_state == LinkState::online; }, kOnlineLimit)) {
-    fmt::print(stderr, "axis {} does not come online ({}): is {} the right device, the gateway stopped, the drive on?\n",
+    fmt::print(stderr,
+               "axis {} does not come online ({}): is {} the right device, the gateway stopped, the drive on?\n",
                options.axis, text(image.link_state), bus.device);
     return 1;
   }
-  const std::vector<Finding> found =
-      findings(model, bench.gateway().drive_of(options.axis)->store(), place.slot);
+  const std::vector<Finding> found = findings(model, bench.gateway().drive_of(options.axis)->store(), place.slot);
   for (const Finding& finding : found) fmt::print("  {}\n", text(model, finding));
   const std::vector<drive::ObjectWrite> writes = remedies(found);
   if (writes.empty()) {

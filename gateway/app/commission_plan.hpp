@@ -1,6 +1,5 @@
-// What commissioning an axis comes to: the checks of its drive, what they found, and the writes that would remedy them. Pure.
-// Promises each write once, in the order of the profile, with storing last.
-// Never writes anything.
+// What commissioning an axis comes to: the checks of its drive, what they found, and the writes that would remedy them.
+// Pure. Promises each write once, in the order of the profile, with storing last. Never writes anything.
 #pragma once
 
 #include <string>
@@ -12,7 +11,7 @@ namespace axisgate::app {
 
 struct Finding {
   const drive::Check* check = nullptr;
-  bool known = false;        ///< the drive told the value
+  bool known = false;  ///< the drive told the value
   bool bad = false;
   std::int64_t value = 0;
 };

@@ -18,9 +18,10 @@ std::string source_of(AxisNumber axis) { return axis == 0 ? std::string("gateway
 }  // namespace
 
 Gateway::Gateway(const Config& config, Models models, Runtime& runtime, const Log& log, const MakeWire& make_wire)
-    : runtime_(runtime), log_(log), models_(std::move(models)), events_([this](const Event& e) {
-        log_.write(level_of(e.kind), source_of(e.axis), e.text);
-      }) {
+    : runtime_(runtime),
+      log_(log),
+      models_(std::move(models)),
+      events_([this](const Event& e) { log_.write(level_of(e.kind), source_of(e.axis), e.text); }) {
   image_.buses.resize(config.buses.size());
   for (std::size_t i = 0; i < config.buses.size(); ++i) add_bus(config.buses[i], i, make_wire);
   image_.refresh = [this] { refresh(); };
@@ -83,12 +84,14 @@ void Gateway::report_loop_delay(Duration delay) {
   if (delay >= kSlowLoop) slow_loop_at_ = runtime_.now();
 }
 
-// --- Rows of the gateway and of the buses, gathered when somebody reads them ------------------------------------------
+// --- Rows of the gateway and of the buses, gathered when somebody reads them
+// ------------------------------------------
 
 void Gateway::refresh() {
   GatewayImage& shown = image_.gateway;
   shown.axes_online = 0;
-  for (const auto& axis : image_.axes()) shown.axes_online = static_cast<std::uint16_t>(shown.axes_online + axis->reachable());
+  for (const auto& axis : image_.axes())
+    shown.axes_online = static_cast<std::uint16_t>(shown.axes_online + axis->reachable());
   const auto up = runtime_.now() - started_;
   shown.uptime_s = static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::seconds>(up).count());
   for (std::size_t i = 0; i < buses_.size(); ++i) refresh_bus(i);
@@ -106,7 +109,8 @@ void Gateway::refresh_bus(std::size_t index) {
   Duration slowest{};
   for (std::size_t d = 0; d < drives_.size(); ++d) {
     if (bus_of_drive_[d] != index) continue;
-    suspect = suspect || drives_[d]->link_state() == LinkState::suspect || drives_[d]->link_state() == LinkState::offline;
+    suspect =
+        suspect || drives_[d]->link_state() == LinkState::suspect || drives_[d]->link_state() == LinkState::offline;
     for (std::size_t a = 0; a < drives_[d]->axis_count(); ++a)
       slowest = std::max(slowest, drives_[d]->axis(static_cast<bus::AxisSlot>(a)).cycle());
   }
@@ -132,8 +136,8 @@ std::uint16_t Gateway::gateway_alarms() const {
   const auto set = [&](GatewayAlarm alarm, bool on) {
     if (on) out = static_cast<std::uint16_t>(out | (1U << static_cast<unsigned>(alarm)));
   };
-  constexpr std::uint32_t kChecks = bit(AxisAlarm::local_control) | bit(AxisAlarm::limit_inputs_open) |
-                                    bit(AxisAlarm::stop_options);
+  constexpr std::uint32_t kChecks =
+      bit(AxisAlarm::local_control) | bit(AxisAlarm::limit_inputs_open) | bit(AxisAlarm::stop_options);
   for (const auto& axis : image_.axes()) {
     const auto has = [&](AxisAlarm alarm) { return (axis->alarms & bit(alarm)) != 0; };
     set(GatewayAlarm::axis_offline, !axis->reachable());

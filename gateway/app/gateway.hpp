@@ -34,7 +34,8 @@ class Gateway final : public CommandPort {
   /// Nothing is stopped or disabled by it: drives keep what they do (SECURITY.md).
   void stop();
 
-  [[nodiscard]] std::optional<GroupResult> submit(AxisNumber axis, const Group& group, GroupCallback on_result) override;
+  [[nodiscard]] std::optional<GroupResult> submit(AxisNumber axis, const Group& group,
+                                                  GroupCallback on_result) override;
   void client_gone(ClientId client) override;
   [[nodiscard]] bool holds(AxisNumber axis, Quantity quantity, std::int64_t value) const override;
   [[nodiscard]] std::int32_t set_position_value(AxisNumber axis) const override;

@@ -25,7 +25,8 @@ namespace {
 /// Names given with --decode; one that no bus has is told, not passed over.
 bool switch_decode_on(Config& config, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    const auto bus = std::find_if(config.buses.begin(), config.buses.end(), [&](const auto& b) { return b.name == name; });
+    const auto bus =
+        std::find_if(config.buses.begin(), config.buses.end(), [&](const auto& b) { return b.name == name; });
     if (bus == config.buses.end()) {
       fmt::print(stderr, "--decode {}: no bus of {} has this name\n", name, config.file);
       return false;

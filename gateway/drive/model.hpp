@@ -1,6 +1,6 @@
-// The model of one configured drive: its profile, resolved for the protocol it is spoken to with and for its axes' units.
-// Promises that everything in it was checked when the gateway started: addresses exist, ids are in range, factors are exact.
-// Never changes after that, and holds no state of the drive.
+// The model of one configured drive: its profile, resolved for the protocol it is spoken to with and for its axes'
+// units. Promises that everything in it was checked when the gateway started: addresses exist, ids are in range,
+// factors are exact. Never changes after that, and holds no state of the drive.
 #pragma once
 
 #include <array>
@@ -28,10 +28,10 @@ enum class PollClass : std::uint8_t { fast, normal, slow, once };
 enum class Nvm : std::uint8_t { no, unknown, yes };
 
 struct ObjectDef {
-  std::string name;                        ///< "statusword", "A.velocity"
-  bus::AxisSlot slot = bus::kNoAxis;       ///< whose it is; kNoAxis: the whole drive's
+  std::string name;                   ///< "statusword", "A.velocity"
+  bus::AxisSlot slot = bus::kNoAxis;  ///< whose it is; kNoAxis: the whole drive's
   bus::ObjectAddress address;
-  std::uint8_t size = 2;                   ///< bytes: 1, 2 or 4
+  std::uint8_t size = 2;  ///< bytes: 1, 2 or 4
   bool is_signed = false;
   bool readable = true;
   bool writable = false;
@@ -90,11 +90,11 @@ struct Step {
   Verb verb = Verb::write;
   ObjectId object = kNoObject;
   Source source = Source::literal;
-  std::int64_t literal = 0;         ///< as the drive counts
-  Quantity quantity{};              ///< Source::quantity: what the client last asked for, or position_actual
+  std::int64_t literal = 0;  ///< as the drive counts
+  Quantity quantity{};       ///< Source::quantity: what the client last asked for, or position_actual
   Condition until;
   Duration limit{};
-  bool optional = false;            ///< a wait that runs out is no failure
+  bool optional = false;  ///< a wait that runs out is no failure
   Errc otherwise = Errc::state_unsuitable;
 };
 using Steps = std::vector<Step>;
@@ -105,8 +105,8 @@ struct CommandDef {
     std::vector<std::int16_t> modes;  ///< in these modes (unified numbers, negative: the drive's own)
     Steps steps;
   };
-  std::vector<Variant> variants;  ///< the first that names the mode in force
-  Steps steps;                    ///< in every other mode
+  std::vector<Variant> variants;      ///< the first that names the mode in force
+  Steps steps;                        ///< in every other mode
   bool quick_stop_otherwise = false;  ///< in every other mode quick_stop takes its place (halt only)
   /// set_position: only the value 0 can be had (the drive's method makes the present position 0).
   bool zero_only = false;
@@ -151,8 +151,8 @@ struct AxisModel {
   std::optional<std::int16_t> homing_method;  ///< configured
   bool configured_torque_limit = false;
 
-  std::vector<Binding> bindings;                            ///< supported quantities, in the order of their numbers
-  std::array<std::int16_t, kQuantityCount> binding_of{};    ///< position in `bindings`, -1: not supported
+  std::vector<Binding> bindings;                          ///< supported quantities, in the order of their numbers
+  std::array<std::int16_t, kQuantityCount> binding_of{};  ///< position in `bindings`, -1: not supported
   ObjectId statusword = kNoObject;
   ObjectId controlword = kNoObject;
   ObjectId mode = kNoObject;
@@ -162,8 +162,8 @@ struct AxisModel {
   /// Unified mode -> what the drive calls it; absent: refused. In ascending order of the unified number.
   std::vector<std::pair<std::int16_t, std::int64_t>> modes;
   std::vector<std::int16_t> homing_methods;
-  /// Velocity and torque set-points that must hold 0 before torque comes on, those without a known unit included: 0 is 0 in any
-  /// unit (Kinco's current set-points, where no rated current was configured).
+  /// Velocity and torque set-points that must hold 0 before torque comes on, those without a known unit included: 0 is
+  /// 0 in any unit (Kinco's current set-points, where no rated current was configured).
   std::vector<ObjectId> zero_before_enable;
   std::optional<Condition> homed;
   std::optional<Condition> homing_failed;
@@ -197,8 +197,9 @@ struct DriveModel {
   std::vector<ObjectWrite> setup;
   std::vector<Check> checks;
   FenceFacts fence;
-  Duration timeout = std::chrono::milliseconds(100);  ///< profile's reply timeout, for a bus whose configuration names none
-  bool stops_by_itself = false;  ///< it notices a dead gateway on this protocol; else alarm no_comm_watchdog
+  Duration timeout =
+      std::chrono::milliseconds(100);  ///< profile's reply timeout, for a bus whose configuration names none
+  bool stops_by_itself = false;        ///< it notices a dead gateway on this protocol; else alarm no_comm_watchdog
   /// A command that removes torque exists on the bus; else the gate rule of 3.4.
   std::array<Duration, 3> poll_period{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
                                       std::chrono::milliseconds(1000)};

@@ -1,5 +1,5 @@
-// Stories told once and kept: the text that a story makes must equal its file. Run with AXISGATE_WRITE_GOLDEN=1 to write the
-// files anew; read the difference before committing it.
+// Stories told once and kept: the text that a story makes must equal its file. Run with AXISGATE_WRITE_GOLDEN=1 to
+// write the files anew; read the difference before committing it.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

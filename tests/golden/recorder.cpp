@@ -24,8 +24,8 @@ std::string number_text(const char* format, std::int64_t number) {
 
 Recorder::Recorder(simulated::KincoType type, bool bring_up)
     : stage_({staged(type)}), began_(stage_.runtime().now()), recording_(bring_up) {
-  const modbus_tcp::SessionContext context{settings_, stage_.gateway().image(), stage_.gateway(), registry_, quiet_,
-                                           &stage_.runtime()};
+  const modbus_tcp::SessionContext context{settings_, stage_.gateway().image(), stage_.gateway(), registry_,
+                                           quiet_,    &stage_.runtime()};
   modbus_tcp::Peer peer;
   peer.role = Role::engineer;
   session_ = std::make_unique<modbus_tcp::Session>(context, peer, stage_.runtime().now(), [] {});
@@ -61,7 +61,8 @@ void Recorder::show_image() {
     const Sample& sample = axis[row.quantity];
     if (!sample.received) continue;
     const bool word = row.quantity == Quantity::statusword || row.quantity == Quantity::controlword;
-    now[std::string(row.name)] = number_text(word ? "0x%04llX" : "%lld", sample.value) + (sample.valid ? "" : " (not valid)");
+    now[std::string(row.name)] =
+        number_text(word ? "0x%04llX" : "%lld", sample.value) + (sample.valid ? "" : " (not valid)");
   }
   for (const auto& [name, value] : now) {
     if (shown_[name] == value) continue;

@@ -1,6 +1,6 @@
-// Writes down one story from the bus bytes to the Modbus frames: virtual time, what went over the cable, what the image showed,
-// what the client asked and was answered. Promises the same text for the same story, and that polling does not drown it: only
-// class fast is polled, each 100 ms. Never judges: the text is compared with the file of the story.
+// Writes down one story from the bus bytes to the Modbus frames: virtual time, what went over the cable, what the image
+// showed, what the client asked and was answered. Promises the same text for the same story, and that polling does not
+// drown it: only class fast is polled, each 100 ms. Never judges: the text is compared with the file of the story.
 #pragma once
 
 #include <map>

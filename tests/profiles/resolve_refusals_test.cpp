@@ -16,10 +16,11 @@ auto says(const std::string& pointer, const std::string& words) {
 }
 
 TEST(Refusals, ARequiredConstantNamesItsValues) {
-  EXPECT_THAT(refused(valid_file("required-constant"), one_axis()),
-              ElementsAre(says("/constants/counts",
-                               "\"counts\" is required for profile \"required-constant\": counts of the encoder: 2500 or "
-                               "10000")));
+  EXPECT_THAT(
+      refused(valid_file("required-constant"), one_axis()),
+      ElementsAre(says("/constants/counts",
+                       "\"counts\" is required for profile \"required-constant\": counts of the encoder: 2500 or "
+                       "10000")));
 }
 
 TEST(Refusals, AKincoWithoutItsPeakCurrentHasNoCurrentsAndNoTorque) {

@@ -36,7 +36,8 @@ CableWatch::CableWatch(SimLink& link, Runtime& runtime, Duration timeout, std::f
 bool CableWatch::answered() const {
   for (std::size_t at = 0; at + kFrame <= heard_.size(); ++at) {
     const Bytes window = Bytes(heard_).subspan(at, kFrame);
-    const bool same = window[0] == request_[0] && std::equal(window.begin() + 2, window.begin() + 5, request_.begin() + 2);
+    const bool same =
+        window[0] == request_[0] && std::equal(window.begin() + 2, window.begin() + 5, request_.begin() + 2);
     const bool response = window[1] == 0x60 || window[1] == 0x80 || width_of(window[1]) != 0;
     if (same && response && sums_to_zero(window)) return true;
   }
@@ -77,7 +78,8 @@ void DriveWatch::check() {
   check_validity();
 }
 
-// The line's journal ties each reply to its request; a value in the store must be the one sent for the request that asked.
+// The line's journal ties each reply to its request; a value in the store must be the one sent for the request that
+// asked.
 void DriveWatch::check_values() {
   const drive::Drive& drive = *gateway_.drive_of(axis_);
   const auto& journal = link_.line().journal().entries();
@@ -103,7 +105,8 @@ void DriveWatch::check_values() {
         found = object.number(load_le(window, 5, width)) == state.number;
       }
     }
-    if (!found) violated_("I2: axis " + std::to_string(axis_) + " " + object.name + " holds a value nobody sent for it");
+    if (!found)
+      violated_("I2: axis " + std::to_string(axis_) + " " + object.name + " holds a value nobody sent for it");
   }
 }
 
@@ -130,9 +133,11 @@ void DriveWatch::check_validity() {
     if (!image.reachable()) violated_("I6: a valid value of a drive that is not there");
     if (binding.poll == drive::PollClass::once) continue;
     const Duration period = drive.model().poll_period[static_cast<std::size_t>(binding.poll)];
-    const Duration limit = std::max<Duration>(std::chrono::milliseconds(300), 3 * period) + std::chrono::milliseconds(2);
+    const Duration limit =
+        std::max<Duration>(std::chrono::milliseconds(300), 3 * period) + std::chrono::milliseconds(2);
     if (runtime_.now() - sample.at > limit)
-      violated_("I6: axis " + std::to_string(axis_) + " " + std::string(row(binding.quantity).name) + " is stale but valid");
+      violated_("I6: axis " + std::to_string(axis_) + " " + std::string(row(binding.quantity).name) +
+                " is stale but valid");
   }
 }
 

@@ -95,7 +95,8 @@ void ModbusClient::take_reply(Bytes adu) {
   if (!expected_.empty()) expected_.pop_front();
 }
 
-// --- What it asks ------------------------------------------------------------------------------------------------------
+// --- What it asks
+// ------------------------------------------------------------------------------------------------------
 
 void ModbusClient::write(AxisNumber axis, std::uint16_t offset, const std::vector<std::uint16_t>& registers) {
   std::vector<Byte> pdu(6 + 2 * registers.size());

@@ -1,6 +1,6 @@
-// A Modbus-TCP client of the simulated world: asks at random, keeps count of what it asked, and checks every reply's order.
-// Promises that what it does follows from its generator alone, and that each set-point it writes has a value never used before.
-// Never looks into the gateway: it has bytes and nothing else.
+// A Modbus-TCP client of the simulated world: asks at random, keeps count of what it asked, and checks every reply's
+// order. Promises that what it does follows from its generator alone, and that each set-point it writes has a value
+// never used before. Never looks into the gateway: it has bytes and nothing else.
 #pragma once
 
 #include <cstdint>

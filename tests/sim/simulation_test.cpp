@@ -1,5 +1,5 @@
-// 50 seeds of 60 virtual seconds, each followed by a quiet tail in which everything must come back. Replay one seed with
-// `simulate --seed N`.
+// 50 seeds of 60 virtual seconds, each followed by a quiet tail in which everything must come back. Replay one seed
+// with `simulate --seed N`.
 #include <gtest/gtest.h>
 
 #include "tests/sim/world.hpp"

@@ -8,7 +8,8 @@ namespace {
 constexpr std::size_t kMaxViolations = 5;
 constexpr int kClients = 3;
 
-/// Two lines with one drive each, or both drives in one RS232 chain, or two MDs on one RS485 line (a JD's speaks Modbus).
+/// Two lines with one drive each, or both drives in one RS232 chain, or two MDs on one RS485 line (a JD's speaks
+/// Modbus).
 std::vector<GatewayStage::Line> layout(Random& random) {
   GatewayStage::Line jd = line_of(simulated::KincoType::jd, 1);
   GatewayStage::Line md = line_of(simulated::KincoType::md, 2);
@@ -32,21 +33,22 @@ std::vector<GatewayStage::Line> layout(Random& random) {
 
 }  // namespace
 
-World::World(std::uint64_t seed)
-    : random_(seed), stage_(layout(random_), seed), began_(stage_.runtime().now()) {
+World::World(std::uint64_t seed) : random_(seed), stage_(layout(random_), seed), began_(stage_.runtime().now()) {
   const auto report = [this](const std::string& what) { violated(what); };
   std::vector<SimLink*> links;
   AxisNumber axis = 1;
   for (std::size_t l = 0; l < stage_.gateway().bus_count(); ++l) {
     SimLink& link = stage_.link(l);
     links.push_back(&link);
-    cables_.push_back(std::make_unique<CableWatch>(link, stage_.runtime(), stage_.gateway().bus(l).settings().timeout, report));
+    cables_.push_back(
+        std::make_unique<CableWatch>(link, stage_.runtime(), stage_.gateway().bus(l).settings().timeout, report));
     for (std::size_t d = 0; d < link.line().size(); ++d, ++axis)
-      drives_.push_back(std::make_unique<DriveWatch>(stage_.gateway(), link, d, axis, asked_, stage_.runtime(), report));
+      drives_.push_back(
+          std::make_unique<DriveWatch>(stage_.gateway(), link, d, axis, asked_, stage_.runtime(), report));
   }
   nemesis_ = std::make_unique<Nemesis>(links, stage_.runtime(), random_.next());
-  const modbus_tcp::SessionContext context{settings_, stage_.gateway().image(), stage_.gateway(), registry_, quiet_,
-                                           &stage_.runtime()};
+  const modbus_tcp::SessionContext context{settings_, stage_.gateway().image(), stage_.gateway(), registry_,
+                                           quiet_,    &stage_.runtime()};
   for (int c = 0; c < kClients; ++c)
     clients_.push_back(std::make_unique<ModbusClient>(context, stage_.runtime(), random_.next(),
                                                       static_cast<std::uint16_t>(50000 + c),
@@ -98,7 +100,8 @@ void World::recover() {
   for (const auto& client : clients_)
     if (client->waiting()) violated("I4: a request never got its reply");
   for (const auto& axis : stage_.gateway().image().axes()) {
-    if (axis->has(AxisInput::moving)) violated("I12: axis " + std::to_string(axis->number) + " moves on after a quick stop");
+    if (axis->has(AxisInput::moving))
+      violated("I12: axis " + std::to_string(axis->number) + " moves on after a quick stop");
     if (axis->axis_state != AxisState::stopping && axis->axis_state != AxisState::error_stop)
       violated("I12: axis " + std::to_string(axis->number) + " is not latched after a quick stop");
   }

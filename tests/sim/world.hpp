@@ -1,5 +1,5 @@
-// The simulated world of one seed: the shipped core with two Kinco drives, three Modbus clients and the faults of the seed.
-// Promises that equal seeds give equal hashes, and a transcript of the last moments before the first violation.
+// The simulated world of one seed: the shipped core with two Kinco drives, three Modbus clients and the faults of the
+// seed. Promises that equal seeds give equal hashes, and a transcript of the last moments before the first violation.
 // Never uses real time, sockets or devices.
 #pragma once
 

@@ -60,8 +60,8 @@ bool exists(const RegisterRow& row, const AxisImage* axis) {
 
 /// "In a block write a row whose value the drive already holds is skipped without asking the role." So is a row that
 /// this drive does not have, written with what it reads as or with 0: one function block serves all axes, and a scanner
-/// may write back the block that it has read. Mode 0 is CiA 402's "no mode change" (402-2, 6060h): a scanner that leaves
-/// the mode to the commands writes it.
+/// may write back the block that it has read. Mode 0 is CiA 402's "no mode change" (402-2, 6060h): a scanner that
+/// leaves the mode to the commands writes it.
 bool is_held(const RowWrite& write, const AxisImage& axis, const Onlooker& onlooker) {
   const RegisterRow& row = *write.row;
   if (!exists(row, &axis)) {
