@@ -40,6 +40,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   Log log = stderr_log(options.decode.empty() ? options.log_level : std::max(options.log_level, LogLevel::debug));
   boost::asio::io_context io(1);
   AsioRuntime runtime(io);
+  std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not
   // Before anything is opened: client sockets move above the numbers that serial ports need.
   modbus_tcp::raise_descriptor_limit();
   modbus_tcp::ClientRegistry clients;

@@ -130,7 +130,7 @@ void add_word(std::string& list, const Word& word) {
 std::string alarms_text(std::uint32_t bits) {
   std::string list;
   for (unsigned i = 0; i < 32; ++i) {
-    if ((bits >> i & 1U) == 0) continue;
+    if ((static_cast<unsigned>(bits) >> i & 1U) == 0) continue;
     add_word(list, i < kAxisAlarmCount ? std::string(text(static_cast<AxisAlarm>(i))) : fmt::format("bit {}", i));
   }
   return list.empty() ? "-" : list;
@@ -146,7 +146,7 @@ std::string gateway_alarms_text(std::uint16_t bits) {
       "bus overloaded"};
   std::string list;
   for (unsigned i = 0; i < 16; ++i) {
-    if ((bits >> i & 1U) == 0) continue;
+    if ((static_cast<unsigned>(bits) >> i & 1U) == 0) continue;
     add_word(list, i < kNames.size() ? std::string(kNames[i]) : fmt::format("bit {}", i));
   }
   return list.empty() ? "none" : list;

@@ -2,8 +2,8 @@
 import os
 import signal
 
-from modbus import (ALARM_ADOPTED, COMPLETED, CONTINUOUS, DISABLED, ERROR_STOP, FAILED, LINK_DOWN, NO_ANSWER, NO_PATH, ONLINE, REFUSED, SETUP,
-                    STANDSTILL, SUSPECT)
+from modbus import (ALARM_ADOPTED, COMPLETED, CONTINUOUS, DISABLED, ERROR_STOP, FAILED, LINK_DOWN, NO_ANSWER, NO_PATH, ONLINE,
+                    REFUSED, SETUP, STANDSTILL, SUSPECT)
 from processes import Program, until
 from stage import Story, bus, drive, main
 

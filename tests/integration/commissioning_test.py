@@ -95,8 +95,7 @@ class FactoryFresh(Story):
         self.assertEqual(done.returncode, 1)
         self.assertIn("the gateway stopped", done.stderr)
         self.assertEqual(self.stores(), 0)
-        self.assert_online(self.axis(1))
-        self.assertEqual(self.client.bus(0)["timeouts"], 0)
+        self.axis(1).until(link_state=ONLINE)
 
     def test_an_axis_that_is_not_configured(self):
         self.configure()

@@ -1,10 +1,13 @@
 """How a gateway ends, and how the next one finds an axis that runs."""
+import fcntl
+import os
 import signal
 import socket
+import subprocess
 
 from modbus import ALARM_ADOPTED, COMPLETED, CONTINUOUS, DISABLED, NO_MOTION, STANDSTILL, Closed
 from processes import NEVER, until
-from stage import Story, main
+from stage import AXISGATE, Story, main
 
 TURN = 10000
 FAR = 20000 * TURN
@@ -147,6 +150,51 @@ class Killed(End):
             self.assertFalse(self.axis(number).get("axis_alarms") & ALARM_ADOPTED)
             self.assertNotIn("operation", self.sim.state(drive))
             self.assertEqual(self.sim.writes(drive, "6040.00"), 0)
+
+
+class LogThatNobodyReads(Story):
+    """A pipe to a program that hangs, or has gone: no reason to leave a motor alone."""
+
+    def start_with_log(self, write_end):
+        self.simulate()
+        self.configure()
+        gateway = subprocess.Popen([AXISGATE, "run", self.config, "--decode", "lift", "--decode", "feeder"], stderr=write_end)
+        os.close(write_end)
+        self.addCleanup(gateway.wait)
+        self.addCleanup(gateway.kill)
+        self.client = until("a connection", self.try_to_connect)
+        self.until_online()
+        return gateway
+
+    def try_to_connect(self):
+        try:
+            return self.connect()
+        except Closed:
+            return None
+
+    def assert_it_lives(self, gateway):
+        for number in DRIVES:
+            self.axis(number).command("enable")
+            self.axis(number).command("disable")
+            self.assert_online(self.axis(number))
+        self.assertIsNone(gateway.poll())
+        gateway.terminate()
+        self.assertEqual(gateway.wait(timeout=NEVER), 0)
+
+    def test_the_reader_has_gone(self):
+        read_end, write_end = os.pipe()
+        gateway = self.start_with_log(write_end)
+        os.close(read_end)
+        self.assert_it_lives(gateway)
+
+    def test_the_reader_hangs(self):
+        read_end, write_end = os.pipe()
+        self.addCleanup(os.close, read_end)
+        fcntl.fcntl(write_end, fcntl.F_SETPIPE_SZ, 4096)
+        gateway = self.start_with_log(write_end)
+        requests = self.client.bus(0)["requests"]
+        until("more frames than the pipe holds lines", lambda: self.client.bus(0)["requests"] > requests + 200)
+        self.assert_it_lives(gateway)
 
 
 if __name__ == "__main__":
