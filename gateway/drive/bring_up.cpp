@@ -11,9 +11,16 @@ BringUp::BringUp(const DriveModel& model) : model_(model) {
     if (id != kNoObject && std::find(reads_.begin(), reads_.end(), id) == reads_.end()) reads_.push_back(id);
   };
   for (const AxisModel& axis : model.axes) add(axis.statusword);  // the state comes before everything
-  for (const PollItem& item : poll_items(model)) add(item.object);
   for (const ObjectWrite& setup : model.setup)
     if (model.object(setup.object).readable) add(setup.object);
+  // What changes fastest is read last: the drive goes online with values that are still good.
+  std::vector<PollItem> items = poll_items(model);
+  std::stable_sort(items.begin(), items.end(),
+                   [](const PollItem& a, const PollItem& b) { return a.poll_class > b.poll_class; });
+  for (const PollItem& item : items) {
+    add(item.object);
+    if (item.poll_class == PollClass::fast) confirmed_.push_back(item.object);
+  }
 }
 
 void BringUp::begin() {
@@ -38,11 +45,11 @@ std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
     if (!s.known && !s.refused) return Next{reads_[read_at_], false, 0};
     ++read_at_;
   }
-  // Everything else was read meanwhile: somebody may have enabled it since its state was read.
+  // Everything else was read meanwhile: somebody may have enabled it since its state was read, and on a busy line what
+  // was read first has grown stale.
   if (!confirm_after_) confirm_after_ = store.exchange();
-  if (has_setup())
-    for (const AxisModel& axis : model_.axes)
-      if (store[axis.statusword].exchange <= *confirm_after_) return Next{axis.statusword, false, 0};
+  for (const ObjectId id : confirmed_)
+    if (!store[id].refused && store[id].exchange <= *confirm_after_) return Next{id, false, 0};
   adopted_ = any_enabled(store);
   if (adopted_) return std::nullopt;
   while (setup_at_ < model_.setup.size()) {

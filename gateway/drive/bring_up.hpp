@@ -39,6 +39,7 @@ class BringUp {
   [[nodiscard]] bool any_enabled(const ObjectStore& store) const;
   const DriveModel& model_;
   std::vector<ObjectId> reads_;
+  std::vector<ObjectId> confirmed_;  ///< class fast, the statuswords among them: read once more at the end
   std::size_t read_at_ = 0;
   std::optional<std::uint64_t> confirm_after_;  ///< exchange: the state is read once more before the first setup write
   std::size_t setup_at_ = 0;

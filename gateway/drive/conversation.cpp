@@ -94,11 +94,15 @@ void Conversation::abort(Outcome outcome) {
 Conversation::Move Conversation::granted(Instant now) {
   if (planned_ && !sent_of_plan_) {
     planned_ = false;
-    // Whether it may start at all is judged with the preparation.
-    if (phase_ == Phase::command) phase_ = Phase::preparation;
+    // Whether it may start at all is judged with the preparation; but not once the preparation has changed the mode:
+    // what was at rest in mode 1 would have to prove it again in mode 6, and the mode would stay changed.
+    if (phase_ == Phase::command && !preparation_sent_) phase_ = Phase::preparation;
   }
   Move move = advance(now);
-  if (move.kind == Move::Kind::exchange) begun_ = sent_of_plan_ = true;
+  if (move.kind == Move::Kind::exchange) {
+    begun_ = sent_of_plan_ = true;
+    if (phase_ == Phase::preparation) preparation_sent_ = true;
+  }
   return move;
 }
 

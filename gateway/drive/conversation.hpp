@@ -100,6 +100,7 @@ class Conversation {
   std::vector<Action> todo_;
   std::size_t at_ = 0;
   std::uint64_t last_acknowledged_ = 0;  ///< exchange of the last write: samples asked for earlier are too old
+  bool preparation_sent_ = false;        ///< the preparation of the command was more than a judgement
   Instant wait_until_ = kNever;          ///< of the wait under way; kNever: not begun
   Instant stop_until_ = kNever;          ///< of the stop's waits together, however often it is repeated
   Instant repeat_at_ = kNever;           ///< of a stop: sent once more if it has not shown by then
