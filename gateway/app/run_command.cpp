@@ -54,10 +54,6 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   }
   gateway.start();
   LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
-  for (std::size_t i = 0; i < loaded.config.modbus_tcp.size(); ++i)
-    log.write(LogLevel::info, "modbus",
-              fmt::format("listening on {}:{}", loaded.config.modbus_tcp[i].host, server.ports()[i]));
-
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code& error, int signal) {
     if (error) return;
