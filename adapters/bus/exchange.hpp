@@ -22,12 +22,25 @@ struct ObjectAddress {
 
 enum class Access : std::uint8_t { read, write };
 
+/// The longest list one answer can carry: a run of 26 registers (iD286pro) as 16-bit fields.
+inline constexpr std::size_t kMaxReplyFields = 26;
+
+/// Another object that the same request reads.
+struct Neighbour {
+  ObjectAddress object;
+  std::uint8_t size = 0;  ///< bytes: 1, 2 or 4
+  friend bool operator==(const Neighbour&, const Neighbour&) = default;
+};
+
 struct Exchange {
   std::uint8_t node = 0;  ///< station, unit or node-ID
   Access access = Access::read;
   ObjectAddress object;
   std::uint8_t size = 0;  ///< bytes: 1, 2 or 4; 0 in a read: as many as the drive has
   std::uint32_t raw = 0;  ///< value to write, in the low `size` bytes
+  /// Modbus RTU, reads alone: objects at higher registers than `object`, ascending, read in one request from the first
+  /// register of `object` to the last of the last; registers between that are nobody's are read and dropped.
+  boost::container::static_vector<Neighbour, kMaxReplyFields - 1> more{};
   friend bool operator==(const Exchange&, const Exchange&) = default;
 };
 
@@ -38,8 +51,6 @@ struct ReplyField {
   friend bool operator==(const ReplyField&, const ReplyField&) = default;
 };
 
-/// The longest list one answer can carry: a block of 26 registers (iD286pro) as 16-bit fields.
-inline constexpr std::size_t kMaxReplyFields = 26;
 using ReplyFields = boost::container::static_vector<ReplyField, kMaxReplyFields>;
 
 /// How an exchange ended. `ok`: fields of a read (none for a write). `refused_by_drive`: `detail` is the drive's code.
@@ -48,6 +59,8 @@ struct ExchangeResult {
   Errc code = Errc::ok;
   std::uint32_t detail = 0;
   ReplyFields fields{};
+  /// refused_by_drive: not now, but perhaps later (busy, under local control). Else the drive does not have the object.
+  bool for_now = false;
   friend bool operator==(const ExchangeResult&, const ExchangeResult&) = default;
 };
 

@@ -19,19 +19,25 @@ inline constexpr Duration kAssumedAnswer = std::chrono::milliseconds(5);
 inline constexpr int kComfortablePermille = 800;
 
 struct BusTiming {
-  Duration on_wire;  ///< of one exchange, without the drive's own time
+  Duration on_wire;  ///< of one exchange, without the drive's own time; modbus-rtu: of a write of 32 bits
   Duration min_gap;
   Duration settle;
   Duration timeout;
   std::array<Duration, 3> poll;  ///< periods of the classes fast, normal, slow
+  std::uint32_t rtu_baud = 0;    ///< modbus-rtu, where each exchange has a length of its own; else 0
+  int parity_bits = 0;           ///< of modbus-rtu: 0 or 1
 };
 
 [[nodiscard]] BusTiming timing_of(const BusConfig& bus);
+/// Of one exchange, without the drive's own time.
+[[nodiscard]] Duration wire_time_of(const BusTiming& timing, const bus::Exchange& exchange);
 
 struct BusBudget {
   struct Polled {
-    int reads = 0;  ///< objects of this class over all drives of the bus
+    int reads = 0;  ///< requests of this class over all drives of the bus
     Duration period{};
+    Duration on_wire{};   ///< of all of them together
+    Duration answered{};  ///< and with the time that the drives need
   };
   std::array<Polled, 3> classes;
   int load_on_wire = 0;   ///< 0.1 %, drives that answer at once

@@ -5,15 +5,22 @@
 #include <cstdio>
 
 #include "gateway/app/check.hpp"
+#include "gateway/app/descriptor_needs.hpp"
 #include "gateway/app/faults_told.hpp"
+#include "gateway/upstream/modbus_tcp/descriptors.hpp"
 
 namespace axisgate::app {
 
 int run(const CheckOptions& options) {
   const LoadResult result = load_config(options.config, options.profile_folders);
   if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
-  const CheckReport report = check(std::get<LoadedConfig>(result));
+  const auto& loaded = std::get<LoadedConfig>(result);
+  const CheckReport report = check(loaded);
   fmt::print("{}", report.text);
+  const auto descriptors =
+      modbus_tcp::plan_descriptors(modbus_tcp::descriptor_limits(), descriptor_needs(loaded.config));
+  // The limit belongs to a process, not to the file: a service may have another.
+  if (descriptors.limited()) fmt::print("warning: started from here, {}\n", modbus_tcp::text(descriptors));
   if (!report.overloaded) return 0;
   std::fflush(stdout);
   fmt::print(stderr, "{}: a bus is planned over 100 %, see OVERLOADED above\n", options.config);

@@ -52,15 +52,16 @@ struct BusConfig {
   std::string name;
   std::string adapter;
   std::string device;
-  std::uint32_t baud = 38400;
+  std::uint32_t baud = 38400;  ///< modbus-rtu: 19200 by default
   std::string parity = "none";
   std::string rs485 = "auto";  ///< auto: direction control where the port offers it; off
   bool cascade = false;        ///< Kinco 6510:0B = 1: every request comes back before its reply
-  Duration timeout{};
+  Duration timeout{};          ///< modbus-rtu, where none is given: what its drives need (settle_rtu_buses())
   Duration min_gap{};
   Duration settle{};
   std::array<Duration, 3> poll{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
                                std::chrono::milliseconds(1000)};  ///< fast, normal, slow
+  bool poll_given = true;                                         ///< false: the periods are what the line carries
   bool decode = false;
   std::vector<DriveConfig> drives;
   std::string pointer;

@@ -9,8 +9,7 @@ namespace axisgate::app {
 namespace {
 
 /// Adapters that the schema knows and this version has not.
-constexpr std::array<std::string_view, 5> kMissingAdapters{"canopen", "modbus-rtu", "keya-can", "keya-rs232",
-                                                           "keya-rs485"};
+constexpr std::array<std::string_view, 4> kMissingAdapters{"canopen", "keya-can", "keya-rs232", "keya-rs485"};
 
 struct IdleKey {
   std::string_view key;
@@ -47,7 +46,8 @@ void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults) {
     if (std::find(kMissingAdapters.begin(), kMissingAdapters.end(), adapter) != kMissingAdapters.end()) {
       faults.add(
           bus.pointer("adapter"),
-          fmt::format("{} is not available in this version, which has kinco-serial alone: remove this bus", adapter));
+          fmt::format("{} is not available in this version, which has kinco-serial and modbus-rtu: remove this bus",
+                      adapter));
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "adapters/kinco/kinco_exchange.hpp"
+#include "adapters/modbus_rtu/rtu_timing.hpp"
 #include "gateway/app/config_sections.hpp"
 
 namespace axisgate::app {
@@ -12,6 +13,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::string_view kKincoSerial = "kinco-serial";
+constexpr std::string_view kModbusRtu = "modbus-rtu";
+/// As the drives leave their factories (JD, MD, iD286pro).
+constexpr std::uint32_t kRtuBaud = 19200;
 /// What a serial port of this system can be set to.
 constexpr std::array kPortRates{1200,   2400,   4800,   9600,   19200,  38400,  57600,
                                 115200, 230400, 460800, 500000, 921600, 1000000};
@@ -44,29 +48,41 @@ void read_poll(const ConfigNode& node, BusConfig& bus, ConfigFaults& faults) {
   }
 }
 
+template <typename Rates>
+bool has(const Rates& rates, std::uint32_t baud) {
+  return std::find(rates.begin(), rates.end(), static_cast<int>(baud)) != rates.end();
+}
+
+void check_serial_line(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+  if (!faults.within(node.pointer("baud")) && !has(kPortRates, bus.baud))
+    faults.add(node.pointer("baud"),
+               fmt::format("{} is no rate of a serial port: write 9600, 19200, 38400 or 115200", bus.baud));
+  if (node.has("bitrate"))
+    faults.add(node.pointer("bitrate"), "a serial port has no CAN bit rate: write \"baud\" instead");
+  if (bus.device.starts_with("slcan:"))
+    faults.add(node.pointer("device"),
+               fmt::format("slcan: names a CAN adapter, and {} needs a serial port: write its path", bus.adapter));
+}
+
 void check_kinco_line(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
-  const auto has = [](const auto& rates, std::uint32_t baud) {
-    return std::find(rates.begin(), rates.end(), static_cast<int>(baud)) != rates.end();
-  };
-  if (!faults.within(node.pointer("baud"))) {
-    if (!has(kPortRates, bus.baud)) {
-      faults.add(node.pointer("baud"),
-                 fmt::format("{} is no rate of a serial port: write 9600, 19200, 38400 or 115200", bus.baud));
-    } else if (!has(kKincoRates, bus.baud)) {
-      faults.warn(node.pointer("baud"),
-                  fmt::format("{} is not among the rates of Kinco drives (9600, 19200, 38400, 115200)", bus.baud));
-    }
+  if (has(kPortRates, bus.baud) && !has(kKincoRates, bus.baud)) {
+    faults.warn(node.pointer("baud"),
+                fmt::format("{} is not among the rates of Kinco drives (9600, 19200, 38400, 115200)", bus.baud));
   }
   if (bus.parity == "even" || bus.parity == "odd") {
     faults.add(node.pointer("parity"), "Kinco drives speak without parity: write \"none\" or remove the key");
   }
-  if (node.has("bitrate")) {
-    faults.add(node.pointer("bitrate"), "a serial port has no CAN bit rate: write \"baud\" instead");
-  }
-  if (bus.device.starts_with("slcan:")) {
-    faults.add(node.pointer("device"),
-               "slcan: names a CAN adapter, and Kinco's serial protocol needs a serial port: write its path");
-  }
+}
+
+void check_rtu_line(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+  if (bus.cascade)
+    faults.add(node.pointer("cascade"), "only Kinco's RS232 protocol has drives in a chain: remove the key");
+  const Duration gap = modbus_rtu::gap_time(std::max(bus.baud, 1U));
+  if (bus.min_gap < gap && node.has("min_gap_ms"))
+    faults.add(node.pointer("min_gap_ms"),
+               fmt::format("Modbus RTU ends a frame by {:.2f} ms of silence at {} baud: write at least that, or remove "
+                           "the key",
+                           static_cast<double>(gap.count()) / 1e6, bus.baud));
 }
 
 void check_timeout(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
@@ -86,7 +102,8 @@ BusConfig read_bus(const ConfigNode& node, ConfigFaults& faults) {
   bus.name = node.string("name").value_or("");
   bus.adapter = node.string("adapter").value_or("");
   bus.device = node.string("device").value_or("");
-  bus.baud = static_cast<std::uint32_t>(node.integer("baud").value_or(bus.baud));
+  const bool rtu = bus.adapter == kModbusRtu;
+  bus.baud = static_cast<std::uint32_t>(node.integer("baud").value_or(rtu ? kRtuBaud : bus.baud));
   bus.parity = node.string("parity").value_or(bus.parity);
   bus.rs485 = node.string("rs485").value_or(bus.rs485);
   bus.cascade = node.flag("cascade", false);
@@ -94,14 +111,17 @@ BusConfig read_bus(const ConfigNode& node, ConfigFaults& faults) {
   const bool kinco = bus.adapter == kKincoSerial;
   const auto drives = node.items("drives");
   if (kinco) bus.poll = default_poll(drives.size());
-  bus.timeout = node.milliseconds("timeout_ms", kKincoTimeout);
-  bus.min_gap = node.milliseconds("min_gap_ms", Duration{});
+  bus.timeout = node.milliseconds("timeout_ms", rtu ? Duration{} : kKincoTimeout);
+  bus.min_gap = node.milliseconds("min_gap_ms", rtu ? modbus_rtu::gap_time(std::max(bus.baud, 1U)) : Duration{});
   bus.settle = node.milliseconds("settle_ms", kKincoSettle);
+  bus.poll_given = !rtu || node.child("poll").has_value();
   read_poll(node, bus, faults);
+  if (kinco || rtu) check_serial_line(node, bus, faults);
   if (kinco) {
     check_kinco_line(node, bus, faults);
     check_timeout(node, bus, faults);
   }
+  if (rtu) check_rtu_line(node, bus, faults);
   for (const ConfigNode& drive : drives) bus.drives.push_back(read_drive(drive, bus, faults));
   return bus;
 }

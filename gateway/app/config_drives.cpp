@@ -38,8 +38,9 @@ DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFault
   check_node(node, drive, bus, faults);
   read_constants(node, drive, faults);
   // Accepting it unchecked would promise a safety that is not there.
-  if (node.has("identity") && bus.adapter == "kinco-serial") {
-    faults.add(node.pointer("identity"), "Kinco's serial protocol has no object 1018h to compare with: remove the key");
+  if (node.has("identity") && (bus.adapter == "kinco-serial" || bus.adapter == "modbus-rtu")) {
+    faults.add(node.pointer("identity"),
+               fmt::format("{} has no object 1018h to compare with: remove the key", bus.adapter));
   }
   for (const ConfigNode& axis : node.items("axes")) drive.axes.push_back(read_axis(axis, faults));
   return drive;

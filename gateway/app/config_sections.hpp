@@ -32,4 +32,7 @@ void warn_without_effect(const ConfigNode& root, ConfigFaults& faults);
                                                                       const std::vector<std::string>& profile_folders,
                                                                       ConfigFaults& faults);
 
+/// modbus-rtu: timeouts and poll periods that nobody has given follow from the drives on the line.
+void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
+
 }  // namespace axisgate::app

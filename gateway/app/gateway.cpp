@@ -32,8 +32,8 @@ Gateway::~Gateway() = default;
 void Gateway::add_bus(const BusConfig& config, std::size_t index, const MakeWire& make_wire) {
   bus::BusSettings settings{config.name, config.timeout, config.min_gap, config.settle};
   image_.buses[index].name = config.name;
-  buses_.push_back(
-      std::make_unique<bus::Bus>(std::move(settings), config.drives.size(), make_wire(config), runtime_, log_));
+  buses_.push_back(std::make_unique<bus::Bus>(std::move(settings), config.drives.size(),
+                                              make_wire(config, models_[index]), runtime_, log_));
   if (config.decode) buses_.back()->set_decode(true);
   for (std::size_t d = 0; d < config.drives.size(); ++d) {
     const drive::DriveModel& model = models_[index][d];
@@ -64,7 +64,9 @@ std::optional<GroupResult> Gateway::submit(AxisNumber axis, const Group& group, 
   return places_[axis].drive->submit(places_[axis].slot, group, std::move(on_result));
 }
 
-void Gateway::client_gone(ClientId) {}
+void Gateway::client_gone(ClientId client) {
+  for (const auto& drive : drives_) drive->client_gone(client);
+}
 
 bool Gateway::holds(AxisNumber axis, Quantity quantity, std::int64_t value) const {
   if (axis > kMaxAxisNumber || places_[axis].drive == nullptr) return false;

@@ -18,7 +18,7 @@ namespace axisgate::app {
 
 /// Per bus, per drive, in configuration order.
 using Models = std::vector<std::vector<drive::DriveModel>>;
-using MakeWire = std::function<std::unique_ptr<bus::Wire>(const BusConfig&)>;
+using MakeWire = std::function<std::unique_ptr<bus::Wire>(const BusConfig&, const std::vector<drive::DriveModel>&)>;
 
 /// An event loop turn this late raises the gateway alarm "event loop slow".
 inline constexpr Duration kSlowLoop = std::chrono::milliseconds(50);
@@ -47,6 +47,8 @@ class Gateway final : public CommandPort {
   [[nodiscard]] const drive::Drive* drive_of(AxisNumber axis) const;
   /// The loop was this late once (the shell measures it).
   void report_loop_delay(Duration delay);
+  /// An event of the gateway itself, and so a line of the log.
+  void report(EventKind kind, std::string text) { events_.add(runtime_.now(), 0, kind, 0, std::move(text)); }
 
  private:
   struct Place {

@@ -11,12 +11,14 @@
 
 #include "adapters/asio/asio_runtime.hpp"
 #include "gateway/app/config_loader.hpp"
+#include "gateway/app/descriptor_needs.hpp"
 #include "gateway/app/faults_told.hpp"
 #include "gateway/app/gateway.hpp"
 #include "gateway/app/loop_watch.hpp"
 #include "gateway/app/serial_wires.hpp"
 #include "gateway/app/stderr_log.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/descriptors.hpp"
 #include "gateway/upstream/modbus_tcp/server.hpp"
 
 namespace axisgate::app {
@@ -41,17 +43,17 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   boost::asio::io_context io(1);
   AsioRuntime runtime(io);
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not
-  // Before anything is opened: client sockets move above the numbers that serial ports need.
-  modbus_tcp::raise_descriptor_limit();
+  const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(descriptor_needs(loaded.config));
   modbus_tcp::ClientRegistry clients;
   Gateway gateway(loaded.config, std::move(loaded.models), runtime, log, serial_wires(io, runtime, log));
   modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log);
   try {
-    server.start();
+    server.start(descriptors);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}: {}\n", options.config, error.what());
     return 1;
   }
+  if (descriptors.limited()) gateway.report(EventKind::warning, modbus_tcp::text(descriptors));
   gateway.start();
   LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);

@@ -1,6 +1,8 @@
 #include "gateway/app/serial_wires.hpp"
 
 #include "adapters/kinco/kinco_wire.hpp"
+#include "adapters/modbus_rtu/libmodbus_link.hpp"
+#include "adapters/modbus_rtu/rtu_wire.hpp"
 #include "adapters/serial/serial_link.hpp"
 
 namespace axisgate::app {
@@ -16,11 +18,24 @@ serial::SerialSettings settings_of(const BusConfig& bus) {
   return settings;
 }
 
+std::vector<modbus_rtu::RtuNode> rtu_nodes(const std::vector<drive::DriveModel>& drives) {
+  std::vector<modbus_rtu::RtuNode> nodes;
+  for (const drive::DriveModel& drive : drives)
+    nodes.push_back({drive.node, drive.rtu.low_word_first, drive.rtu.error_functions, drive.rtu.broadcast});
+  return nodes;
+}
+
 }  // namespace
 
 MakeWire serial_wires(boost::asio::io_context& io, Runtime& runtime, const Log& log) {
-  // The loader has refused every adapter but this one.
-  return [&io, &runtime, &log](const BusConfig& bus) -> std::unique_ptr<bus::Wire> {
+  return [&io, &runtime, &log](const BusConfig& bus,
+                               const std::vector<drive::DriveModel>& drives) -> std::unique_ptr<bus::Wire> {
+    if (bus.adapter == "modbus-rtu") {
+      auto link = std::make_unique<modbus_rtu::LibmodbusLink>(bus.name, settings_of(bus), io, runtime, log);
+      const modbus_rtu::LineSpeed speed{bus.baud, bus.parity == "none" ? 0 : 1};
+      return std::make_unique<modbus_rtu::RtuWire>(bus.name, rtu_nodes(drives), speed, std::move(link), runtime, log);
+    }
+    // The loader has refused every other adapter.
     auto link = std::make_unique<serial::SerialLink>(bus.name, settings_of(bus), io, runtime, log);
     return std::make_unique<kinco::KincoWire>(bus.name, std::move(link), runtime, log);
   };

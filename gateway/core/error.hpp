@@ -71,6 +71,11 @@ struct Outcome {
   friend bool operator==(const Outcome&, const Outcome&) = default;
 };
 
+/// Refused before anything was sent: the code, with the detail that belongs to it.
+[[nodiscard]] constexpr Outcome refusal(Errc code) {
+  return {code, code == Errc::state_unsuitable ? kDetailDeviceState : 0};
+}
+
 [[nodiscard]] std::string_view text(Errc code);
 [[nodiscard]] ModbusException modbus_exception(Errc code);
 [[nodiscard]] CommandResult command_result(Errc code);

@@ -32,7 +32,7 @@ struct Action {
   enum class Kind : std::uint8_t { write, read, wait, mark };
   Kind kind = Kind::write;
   ObjectId object = kNoObject;   ///< write, read; see Mark::values_doubtful
-  std::int64_t number = 0;       ///< write: as the drive counts
+  std::int64_t number = 0;       ///< write: as the drive counts; Mark::start_discrete: 1, the target is a distance
   ObjectId copy_of = kNoObject;  ///< write: the newest number of this object instead
   Condition until;               ///< wait: must hold on a sample asked for after the last acknowledgement
   Duration limit{};              ///< wait
@@ -91,9 +91,7 @@ struct Plan {
   std::vector<Action> actions;
   [[nodiscard]] bool refused() const { return refusal.code != Errc::ok; }
 
-  [[nodiscard]] static Plan refuse(Errc code) {
-    return {{code, code == Errc::state_unsuitable ? kDetailDeviceState : 0}, {}};
-  }
+  [[nodiscard]] static Plan refuse(Errc code) { return {axisgate::refusal(code), {}}; }
   void add(Action action) {
     assert(actions.size() < kMaxActions);
     actions.push_back(std::move(action));

@@ -44,6 +44,34 @@ void Axis::on_bring_up() {
   core_.mode_chosen = false;
   reference_doubted_ = false;
   core_.homed = false;
+  if (!core_.is_virtual()) return;
+  core_.machine.reset();
+  core_.store.forget(core_.model.statusword);
+  core_.store.make(core_.model.controlword, 0);
+  core_.store.make(core_.model.mode, core_.model.modes.empty() ? 0 : core_.model.modes.front().first);
+}
+
+void Axis::on_samples() {
+  core_.now = host_.now();
+  core_.link = host_.link_state();
+  core_.refresh_virtual();
+}
+
+void Axis::on_scale() { show_model(core_.model, image_); }
+
+void Axis::on_client_gone(ClientId client) {
+  // Others go on with what they were told; leases will settle it for every drive.
+  const bool nothing_else_would = core_.is_virtual() && !core_.drive.stops_by_itself;
+  if (!nothing_else_would || motion_by_ != client) return;
+  core_.now = host_.now();
+  core_.link = host_.link_state();
+  const AxisFacts facts = core_.facts();
+  if (core_.motion.running() == MotionKind::none && !facts.moving && !motion_pending()) return;
+  host_.event(image_.number, EventKind::command, 0, "the client that commanded the motion is gone: quick stop");
+  Group stop;
+  stop.role = Role::engineer;
+  stop.command = Command::quick_stop;
+  static_cast<void>(submit(stop, [](const GroupResult&) {}));
 }
 
 // --- Taking a group ------------------------------------------------------------------------------------------------
@@ -88,7 +116,7 @@ void Axis::show_latest(const Group& group, const Outcome& outcome) {
 }
 
 GroupResult Axis::refuse(const Group& group, Errc code) {
-  const Outcome outcome{code, code == Errc::state_unsuitable ? kDetailDeviceState : 0};
+  const Outcome outcome = refusal(code);
   if (!group.object && command_result(code) != CommandResult::none) show_latest(group, outcome);
   return {outcome, 0, 0};
 }
@@ -157,6 +185,10 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<GroupResult>& refus
     return;
   }
   pending.id = queued.id;
+  const bool drives = std::any_of(group.setpoints.begin(), group.setpoints.end(), [](const Setpoint& sp) {
+    return sp.quantity == Quantity::target_velocity || sp.quantity == Quantity::target_torque;
+  });
+  if (pending.starts_motion || drives) motion_by_ = group.client;
   if (!pending.by_mailbox) image_.latest = {CommandResult::pending, 0, group.command_id};
   if (pending.starts_motion) core_.motion.mask_target_reached();
   pending_.push_back(std::move(pending));

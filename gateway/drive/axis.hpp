@@ -49,6 +49,12 @@ class Axis {
   /// It was suspect: it may have restarted unseen.
   void on_doubt() { reference_doubted_ = true; }
   void set_alarm(AxisAlarm alarm, bool on);
+  /// New samples are in the store: what is made from them is made anew.
+  void on_samples();
+  /// The drive's own constants were read: scales and limits have changed.
+  void on_scale();
+  /// This client will never speak again: a motion that it commanded, where nothing else would stop it, is stopped.
+  void on_client_gone(ClientId client);
 
   /// The order's next exchange; none: it waits or has just ended.
   [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::OrderId id);
@@ -110,6 +116,7 @@ class Axis {
   bool reference_doubted_ = false;
   Duration cycle_{};
   Instant last_statusword_ = kLongAgo;
+  std::optional<ClientId> motion_by_{};  ///< who commanded the motion that runs
 };
 
 }  // namespace axisgate::drive

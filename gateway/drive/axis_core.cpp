@@ -1,5 +1,6 @@
 #include "gateway/drive/axis_core.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace axisgate::drive {
@@ -60,14 +61,98 @@ AxisFacts AxisCore::facts() const {
   facts.statusword_exchange = status.exchange;
   facts.target_reached = (word & statusword::kTargetReached) != 0;
   facts.mode = mode_in_force();
-  facts.reference = holds(*this, model.homed);
-  facts.homing_failed = holds(*this, model.homing_failed);
+  facts.reference = is_virtual() ? machine.homing_attained() : holds(*this, model.homed);
+  facts.homing_failed = is_virtual() ? machine.homing_failed() : holds(*this, model.homing_failed);
+  facts.motion_failed = machine.motion_failed();
   if (model.moving) {
     facts.moving = holds(*this, model.moving);
   } else if (const auto velocity = value(Quantity::velocity_actual)) {
     facts.moving = std::llabs(*velocity) > model.standstill_velocity;
   }
   return facts;
+}
+
+// --- Virtual axes --------------------------------------------------------------------------------------------------
+
+std::optional<VirtualAxis::Seen> AxisCore::seen() const {
+  VirtualAxis::Seen out;
+  out.at = now;
+  out.exchange = UINT64_MAX;
+  for (const ObjectId id : model.state_sources) {
+    if (store[id].refused) continue;
+    if (!store[id].known) return std::nullopt;
+    out.exchange = std::min(out.exchange, store[id].exchange);
+  }
+  const VirtualFacts& by = *model.virtual_axis;
+  out.enabled = holds(*this, by.enabled);
+  out.fault = holds(*this, by.fault);
+  out.limit = holds(*this, by.limit);
+  out.moving = holds(*this, model.moving);
+  out.standing = by.reached ? holds(*this, by.reached) : !out.moving;
+  out.homed_at = !by.homed_at || holds(*this, by.homed_at);
+  if (const Binding* position = model.binding(Quantity::position_actual);
+      position != nullptr && position->object != kNoObject && store[position->object].known) {
+    out.position = store[position->object].number;
+    out.position_exchange = store[position->object].exchange;
+  }
+  out.controlword = controlword();
+  out.mode = mode_in_force();
+  out.running = motion.running();
+  const auto velocity = value(Quantity::velocity_actual);
+  const auto target = value(Quantity::target_velocity);
+  constexpr std::int64_t kTolerance = 50;  // a fiftieth of the target: "reached" is a window in CiA 402 as well (606Dh)
+  if (velocity && target && out.running == MotionKind::velocity)
+    out.at_velocity = std::llabs(*velocity - *target) <= std::llabs(*target) / kTolerance + model.standstill_velocity;
+  return out;
+}
+
+void AxisCore::refresh_virtual() {
+  if (!is_virtual()) return;
+  const auto newest = seen();
+  if (!newest) return;
+  machine.observe(*newest, *model.virtual_axis);
+  Instant oldest = kNever;
+  bool held = true;
+  for (const ObjectId id : model.state_sources) {
+    if (store[id].refused) continue;
+    oldest = std::min(oldest, store[id].sent_at);
+    held = held && store[id].held;
+  }
+  store.make(model.statusword, machine.statusword(*newest), held, oldest, newest->exchange);
+}
+
+void AxisCore::make(ObjectId id, std::int64_t number) {
+  store.make(id, number);
+  if (id == model.controlword) machine.control(static_cast<std::uint16_t>(number), *model.virtual_axis);
+  refresh_virtual();
+}
+
+void AxisCore::started(MotionKind kind, bool relative) {
+  if (!is_virtual()) return;
+  std::optional<std::int64_t> goal;
+  const Binding* target = model.binding(Quantity::target_position);
+  const Binding* actual = model.binding(Quantity::position_actual);
+  if (kind == MotionKind::discrete && target != nullptr && store[target->object].known) {
+    goal = store[target->object].number;
+    if (relative) goal = *goal + store[actual->object].number;  // read at standstill, just before the start
+  }
+  machine.started(kind, goal, now, store.exchange());
+  refresh_virtual();
+}
+
+ObjectId AxisCore::to_read(ObjectId id) const {
+  if (id != model.statusword || !object(id).made) return id;
+  const auto older = [&](ObjectId a, ObjectId b) {
+    if (store[a].refused != store[b].refused) return store[b].refused;
+    return store[a].exchange < store[b].exchange;
+  };
+  return *std::min_element(model.state_sources.begin(), model.state_sources.end(), older);
+}
+
+bool AxisCore::cannot_deenergise() const {
+  if (!is_virtual()) return false;
+  const auto newest = seen();
+  return newest && machine.cannot_deenergise(*newest, *model.virtual_axis);
 }
 
 bool AxisCore::held_back(Quantity quantity) const {
@@ -89,7 +174,8 @@ const AlarmRow* active_alarm(const AxisCore& core) {
   for (const AlarmRow& row : core.drive.alarms) {
     const ObjectId id = core.model.fault_words[row.word];
     if (id == kNoObject || !core.store[id].known) continue;
-    if (((static_cast<std::uint64_t>(core.store[id].number) >> row.bit) & 1U) != 0) return &row;
+    const auto word = static_cast<std::uint64_t>(core.store[id].number);
+    if (row.value ? word == *row.value : ((word >> row.bit) & 1U) != 0) return &row;
   }
   return nullptr;
 }

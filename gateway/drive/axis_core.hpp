@@ -5,7 +5,9 @@
 
 #include "gateway/drive/model.hpp"
 #include "gateway/drive/motion.hpp"
+#include "gateway/drive/nvm_budget.hpp"
 #include "gateway/drive/object_store.hpp"
+#include "gateway/drive/virtual_axis.hpp"
 
 namespace axisgate::drive {
 
@@ -22,10 +24,21 @@ struct AxisCore {
   bool mode_chosen = false;                     ///< a client has chosen the mode since bring-up
   bool homed = false;                           ///< latched (design 3.1, discrete input 6)
   std::int32_t set_position_value = 0;          ///< row 78, the gateway's own
+  VirtualAxis machine{};                        ///< of a virtual axis alone
+  NvmBudget nvm{};
 
   /// link_state online or suspect.
   [[nodiscard]] bool reachable() const { return link == LinkState::online || link == LinkState::suspect; }
   [[nodiscard]] AxisFacts facts() const;
+  [[nodiscard]] bool is_virtual() const { return model.virtual_axis.has_value(); }
+  /// Virtual axes: makes the statusword from the newest samples.
+  void refresh_virtual();
+  /// Carries out the write of a `made` object.
+  void make(ObjectId id, std::int64_t number);
+  /// The drive has acknowledged a start. `relative`: the target is a distance.
+  void started(MotionKind kind, bool relative);
+  /// What must be read to know this object: itself, or, of a `made` statusword, the oldest of its samples.
+  [[nodiscard]] ObjectId to_read(ObjectId id) const;
   /// The newest number of the quantity in register units; none where there is no good one.
   [[nodiscard]] std::optional<std::int64_t> value(Quantity quantity) const;
   /// The unified number of the mode in force, 0 where it is unknown or the drive's number stands for none.
@@ -38,8 +51,13 @@ struct AxisCore {
   [[nodiscard]] bool held_back(Quantity target) const;
   /// The position a move uses: what a client asked for last, else what the drive holds.
   [[nodiscard]] std::optional<Wanted> target_position() const;
+  /// The bus cannot take this virtual axis's torque away, and it is not enabled.
+  [[nodiscard]] bool cannot_deenergise() const;
   /// Velocity and torque: what a client has asked for since the last stop, fault, disable or loss, else 0.
   [[nodiscard]] Wanted running_target(Quantity quantity) const;
+
+ private:
+  [[nodiscard]] std::optional<VirtualAxis::Seen> seen() const;
 };
 
 /// The fault words of an axis and what they mean: the first active row of the profile's alarm table.

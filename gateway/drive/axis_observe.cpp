@@ -12,6 +12,7 @@ void Axis::observe(Instant now) {
   core_.link = host_.link_state();
   const AxisFacts facts = core_.facts();
   core_.motion.observe(facts, core_.model.homing_timeout);
+  if (core_.is_virtual() && facts.reference) core_.homed = true;
   const bool homing = core_.motion.running() == MotionKind::homing;
   if (core_.link == LinkState::online && core_.model.homed && core_.store[core_.model.homed->object].held) {
     if (facts.reference && !homing) core_.homed = true;

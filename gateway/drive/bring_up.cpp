@@ -10,7 +10,8 @@ BringUp::BringUp(const DriveModel& model) : model_(model) {
   const auto add = [&](ObjectId id) {
     if (id != kNoObject && std::find(reads_.begin(), reads_.end(), id) == reads_.end()) reads_.push_back(id);
   };
-  for (const AxisModel& axis : model.axes) add(axis.statusword);  // the state comes before everything
+  for (const AxisModel& axis : model.axes)
+    for (const ObjectId id : axis.state_sources) add(id);  // the state comes before everything
   for (const ObjectWrite& setup : model.setup)
     if (model.object(setup.object).readable) add(setup.object);
   // What changes fastest is read last: the drive goes online with values that are still good.

@@ -99,11 +99,32 @@ Conversation::Move Conversation::granted(Instant now) {
     if (phase_ == Phase::command && !preparation_sent_) phase_ = Phase::preparation;
   }
   Move move = advance(now);
+  if (move.kind == Move::Kind::exchange && !within_nvm_budget(move.exchange, now)) {
+    fail(Errc::busy);
+    return {};
+  }
   if (move.kind == Move::Kind::exchange) {
     begun_ = sent_of_plan_ = true;
     if (phase_ == Phase::preparation) preparation_sent_ = true;
   }
   return move;
+}
+
+// A write that wears out the drive's memory is sent on change only.
+bool Conversation::object_is_held() const {
+  const ObjectRequest& o = *group_.object;
+  const ObjectId id = core_.drive.find({o.index, o.subindex});
+  if (!o.write || id == kNoObject) return false;
+  const ObjectDef& object = core_.object(id);
+  const bool wears = object.nvm != Nvm::no && !object.trigger && object.size == o.size;
+  return wears && core_.store[id].held && core_.store[id].number == object.number(o.data);
+}
+
+// Stops are exempt: a worn memory cell is the smaller harm.
+bool Conversation::within_nvm_budget(const bus::Exchange& exchange, Instant now) {
+  if (exchange.access == bus::Access::read || phase_ == Phase::stop) return true;
+  const ObjectId id = core_.drive.find(exchange.object);
+  return core_.nvm.take(id == kNoObject ? core_.drive.nvm : core_.object(id).nvm, now);
 }
 
 Conversation::Move Conversation::advance_object() const {
@@ -123,7 +144,7 @@ Conversation::Move Conversation::advance(Instant now) {
       continue;
     }
     if (phase_ == Phase::object) {
-      if (group_.object && !object_done_) return advance_object();
+      if (group_.object && !object_done_ && !object_is_held()) return advance_object();
       next_phase();
       continue;
     }
@@ -142,6 +163,10 @@ Conversation::Move Conversation::advance(Instant now) {
       reach(mark, now);
     } else if (action.kind == Action::Kind::wait) {
       if (const auto move = advance_wait(action, now)) return *move;
+    } else if (action.kind == Action::Kind::write && core_.object(action.object).made) {
+      const Action made = action;
+      pop();
+      core_.make(made.object, made.number);
     } else {
       return exchange_for(action);
     }
@@ -160,7 +185,7 @@ std::int64_t Conversation::number_of(const Action& action) const {
 }
 
 Conversation::Move Conversation::exchange_for(const Action& action) const {
-  const ObjectDef& object = core_.object(action.object);
+  const ObjectDef& object = core_.object(core_.to_read(action.object));
   bus::Exchange exchange{core_.drive.node, bus::Access::read, object.address, object.size, 0};
   if (action.kind == Action::Kind::write && !verifying_) {
     exchange.access = bus::Access::write;
@@ -197,7 +222,7 @@ std::optional<Conversation::Move> Conversation::advance_wait(const Action& actio
     if (action.optional) {
       pop();
     } else {
-      fail(action.otherwise, action.otherwise == Errc::state_unsuitable ? kDetailDeviceState : 0);
+      fail(action.otherwise, refusal(action.otherwise).detail);
     }
     return std::nullopt;
   }

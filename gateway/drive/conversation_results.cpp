@@ -1,4 +1,6 @@
 // What a conversation makes of an answer, and what it tells the motion rules at its turning points.
+#include <algorithm>
+
 #include "gateway/drive/conversation.hpp"
 
 namespace axisgate::drive {
@@ -28,7 +30,8 @@ void Conversation::on_write(const Action& action, const bus::ExchangeResult& res
   last_acknowledged_ = core_.store.exchange();
   switch (result.code) {
     case Errc::ok:
-      if (!trusted && core_.object(action.object).readable) {
+      // What a trigger object reads as proves nothing; whether the stop was seen, its wait tells.
+      if (!trusted && core_.object(action.object).readable && !core_.object(action.object).trigger) {
         core_.store.doubt(action.object);
         verifying_ = true;
         return;
@@ -80,8 +83,8 @@ void Conversation::on_read(ObjectId object, const bus::ExchangeResult& result) {
     } else if (!repeat_stop()) {
       fail(Errc::timed_out);
     }
-  } else if (action.kind == Action::Kind::read) {
-    pop();
+  } else if (action.kind == Action::Kind::read && (!core_.object(object).made || core_.store[object].held)) {
+    pop();  // a virtual axis's statusword may need more than one request
   }
 }
 
@@ -99,8 +102,13 @@ void Conversation::on_object(const bus::ExchangeResult& result) {
     last_acknowledged_ = core_.store.exchange();
     core_.store.doubt_all();
   } else {
-    result_.object_data = result.fields.front().raw;
-    result_.object_size = result.fields.front().size;
+    // Neighbours may have been read in the same request.
+    const bus::ObjectAddress asked{group_.object->index, group_.object->subindex};
+    const auto field = std::find_if(result.fields.begin(), result.fields.end(),
+                                    [&](const bus::ReplyField& f) { return f.object == asked; });
+    if (field == result.fields.end()) return fail(Errc::bad_reply);
+    result_.object_data = field->raw;
+    result_.object_size = field->size;
   }
 }
 
@@ -126,7 +134,10 @@ bool Conversation::overtaken_by_stop(Mark mark) const {
 void Conversation::reach(const Action& action, Instant now) {
   if (overtaken_by_stop(action.mark)) return;
   Motion& motion = core_.motion;
-  const auto start = [&](MotionKind kind) { motion.start(kind, group_.command_id, now, core_.store.exchange()); };
+  const auto start = [&](MotionKind kind) {
+    motion.start(kind, group_.command_id, now, core_.store.exchange());
+    core_.started(kind, action.number != 0);
+  };
   switch (action.mark) {
     case Mark::enabled:
       motion.enabled();

@@ -7,20 +7,22 @@
 
 namespace axisgate::drive {
 
-Drive::Drive(const DriveModel& model, bus::DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus,
-             Runtime& runtime, EventRing& events)
-    : model_(model),
+Drive::Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
+             EventRing& events)
+    : model_(std::move(model)),
       slot_(slot),
       bus_(bus),
       runtime_(runtime),
       events_(events),
-      store_(model.objects.size()),
-      plan_(model),
-      fence_(model.fence, model.objects),
-      bring_up_(model),
+      store_(model_.objects.size()),
+      plan_(model_),
+      fence_(model_.fence, model_.objects),
+      blocks_(model_),
+      constants_(model_.constants.size()),
+      bring_up_(model_),
       backoff_(bus.settings().timeout),
       timer_(runtime.make_timer([this] { on_time(); })) {
-  assert(images.size() == model.axes.size());
+  assert(images.size() == model_.axes.size());
   AxisHost& host = *this;
   for (std::size_t i = 0; i < images.size(); ++i)
     axes_.push_back(std::make_unique<Axis>(model_, static_cast<bus::AxisSlot>(i), store_, *images[i], host));
@@ -35,6 +37,11 @@ std::optional<GroupResult> Drive::submit(bus::AxisSlot axis, const Group& group,
   return result;
 }
 
+void Drive::client_gone(ClientId client) {
+  for (auto& axis : axes_) axis->on_client_gone(client);
+  bring_up_to_date();
+}
+
 AxisHost::Queued Drive::queue(bus::Order order) {
   order.drive = slot_;
   const auto admission = bus_.submit(order);
@@ -47,14 +54,11 @@ void Drive::event(AxisNumber axis, EventKind kind, std::uint32_t code, std::stri
 
 // --- What goes on the wire -----------------------------------------------------------------------------------------
 
-bus::Exchange Drive::read(ObjectId object) const {
-  return {model_.node, bus::Access::read, model_.object(object).address, model_.object(object).size, 0};
-}
-
 std::optional<bus::Exchange> Drive::on_grant(bus::OrderId id, bus::Priority) {
-  on_wire_ = {id, false, false, now()};
+  on_wire_ = {id, false, false, false, now()};
   auto exchange = id == 0 ? own_exchange() : exchange_of(id);
   if (exchange) {
+    widen(*exchange);
     store_.begin_exchange();
   } else {
     after_event();
@@ -90,15 +94,15 @@ std::optional<bus::Exchange> Drive::probe() {
     }
     fence_.waited_out();
   }
-  return read(model_.axes.front().statusword);
+  return plain_read();
 }
 
 std::optional<bus::Exchange> Drive::fence(bus::OrderId order) {
-  const auto object = fence_.candidate();
-  if (object && !fence_.exhausted()) {
+  const auto candidate = fence_.candidate();
+  if (candidate && !fence_.exhausted()) {
     fence_.fence_sent();
     on_wire_.fence = true;
-    return read(*object);
+    return read(*candidate);
   }
   if (now() < fence_.silent_until()) {
     if (order != 0) bus_.wait(order, fence_.silent_until());
@@ -106,7 +110,7 @@ std::optional<bus::Exchange> Drive::fence(bus::OrderId order) {
   }
   fence_.waited_out();
   on_wire_.fence = true;
-  return read(model_.axes.front().statusword);
+  return plain_read();
 }
 
 std::optional<bus::Exchange> Drive::poll() {
@@ -126,9 +130,14 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
         std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->insists(asked.order); });
     on_timeout(exchange, stop_insists);
   } else if (result.code == Errc::link_lost) {
-    fence_.lost(exchange.object, now());  // its reply may still come, after the line's return
+    fence_.lost(exchange, now());  // its reply may still come, after the line's return
   } else {
     on_answer(exchange, result);
+    // Nobody asked for the neighbours: whoever asked for the one asks again, in smaller company.
+    if (split(exchange, result)) {
+      after_event();
+      return;
+    }
   }
   const ObjectId written = exchange.access == bus::Access::write ? model_.find(exchange.object) : kNoObject;
   if (asked.order != 0) {
@@ -155,7 +164,8 @@ void Drive::on_write_without_owner(const bus::Exchange& exchange, const bus::Exc
 }
 
 void Drive::on_timeout(const bus::Exchange& exchange, bool stop_insists) {
-  fence_.lost(exchange.object, now());
+  fence_.lost(exchange, now());
+  if (on_wire_.widened) silent_read_ = exchange;
   store_.doubt_all();
   ++mute_;
   if (state_ == LinkState::offline) {
@@ -179,50 +189,19 @@ void Drive::on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& 
   // An error answer is no answered fence; the next candidate is tried.
   if (result.code == Errc::ok && (on_wire_.fence || on_wire_.probe)) {
     fence_.answered();
+    // It lives, and did not answer a longer read: after the second time that counts as a refusal.
+    if (silent_read_ && on_wire_.fence) static_cast<void>(blocks_.silent(*silent_read_));
+    silent_read_.reset();
     if (state_ == LinkState::suspect) {
       set_state(LinkState::online);
       for (auto& axis : axes_) axis->on_doubt();
     }
   }
-  if (result.code == Errc::refused_by_drive && on_wire_.fence) fence_.lost(exchange.object, now());
+  if (result.code == Errc::refused_by_drive && on_wire_.fence) fence_.lost(exchange, now());
   if (counts) store_fields(exchange, result);
   // The answer to a stop may be a late one: only what cannot be begins a bring-up.
   const bool not_there = state_ == LinkState::unknown || state_ == LinkState::offline;
   if (not_there && !fence_.suspect()) begin_bring_up(true);
-}
-
-void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
-  if (exchange.access != bus::Access::read) return;
-  if (result.code == Errc::refused_by_drive) {
-    // Unsupported: not asked again until the next bring-up. The statusword is asked for ever: without it there is no
-    // axis.
-    const ObjectId id = model_.find(exchange.object);
-    if (id == kNoObject) return;
-    plan_.done(id, now());
-    const bool state_itself =
-        std::any_of(axes_.begin(), axes_.end(), [&](const auto& a) { return a->core().model.statusword == id; });
-    if (state_itself) return;
-    store_.refused(id);
-    plan_.drop(id);
-    return;
-  }
-  for (const bus::ReplyField& field : result.fields) {
-    const ObjectId id = model_.find(field.object);
-    if (id == kNoObject) continue;
-    const ObjectDef& object = model_.object(id);
-    // A width other than the profile's is a wrong profile, not a value (JD sheet, K7): it is not shown.
-    if (field.size == object.size) {
-      store_.read(id, object.number(field.raw), on_wire_.sent_at);
-    } else if (!store_[id].refused) {
-      store_.refused(id);
-      plan_.drop(id);
-      event(axes_.front()->core().model.number, EventKind::warning, 0,
-            object.name + ": the drive answers " + std::to_string(field.size) + " bytes, the profile says " +
-                std::to_string(object.size) + ": not used");
-      continue;
-    }
-    plan_.done(id, now());
-  }
 }
 
 // --- Link and time -------------------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@
 #include "gateway/drive/axis.hpp"
 #include "gateway/drive/bring_up.hpp"
 #include "gateway/drive/fence.hpp"
+#include "gateway/drive/read_blocks.hpp"
 
 namespace axisgate::drive {
 
@@ -21,7 +22,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   static constexpr int kMuteTimeouts = 3;
 
   /// `images`: one per axis of the model, in its order. Everything referred to outlives the drive.
-  Drive(const DriveModel& model, bus::DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
+  Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
         EventRing& events);
 
   [[nodiscard]] std::optional<GroupResult> submit(bus::AxisSlot axis, const Group& group, GroupCallback on_result);
@@ -30,6 +31,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   [[nodiscard]] const DriveModel& model() const { return model_; }
   [[nodiscard]] LinkState link_state() const override { return state_; }
   [[nodiscard]] const ObjectStore& store() const { return store_; }
+  void client_gone(ClientId client);
 
   // BusDrive
   [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::OrderId id, bus::Priority priority) override;
@@ -43,6 +45,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
     bus::OrderId order = 0;  ///< 0: a poll or probe
     bool fence = false;
     bool probe = false;
+    bool widened = false;  ///< it reads neighbours that nobody asked for
     Instant sent_at = kLongAgo;
   };
 
@@ -54,6 +57,15 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) override;
 
   [[nodiscard]] bus::Exchange read(ObjectId object) const;
+  [[nodiscard]] bus::Exchange read(const FenceRead& fence) const;
+  /// A read that every drive of this type answers.
+  [[nodiscard]] bus::Exchange plain_read() const;
+  void widen(bus::Exchange& exchange);
+  /// A read of several objects that was refused: true where it is tried again in smaller parts.
+  [[nodiscard]] bool split(const bus::Exchange& exchange, const bus::ExchangeResult& result);
+  void store_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result);
+  void read_constants();
+  [[nodiscard]] bool tells_state(ObjectId object) const;
   [[nodiscard]] std::optional<bus::Exchange> probe();
   /// `order`: whose turn it takes; it waits where silence must be kept instead.
   [[nodiscard]] std::optional<bus::Exchange> fence(bus::OrderId order);
@@ -77,7 +89,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void on_time();
   [[nodiscard]] bool brought_up() const { return state_ == LinkState::online || state_ == LinkState::suspect; }
 
-  const DriveModel& model_;
+  DriveModel model_;  ///< its own: constants that are read from the drive change scales and limits
   bus::DriveSlot slot_;
   bus::Bus& bus_;
   Runtime& runtime_;
@@ -85,6 +97,9 @@ class Drive final : public bus::BusDrive, private AxisHost {
   ObjectStore store_;
   PollPlan plan_;
   Fence fence_;
+  ReadBlocks blocks_;
+  std::optional<bus::Exchange> silent_read_{};  ///< of a block, given up; whether the drive lives is not known yet
+  std::vector<std::optional<Rational>> constants_;
   BringUp bring_up_;
   bus::Backoff backoff_;
   std::vector<std::unique_ptr<Axis>> axes_;

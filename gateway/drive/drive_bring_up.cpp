@@ -52,10 +52,11 @@ void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::Exchange
   } else if (result.code == Errc::ok) {
     bring_up_.read_back_answered();
   }
-  const bool state_refused = !was_write && result.code == Errc::refused_by_drive &&
-                             exchange.object == model_.object(model_.axes.front().statusword).address;
-  // A drive that refuses its statusword is none we can speak for: it stays in setup and is asked again, slowly.
-  if (state_refused) bus_.wait(setup_order_, now() + std::chrono::seconds(1));
+  const bool state_refused =
+      !was_write && result.code == Errc::refused_by_drive && exchange.object == plain_read().object;
+  // A drive that refuses its statusword is none we can speak for: it stays in setup and is asked again, slowly; and so
+  // is one that is busy.
+  if (state_refused || (!was_write && result.for_now)) bus_.wait(setup_order_, now() + std::chrono::seconds(1));
 }
 
 void Drive::end_bring_up() {

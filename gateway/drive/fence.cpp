@@ -3,15 +3,40 @@
 #include <algorithm>
 
 namespace axisgate::drive {
+namespace {
 
-void Fence::lost(bus::ObjectAddress object, Instant now) {
-  last_lost_ = now;
-  if (std::find(lost_.begin(), lost_.end(), object) == lost_.end() && lost_.size() < kMaxLost) lost_.push_back(object);
+std::uint8_t registers_of(std::uint8_t bytes) { return bytes > 2 ? 2 : 1; }
+
+}  // namespace
+
+std::uint8_t registers_of(const bus::Exchange& exchange) {
+  if (exchange.more.empty()) return registers_of(exchange.size);
+  const bus::Neighbour& last = exchange.more.back();
+  return static_cast<std::uint8_t>(last.object.index - exchange.object.index + registers_of(last.size));
 }
 
-std::optional<ObjectId> Fence::candidate() const {
-  for (const ObjectId id : facts_.candidates)
-    if (std::find(lost_.begin(), lost_.end(), objects_[id].address) == lost_.end()) return id;
+Fence::Likeness Fence::of(const bus::Exchange& exchange) const {
+  if (!facts_.by_length) return {exchange.object, 0};
+  // The reply to a write has a function code of its own: no read's reply is like it.
+  return {{}, exchange.access == bus::Access::write ? std::uint8_t{0} : registers_of(exchange)};
+}
+
+Fence::Likeness Fence::of(const FenceRead& read) const {
+  const ObjectDef& object = objects_[read.object];
+  if (!facts_.by_length) return {object.address, 0};
+  return {{}, read.registers != 0 ? read.registers : registers_of(object.size)};
+}
+
+void Fence::lost(const bus::Exchange& exchange, Instant now) {
+  suspect_ = true;
+  last_lost_ = now;
+  const Likeness like = of(exchange);
+  if (std::find(lost_.begin(), lost_.end(), like) == lost_.end() && lost_.size() < kMaxLost) lost_.push_back(like);
+}
+
+std::optional<FenceRead> Fence::candidate() const {
+  for (const FenceRead& read : facts_.candidates)
+    if (std::find(lost_.begin(), lost_.end(), of(read)) == lost_.end()) return read;
   return std::nullopt;
 }
 

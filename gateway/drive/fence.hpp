@@ -1,6 +1,7 @@
 // The fence against late replies (design 7, point 4): after a timeout a drive is suspect until a read was answered
 // whose reply cannot be the reply to anything lost. Promises that no candidate is used whose reply a lost one could
-// pass for. Never sends: it says which object to read, or how long to keep silent.
+// pass for: by its object where replies name it, by its length on Modbus RTU, where they name nothing else. Never
+// sends: it says what to read, or how long to keep silent.
 #pragma once
 
 #include <boost/container/static_vector.hpp>
@@ -17,18 +18,19 @@ class Fence {
 
   Fence(const FenceFacts& facts, const std::vector<ObjectDef>& objects) : facts_(facts), objects_(objects) {}
 
-  /// An exchange with this object was given up.
-  void lost(bus::ObjectAddress object, Instant now);
+  /// This exchange was given up.
+  void lost(const bus::Exchange& exchange, Instant now);
   /// The fence was answered: a drive answers in order, so nothing older is left.
   void answered() {
+    suspect_ = false;
     lost_.clear();
     fences_ = 0;
   }
-  [[nodiscard]] bool suspect() const { return !lost_.empty(); }
+  [[nodiscard]] bool suspect() const { return suspect_; }
   /// All fences are used up.
   [[nodiscard]] bool exhausted() const { return fences_ >= kMaxFences; }
-  /// The object whose read is the next fence; none: no distinguishable one is left.
-  [[nodiscard]] std::optional<ObjectId> candidate() const;
+  /// The read that is the next fence; none: no distinguishable one is left.
+  [[nodiscard]] std::optional<FenceRead> candidate() const;
   void fence_sent() { ++fences_; }
   /// From then on every reply still owed by the drive would break its worst_reply: a plain read is safe.
   [[nodiscard]] Instant silent_until() const {
@@ -38,13 +40,26 @@ class Fence {
   void waited_out() { answered(); }
 
  private:
+  /// All by which the reply of a read can be told from others.
+  struct Likeness {
+    bus::ObjectAddress object;   ///< where replies name it
+    std::uint8_t registers = 0;  ///< where they do not
+    friend bool operator==(const Likeness&, const Likeness&) = default;
+  };
+  [[nodiscard]] Likeness of(const bus::Exchange& exchange) const;
+  [[nodiscard]] Likeness of(const FenceRead& read) const;
+
   const FenceFacts& facts_;
   const std::vector<ObjectDef>& objects_;
   // One lost exchange, its fences and the stops sent meanwhile (three repeats); more cannot be before it is offline.
   static constexpr std::size_t kMaxLost = 16;
-  boost::container::static_vector<bus::ObjectAddress, kMaxLost> lost_;
+  boost::container::static_vector<Likeness, kMaxLost> lost_;
   Instant last_lost_ = kLongAgo;
   int fences_ = 0;
+  bool suspect_ = false;
 };
+
+/// Registers from the first of the exchange's objects to the last.
+[[nodiscard]] std::uint8_t registers_of(const bus::Exchange& exchange);
 
 }  // namespace axisgate::drive

@@ -1,6 +1,7 @@
 #include "gateway/drive/model.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace axisgate::drive {
 namespace {
@@ -23,12 +24,22 @@ Range ObjectDef::range() const {
 }
 
 std::optional<std::int64_t> Binding::to_register(std::int64_t raw) const {
+  if (!codes.empty()) {
+    const auto code = std::find_if(codes.begin(), codes.end(), [&](const auto& c) { return c.second == raw; });
+    return code == codes.end() ? std::nullopt : std::optional(code->first);
+  }
+  if (!scaled) return std::nullopt;
   const std::optional<std::int64_t> value = raw_per_unit.inverse().scale(raw);
   if (!value || !range_of(row(quantity).type).holds(*value)) return std::nullopt;
   return value;
 }
 
 std::optional<std::int64_t> Binding::to_raw(std::int64_t value, const ObjectDef& object_def) const {
+  if (!codes.empty()) {
+    const auto code = std::find_if(codes.begin(), codes.end(), [&](const auto& c) { return c.first == value; });
+    return code == codes.end() ? std::nullopt : std::optional(code->second);
+  }
+  if (!scaled) return std::nullopt;
   const std::optional<std::int64_t> raw = raw_per_unit.scale(value);
   if (!raw || !object_def.range().holds(*raw)) return std::nullopt;
   return raw;
@@ -46,9 +57,60 @@ const Binding* AxisModel::binding(Quantity q) const {
   return at < 0 ? nullptr : &bindings[static_cast<std::size_t>(at)];
 }
 
+std::vector<ObjectId> constant_objects(const DriveModel& model) {
+  std::vector<ObjectId> out;
+  const auto add = [&](const DriveConstant::Operand& operand) {
+    if (operand.object != kNoObject && std::find(out.begin(), out.end(), operand.object) == out.end())
+      out.push_back(operand.object);
+  };
+  for (const DriveConstant& constant : model.constants) {
+    for (const DriveConstant::Rule& rule : constant.rules) {
+      add(rule.left);
+      add(rule.right);
+      for (const auto* operands : {&rule.mul, &rule.div}) std::for_each(operands->begin(), operands->end(), add);
+    }
+  }
+  return out;
+}
+
+std::optional<Rational> value_of(const DriveConstant& constant,
+                                 const std::function<std::optional<std::int64_t>(ObjectId)>& number_of) {
+  const auto number = [&](const DriveConstant::Operand& operand) -> std::optional<Rational> {
+    if (operand.object == kNoObject) return operand.number;
+    const std::optional<std::int64_t> known = number_of(operand.object);
+    return known ? std::optional(Rational(*known)) : std::nullopt;
+  };
+  try {
+    for (const DriveConstant::Rule& rule : constant.rules) {
+      if (rule.conditional) {
+        const auto left = number(rule.left);
+        const auto right = number(rule.right);
+        if (!left || !right) return std::nullopt;
+        if ((*left == *right) != rule.equal) continue;
+      }
+      Rational out(1);
+      for (const auto& operand : rule.mul) {
+        const auto factor = number(operand);
+        if (!factor) return std::nullopt;
+        out = out * *factor;
+      }
+      for (const auto& operand : rule.div) {
+        const auto factor = number(operand);
+        if (!factor || factor->numerator() == 0) return std::nullopt;
+        out = out / *factor;
+      }
+      return out;
+    }
+  } catch (const std::overflow_error&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
 ObjectId DriveModel::find(bus::ObjectAddress address) const {
-  const auto at = std::find_if(objects.begin(), objects.end(),
-                               [&](const ObjectDef& candidate) { return candidate.address == address; });
+  const auto at = std::find_if(objects.begin(), objects.end(), [&](const ObjectDef& candidate) {
+    return !candidate.made && candidate.address == address;
+  });
   return at == objects.end() ? kNoObject : static_cast<ObjectId>(at - objects.begin());
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,7 @@ struct ObjectDef {
   bool readable = true;
   bool writable = false;
   bool trigger = false;  ///< the write itself starts something: never skipped as unchanged, never repeated
+  bool made = false;     ///< not in the drive: statusword, controlword and mode of a virtual axis (virtual_axis.hpp)
   Nvm nvm = Nvm::no;
   /// The low `size` bytes as the number they stand for.
   [[nodiscard]] std::int64_t number(std::uint32_t raw) const;
@@ -52,6 +54,34 @@ struct BitField {
   bool inverted = false;
 };
 
+/// A number that must be read from the drive (profile: a constant's "first"): the product of objects and numbers of the
+/// first rule whose condition holds.
+struct DriveConstant {
+  struct Operand {
+    ObjectId object = kNoObject;  ///< kNoObject: `number`
+    Rational number{1};
+  };
+  struct Rule {
+    /// Without one: always. left compared with right.
+    bool conditional = false;
+    bool equal = true;  ///< "==", else "!="
+    Operand left, right;
+    std::vector<Operand> mul, div;
+  };
+  std::string name;
+  std::vector<Rule> rules;
+};
+
+/// What of a binding's scale and limits waits for constants that are read from the drive: raw_per_unit is made as
+/// fixed * product(mul) / product(div), and the limits anew from it. Without any, the binding is whole from the start.
+struct ScaleRecipe {
+  Rational fixed{1};
+  std::vector<std::size_t> mul, div;    ///< positions in DriveModel::constants
+  Range raw;                            ///< what the object takes
+  Range allowed{INT64_MIN, INT64_MAX};  ///< register units: profile and axis limits, and the register's type
+  [[nodiscard]] bool waits() const { return !mul.empty() || !div.empty(); }
+};
+
 /// How one quantity of one axis is had from, and written to, this drive.
 struct Binding {
   Quantity quantity{};
@@ -59,6 +89,10 @@ struct Binding {
   std::vector<BitField> bits;
   /// raw = register value * raw_per_unit, sign of an inverted axis included.
   Rational raw_per_unit{1};
+  ScaleRecipe recipe{};
+  bool scaled = true;  ///< false: `recipe` waits for the drive's constants; the quantity has no value until then
+  /// Codes that the drive numbers otherwise (homing methods): register value -> what the drive calls it. Empty: as is.
+  std::vector<std::pair<std::int64_t, std::int64_t>> codes{};
   PollClass poll = PollClass::normal;
   bool writable = false;
   Range limits;  ///< register units: profile, drive, width and axis limits together
@@ -86,7 +120,11 @@ struct Step {
     wait,     ///< read `until.object` until `until` holds, at most `limit`
     require,  ///< `until` must hold on a fresh read, else the command ends with `otherwise`
   };
-  enum class Source : std::uint8_t { literal, quantity };
+  enum class Source : std::uint8_t {
+    literal,
+    quantity,
+    set_position,  ///< row 78, in the units of `quantity`
+  };
   Verb verb = Verb::write;
   ObjectId object = kNoObject;
   Source source = Source::literal;
@@ -110,12 +148,15 @@ struct CommandDef {
   bool quick_stop_otherwise = false;  ///< in every other mode quick_stop takes its place (halt only)
   /// set_position: only the value 0 can be had (the drive's method makes the present position 0).
   bool zero_only = false;
+  /// run_velocity: a set-point written while it runs acts only if the steps are carried out once more.
+  bool repeat_on_change = false;
 };
 
 struct AlarmRow {
   std::uint8_t word = 0;  ///< 0 first, 1 second fault word
   std::uint8_t bit = 0;
-  std::uint16_t code = 0;  ///< CiA 402 603Fh
+  std::optional<std::uint32_t> value{};  ///< active while the word has this value, whatever `bit` says
+  std::uint16_t code = 0;                ///< CiA 402 603Fh
   std::string text;
   std::string remedy;
 };
@@ -142,6 +183,28 @@ struct Cia402Facts {
   bool mode_display = true;          ///< false: the mode object itself is read back
 };
 
+/// A drive that is no CiA 402 one: what the built-in machine goes by (design 2; virtual_axis.hpp).
+struct VirtualFacts {
+  Condition enabled;  ///< the drive holds torque
+  Condition fault;
+  std::optional<Condition> limit;
+  /// A motion is over when this holds, having been otherwise since it was started.
+  std::optional<Condition> reached;
+  std::int64_t within = 0;            ///< and the position is this near to where it should end, as the drive counts
+  std::optional<Condition> homed_at;  ///< and, after homing, this holds of the position
+  /// The bus cannot take the torque away: the gateway keeps the gate (design 3.4).
+  bool gate_only = false;
+  /// Where a quick stop ends: standing energised (quick stop active), or without torque.
+  bool quick_stop_energised = true;
+};
+
+/// A homing method works only if one of these objects (input functions) has this number.
+struct HomingNeed {
+  std::int16_t method = 0;
+  std::vector<ObjectId> any_of;
+  std::int64_t equals = 0;
+};
+
 struct AxisModel {
   AxisNumber number = 0;
   std::string name;
@@ -159,9 +222,14 @@ struct AxisModel {
   ObjectId mode_display = kNoObject;  ///< the mode object itself where there is no display
   std::array<ObjectId, 2> fault_words{kNoObject, kNoObject};
   Cia402Facts cia402;
+  std::optional<VirtualFacts> virtual_axis;  ///< statusword, controlword and mode are `made` objects then
+  /// What must be read to know the state: the statusword itself, or what a virtual axis makes it from. The first is
+  /// what a drive that is not there is asked for.
+  std::vector<ObjectId> state_sources;
   /// Unified mode -> what the drive calls it; absent: refused. In ascending order of the unified number.
   std::vector<std::pair<std::int16_t, std::int64_t>> modes;
   std::vector<std::int16_t> homing_methods;
+  std::vector<HomingNeed> homing_needs;
   /// Velocity and torque set-points that must hold 0 before torque comes on, those without a known unit included: 0 is
   /// 0 in any unit (Kinco's current set-points, where no rated current was configured).
   std::vector<ObjectId> zero_before_enable;
@@ -180,10 +248,28 @@ struct AxisModel {
   }
 };
 
+/// A read that can stand as a fence.
+struct FenceRead {
+  ObjectId object = kNoObject;
+  std::uint8_t registers = 0;  ///< Modbus RTU: so many from the object's register on; 0: the object as it is
+};
+
 /// What stands against a late reply after a timeout (design 7, point 4).
 struct FenceFacts {
-  std::vector<ObjectId> candidates;  ///< reads whose replies can be told from one another
+  std::vector<FenceRead> candidates;  ///< reads whose replies can be told from one another
+  /// Modbus RTU: the reply of a read tells its length and nothing else. Elsewhere a reply names its object.
+  bool by_length = false;
   Duration worst_reply = std::chrono::milliseconds(500);
+};
+
+/// How a drive speaks Modbus RTU, and what it can read at once.
+struct RtuFacts {
+  bool low_word_first = true;
+  std::uint8_t max_registers = 2;
+  std::vector<std::pair<std::uint16_t, std::uint16_t>> runs;  ///< first and last register of ranges without holes
+  std::vector<std::uint8_t> error_functions;  ///< bytes that mean an error although they are not function + 0x80
+  std::optional<std::uint8_t> broadcast;
+  Duration answer{};  ///< how long the drive waits before it answers
 };
 
 struct DriveModel {
@@ -192,6 +278,7 @@ struct DriveModel {
   std::string protocol;  ///< "kinco-serial"
   std::uint8_t node = 1;
   std::vector<ObjectDef> objects;
+  std::vector<DriveConstant> constants;  ///< those that are read from the drive
   std::vector<AxisModel> axes;
   std::vector<AlarmRow> alarms;  ///< in the order in which error_code looks for the first active one
   std::vector<ObjectWrite> setup;
@@ -200,12 +287,20 @@ struct DriveModel {
   Duration timeout =
       std::chrono::milliseconds(100);  ///< profile's reply timeout, for a bus whose configuration names none
   bool stops_by_itself = false;        ///< it notices a dead gateway on this protocol; else alarm no_comm_watchdog
-  /// A command that removes torque exists on the bus; else the gate rule of 3.4.
+  RtuFacts rtu;                        ///< Modbus RTU alone
+  Nvm nvm = Nvm::no;                   ///< of objects that are not in `objects` (the mailbox reaches them)
   std::array<Duration, 3> poll_period{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
                                       std::chrono::milliseconds(1000)};
 
   [[nodiscard]] const ObjectDef& object(ObjectId id) const { return objects[id]; }
   [[nodiscard]] ObjectId find(bus::ObjectAddress address) const;  ///< kNoObject where no object has it
 };
+
+/// What must be read to know DriveModel::constants, each object once.
+[[nodiscard]] std::vector<ObjectId> constant_objects(const DriveModel& model);
+/// The number of a constant by what the drive holds (`number_of` gives no value for what is not known); none where a
+/// rule cannot be judged, none applies or the result fits no rational number.
+[[nodiscard]] std::optional<Rational> value_of(const DriveConstant& constant,
+                                               const std::function<std::optional<std::int64_t>(ObjectId)>& number_of);
 
 }  // namespace axisgate::drive

@@ -115,7 +115,12 @@ void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
     return;
   }
   const bool seen_after_start = facts.statusword_exchange > started_by_ && !target_reached_masked_;
-  if (kind_ == MotionKind::discrete && seen_after_start && facts.target_reached) complete(facts.at);
+  if (kind_ == MotionKind::discrete && seen_after_start) {
+    if (facts.target_reached)
+      complete(facts.at);
+    else if (facts.motion_failed)
+      end(MotionState::failed);
+  }
   if (kind_ == MotionKind::homing && seen_after_start) observe_homing(facts, homing_timeout);
 }
 

@@ -25,6 +25,7 @@ struct AxisFacts {
   bool target_reached = false;
   bool reference = false;  ///< the drive says that it is homed
   bool homing_failed = false;
+  bool motion_failed = false;             ///< a move has ended elsewhere than at its target
   std::uint64_t statusword_exchange = 0;  ///< the exchange that gave the newest statusword
 
   [[nodiscard]] bool enabled() const { return reachable && state == State402::operation_enabled; }

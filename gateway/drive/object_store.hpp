@@ -18,6 +18,7 @@ struct ObjectState {
   bool unverified = false;     ///< acknowledged, but not read back yet
   bool unsure = false;         ///< a write of it may or may not have happened, and it was not read since
   bool clamped = false;        ///< read back other than it was acknowledged; until it is written again
+  bool made = false;           ///< the gateway's own (virtual axis): nothing makes it doubtful
   Instant sent_at = kLongAgo;  ///< when the request that gave the number was sent
   std::uint64_t exchange = 0;  ///< and which one it was: tells before from after where both fall on one instant
 };
@@ -44,6 +45,11 @@ class ObjectStore {
     at(id) = {
         .number = number, .known = true, .held = true, .unverified = true, .sent_at = sent_at, .exchange = exchange_};
   }
+  /// The gateway's own number, made from samples of this exchange; kLongAgo and 0: from none.
+  void make(ObjectId id, std::int64_t number, bool held = true, Instant sent_at = kLongAgo,
+            std::uint64_t exchange = 0) {
+    at(id) = {.number = number, .known = true, .held = held, .made = true, .sent_at = sent_at, .exchange = exchange};
+  }
   void refused(ObjectId id) { at(id) = {.refused = true}; }
   /// A write of it may or may not have happened.
   void doubt(ObjectId id) {
@@ -54,13 +60,17 @@ class ObjectStore {
   /// set_position (design 3.3).
   void doubt_all(ObjectId except = kNoObject) {
     for (std::size_t i = 0; i < states_.size(); ++i)
-      if (i != except) states_[i].held = states_[i].unverified = false;
+      if (i != except && !states_[i].made) states_[i].held = states_[i].unverified = false;
     ++doubts_;
   }
   /// How often doubt_all() was called: whoever keeps the image true reads everything anew then.
   [[nodiscard]] std::uint64_t doubts() const { return doubts_; }
-  /// Bring-up begins: nothing is known.
-  void forget_all() { states_.assign(states_.size(), ObjectState{}); }
+  void forget(ObjectId id) { at(id) = {}; }
+  /// Bring-up begins: nothing is known but what is the gateway's own.
+  void forget_all() {
+    for (ObjectState& s : states_)
+      if (!s.made) s = {};
+  }
 
  private:
   ObjectState& at(ObjectId id) {

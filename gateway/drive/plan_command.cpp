@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include "gateway/drive/planner.hpp"
 
@@ -16,6 +17,24 @@ std::optional<std::int64_t> homing_method(const AxisCore& core) {
   return listed ? core.homing_method : std::nullopt;
 }
 
+// The drive takes the position itself (row 78), not by a homing on the spot.
+bool by_value(const AxisCore& core) {
+  const auto& def = core.model.command(Command::set_position);
+  return def && std::any_of(def->steps.begin(), def->steps.end(),
+                            [](const Step& step) { return step.source == Step::Source::set_position; });
+}
+
+// The drive runs on and on towards a switch that no input listens to.
+bool switch_is_there(const AxisCore& core, std::int64_t method) {
+  for (const HomingNeed& need : core.model.homing_needs) {
+    if (need.method != method) continue;
+    if (std::none_of(need.any_of.begin(), need.any_of.end(),
+                     [&](ObjectId id) { return core.store[id].known && core.store[id].number == need.equals; }))
+      return false;
+  }
+  return true;
+}
+
 std::optional<std::int16_t> mode_needed(const AxisCore& core, Command command) {
   switch (command) {
     case Command::move_absolute:
@@ -26,8 +45,9 @@ std::optional<std::int16_t> mode_needed(const AxisCore& core, Command command) {
     case Command::run_torque:
       return kModeTorque;
     case Command::home:
-    case Command::set_position:
       return kModeHoming;
+    case Command::set_position:
+      return by_value(core) ? std::nullopt : std::optional(kModeHoming);
     case Command::enable:
       break;
     default:
@@ -60,7 +80,8 @@ Errc admissible(const AxisCore& core, Command command) {
       return there ? Errc::ok : Errc::bad_value;
     }
     case Command::home:
-      return homing_method(core) ? Errc::ok : Errc::bad_value;
+      if (!homing_method(core)) return Errc::bad_value;
+      return switch_is_there(core, *core.homing_method) ? Errc::ok : Errc::state_unsuitable;
     case Command::set_position: {
       const auto& def = core.model.command(command);
       if (def && def->zero_only && core.set_position_value != 0) return Errc::bad_value;
@@ -96,6 +117,9 @@ Plan plan_enable(const AxisCore& core) {
   add_running_targets(core, false, plan);
   add_target_here(core, plan);
   if (!add_command_steps(core, Command::enable, plan)) return plan;
+  // CiA 402-2 table 28: shutdown, switch on, enable operation.
+  constexpr std::array<std::uint16_t, 3> kSteps{0x0006, 0x0007, 0x000F};
+  for (const std::uint16_t word : kSteps) add_virtual_controlword(core, word, plan);
   plan.add(Action::at(Mark::enabled));
   return plan;
 }
@@ -142,8 +166,13 @@ Plan plan_move(const AxisCore& core, Command command) {
     written = true;
   }
   if (!written && !add_write(core, Quantity::target_position, *wanted, plan)) return Plan::refuse(Errc::bad_value);
+  const bool distance = command == Command::move_relative;
+  // A virtual axis tells by the position whether it arrived: where it starts must be known for that.
+  if (distance && core.is_virtual()) plan.add(Action::read(core.model.binding(Quantity::position_actual)->object));
   append(plan, std::move(steps));
-  plan.add(Action::at(Mark::start_discrete));
+  Action start = Action::at(Mark::start_discrete);
+  start.number = distance ? 1 : 0;
+  plan.add(std::move(start));
   return plan;
 }
 
@@ -154,10 +183,13 @@ Plan plan_run(const AxisCore& core, Command command) {
   const Binding* binding = core.model.binding(quantity);
   if (binding == nullptr) return Plan::refuse(Errc::not_supported);
   Plan plan;
+  // Where the drive must be told to run, it must know how fast before.
+  if (core.is_virtual() && !add_write(core, quantity, core.running_target(quantity), plan))
+    return Plan::refuse(Errc::bad_value);
   if (!add_command_steps(core, command, plan)) return plan;
-  const bool written = std::any_of(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
-    return a.kind == Action::Kind::write && a.object == binding->object;
-  });
+  const bool written = core.is_virtual() || std::any_of(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
+                         return a.kind == Action::Kind::write && a.object == binding->object;
+                       });
   if (!written && !add_write(core, quantity, core.running_target(quantity), plan)) return Plan::refuse(Errc::bad_value);
   plan.add(Action::at(velocity ? Mark::start_velocity : Mark::start_torque));
   return plan;
@@ -235,6 +267,10 @@ void add_steps(const AxisCore& core, const Steps& steps, Plan& plan) {
       case Step::Verb::write:
         if (step.source == Step::Source::literal) {
           plan.add(Action::write(step.object, step.literal));
+        } else if (step.source == Step::Source::set_position) {
+          const Binding* unit = core.model.binding(step.quantity);
+          const auto raw = unit->to_raw(core.set_position_value, core.object(step.object));
+          if (raw) plan.add(Action::write(step.object, *raw));
         } else if (step.quantity == Quantity::position_actual) {
           const Binding* actual = core.model.binding(Quantity::position_actual);
           if (actual == nullptr) break;

@@ -37,6 +37,7 @@ Plan plan_raw_homing(const AxisCore& core) {
 Plan plan_controlword(const AxisCore& core, std::uint16_t word) {
   const Request402 request = request_of(word);
   if (core.motion.pass(request) == Motion::Pass::refused) return Plan::refuse(Errc::state_unsuitable);
+  if (core.is_virtual()) return plan_virtual_controlword(core, word);
   Plan plan;
   const AxisFacts facts = core.facts();
   const std::uint16_t before = core.controlword();

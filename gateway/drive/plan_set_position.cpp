@@ -26,6 +26,13 @@ bool add_wait_for_counter(const AxisCore& core, Plan& plan) {
 }  // namespace
 
 Plan plan_set_position(const AxisCore& core, int mode_before) {
+  if (core.is_virtual()) {
+    Plan plan;
+    if (!add_command_steps(core, Command::set_position, plan)) return plan;
+    if (!add_wait_for_counter(core, plan)) return Plan::refuse(Errc::bad_value);
+    plan.add(Action::at(Mark::values_doubtful));
+    return plan;
+  }
   struct Borrowed {
     Quantity quantity;
     std::int64_t during;

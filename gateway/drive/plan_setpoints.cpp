@@ -67,8 +67,14 @@ bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Pl
   const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, object);
   if (!raw) return false;
   const ObjectState& state = core.store[binding->object];
-  const bool unchanged = state.held && state.number == *raw && !object.trigger;
-  if (!unchanged) plan.add(Action::write(binding->object, *raw));
+  if (state.held && state.number == *raw && !object.trigger) return true;
+  if (object.nvm != Nvm::no && !state.held && object.readable && !object.trigger && !state.refused) {
+    // Where a write wears out the drive's memory, it is looked at first.
+    plan.add(Action::read(binding->object));
+    plan.add(Action::at(Mark::look_again));
+    return true;
+  }
+  plan.add(Action::write(binding->object, *raw));
   return true;
 }
 
@@ -113,6 +119,8 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
 void add_target_here(const AxisCore& core, Plan& plan) {
   const Binding* target = core.model.binding(Quantity::target_position);
   const Binding* actual = core.model.binding(Quantity::position_actual);
+  // The target of a virtual axis starts nothing: only its command does.
+  if (core.is_virtual()) return;
   if (target == nullptr || actual == nullptr || !target->writable || core.object(target->object).trigger) return;
   plan.add(Action::read(actual->object));
   plan.add(Action::copy(actual->object, target->object));
@@ -126,6 +134,23 @@ void remember_setpoints(AxisCore& core, const Group& group) {
   }
   if (group.set_position_value) core.set_position_value = *group.set_position_value;
 }
+
+namespace {
+
+// A set-point that changed while the axis runs acts on some drives only if they are told to run once more.
+void add_changed_run(const AxisCore& core, const Group& group, Plan& plan) {
+  const auto& run = core.model.command(Command::run_velocity);
+  if (!run || !run->repeat_on_change || !core.facts().enabled() || group.command == Command::run_velocity) return;
+  const Binding* binding = core.model.binding(Quantity::target_velocity);
+  const bool changes = std::any_of(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
+    return a.kind == Action::Kind::write && a.object == binding->object;
+  });
+  if (!changes) return;
+  add_steps(core, run->steps, plan);
+  plan.add(Action::at(Mark::start_velocity));
+}
+
+}  // namespace
 
 Plan plan_setpoints(const AxisCore& core, const Group& group) {
   // Judged again: another client's limit may have been written since this one was admitted.
@@ -142,10 +167,12 @@ Plan plan_setpoints(const AxisCore& core, const Group& group) {
     if (max_first && sp.quantity == Quantity::position_limit_max && !add(sp)) return Plan::refuse(Errc::bad_value);
   for (const Setpoint& sp : group.setpoints)
     if (!(max_first && sp.quantity == Quantity::position_limit_max) && !add(sp)) return Plan::refuse(Errc::bad_value);
+  add_changed_run(core, group, plan);
   return plan;
 }
 
 Plan plan_mode(const AxisCore& core, std::int16_t mode) {
+  if (core.is_virtual()) return plan_virtual_mode(core, mode, false);
   Plan plan;
   const std::int64_t* raw = raw_mode(core, mode);
   if (raw == nullptr || core.model.mode == kNoObject) return Plan::refuse(Errc::bad_value);
@@ -168,6 +195,7 @@ Plan plan_mode(const AxisCore& core, std::int16_t mode) {
 }
 
 Plan plan_raw_mode(const AxisCore& core, std::int16_t mode) {
+  if (core.is_virtual()) return plan_virtual_mode(core, mode, true);
   Plan change = plan_mode(core, mode);
   Plan plan;
   if (!change.refused() && !change.actions.empty() && core.facts().enabled()) {

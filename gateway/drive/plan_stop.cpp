@@ -7,6 +7,8 @@ namespace {
 
 // How long a stop may take to show: a ramp at the drive's own deceleration. Meanwhile it is repeated (Conversation).
 constexpr Duration kStopLimit = std::chrono::seconds(5);
+// Controlwords of a virtual axis (CiA 402-2 table 28).
+constexpr std::uint16_t kSwitchedOn = 0x0007, kEnabled = 0x000F;
 
 Condition not_enabled(const AxisCore& core) {
   Condition c;
@@ -37,13 +39,16 @@ Plan quick_stop(const AxisCore& core) {
   Plan plan;
   if (!add_command_steps(core, Command::quick_stop, plan)) return plan;
   plan.actions.insert(plan.actions.begin() + 1, Action::at(Mark::quick_stopped));  // as soon as it is acknowledged
+  add_virtual_controlword(core, controlword::kEnableVoltage, plan);
   plan.add(Action::wait(not_enabled(core), kStopLimit));
   return plan;
 }
 
 Plan disable(const AxisCore& core) {
   Plan plan;
-  if (add_command_steps(core, Command::disable, plan)) plan.add(Action::wait(torque_off(core), kStopLimit));
+  if (!add_command_steps(core, Command::disable, plan)) return plan;
+  add_virtual_controlword(core, kSwitchedOn, plan);
+  plan.add(Action::wait(torque_off(core), kStopLimit));
   return plan;
 }
 
@@ -70,6 +75,7 @@ Plan halt(const AxisCore& core) {
     }
   }
   add_steps(core, *steps, plan);
+  if (core.facts().enabled()) add_virtual_controlword(core, controlword::kHalt | kEnabled, plan);
   return plan;
 }
 
@@ -80,6 +86,10 @@ Plan by_command(const AxisCore& core, Command command) {
 
 Plan by_controlword(const AxisCore& core, std::uint16_t word) {
   Plan plan;
+  if (core.is_virtual()) {
+    plan = by_command(core, request_of(word) == Request402::quick_stop ? Command::quick_stop : Command::disable);
+    if (plan.refused()) return plan;
+  }
   plan.add(Action::write(core.model.controlword, word));
   plan.add(Action::at(Mark::controlword_passed));
   const bool quick = request_of(word) == Request402::quick_stop;
@@ -112,7 +122,12 @@ bool halt_is_quick_stop(const AxisCore& core) {
 void add_end_of_halt(const AxisCore& core, Plan& plan) {
   const std::uint16_t word = core.controlword();
   if ((word & controlword::kHalt) == 0) return;
-  constexpr std::uint16_t kEnabled = 0x000F, kShutdown = 0x0006, kTake = 0x0030;  // new set-point, change at once
+  constexpr std::uint16_t kShutdown = 0x0006, kTake = 0x0030;  // new set-point, change at once
+  if (core.is_virtual()) {
+    // Bit 8 falling does nothing: what was halted is over.
+    plan.add(Action::write(core.model.controlword, word & static_cast<std::uint16_t>(~controlword::kHalt)));
+    return;
+  }
   if (!core.facts().enabled()) {
     plan.add(Action::write(core.model.controlword, kShutdown));  // ending a halt never enables
     return;

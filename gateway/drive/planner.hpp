@@ -45,6 +45,15 @@ void remember_setpoints(AxisCore& core, const Group& group);
 /// What must be written before a halt may end, and the controlword without bit 8.
 void add_end_of_halt(const AxisCore& core, Plan& plan);
 
+// --- Virtual axes --------------------------------------------------------------------------------------------------
+
+/// A raw controlword that is no stop, on an axis whose drive has none: its operation bits become the drive's commands.
+[[nodiscard]] Plan plan_virtual_controlword(const AxisCore& core, std::uint16_t controlword);
+/// The mode is the gateway's own: nothing is sent, but what runs in another one is halted before.
+[[nodiscard]] Plan plan_virtual_mode(const AxisCore& core, std::int16_t mode, bool asked_for);
+/// Appends the controlword in effect from now on; nothing where the drive has its own.
+void add_virtual_controlword(const AxisCore& core, std::uint16_t controlword, Plan& plan);
+
 // --- Building blocks -----------------------------------------------------------------------------------------------
 
 /// Appends another plan; false where that one is refused (its refusal becomes this plan's).

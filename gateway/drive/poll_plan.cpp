@@ -19,15 +19,17 @@ void add(std::vector<PollItem>& items, ObjectId object, PollClass poll_class) {
 std::vector<PollItem> poll_items(const DriveModel& model) {
   std::vector<PollItem> items;
   for (const AxisModel& axis : model.axes) {
-    // A PLC sees everything else through the statusword: it is never slower than fast.
-    add(items, axis.statusword, PollClass::fast);
-    add(items, axis.mode_display, PollClass::normal);
+    const auto read = [&](ObjectId id, PollClass poll_class) {
+      if (id != kNoObject && !model.object(id).made) add(items, id, poll_class);
+    };
+    // A PLC sees everything else through the statusword: it, or what it is made from, is never slower than fast.
+    for (const ObjectId source : axis.state_sources) read(source, PollClass::fast);
+    read(axis.mode_display, PollClass::normal);
     for (const ObjectId word : axis.fault_words) add(items, word, PollClass::normal);
     for (const auto* condition : {&axis.homed, &axis.homing_failed, &axis.moving})
       if (condition->has_value()) add(items, (*condition)->object, PollClass::normal);
     for (const Binding& binding : axis.bindings) {
-      if (binding.object != kNoObject && model.object(binding.object).readable)
-        add(items, binding.object, binding.poll);
+      if (binding.object != kNoObject && model.object(binding.object).readable) read(binding.object, binding.poll);
       for (const BitField& field : binding.bits) add(items, field.object, binding.poll);
     }
   }
@@ -35,7 +37,11 @@ std::vector<PollItem> poll_items(const DriveModel& model) {
   for (const AxisModel& axis : model.axes)
     for (const ObjectId id : axis.zero_before_enable)
       if (model.object(id).readable) add(items, id, PollClass::once);
+  for (const AxisModel& axis : model.axes)
+    for (const HomingNeed& need : axis.homing_needs)
+      for (const ObjectId id : need.any_of) add(items, id, PollClass::once);
   for (const Check& check : model.checks) add(items, check.bad.object, PollClass::once);
+  for (const ObjectId id : constant_objects(model)) add(items, id, PollClass::once);
   return items;
 }
 
@@ -66,6 +72,11 @@ std::optional<ObjectId> PollPlan::next(Instant now) const {
   const Entry* e = earliest();
   if (e == nullptr || e->due > now) return std::nullopt;
   return e->object;
+}
+
+bool PollPlan::due(ObjectId object, Instant now) const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [&](const Entry& e) { return e.object == object && e.due <= now; });
 }
 
 Instant PollPlan::next_due() const {

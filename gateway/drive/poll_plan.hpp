@@ -26,6 +26,7 @@ class PollPlan {
   void restart(Instant now);
   /// The object to read now: the one longest overdue. None before next_due().
   [[nodiscard]] std::optional<ObjectId> next(Instant now) const;
+  [[nodiscard]] bool due(ObjectId object, Instant now) const;
   /// kNever where nothing is polled.
   [[nodiscard]] Instant next_due() const;
   /// It was read (by whomever) or refused: due again one period after its due time, never more than once to catch up.

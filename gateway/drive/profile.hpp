@@ -23,10 +23,18 @@ enum class Base : std::uint8_t { rpm, rps, rpm_per_s, rps_per_s, rev, arms, perc
 using Factor = std::variant<Rational, std::string>;
 
 struct Constant {
+  /// Under "first": the product that the constant is, if its condition holds. Names are objects or other constants.
+  struct Rule {
+    bool conditional = false;
+    bool equal = true;
+    Factor left, right;
+    std::vector<Factor> mul, div;
+  };
   std::optional<Rational> standard;  ///< key "default"
   std::optional<Rational> min, max;
   bool required = false;
-  bool from_drive = false;  ///< rules under "first": read from the drive at bring-up
+  bool from_drive = false;  ///< key "first": read from the drive at bring-up
+  std::vector<Rule> rules;
   std::string text;
 };
 
@@ -126,6 +134,7 @@ struct CommandSpec {
   std::vector<StepSpec> steps;
   bool quick_stop_otherwise = false;
   bool zero_only = false;
+  bool repeat_on_change = false;
   std::string pointer;
 };
 
@@ -154,28 +163,45 @@ struct AlarmSpec {
   std::string text, remedy;
 };
 
+/// A read that may stand as a fence.
+struct FenceSpec {
+  std::string name;                  ///< an object; keya-*: or a request
+  std::vector<std::uint8_t> counts;  ///< modbus-rtu: registers
+};
+
 struct ProtocolSpec {
-  std::vector<std::string> fence;
+  std::vector<FenceSpec> fence;
   Duration worst_reply{};
   Duration timeout{};
   bool stops_by_itself = false;
   std::vector<std::string> requests;  ///< names of frames, keya-* only
+  RtuFacts rtu;                       ///< modbus-rtu only
 };
 
 struct StateSpec {
   bool is_virtual = false;
   bool setpoint_acknowledge = true;
   std::vector<std::string> zero_before_enable;
-  std::optional<ConditionSpec> moving;
+  std::optional<ConditionSpec> enabled, fault, moving, limit;
+  std::optional<ConditionSpec> reached;
+  std::int64_t within = 0;  ///< of position_actual, as the drive counts
+  bool gate_only = false;
+  bool quick_stop_energised = true;
 };
 
 struct HomingSpec {
+  struct Need {
+    std::vector<std::string> any_of;
+    std::int64_t equals = 0;
+  };
   std::map<std::int16_t, std::int64_t> methods;  ///< CiA 402 method -> what the drive calls it
-  std::optional<ConditionSpec> homed, failed;
+  std::map<std::int16_t, Need> needs;
+  std::optional<ConditionSpec> homed, failed, homed_at;
 };
 
 struct Profile {
   std::string name, title;
+  Nvm nvm = Nvm::unknown;         ///< of objects that do not say it, and of those that are not listed
   std::vector<std::string> axes;  ///< "A", "B": one for each motor
   std::map<std::string, Constant, std::less<>> constants;
   std::map<std::string, Unit, std::less<>> units;

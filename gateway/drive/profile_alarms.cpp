@@ -40,11 +40,14 @@ void read_alarm(Reading& reading, const json& node, const std::string& pointer, 
   if (static_cast<std::size_t>(word) >= words.size()) {
     reading.fault(pointer_to(pointer, "word"),
                   "there is no fault word " + std::to_string(word) + " under /alarms/words");
-  } else if (out.bit) {
+  } else {
     reading.each_meaning(words[out.word], [&](const Object& object) {
-      if (*out.bit >= 8 * object.type.size)
+      if (out.bit && *out.bit >= 8 * object.type.size)
         reading.fault(pointer_to(pointer, "bit"), "reaches beyond the " + std::to_string(8 * object.type.size) +
                                                       " bits of object \"" + object.name + "\"");
+      if (out.value && !object.numbers().holds(*out.value))
+        reading.fault(pointer_to(pointer, "value"), std::to_string(*out.value) + " does not fit object \"" +
+                                                        object.name + "\": it takes " + range_text(object.numbers()));
     });
   }
   if (!known.insert(std::to_string(word) + " " + active).second)
@@ -94,6 +97,7 @@ void read_setup(Reading& reading) {
     reading.each_meaning(out.object, [&](const Object& object) {
       if (object.trigger)
         reading.fault(pointer, "object \"" + object.name + "\" is a trigger: setup must never start anything");
+      for (const ValueSpec& value : out.values) reading.value_known(value, object, pointer_to(pointer, "value"));
     });
     reading.profile.setup.push_back(std::move(out));
   }

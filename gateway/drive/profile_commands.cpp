@@ -87,7 +87,10 @@ class StepReader {
     reading_.each_meaning(out.object, [&](const Object& object) {
       if (!object.writable)
         reading_.fault(pointer_to(out.pointer, "write"), "object \"" + object.name + "\" is read-only");
-      for (const ValueSpec& one : out.values) reading_.value_fits(one, object, at);
+      for (const ValueSpec& one : out.values) {
+        reading_.value_fits(one, object, at);
+        reading_.value_known(one, object, at);
+      }
     });
   }
 
@@ -126,6 +129,45 @@ void read_variants(Reading& reading, const json& node, CommandSpec& out) {
   }
 }
 
+/// Row 78 is converted as position_actual is: what it is written to must count alike.
+void check_set_position_value(Reading& reading, const CommandSpec& command, const StepSpec& step) {
+  if (std::none_of(step.values.begin(), step.values.end(),
+                   [](const ValueSpec& value) { return std::holds_alternative<SetPositionValue>(value); }))
+    return;
+  const std::string pointer = pointer_to(step.pointer, "value");
+  if (command.command != Command::set_position)
+    return reading.fault(pointer, "\"set_position_value\" belongs to the steps of set_position");
+  const QuantitySpec* actual = reading.profile.find(Quantity::position_actual);
+  if (actual == nullptr)
+    return reading.fault(pointer, "\"set_position_value\" counts as position_actual, which this profile does not have");
+  reading.each_meaning(step.object, [&](const Object& written) {
+    for (const std::string& name : actual->objects)
+      reading.each_meaning(name, [&](const Object& read) {
+        if (written.unit != (actual->unit.empty() ? read.unit : actual->unit))
+          reading.fault(pointer, "object \"" + written.name + "\" must have the unit of position_actual");
+      });
+  });
+}
+
+void check_values(Reading& reading, const CommandSpec& command) {
+  for (const StepSpec& step : command.steps) check_set_position_value(reading, command, step);
+  for (const CommandSpec::Variant& variant : command.variants)
+    for (const StepSpec& step : variant.steps) check_set_position_value(reading, command, step);
+}
+
+/// Keys that only one command has.
+void read_options(Reading& reading, const json& node, CommandSpec& out) {
+  out.zero_only = flag_in(node, "zero_only", false);
+  if (out.zero_only && out.command != Command::set_position)
+    reading.fault(pointer_to(out.pointer, "zero_only"), "belongs to set_position");
+  out.repeat_on_change = flag_in(node, "repeat_on_change", false);
+  if (out.repeat_on_change && out.command != Command::run_velocity)
+    reading.fault(pointer_to(out.pointer, "repeat_on_change"), "belongs to run_velocity");
+  out.quick_stop_otherwise = member(node, "otherwise") != nullptr;
+  if (out.quick_stop_otherwise && out.command != Command::halt)
+    reading.fault(pointer_to(out.pointer, "otherwise"), "only halt can be replaced by quick_stop");
+}
+
 void read_command(Reading& reading, const std::string& key, const json& node) {
   CommandSpec out;
   out.pointer = pointer_to("/commands", key);
@@ -142,14 +184,10 @@ void read_command(Reading& reading, const std::string& key, const json& node) {
   if (at != std::string::npos && !reading.profile.protocols.contains(out.protocol))
     reading.fault(out.pointer, "protocol \"" + out.protocol + "\" is not under /protocols" +
                                    hint(out.protocol, keys_in(reading.profile.protocols)));
-  out.zero_only = flag_in(node, "zero_only", false);
-  if (out.zero_only && out.command != Command::set_position)
-    reading.fault(pointer_to(out.pointer, "zero_only"), "belongs to set_position");
-  out.quick_stop_otherwise = member(node, "otherwise") != nullptr;
-  if (out.quick_stop_otherwise && out.command != Command::halt)
-    reading.fault(pointer_to(out.pointer, "otherwise"), "only halt can be replaced by quick_stop");
+  read_options(reading, node, out);
   read_variants(reading, node, out);
   out.steps = StepReader(reading).read(node, out.pointer);
+  check_values(reading, out);
   const bool everywhere = member(node, "steps") != nullptr || out.quick_stop_otherwise;
   if (!everywhere)
     reading.fault(out.pointer,

@@ -24,6 +24,7 @@ void read_head(Reading& reading, const std::string& file) {
   Profile& out = reading.profile;
   out.name = text_in(reading.document, "name");
   out.title = text_in(reading.document, "title");
+  out.nvm = nvm_named(text_in(reading.document, "nvm"));
   out.axes = names_in(reading.document, "axes");
   if (out.axes.empty()) out.axes = {"A"};
   if (std::set<std::string>(out.axes.begin(), out.axes.end()).size() != out.axes.size())
@@ -66,7 +67,8 @@ LoadedProfile load_profile(const std::string& path) {
   read_checks(reading);
   read_alarms(reading);
   check_protocols(reading);
-  check_constant_rules(reading);
+  read_constant_rules(reading);
+  check_state_places(reading);
   for (SchemaFault& fault : faults) out.faults.push_back({path, std::move(fault.pointer), std::move(fault.message)});
   return out;
 }

@@ -81,8 +81,6 @@ class PlaceReader {
   std::string pointer_;
 };
 
-Nvm nvm_named(const std::string& name) { return name == "no" ? Nvm::no : name == "yes" ? Nvm::yes : Nvm::unknown; }
-
 void read_access(const json& node, Object& out) {
   const std::string access = text_in(node, "access");
   out.readable = access != "wo";
@@ -123,7 +121,7 @@ void read_object(Reading& reading, const std::string& name, const json& node) {
   read_access(node, out);
   out.trigger = flag_in(node, "trigger", false);
   const std::string nvm = text_in(node, "nvm");
-  out.nvm = nvm_named(nvm.empty() ? text_in(reading.document, "nvm") : nvm);
+  out.nvm = nvm.empty() ? reading.profile.nvm : nvm_named(nvm);
   out.unit = text_in(node, "unit");
   if (!out.unit.empty() && !reading.profile.units.contains(out.unit))
     reading.fault(pointer_to(out.pointer, "unit"), "unknown unit \"" + out.unit + "\": not under /units" +
@@ -146,6 +144,8 @@ void read_object(Reading& reading, const std::string& name, const json& node) {
   }
   reading.profile.objects.push_back(std::move(out));
 }
+
+constexpr std::int64_t kLastRegister = 0xFFFF;
 
 /// The bits an object takes where it lies: two objects must not take the same ones.
 struct Extent {
@@ -175,6 +175,9 @@ void check_addresses(Reading& reading) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     for (const auto& [protocol, place] : objects[i].places) {
       const Extent mine = extent(protocol, objects[i], place);
+      if (protocol == "modbus-rtu" && mine.to > kLastRegister * 16 + 16)
+        reading.fault(pointer_to(pointer_to(objects[i].pointer, "at"), protocol),
+                      "is wider than one register, and there is none after " + std::to_string(kLastRegister));
       for (std::size_t j = 0; j < i; ++j) {
         const auto other = objects[j].places.find(protocol);
         if (other == objects[j].places.end() || are_aliases(objects[i], objects[j])) continue;

@@ -12,6 +12,8 @@ using nlohmann::json;
 namespace {
 
 constexpr std::int64_t kDefaultTimeoutMs = 100;
+constexpr std::int64_t kFirstErrorFunction = 0x80, kLastErrorFunction = 0xFF;  // bit 7 is what makes it one
+constexpr std::int64_t kLastRegister = 0xFFFF;
 
 Duration milliseconds(std::int64_t count) { return std::chrono::milliseconds(count); }
 
@@ -35,6 +37,64 @@ void read_requests(Reading& reading, const json& node, const std::string& pointe
     if (text_in(frame, "ack") == "none" && confirm.empty())
       reading.fault(at, "a request without an answer needs \"confirm\": what else would decide its outcome?");
   }
+}
+
+/// Ranges of registers without holes, in their order.
+void read_runs(Reading& reading, const json& node, const std::string& pointer, RtuFacts& out) {
+  const json* runs = member(node, "runs");
+  if (runs == nullptr || !runs->is_array()) return;
+  std::int64_t before = -1;
+  for (std::size_t i = 0; i < runs->size(); ++i) {
+    const json& run = (*runs)[i];
+    if (!run.is_array() || run.size() != 2) continue;
+    const std::int64_t first = whole(run[0]).value_or(-1);
+    const std::int64_t last = whole(run[1]).value_or(-1);
+    const std::string at = pointer_to(pointer_to(pointer, "runs"), i);
+    if (first < 0 || last > kLastRegister || first > last) {
+      reading.fault(
+          at, "must be two registers from 0 to " + std::to_string(kLastRegister) + ", the first not above the last");
+      continue;
+    }
+    if (first <= before) reading.fault(at, "begins before the run before it ends: runs are listed in ascending order");
+    before = std::max(before, last);
+    out.runs.emplace_back(static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last));
+  }
+}
+
+void read_rtu(Reading& reading, const json& node, const std::string& pointer, ProtocolSpec& out) {
+  out.rtu.low_word_first = text_in(node, "word_order") != "high-first";
+  out.rtu.max_registers = static_cast<std::uint8_t>(whole_in(node, "max_registers", out.rtu.max_registers));
+  if (const json* broadcast = member(node, "broadcast"); broadcast != nullptr && !broadcast->is_null())
+    out.rtu.broadcast = static_cast<std::uint8_t>(whole(*broadcast).value_or(0));
+  out.rtu.answer = milliseconds(whole_in(node, "answer_ms", 0));
+  if (out.timeout <= out.rtu.answer)
+    reading.fault(pointer_to(pointer, "answer_ms"), "must be below timeout_ms: no reply could ever come in time");
+  if (const json* functions = member(node, "accept_error_functions"); functions != nullptr && functions->is_array()) {
+    for (std::size_t i = 0; i < functions->size(); ++i) {
+      const std::int64_t function = whole((*functions)[i]).value_or(0);
+      if (function < kFirstErrorFunction || function > kLastErrorFunction)
+        reading.fault(pointer_to(pointer_to(pointer, "accept_error_functions"), i),
+                      "is no error function: they are 0x80 to 0xFF");
+      else
+        out.rtu.error_functions.push_back(static_cast<std::uint8_t>(function));
+    }
+  }
+  read_runs(reading, node, pointer, out.rtu);
+}
+
+std::vector<FenceSpec> fence_in(const json& node) {
+  std::vector<FenceSpec> out;
+  const json* fence = member(node, "fence");
+  if (fence == nullptr || !fence->is_array()) return out;
+  for (const json& entry : *fence) {
+    FenceSpec read;
+    read.name = entry.is_string() ? entry.get<std::string>() : text_in(entry, "object");
+    if (const json* counts = member(entry, "counts"); counts != nullptr && counts->is_array())
+      for (const json& count : *counts)
+        if (const auto number = whole(count)) read.counts.push_back(static_cast<std::uint8_t>(*number));
+    out.push_back(std::move(read));
+  }
+  return out;
 }
 
 void check_mapping(Reading& reading, const json& node, const std::string& pointer) {
@@ -74,6 +134,75 @@ void check_loss(Reading& reading, const std::string& protocol, const json& node,
   });
 }
 
+const Place* place_on(const Object& object, std::string_view protocol) {
+  const auto at = object.places.find(protocol);
+  return at == object.places.end() ? nullptr : &at->second;
+}
+
+std::int64_t registers_of(const Object& object, const Place& place) {
+  return place.type.value_or(object.type).size > 2 ? 2 : 1;
+}
+
+/// A fence longer than its object must lie where nothing is missing, so far as the profile says where that is.
+bool within_a_run(const RtuFacts& rtu, std::int64_t first, std::int64_t count) {
+  return rtu.runs.empty() || std::any_of(rtu.runs.begin(), rtu.runs.end(), [&](const auto& run) {
+           return first >= run.first && first + count - 1 <= run.second;
+         });
+}
+
+void check_counts(Reading& reading, const RtuFacts& rtu, const FenceSpec& fence, const std::string& pointer) {
+  const Object* object = reading.profile.find(fence.name, 0);
+  const Place* place = object == nullptr ? nullptr : place_on(*object, "modbus-rtu");
+  for (const std::int64_t count : fence.counts) {
+    if (count > rtu.max_registers)
+      reading.fault(pointer, "reads " + std::to_string(count) + " registers, more than max_registers, " +
+                                 std::to_string(rtu.max_registers));
+    if (place == nullptr) continue;  // told by check_fence()
+    const std::int64_t own = registers_of(*object, *place);
+    if (count < own) reading.fault(pointer, "reads only half of object \"" + object->name + "\"");
+    if (count > own && !within_a_run(rtu, place->address.index, count))
+      reading.fault(pointer, std::to_string(count) + " registers from " + std::to_string(place->address.index) +
+                                 " on do not lie within one of the runs");
+  }
+}
+
+void check_registers(Reading& reading, const ProtocolSpec& protocol, const std::string& pointer) {
+  for (const Object& object : reading.profile.objects) {
+    const Place* place = place_on(object, "modbus-rtu");
+    if (place == nullptr || registers_of(object, *place) <= protocol.rtu.max_registers) continue;
+    reading.fault(pointer_to(pointer, "max_registers"), "must be at least 2: object \"" + object.name + "\" takes two");
+    break;
+  }
+  std::set<int> lengths;
+  for (std::size_t i = 0; i < protocol.fence.size(); ++i) {
+    check_counts(reading, protocol.rtu, protocol.fence[i],
+                 pointer_to(pointer_to(pointer_to(pointer, "fence"), i), "counts"));
+    lengths.insert(protocol.fence[i].counts.begin(), protocol.fence[i].counts.end());
+  }
+  if (lengths.size() < 2)
+    reading.fault(pointer_to(pointer, "fence"),
+                  "needs at least two different counts: the reply of a read tells its length and nothing else");
+}
+
+void check_fence(Reading& reading, const std::string& name, const ProtocolSpec& protocol, const std::string& pointer) {
+  std::set<bus::ObjectAddress> addresses;
+  for (std::size_t i = 0; i < protocol.fence.size(); ++i) {
+    const std::string at = pointer_to(pointer_to(pointer, "fence"), i);
+    const std::string& wanted = protocol.fence[i].name;
+    // A fence may also be one of the protocol's own requests (Keya's queries).
+    if (std::find(protocol.requests.begin(), protocol.requests.end(), wanted) != protocol.requests.end()) continue;
+    if (!reading.names_object(wanted, at)) continue;
+    const Object& object = *reading.profile.find(wanted, 0);
+    const auto place = object.places.find(name);
+    if (place == object.places.end())
+      reading.fault(at, "object \"" + wanted + "\" has no address on " + name);
+    else if (!object.readable)
+      reading.fault(at, "object \"" + wanted + "\" cannot be read, so it is no fence");
+    else if (name != "modbus-rtu" && place->second.request.empty() && !addresses.insert(place->second.address).second)
+      reading.fault(at, "the same address stands in this fence already");
+  }
+}
+
 void check_keepalive(Reading& reading) {
   const json* keepalive = member(reading.document, "keepalive");
   if (keepalive == nullptr) return;
@@ -94,11 +223,10 @@ void read_protocols(Reading& reading) {
     out.worst_reply = milliseconds(whole_in(node, "worst_reply_ms", 0));
     const json* loss = member(node, "loss");
     out.stops_by_itself = loss != nullptr && !loss->is_null();
-    if (const json* fence = member(node, "fence"); fence != nullptr && fence->is_array())
-      for (const json& entry : *fence)
-        out.fence.push_back(entry.is_string() ? entry.get<std::string>() : text_in(entry, "object"));
+    out.fence = fence_in(node);
     const std::string pointer = pointer_to("/protocols", name);
     read_requests(reading, node, pointer, out);
+    if (name == "modbus-rtu") read_rtu(reading, node, pointer, out);
     if (out.worst_reply < out.timeout)
       reading.fault(pointer_to(pointer, "worst_reply_ms"),
                     "must be at least timeout_ms: it is how long a lost reply may still come");
@@ -115,22 +243,8 @@ void check_protocols(Reading& reading) {
       check_mapping(reading, *member(*section, name), pointer);
       check_loss(reading, name, *member(*section, name), pointer);
     }
-    std::set<bus::ObjectAddress> addresses;
-    for (std::size_t i = 0; i < protocol.fence.size(); ++i) {
-      const std::string at = pointer_to(pointer_to(pointer, "fence"), i);
-      const std::string& wanted = protocol.fence[i];
-      // A fence may also be one of the protocol's own requests (Keya's queries).
-      if (std::find(protocol.requests.begin(), protocol.requests.end(), wanted) != protocol.requests.end()) continue;
-      if (!reading.names_object(wanted, at)) continue;
-      const Object& object = *reading.profile.find(wanted, 0);
-      const auto place = object.places.find(name);
-      if (place == object.places.end())
-        reading.fault(at, "object \"" + wanted + "\" has no address on " + name);
-      else if (!object.readable)
-        reading.fault(at, "object \"" + wanted + "\" cannot be read, so it is no fence");
-      else if (name != "modbus-rtu" && place->second.request.empty() && !addresses.insert(place->second.address).second)
-        reading.fault(at, "the same address stands in this fence already");
-    }
+    check_fence(reading, name, protocol, pointer);
+    if (name == "modbus-rtu") check_registers(reading, protocol, pointer);
   }
 }
 

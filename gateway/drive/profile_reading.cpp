@@ -90,6 +90,17 @@ std::optional<DataType> type_named(std::string_view name) {
   return std::nullopt;
 }
 
+Nvm nvm_named(std::string_view name) { return name == "no" ? Nvm::no : name == "yes" ? Nvm::yes : Nvm::unknown; }
+
+bool waits_for_drive(const Profile& profile, const Unit& unit) {
+  const auto waits = [&](const Factor& factor) {
+    const auto* name = std::get_if<std::string>(&factor);
+    const auto constant = name == nullptr ? profile.constants.end() : profile.constants.find(*name);
+    return constant != profile.constants.end() && constant->second.from_drive;
+  };
+  return std::any_of(unit.mul.begin(), unit.mul.end(), waits) || std::any_of(unit.div.begin(), unit.div.end(), waits);
+}
+
 std::string range_text(const Range& range) { return std::to_string(range.min) + " to " + std::to_string(range.max); }
 
 std::string hint(std::string_view name, const std::vector<std::string>& known) {

@@ -40,6 +40,8 @@ class Reading {
   /// Readers of a value, shared by commands, setup and remedies.
   [[nodiscard]] std::vector<ValueSpec> values(const nlohmann::json& node, const std::string& pointer);
   void value_fits(const ValueSpec& value, const Object& object, const std::string& pointer);
+  /// For what is written without a further look: not an amount in a unit that waits for the drive.
+  void value_known(const ValueSpec& value, const Object& object, const std::string& pointer);
   [[nodiscard]] ConditionSpec condition(const nlohmann::json& node, const std::string& object,
                                         const std::string& pointer);
   /// "3000 rpm"; nothing where the schema has reported its form. An unknown constant is a fault.
@@ -59,6 +61,9 @@ class Reading {
 [[nodiscard]] std::int64_t whole_in(const nlohmann::json& node, std::string_view key, std::int64_t otherwise);
 [[nodiscard]] std::vector<std::string> names_in(const nlohmann::json& node, std::string_view key);
 [[nodiscard]] std::optional<DataType> type_named(std::string_view name);
+[[nodiscard]] Nvm nvm_named(std::string_view name);
+/// The unit counts by a constant that is read from the drive: nothing can be converted by it before that.
+[[nodiscard]] bool waits_for_drive(const Profile& profile, const Unit& unit);
 [[nodiscard]] std::string range_text(const Range& range);
 template <class Map>
 [[nodiscard]] std::vector<std::string> keys_in(const Map& map) {
@@ -84,7 +89,8 @@ void read_checks(Reading& reading);
 void read_alarms(Reading& reading);
 /// After all: what a section can only be judged by together with others.
 void check_protocols(Reading& reading);
-void check_constant_rules(Reading& reading);
+void read_constant_rules(Reading& reading);
+void check_state_places(Reading& reading);
 
 /// Reads "write"/"value"/"on"/"why" as setup and remedies have them.
 [[nodiscard]] WriteSpec read_write(Reading& reading, const nlohmann::json& node, const std::string& pointer);

@@ -1,4 +1,4 @@
-// resolve(): what this version can do, constants, objects, and what belongs to the whole drive.
+// resolve(): what this version can do, constants, objects, and how names, values and units become the model's.
 #include <algorithm>
 #include <stdexcept>
 
@@ -9,7 +9,7 @@ namespace axisgate::drive {
 namespace {
 
 /// The protocols whose adapters this version has.
-constexpr std::array<std::string_view, 1> kAvailable{"kinco-serial"};
+constexpr std::array<std::string_view, 2> kAvailable{"kinco-serial", "modbus-rtu"};
 
 std::string listed(const std::vector<std::string>& names) {
   std::string out;
@@ -32,23 +32,7 @@ void refuse_unavailable(Resolving& r) {
   }
   if (std::find(kAvailable.begin(), kAvailable.end(), protocol) == kAvailable.end())
     refuse("protocol \"" + protocol + "\"");
-  if (r.profile.state.is_virtual) refuse("state model \"virtual\", which profile \"" + r.profile.name + "\" needs,");
   if (r.profile.keepalive) refuse("\"keepalive\", which profile \"" + r.profile.name + "\" needs,");
-  for (const auto& [name, constant] : r.profile.constants)
-    if (constant.from_drive) refuse("constant \"" + name + "\" read from the drive (\"first\")");
-  if (std::any_of(r.profile.alarms.begin(), r.profile.alarms.end(),
-                  [](const AlarmSpec& row) { return row.value.has_value(); }))
-    refuse("an alarm table by \"value\"");
-  const auto sets_position = [](const StepSpec& step) {
-    return std::any_of(step.values.begin(), step.values.end(),
-                       [](const ValueSpec& value) { return std::holds_alternative<SetPositionValue>(value); });
-  };
-  for (const CommandSpec& command : r.profile.commands)
-    if (std::any_of(command.steps.begin(), command.steps.end(), sets_position))
-      refuse("\"set_position_value\" in a step");
-  if (std::any_of(r.profile.homing.methods.begin(), r.profile.homing.methods.end(),
-                  [](const auto& row) { return row.first != row.second; }))
-    refuse("a translation of homing methods");
 }
 
 }  // namespace
@@ -92,6 +76,65 @@ std::optional<ObjectWrite> Resolving::write(const WriteSpec& spec, bus::AxisSlot
   const std::optional<std::int64_t> value = raw(spec.values, spec.object, slot);
   if (!value) return std::nullopt;
   return ObjectWrite{object, *value, spec.why};
+}
+
+std::optional<DriveConstant::Operand> Resolving::operand(const Factor& factor) const {
+  if (const std::optional<Rational> number = value_of(factor, constants))
+    return DriveConstant::Operand{kNoObject, *number};
+  const auto& name = std::get<std::string>(factor);
+  const ObjectId object = profile.constants.contains(name) ? kNoObject : id(name, 0);
+  if (object == kNoObject) return std::nullopt;
+  return DriveConstant::Operand{object, Rational(1)};
+}
+
+/// Position in the model, where it is put at its first need. None where it is not read from the drive, or a rule needs
+/// what is not there: a rule left out could make another one true.
+std::optional<std::size_t> Resolving::drive_constant(const std::string& name) {
+  const auto named = [&](const DriveConstant& constant) { return constant.name == name; };
+  const auto at = std::find_if(model.constants.begin(), model.constants.end(), named);
+  if (at != model.constants.end()) return static_cast<std::size_t>(at - model.constants.begin());
+  DriveConstant out;
+  out.name = name;
+  for (const Constant::Rule& spec : profile.constants.find(name)->second.rules) {
+    DriveConstant::Rule rule{spec.conditional, spec.equal, {}, {}, {}, {}};
+    if (spec.conditional) {
+      const auto left = operand(spec.left);
+      const auto right = operand(spec.right);
+      if (!left || !right) return std::nullopt;
+      rule.left = *left;
+      rule.right = *right;
+    }
+    for (const auto& [from, to] : {std::pair(&spec.mul, &rule.mul), std::pair(&spec.div, &rule.div)}) {
+      for (const Factor& factor : *from) {
+        const auto one = operand(factor);
+        if (!one) return std::nullopt;
+        to->push_back(*one);
+      }
+    }
+    out.rules.push_back(std::move(rule));
+  }
+  if (out.rules.empty()) return std::nullopt;
+  model.constants.push_back(std::move(out));
+  return model.constants.size() - 1;
+}
+
+std::optional<ScaleRecipe> Resolving::recipe(const Unit& unit) {
+  ScaleRecipe out;
+  const auto add = [&](const Factor& factor, bool divides) {
+    if (const std::optional<Rational> value = value_of(factor, constants)) {
+      if (divides && value->numerator() == 0) return false;
+      out.fixed = divides ? out.fixed / *value : out.fixed * *value;
+      return true;
+    }
+    const std::optional<std::size_t> at = drive_constant(std::get<std::string>(factor));
+    if (at) (divides ? out.div : out.mul).push_back(*at);
+    return at.has_value();
+  };
+  const auto all = [&](const std::vector<Factor>& factors, bool divides) {
+    return std::all_of(factors.begin(), factors.end(), [&](const Factor& factor) { return add(factor, divides); });
+  };
+  if (!all(unit.mul, false) || !all(unit.div, true)) return std::nullopt;  // a constant nobody gave
+  return out;
 }
 
 void resolve_constants(Resolving& r) {
@@ -165,8 +208,9 @@ std::variant<DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded
     for (std::size_t i = 0; i < input.axes.size(); ++i) {
       const auto slot = static_cast<bus::AxisSlot>(i);
       r.model.axes.emplace_back();
+      if (r.profile.state.is_virtual) make_objects(r, slot);
       resolve_quantities(r, slot);
-      resolve_modes(r, slot);
+      resolve_state(r, slot);
       resolve_commands(r, slot);
     }
     resolve_drive(r);

@@ -75,6 +75,8 @@ class AxisQuantities {
 
  private:
   std::optional<Binding> bind(const QuantityRow& row) {
+    if (r_.profile.state.is_virtual)
+      if (std::optional<Binding> made = bind_made(row)) return made;
     const QuantitySpec* spec = r_.profile.find(axis_.inverted ? opposite(row.quantity) : row.quantity);
     if (spec == nullptr) return row.quantity == Quantity::error_code ? from_alarm_table() : std::nullopt;
     Binding out;
@@ -87,6 +89,30 @@ class AxisQuantities {
       if (out.object != kNoObject) return scaled(row, *spec, *r_.profile.find(name, slot_), std::move(out));
     }
     return std::nullopt;
+  }
+
+  /// Statusword, controlword and mode of a virtual axis: the gateway's own objects hold the registers' numbers.
+  std::optional<Binding> bind_made(const QuantityRow& row) const {
+    Binding out;
+    out.quantity = row.quantity;
+    switch (row.quantity) {
+      case Quantity::statusword:
+        out.object = model_.statusword;
+        break;
+      case Quantity::controlword:
+        out.object = model_.controlword;
+        break;
+      case Quantity::mode_display:
+      case Quantity::mode:
+        out.object = model_.mode;
+        break;
+      default:
+        return std::nullopt;
+    }
+    out.poll = row.writable ? PollClass::once : PollClass::fast;
+    out.writable = row.writable;
+    out.limits = intersection(range_of(row.type), r_.model.object(out.object).range());
+    return out;
   }
 
   /// error_code is read from no object where the profile has an alarm table: it follows from the fault words.
@@ -122,23 +148,43 @@ class AxisQuantities {
   std::optional<Binding> scaled(const QuantityRow& row, const QuantitySpec& spec, const Object& object, Binding out) {
     if (row.kind != Kind::code) {
       const Unit& unit = r_.profile.units.find(spec.unit.empty() ? object.unit : spec.unit)->second;
-      const std::optional<Rational> scale = raw_per_base(unit, r_.constants);
-      if (!scale) return std::nullopt;  // a constant nobody gave: not supported, never guessed
-      out.raw_per_unit = *scale * base_per_register(unit.base, axis_.units_per_rev);
-      if (axis_.inverted && is_directed(row)) out.raw_per_unit = out.raw_per_unit * Rational(-1);
+      std::optional<ScaleRecipe> recipe = r_.recipe(unit);
+      if (!recipe) return std::nullopt;  // not supported, never guessed
+      recipe->fixed = recipe->fixed * base_per_register(unit.base, axis_.units_per_rev);
+      if (axis_.inverted && is_directed(row)) recipe->fixed = recipe->fixed * Rational(-1);
+      out.scaled = !recipe->waits();
+      if (out.scaled)
+        out.raw_per_unit = recipe->fixed;
+      else
+        out.recipe = std::move(*recipe);
     }
     const ObjectDef& def = r_.model.object(out.object);
     out.writable = row.writable && def.writable;
     // What cannot be read back is no quantity, except where writing is all there is to it.
     if (!out.writable && !def.readable) return std::nullopt;
+    if (row.quantity == Quantity::homing_method) translate(out);
     if (row.writable) limit(row, spec, object, def, out);
+    if (!out.scaled) {
+      out.recipe.raw = intersection(object.numbers(), def.range());
+      out.recipe.allowed = out.limits;
+    }
     return out;
+  }
+
+  /// A drive that numbers its homing methods otherwise: the register has CiA 402's.
+  void translate(Binding& out) const {
+    const auto& methods = r_.profile.homing.methods;
+    if (std::all_of(methods.begin(), methods.end(), [](const auto& row) { return row.first == row.second; })) return;
+    out.codes.assign(methods.begin(), methods.end());
   }
 
   void limit(const QuantityRow& row, const QuantitySpec& spec, const Object& object, const ObjectDef& def,
              Binding& out) {
     const Range raw = intersection(object.numbers(), def.range());
-    out.limits = intersection(out.limits, registers_within(raw, out.raw_per_unit));
+    if (!out.codes.empty())
+      out.limits = {out.codes.front().first, out.codes.back().first};
+    else if (out.scaled)
+      out.limits = intersection(out.limits, registers_within(raw, out.raw_per_unit));
     out.limits = intersection(out.limits, profile_limit(spec));
     const AxisLimit own = axis_limit(axis_, row);
     const Range allowed = intersection(out.limits, own.range);

@@ -33,16 +33,25 @@ class Resolving {
   [[nodiscard]] std::optional<std::int64_t> raw(const std::vector<ValueSpec>& values, std::string_view object,
                                                 bus::AxisSlot slot) const;
   [[nodiscard]] std::optional<ObjectWrite> write(const WriteSpec& spec, bus::AxisSlot slot) const;
+  /// What a unit makes of a number, before the axis's own factors: known now, or once constants of the drive are.
+  [[nodiscard]] std::optional<ScaleRecipe> recipe(const Unit& unit);
 
   std::map<std::string, ObjectId, std::less<>> ids;  ///< by full name
+
+ private:
+  [[nodiscard]] std::optional<std::size_t> drive_constant(const std::string& name);
+  [[nodiscard]] std::optional<DriveConstant::Operand> operand(const Factor& factor) const;
 };
 
 // The parts, in their order.
 void resolve_constants(Resolving& resolving);
 void resolve_objects(Resolving& resolving);
-/// Bindings, limits, roles, modes and homing of the axis at `slot`.
+/// The objects that the gateway makes for a virtual axis.
+void make_objects(Resolving& resolving, bus::AxisSlot slot);
+/// Bindings and limits of the axis at `slot`.
 void resolve_quantities(Resolving& resolving, bus::AxisSlot slot);
-void resolve_modes(Resolving& resolving, bus::AxisSlot slot);
+/// How its state is known, its modes and its homing.
+void resolve_state(Resolving& resolving, bus::AxisSlot slot);
 void resolve_commands(Resolving& resolving, bus::AxisSlot slot);
 void resolve_drive(Resolving& resolving);
 

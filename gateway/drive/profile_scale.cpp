@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <stdexcept>
 
 namespace axisgate::drive {
 namespace {
@@ -19,6 +20,26 @@ Int128 floor_of(Int128 numerator, Int128 denominator) {
 }
 
 Int128 ceiling_of(Int128 numerator, Int128 denominator) { return -floor_of(-numerator, denominator); }
+
+std::optional<Rational> scale_of(const ScaleRecipe& recipe, const std::vector<std::optional<Rational>>& constants) {
+  const auto known = [&](std::size_t at) { return at < constants.size() ? constants[at] : std::nullopt; };
+  Rational out = recipe.fixed;
+  try {
+    for (const std::size_t at : recipe.mul) {
+      const std::optional<Rational> value = known(at);
+      if (!value || value->numerator() <= 0) return std::nullopt;
+      out = out * *value;
+    }
+    for (const std::size_t at : recipe.div) {
+      const std::optional<Rational> value = known(at);
+      if (!value || value->numerator() <= 0) return std::nullopt;
+      out = out / *value;
+    }
+  } catch (const std::overflow_error&) {
+    return std::nullopt;
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -90,5 +111,17 @@ Range registers_within(const Range& raw, const Rational& raw_per_register) {
 }
 
 Range intersection(const Range& a, const Range& b) { return {std::max(a.min, b.min), std::min(a.max, b.max)}; }
+
+void apply_recipe(Binding& binding, const std::vector<std::optional<Rational>>& constants, const ObjectDef& object) {
+  const ScaleRecipe& recipe = binding.recipe;
+  if (!recipe.waits()) return;
+  const std::optional<Rational> scale = scale_of(recipe, constants);
+  binding.scaled = scale.has_value();
+  binding.limits = recipe.allowed;
+  if (!scale) return;
+  binding.raw_per_unit = *scale;
+  if (row(binding.quantity).writable)
+    binding.limits = intersection(recipe.allowed, registers_within(intersection(recipe.raw, object.range()), *scale));
+}
 
 }  // namespace axisgate::drive

@@ -29,4 +29,10 @@ using Constants = std::map<std::string, Rational, std::less<>>;
 [[nodiscard]] Range registers_within(const Range& raw, const Rational& raw_per_register);
 [[nodiscard]] Range intersection(const Range& a, const Range& b);
 
+/// Makes scale and limits of a binding whose recipe waits for the drive's constants (model.hpp) out of what they are
+/// now: by position in DriveModel::constants, no value where one is not known. Afterwards the binding is as if they had
+/// been configured; it has no scale where a constant is not known, not above 0, or makes more than 64 bits. Limits may
+/// then hold nothing at all (first above second). Never throws; leaves a binding that waits for nothing alone.
+void apply_recipe(Binding& binding, const std::vector<std::optional<Rational>>& constants, const ObjectDef& object);
+
 }  // namespace axisgate::drive

@@ -61,48 +61,77 @@ std::vector<Factor> factors(Reading& reading, const json& node, std::string_view
   return out;
 }
 
-void check_operand(Reading& reading, const json& operand, const std::string& pointer) {
-  if (whole(operand) || !operand.is_string()) return;
-  const std::string name = operand;
-  if (!reading.profile.constants.contains(name)) reading.names_object(name, pointer);
+/// What a rule of a drive's constant is made of: a number, an object, or a constant that is known beforehand.
+Factor operand_in(Reading& reading, const json& node, const std::string& pointer) {
+  if (const std::optional<std::int64_t> number = whole(node)) return Rational(*number);
+  if (!node.is_string()) return Rational(1);
+  const std::string name = node;
+  const auto constant = reading.profile.constants.find(name);
+  if (constant != reading.profile.constants.end()) {
+    if (constant->second.from_drive)
+      reading.fault(pointer, "constant \"" + name + "\" is itself read from the drive: name the objects it comes from");
+    return name;
+  }
+  if (!reading.names_object(name, pointer)) return name;
+  std::size_t meanings = 0;
+  reading.each_meaning(name, [&](const Object& object) {
+    ++meanings;
+    if (!object.readable) reading.fault(pointer, "object \"" + object.name + "\" cannot be read");
+  });
+  if (meanings > 1)
+    reading.fault(pointer, "\"" + name + "\" is another object on each axis, and a constant is the whole drive's: " +
+                               "name one of them, \"" + reading.profile.axes.front() + "." + name + "\"");
+  return name;
 }
 
-void check_operator(Reading& reading, const json& text, std::initializer_list<std::string_view> known,
-                    const std::string& pointer) {
-  if (!text.is_string() || std::find(known.begin(), known.end(), text.get_ref<const std::string&>()) == known.end())
-    reading.fault(pointer, text.dump() + " is no operator here; use " + std::string(*known.begin()) + " or " +
-                               std::string(*(known.end() - 1)));
+/// Whether it is the first of the two operators rather than the second.
+bool operator_in(Reading& reading, const json& text, std::string_view first, std::string_view second,
+                 const std::string& pointer) {
+  const std::string given = text.is_string() ? text.get<std::string>() : std::string();
+  if (given != first && given != second)
+    reading.fault(pointer,
+                  text.dump() + " is no operator here; use " + std::string(first) + " or " + std::string(second));
+  return given == first;
+}
+
+void read_product(Reading& reading, const json& value, const std::string& pointer, Constant::Rule& out) {
+  if (value.size() % 2 == 0) reading.fault(pointer, "ends with an operator");
+  bool multiplies = true;
+  for (std::size_t k = 0; k < value.size(); ++k) {
+    if (k % 2 == 0)
+      (multiplies ? out.mul : out.div).push_back(operand_in(reading, value[k], pointer));
+    else
+      multiplies = operator_in(reading, value[k], "*", "/", pointer);
+  }
+}
+
+Constant::Rule read_rule(Reading& reading, const json& node, bool last, const std::string& pointer) {
+  Constant::Rule out;
+  const json* condition = member(node, "if");
+  const std::string at = pointer_to(pointer, "if");
+  if (condition != nullptr && condition->is_array() && condition->size() == 3) {
+    out.conditional = true;
+    out.left = operand_in(reading, (*condition)[0], at);
+    out.equal = operator_in(reading, (*condition)[1], "==", "!=", at);
+    out.right = operand_in(reading, (*condition)[2], at);
+  } else if (condition == nullptr && !last) {
+    reading.fault(pointer, "without \"if\" this rule always holds: those after it are never used");
+  }
+  if (const json* value = member(node, "value"); value != nullptr && value->is_array())
+    read_product(reading, *value, pointer_to(pointer, "value"), out);
+  return out;
 }
 
 }  // namespace
 
-void check_constant_rules(Reading& reading) {
-  const json* section = member(reading.document, "constants");
-  if (section == nullptr || !section->is_object()) return;
-  for (const auto& [name, node] : section->items()) {
-    const json* rules = member(node, "first");
+void read_constant_rules(Reading& reading) {
+  for (auto& [name, constant] : reading.profile.constants) {
+    if (!constant.from_drive) continue;
+    const json* rules = member(reading.document["constants"][name], "first");
     if (rules == nullptr || !rules->is_array()) continue;
     const std::string pointer = pointer_to(pointer_to("/constants", name), "first");
-    for (std::size_t i = 0; i < rules->size(); ++i) {
-      const std::string at = pointer_to(pointer, i);
-      const json* condition = member((*rules)[i], "if");
-      if (condition != nullptr && condition->is_array() && condition->size() == 3) {
-        check_operand(reading, (*condition)[0], pointer_to(at, "if"));
-        check_operator(reading, (*condition)[1], {"==", "!="}, pointer_to(at, "if"));
-        check_operand(reading, (*condition)[2], pointer_to(at, "if"));
-      } else if (condition == nullptr && i + 1 < rules->size()) {
-        reading.fault(at, "without \"if\" this rule always holds: those after it are never used");
-      }
-      const json* value = member((*rules)[i], "value");
-      if (value == nullptr || !value->is_array()) continue;
-      if (value->size() % 2 == 0) reading.fault(pointer_to(at, "value"), "ends with an operator");
-      for (std::size_t k = 0; k < value->size(); ++k) {
-        if (k % 2 == 0)
-          check_operand(reading, (*value)[k], pointer_to(at, "value"));
-        else
-          check_operator(reading, (*value)[k], {"*", "/"}, pointer_to(at, "value"));
-      }
-    }
+    for (std::size_t i = 0; i < rules->size(); ++i)
+      constant.rules.push_back(read_rule(reading, (*rules)[i], i + 1 == rules->size(), pointer_to(pointer, i)));
     if (!rules->empty() && member(rules->back(), "if") != nullptr)
       reading.fault(pointer, "the last rule needs no \"if\": else the constant may have no value");
   }

@@ -28,9 +28,12 @@ std::optional<Amount> Reading::amount(const json& node, const std::string& point
   if (const std::optional<Rational> exact = Rational::parse(number)) {
     out.number = *exact;
   } else {
-    if (!profile.constants.contains(number))
+    const auto constant = profile.constants.find(number);
+    if (constant == profile.constants.end())
       fault(pointer,
             "unknown constant \"" + number + "\": not under /constants" + hint(number, keys_in(profile.constants)));
+    else if (constant->second.from_drive)
+      fault(pointer, "constant \"" + number + "\" is read from the drive: no amount can be told by it beforehand");
     out.number = number;
   }
   return out;
@@ -82,6 +85,15 @@ void Reading::value_fits(const ValueSpec& value, const Object& object, const std
     else if (kind_of(unit->second.base) != kind_of(amount->base))
       fault(pointer, "this unit does not fit unit \"" + named + "\" of object \"" + object.name + "\"");
   }
+}
+
+void Reading::value_known(const ValueSpec& value, const Object& object, const std::string& pointer) {
+  if (!std::holds_alternative<Amount>(value)) return;
+  const auto unit = profile.units.find(object.unit);
+  if (unit != profile.units.end() && waits_for_drive(profile, unit->second))
+    fault(pointer,
+          "unit \"" + object.unit + "\" of object \"" + object.name +
+              "\" counts by a constant of the drive: the amount cannot be converted before the drive was read");
 }
 
 ConditionSpec Reading::condition(const json& node, const std::string& object, const std::string& pointer) {

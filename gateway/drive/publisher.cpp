@@ -9,6 +9,8 @@ namespace {
 Instant confirmed_at(const AxisCore& core, const Binding& binding) {
   Instant oldest = kNever;
   const auto look = [&](ObjectId id) {
+    // The gateway's own words are as good as what they are made from.
+    if (id != kNoObject && core.store[id].made) id = core.model.statusword;
     if (id == kNoObject || core.store[id].refused) return;
     oldest = std::min(oldest, core.store[id].known ? core.store[id].sent_at : kLongAgo);
   };
@@ -89,6 +91,8 @@ std::uint32_t alarms_of(const AxisCore& core) {
   const auto set = [&](AxisAlarm alarm, bool on) { alarms = on ? alarms | bit(alarm) : alarms; };
   set(AxisAlarm::stop_latched, core.motion.latched());
   set(AxisAlarm::not_homed, core.model.command(Command::home).has_value() && !core.homed);
+  set(AxisAlarm::cannot_deenergise, core.cannot_deenergise());
+  set(AxisAlarm::nvm_budget, core.nvm.alarm(core.now));
   return alarms;
 }
 

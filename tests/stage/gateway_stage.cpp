@@ -65,9 +65,10 @@ GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
     made.emplace(line.name, std::move(link));
     config.buses.push_back(std::move(bus));
   }
-  gateway_ = std::make_unique<app::Gateway>(config, std::move(models), runtime_, log_, [&](const app::BusConfig& bus) {
-    return std::make_unique<kinco::KincoWire>(bus.name, std::move(made.at(bus.name)), runtime_, log_);
-  });
+  gateway_ = std::make_unique<app::Gateway>(
+      config, std::move(models), runtime_, log_, [&](const app::BusConfig& bus, const std::vector<drive::DriveModel>&) {
+        return std::make_unique<kinco::KincoWire>(bus.name, std::move(made.at(bus.name)), runtime_, log_);
+      });
   gateway_->start();
 }
 

@@ -103,6 +103,7 @@ struct SetupRun {
     model.objects[1].writable = true;
     model.axes.resize(1);
     model.axes[0].statusword = 0;
+    model.axes[0].state_sources = {0};
     model.setup.push_back({1, 42, "the test wants it"});
     store = drive::ObjectStore(2);
   }

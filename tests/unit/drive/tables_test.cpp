@@ -61,25 +61,29 @@ DriveModel five_objects() {
     object.address = {static_cast<std::uint16_t>(0x2000 + i), 0};
     model.objects.push_back(object);
   }
-  model.fence.candidates = {1, 2, 3};
+  model.fence.candidates = {{1}, {2}, {3}};
   return model;
+}
+
+bus::Exchange reading(std::uint16_t index, std::uint8_t size = 2) {
+  return {1, bus::Access::read, {index, 0}, size, 0};
 }
 
 TEST(Fence, NeverUsesAnObjectWhoseReplyMayStillCome) {
   const DriveModel model = five_objects();
   Fence fence(model.fence, model.objects);
   EXPECT_FALSE(fence.suspect());
-  fence.lost({0x2001, 0}, kStart);
+  fence.lost(reading(0x2001), kStart);
   EXPECT_TRUE(fence.suspect());
-  EXPECT_EQ(fence.candidate(), ObjectId{2});
+  EXPECT_EQ(fence.candidate().value().object, 2);
   fence.fence_sent();
-  fence.lost({0x2002, 0}, kStart + 100ms);
-  EXPECT_EQ(fence.candidate(), ObjectId{3});
+  fence.lost(reading(0x2002), kStart + 100ms);
+  EXPECT_EQ(fence.candidate().value().object, 3);
   EXPECT_FALSE(fence.exhausted());
   fence.fence_sent();
   EXPECT_TRUE(fence.exhausted());
-  fence.lost({0x2003, 0}, kStart + 200ms);
-  EXPECT_EQ(fence.candidate(), std::nullopt);
+  fence.lost(reading(0x2003), kStart + 200ms);
+  EXPECT_FALSE(fence.candidate().has_value());
   EXPECT_EQ(fence.silent_until(), kStart + 200ms + model.fence.worst_reply);
   fence.waited_out();
   EXPECT_FALSE(fence.suspect());
@@ -89,13 +93,50 @@ TEST(Fence, NeverUsesAnObjectWhoseReplyMayStillCome) {
 TEST(Fence, AnAnsweredOneProvesThatNothingOlderIsLeft) {
   const DriveModel model = five_objects();
   Fence fence(model.fence, model.objects);
-  fence.lost({0x2001, 0}, kStart);
-  fence.lost({0x2004, 0}, kStart);
+  fence.lost(reading(0x2001), kStart);
+  fence.lost(reading(0x2004), kStart);
   fence.fence_sent();
   fence.answered();
   EXPECT_FALSE(fence.suspect());
-  fence.lost({0x2000, 0}, kStart + 1s);
-  EXPECT_EQ(fence.candidate(), ObjectId{1});
+  fence.lost(reading(0x2000), kStart + 1s);
+  EXPECT_EQ(fence.candidate().value().object, 1);
+}
+
+// Modbus RTU: a reply to a read tells how long it is, and nothing else.
+TEST(Fence, TellsRepliesByTheirLengthWhereTheyNameNoObject) {
+  DriveModel model = five_objects();
+  model.fence = {{{1, 1}, {1, 2}, {1, 3}, {1, 4}}, true, 500ms};
+  Fence fence(model.fence, model.objects);
+  fence.lost(reading(0x2000), kStart);  // one register, of whatever object
+  EXPECT_EQ(fence.candidate().value().registers, 2);
+  fence.lost(reading(0x2004, 4), kStart);
+  EXPECT_EQ(fence.candidate().value().registers, 3);
+  bus::Exchange run = reading(0x2000);
+  run.more = {{{0x2001, 0}, 2}, {{0x2002, 0}, 2}};
+  fence.lost(run, kStart);
+  EXPECT_EQ(fence.candidate().value().registers, 4);
+  fence.answered();
+  EXPECT_EQ(fence.candidate().value().registers, 1);
+}
+
+TEST(Fence, AWriteGivenUpMakesTheDriveSuspectThoughItsReplyIsLikeNoRead) {
+  DriveModel model = five_objects();
+  model.fence = {{{1, 1}, {1, 2}}, true, 500ms};
+  Fence fence(model.fence, model.objects);
+  fence.lost({1, bus::Access::write, {0x2000, 0}, 2, 7}, kStart);
+  EXPECT_TRUE(fence.suspect());
+  EXPECT_EQ(fence.candidate().value().registers, 1);
+}
+
+// Kinco documents counts 1 and 2 and no other.
+TEST(Fence, WithBothLengthsLostOnlySilenceHelps) {
+  DriveModel model = five_objects();
+  model.fence = {{{1, 2}, {1, 1}}, true, 500ms};
+  Fence fence(model.fence, model.objects);
+  fence.lost(reading(0x2000, 2), kStart);
+  fence.lost(reading(0x2000, 4), kStart + 1ms);
+  EXPECT_FALSE(fence.candidate().has_value());
+  EXPECT_EQ(fence.silent_until(), kStart + 501ms);
 }
 
 DriveModel polled() {
@@ -103,6 +144,7 @@ DriveModel polled() {
   model.axes.resize(1);
   AxisModel& axis = model.axes[0];
   axis.statusword = 0;
+  axis.state_sources = {0};
   const auto bind = [&](Quantity quantity, ObjectId object, PollClass poll) {
     Binding binding;
     binding.quantity = quantity;

@@ -1,0 +1,166 @@
+#include "adapters/modbus_rtu/rtu_codec.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "adapters/modbus_rtu/rtu_crc.hpp"
+
+namespace axisgate::modbus_rtu {
+
+namespace {
+
+// Where things stand in a frame; the unit comes first, the function second.
+constexpr std::size_t kAddressAt = 2;  // of a request, and of the reply to a write
+constexpr std::size_t kCountAt = 4;    // as kAddressAt; of one register: its value
+constexpr std::size_t kDataSizeAt = 2;
+constexpr std::size_t kDataAt = 3;  // of the reply to a read
+constexpr std::size_t kErrorCodeAt = 2;
+constexpr std::size_t kWriteReplyFrame = 6;
+
+bool is_read(const bus::Exchange& exchange) { return exchange.access == bus::Access::read; }
+
+Function function_of(const bus::Exchange& exchange) {
+  if (is_read(exchange)) return Function::read_holding_registers;
+  return exchange.size == 4 ? Function::write_multiple_registers : Function::write_single_register;
+}
+
+/// Of a write of one register: the value goes in whole, of one byte in the low half (Kinco JD, 8.2: mode 6 is 00 06).
+std::uint16_t register_of(const bus::Exchange& exchange) {
+  return static_cast<std::uint16_t>(exchange.raw & (exchange.size == 1 ? 0xFFU : 0xFFFFU));
+}
+
+void push_be16(Frame& frame, std::size_t value) {
+  frame.resize(frame.size() + 2);
+  store_be16({frame.data(), frame.size()}, frame.size() - 2, static_cast<std::uint16_t>(value));
+}
+
+std::uint32_t value_at(Bytes registers, std::size_t first, std::uint8_t size, bool low_word_first) {
+  const std::uint32_t word = load_be16(registers, 2 * first);
+  if (size == 1) return word & 0xFF;
+  if (size != 4) return word;
+  const std::uint32_t next = load_be16(registers, 2 * (first + 1));
+  return low_word_first ? (next << 16) | word : (word << 16) | next;
+}
+
+/// Not there, not in limits: it will be the same next time. All other codes, unknown ones included, may pass.
+bool is_for_ever(std::uint8_t code) { return code >= 1 && code <= 3; }
+
+bool is_error_of(std::uint8_t function, Function asked, const RtuNode& node) {
+  if (function == (static_cast<std::uint8_t>(asked) | kErrorBit)) return true;
+  return asked == Function::read_holding_registers &&
+         std::ranges::find(node.error_functions, function) != node.error_functions.end();
+}
+
+bus::ExchangeResult refusal(std::uint8_t code) {
+  return {.code = Errc::refused_by_drive, .detail = code, .for_now = !is_for_ever(code)};
+}
+
+/// Byte count and length of a read's reply agree.
+bool holds_registers(Bytes frame) {
+  return frame.size() > kDataAt && frame.size() == kDataAt + frame[kDataSizeAt] && frame[kDataSizeAt] % 2 == 0;
+}
+
+Judgement judge_read(Bytes frame, const bus::Exchange& exchange, const RtuNode& node) {
+  if (!holds_registers(frame)) return NotMine::malformed;
+  const Bytes registers = frame.subspan(kDataAt);
+  if (registers.size() != 2 * registers_asked(exchange)) return NotMine::wrong_length;
+  bus::ExchangeResult result;
+  const auto take = [&](bus::ObjectAddress object, std::uint8_t size) {
+    const auto first = static_cast<std::size_t>(object.index - exchange.object.index);
+    result.fields.push_back({object, size, value_at(registers, first, size, node.low_word_first)});
+  };
+  take(exchange.object, exchange.size == 0 ? std::uint8_t{2} : exchange.size);
+  for (const bus::Neighbour& neighbour : exchange.more) take(neighbour.object, neighbour.size);
+  return result;
+}
+
+Judgement judge_write(Bytes frame, const bus::Exchange& exchange) {
+  if (frame.size() != kWriteReplyFrame) return NotMine::malformed;
+  const std::size_t echo = exchange.size == 4 ? registers_of(exchange.size) : register_of(exchange);
+  const bool same = load_be16(frame, kAddressAt) == exchange.object.index && load_be16(frame, kCountAt) == echo;
+  if (!same) return NotMine::wrong_echo;
+  return bus::ExchangeResult{};
+}
+
+}  // namespace
+
+std::size_t registers_asked(const bus::Exchange& exchange) {
+  if (exchange.more.empty()) return registers_of(exchange.size);
+  const bus::Neighbour& last = exchange.more.back();
+  assert(last.object.index > exchange.object.index);
+  return static_cast<std::size_t>(last.object.index - exchange.object.index) + registers_of(last.size);
+}
+
+Frame request_of(const bus::Exchange& exchange, const RtuNode& node) {
+  const Function function = function_of(exchange);
+  Frame frame{exchange.node, static_cast<Byte>(function)};
+  push_be16(frame, exchange.object.index);
+  if (function == Function::read_holding_registers) {
+    const std::size_t count = registers_asked(exchange);
+    assert(count <= kMaxReadRegisters && exchange.object.index + count <= 0x10000);
+    push_be16(frame, count);
+    return frame;
+  }
+  assert(exchange.more.empty() && (exchange.size == 1 || exchange.size == 2 || exchange.size == 4));
+  if (function == Function::write_single_register) {
+    push_be16(frame, register_of(exchange));
+    return frame;
+  }
+  assert(exchange.object.index < 0xFFFF);
+  const std::size_t count = registers_of(exchange.size);
+  push_be16(frame, count);
+  frame.push_back(static_cast<Byte>(2 * count));
+  const std::uint32_t high = exchange.raw >> 16;
+  const std::uint32_t low = exchange.raw & 0xFFFF;
+  push_be16(frame, node.low_word_first ? low : high);
+  push_be16(frame, node.low_word_first ? high : low);
+  return frame;
+}
+
+std::size_t request_bytes(const bus::Exchange& exchange) { return request_of(exchange, RtuNode{}).size() + kCrcSize; }
+
+std::size_t reply_bytes(const bus::Exchange& exchange) {
+  return kCrcSize + (is_read(exchange) ? kDataAt + 2 * registers_asked(exchange) : kWriteReplyFrame);
+}
+
+std::string_view text(NotMine reason) {
+  switch (reason) {
+    case NotMine::other_unit:
+      return "from another unit";
+    case NotMine::other_function:
+      return "another function";
+    case NotMine::wrong_length:
+      return "another length";
+    case NotMine::wrong_echo:
+      return "another echo";
+    case NotMine::malformed:
+      return "malformed";
+  }
+  return "";
+}
+
+Judgement judge(Bytes frame, const bus::Exchange& exchange, const RtuNode& node) {
+  if (frame.size() < kErrorFrame) return NotMine::malformed;
+  if (frame[0] != exchange.node) return NotMine::other_unit;
+  const Function asked = function_of(exchange);
+  if (is_error_of(frame[1], asked, node)) {
+    return frame.size() == kErrorFrame ? Judgement(refusal(frame[kErrorCodeAt])) : NotMine::malformed;
+  }
+  if (frame[1] != static_cast<std::uint8_t>(asked)) return NotMine::other_function;
+  return is_read(exchange) ? judge_read(frame, exchange, node) : judge_write(frame, exchange);
+}
+
+bool well_formed(Bytes frame) {
+  if (frame.size() < kErrorFrame) return false;
+  if ((frame[1] & kErrorBit) != 0) return frame.size() == kErrorFrame;
+  switch (static_cast<Function>(frame[1])) {
+    case Function::read_holding_registers:
+      return holds_registers(frame);
+    case Function::write_single_register:
+    case Function::write_multiple_registers:
+      return frame.size() == kWriteReplyFrame;
+  }
+  return false;
+}
+
+}  // namespace axisgate::modbus_rtu

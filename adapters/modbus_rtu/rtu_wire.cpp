@@ -1,0 +1,169 @@
+#include "adapters/modbus_rtu/rtu_wire.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "adapters/modbus_rtu/rtu_crc.hpp"
+#include "adapters/modbus_rtu/rtu_text.hpp"
+
+namespace axisgate::modbus_rtu {
+
+namespace {
+
+/// All slaves obey it and none answers (Modbus over serial line V1.02, 2.2).
+constexpr std::uint8_t kStandardBroadcast = 0;
+
+}  // namespace
+
+RtuWire::RtuWire(std::string name, std::vector<RtuNode> nodes, LineSpeed speed, std::unique_ptr<RtuLink> link,
+                 Runtime& runtime, const Log& log)
+    : log_source_("bus " + std::move(name)),
+      nodes_(std::move(nodes)),
+      speed_(speed),
+      runtime_(runtime),
+      log_(log),
+      broadcast_timer_(runtime.make_timer([this] { broadcast_over(); })),
+      look_timer_(runtime.make_timer([this] { look_again(); })),
+      link_(std::move(link)) {
+  assert(!nodes_.empty() && link_ != nullptr);
+}
+
+RtuWire::~RtuWire() = default;
+
+void RtuWire::start(bus::WireEvents& events) {
+  events_ = &events;
+  link_->start(*this);
+}
+
+void RtuWire::send(const bus::Exchange& exchange) {
+  assert(reported_up_ && !outstanding_);
+  const bool broadcast = is_broadcast(exchange.node);
+  assert(!broadcast || exchange.access == bus::Access::write);
+  const Frame frame = request_of(exchange, node_of(exchange.node));
+  outstanding_ = {++last_number_, exchange, broadcast};
+  if (decode_) log_frame("->", frame, describe_request(frame));
+  link_->transmit(last_number_, frame);
+  if (!broadcast) return;
+  // The silence belongs to it: only then can no drive take the next frame for a part of this one.
+  const Duration on_wire = wire_time(speed_.baud, speed_.parity_bits, frame.size() + kCrcSize, 0);
+  broadcast_timer_->expires_at(runtime_.now() + on_wire + gap_time(speed_.baud));
+}
+
+void RtuWire::abandon() {
+  if (outstanding_) link_->withdraw(outstanding_->number);
+  outstanding_.reset();
+}
+
+void RtuWire::end(const bus::ExchangeResult& result) {
+  outstanding_.reset();
+  if (reported_up_) events_->on_reply(result);  // last: the bus may send its next request from inside this call
+}
+
+void RtuWire::broadcast_over() {
+  if (outstanding_ && outstanding_->broadcast) end({});
+}
+
+void RtuWire::on_link_up() {
+  link_up_ = true;
+  outstanding_.reset();
+  noise_.clear();
+  if (!given_up_) report(true, "");
+}
+
+void RtuWire::on_link_down(std::string_view why) {
+  link_up_ = false;
+  outstanding_.reset();
+  report(false, why);
+}
+
+void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
+  std::string_view remark = "not asked for";
+  if (outstanding_ && !outstanding_->broadcast) {
+    const Judgement judgement = judge(frame, outstanding_->exchange, node_of(outstanding_->exchange.node));
+    const auto* result = std::get_if<bus::ExchangeResult>(&judgement);
+    if (result != nullptr && newest == outstanding_->number) {
+      if (decode_) log_frame("<-", frame, describe_reply(frame));
+      noise_.clear();
+      reopens_ = 0;
+      end(*result);
+      return;
+    }
+    remark = result != nullptr ? "late" : text(std::get<NotMine>(judgement));
+  }
+  ++(well_formed(frame) && knows(frame[0]) ? statistics_.late_replies : statistics_.bad_frames);
+  if (decode_) log_frame("<-", frame, fmt::format("{}  ({})", describe_reply(frame), remark));
+}
+
+void RtuWire::on_bad_frame(ExchangeNumber, std::size_t bytes) {
+  const Instant now = runtime_.now();
+  // A run of noise is one bad frame, in however many parts it is told.
+  if (!noise_.heard_lately(now)) ++statistics_.bad_frames;
+  statistics_.dropped_bytes += static_cast<std::uint32_t>(bytes);
+  if (decode_) log_.write(LogLevel::info, log_source_, fmt::format("<- {} bytes that are no frame", bytes));
+  noise_.on_noise(now);
+  if (!given_up_ && noise_.babbles(now)) on_babble();
+}
+
+void RtuWire::on_babble() {
+  static constexpr std::string_view kWhy =
+      "noise without a pause: wrong baud rate, another protocol, or a fault on the line";
+  noise_.clear();
+  if (reopens_ < kReopensInARow) {
+    ++reopens_;
+    link_->reopen(kWhy);
+    return;
+  }
+  given_up_ = true;
+  look_timer_->expires_at(runtime_.now() + kSecondLook);
+  abandon();
+  report(false, fmt::format("{}; opened anew {} times, waiting for silence", kWhy, kReopensInARow));
+}
+
+/// Of a line that was given up: still noisy, then it is opened anew; quiet, then it is taken back.
+void RtuWire::look_again() {
+  if (!given_up_) return;
+  if (link_up_ && !noise_.heard_lately(runtime_.now())) {
+    given_up_ = false;
+    reopens_ = 0;
+    report(true, "");
+    return;
+  }
+  look_timer_->expires_at(runtime_.now() + kSecondLook);
+  if (link_up_) link_->reopen("the line is still noisy");
+}
+
+void RtuWire::report(bool up, std::string_view why) {
+  if (up == std::exchange(reported_up_, up)) return;
+  if (!up) {
+    events_->on_wire_down(why);
+    return;
+  }
+  if (std::exchange(ever_up_, true)) ++statistics_.reconnects;
+  events_->on_wire_up();
+}
+
+bool RtuWire::is_broadcast(std::uint8_t unit) const {
+  return unit == kStandardBroadcast ||
+         std::ranges::any_of(nodes_, [&](const RtuNode& n) { return n.broadcast == unit; });
+}
+
+/// Of a broadcast: a drive that obeys it. They are of one type, or nothing sensible could be said to all of them.
+const RtuNode& RtuWire::node_of(std::uint8_t unit) const {
+  const auto own = std::ranges::find(nodes_, unit, &RtuNode::node);
+  if (own != nodes_.end()) return *own;
+  const auto obeys = std::ranges::find(nodes_, std::optional<std::uint8_t>(unit), &RtuNode::broadcast);
+  return obeys != nodes_.end() ? *obeys : nodes_.front();
+}
+
+bool RtuWire::knows(std::uint8_t unit) const {
+  return std::ranges::any_of(nodes_, [&](const RtuNode& n) { return n.node == unit || n.broadcast == unit; });
+}
+
+void RtuWire::log_frame(std::string_view direction, Bytes frame, std::string_view words) const {
+  log_.write(LogLevel::info, log_source_, fmt::format("{} {}  {}", direction, hex_text(frame), words));
+}
+
+}  // namespace axisgate::modbus_rtu

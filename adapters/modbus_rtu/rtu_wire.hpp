@@ -1,0 +1,83 @@
+// Modbus RTU on a serial line, as the bus sees it: requests out, answers back.
+// Promises at most one reply per send(), none after abandon() or a loss of the link, none for a frame that was heard
+// before its request was sent, and that a line that babbles is opened anew three times and then reported down until it
+// is quiet. Never queues or repeats a request, and never judges a value.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adapters/bus/wire.hpp"
+#include "adapters/kinco/noise_watch.hpp"
+#include "adapters/modbus_rtu/rtu_codec.hpp"
+#include "adapters/modbus_rtu/rtu_timing.hpp"
+#include "gateway/core/log.hpp"
+
+namespace axisgate::modbus_rtu {
+
+class RtuWire final : public bus::Wire, private RtuLinkEvents {
+ public:
+  static constexpr int kReopensInARow = 3;
+  /// How often a line that was given up is looked at again.
+  static constexpr Duration kSecondLook = std::chrono::seconds(1);
+
+  /// `name` is the bus's, for the log; `nodes` are its drives. `runtime` and `log` must outlive the wire.
+  RtuWire(std::string name, std::vector<RtuNode> nodes, LineSpeed speed, std::unique_ptr<RtuLink> link,
+          Runtime& runtime, const Log& log);
+  ~RtuWire() override;
+
+  void start(bus::WireEvents& events) override;
+  /// Every drive's write to unit 0, or to the broadcast unit of a node, is answered by nobody: it ends ok when the line
+  /// has had the time to carry it.
+  void send(const bus::Exchange& exchange) override;
+  void abandon() override;
+  [[nodiscard]] const bus::Statistics& statistics() const override { return statistics_; }
+  void set_decode(bool on) override { decode_ = on; }
+
+ private:
+  struct Outstanding {
+    ExchangeNumber number = 0;
+    bus::Exchange exchange;
+    bool broadcast = false;
+  };
+
+  void on_link_up() override;
+  void on_link_down(std::string_view why) override;
+  void on_frame(ExchangeNumber newest, Bytes frame) override;
+  void on_bad_frame(ExchangeNumber newest, std::size_t bytes) override;
+
+  void end(const bus::ExchangeResult& result);
+  void broadcast_over();
+  void on_babble();
+  void look_again();
+  void report(bool up, std::string_view why);
+  [[nodiscard]] bool is_broadcast(std::uint8_t unit) const;
+  [[nodiscard]] const RtuNode& node_of(std::uint8_t unit) const;
+  [[nodiscard]] bool knows(std::uint8_t unit) const;
+  void log_frame(std::string_view direction, Bytes frame, std::string_view words) const;
+
+  std::string log_source_;
+  std::vector<RtuNode> nodes_;
+  LineSpeed speed_;
+  Runtime& runtime_;
+  const Log& log_;
+  bus::WireEvents* events_ = nullptr;
+  ExchangeNumber last_number_ = 0;
+  std::optional<Outstanding> outstanding_;
+  kinco::NoiseWatch noise_;
+  bool decode_ = false;
+  bool link_up_ = false;
+  bool reported_up_ = false;
+  bool ever_up_ = false;
+  bool given_up_ = false;  ///< reported down for its noise, though the link is open
+  int reopens_ = 0;        ///< since the last answer
+  bus::Statistics statistics_;
+  // Last, so that they go first: none may call into a wire that is half gone.
+  std::unique_ptr<Timer> broadcast_timer_;
+  std::unique_ptr<Timer> look_timer_;
+  std::unique_ptr<RtuLink> link_;
+};
+
+}  // namespace axisgate::modbus_rtu

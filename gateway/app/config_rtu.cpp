@@ -1,0 +1,68 @@
+// What a Modbus RTU line needs follows from its drives, so it is settled once their profiles are known.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gateway/app/bus_budget.hpp"
+#include "gateway/app/config_sections.hpp"
+#include "gateway/drive/read_blocks.hpp"
+
+namespace axisgate::app {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// The longest request and reply that the gateway's own reads and writes come to.
+Duration longest_on_wire(const BusConfig& bus, const std::vector<drive::DriveModel>& drives) {
+  const BusTiming timing = timing_of(bus);
+  Duration longest = timing.on_wire;
+  for (const drive::DriveModel& model : drives)
+    for (const drive::PlannedRead& read : drive::planned_reads(model))
+      longest = std::max(longest, wire_time_of(timing, read.exchange));
+  return longest;
+}
+
+void settle_timeout(BusConfig& bus, const std::vector<drive::DriveModel>& drives, ConfigFaults& faults) {
+  const Duration on_wire = longest_on_wire(bus, drives);
+  if (bus.timeout == Duration{}) {
+    Duration answer{};
+    for (const drive::DriveModel& model : drives) answer = std::max(answer, model.timeout);
+    bus.timeout = (on_wire + answer + milliseconds(1) - Duration(1)) / milliseconds(1) * milliseconds(1);
+  } else if (bus.timeout <= on_wire) {
+    faults.add(
+        bus.pointer + "/timeout_ms",
+        fmt::format("{} ms is less than an exchange takes on the wire at {} baud ({:.1f} ms), every answer would "
+                    "come too late: write at least {}",
+                    bus.timeout / milliseconds(1), bus.baud, static_cast<double>(on_wire.count()) / 1e6,
+                    on_wire / milliseconds(1) + 20));
+  }
+}
+
+void check_nodes(const BusConfig& bus, const std::vector<drive::DriveModel>& drives, ConfigFaults& faults) {
+  constexpr std::uint8_t kLastUnit = 254;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const std::uint8_t node = drives[i].node;
+    const bool broadcast = std::any_of(drives.begin(), drives.end(),
+                                       [&](const drive::DriveModel& model) { return model.rtu.broadcast == node; });
+    if (node == 0 || broadcast || node > kLastUnit)
+      faults.add(bus.drives[i].pointer + "/node",
+                 fmt::format("{} is an address that every drive obeys and none answers: give the drive a number of its "
+                             "own, 1 to 247",
+                             node));
+  }
+}
+
+}  // namespace
+
+void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults) {
+  for (std::size_t i = 0; i < config.buses.size(); ++i) {
+    BusConfig& bus = config.buses[i];
+    if (bus.adapter != "modbus-rtu") continue;
+    check_nodes(bus, models[i], faults);
+    settle_timeout(bus, models[i], faults);
+    if (!bus.poll_given) bus.poll = comfortable_periods(plan_bus(timing_of(bus), models[i]));
+    for (drive::DriveModel& model : models[i]) model.poll_period = bus.poll;
+  }
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,19 @@
+// What a configuration asks of the limit on open files.
+// Promises to count every client that the listeners may let in, and every bus with a port of its own.
+// Never looks at the system.
+#pragma once
+
+#include "gateway/app/config.hpp"
+#include "gateway/upstream/modbus_tcp/descriptor_plan.hpp"
+
+namespace axisgate::app {
+
+[[nodiscard]] inline modbus_tcp::DescriptorNeeds descriptor_needs(const Config& config) {
+  modbus_tcp::DescriptorNeeds needs;
+  needs.listeners = config.modbus_tcp.size();
+  needs.buses = config.buses.size();
+  for (const auto& listener : config.modbus_tcp) needs.clients += listener.max_clients;
+  return needs;
+}
+
+}  // namespace axisgate::app

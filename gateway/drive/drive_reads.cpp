@@ -1,0 +1,108 @@
+// What a drive reads in one request, and what becomes of the numbers that come back.
+#include <algorithm>
+
+#include "gateway/drive/drive.hpp"
+#include "gateway/drive/profile_scale.hpp"
+
+namespace axisgate::drive {
+
+bus::Exchange Drive::read(ObjectId object) const {
+  return {model_.node, bus::Access::read, model_.object(object).address, model_.object(object).size, 0};
+}
+
+bus::Exchange Drive::read(const FenceRead& fence) const {
+  bus::Exchange exchange = read(fence.object);
+  if (fence.registers == 0 || fence.registers == registers_of(exchange)) return exchange;
+  exchange.size = 2;
+  for (std::uint16_t i = 1; i < fence.registers; ++i)
+    exchange.more.push_back({{static_cast<std::uint16_t>(exchange.object.index + i), 0}, 2});
+  return exchange;
+}
+
+bus::Exchange Drive::plain_read() const { return read(model_.axes.front().state_sources.front()); }
+
+bool Drive::tells_state(ObjectId object) const {
+  return std::any_of(model_.axes.begin(), model_.axes.end(), [&](const AxisModel& axis) {
+    return std::find(axis.state_sources.begin(), axis.state_sources.end(), object) != axis.state_sources.end();
+  });
+}
+
+// What comes along in the same request at little cost: in bring-up all that is not known yet, in a poll all that is due
+// as well, and of the state never a part without the rest.
+void Drive::widen(bus::Exchange& exchange) {
+  if (on_wire_.fence || on_wire_.probe) return;
+  const bool polled = on_wire_.order == 0;
+  const bool setup = on_wire_.order == setup_order_ && setup_order_ != 0;
+  blocks_.widen(exchange, [&](ObjectId id) {
+    if (store_[id].refused) return false;
+    return setup || tells_state(id) || (polled && plan_.due(id, now()));
+  });
+  on_wire_.widened = !exchange.more.empty();
+}
+
+bool Drive::split(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
+  if (!on_wire_.widened || fence_.suspect()) return false;
+  if (result.code != Errc::refused_by_drive) {
+    blocks_.answered(exchange);
+    return false;
+  }
+  return !result.for_now && blocks_.refused(exchange);
+}
+
+// Unsupported: not asked again until the next bring-up. The state is asked for ever: without it there is no axis.
+void Drive::store_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
+  const ObjectId id = model_.find(exchange.object);
+  if (id == kNoObject) return;
+  if (on_wire_.widened && !result.for_now) return;  // which of them it was is not known yet
+  plan_.done(id, now());
+  for (const bus::Neighbour& neighbour : exchange.more) plan_.done(model_.find(neighbour.object), now());
+  if (result.for_now || plain_read().object == exchange.object) return;
+  store_.refused(id);
+  plan_.drop(id);
+}
+
+void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
+  if (exchange.access != bus::Access::read) return;
+  if (result.code == Errc::refused_by_drive) return store_refusal(exchange, result);
+  for (const bus::ReplyField& field : result.fields) {
+    const ObjectId id = model_.find(field.object);
+    if (id == kNoObject) continue;
+    const ObjectDef& object = model_.object(id);
+    // A width other than the profile's is a wrong profile, not a value (JD sheet, K7): it is not shown. A fence reads
+    // registers as they come.
+    if (field.size == object.size) {
+      store_.read(id, object.number(field.raw), on_wire_.sent_at);
+    } else if (on_wire_.fence) {
+      continue;
+    } else if (!store_[id].refused) {
+      store_.refused(id);
+      plan_.drop(id);
+      event(axes_.front()->core().model.number, EventKind::warning, 0,
+            object.name + ": the drive answers " + std::to_string(field.size) + " bytes, the profile says " +
+                std::to_string(object.size) + ": not used");
+      continue;
+    }
+    plan_.done(id, now());
+  }
+  read_constants();
+  for (auto& axis : axes_) axis->on_samples();
+}
+
+void Drive::read_constants() {
+  bool changed = false;
+  for (std::size_t i = 0; i < constants_.size(); ++i) {
+    const auto value = value_of(model_.constants[i], [&](ObjectId id) {
+      return store_[id].known ? std::optional(store_[id].number) : std::nullopt;
+    });
+    if (!value || constants_[i] == value) continue;
+    constants_[i] = value;
+    changed = true;
+  }
+  if (!changed) return;
+  for (AxisModel& axis : model_.axes)
+    for (Binding& binding : axis.bindings)
+      if (binding.recipe.waits()) apply_recipe(binding, constants_, model_.object(binding.object));
+  for (auto& axis : axes_) axis->on_scale();
+}
+
+}  // namespace axisgate::drive

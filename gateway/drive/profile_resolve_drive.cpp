@@ -1,0 +1,71 @@
+// What belongs to the whole drive: setup, checks, alarms, fence, and facts of its protocol.
+#include <algorithm>
+
+#include "gateway/drive/profile_resolving.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+void resolve_checks(Resolving& r) {
+  for (const CheckSpec& spec : r.profile.checks) {
+    std::vector<ObjectId> seen;
+    for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
+      const auto slot = static_cast<bus::AxisSlot>(i);
+      std::optional<Condition> bad = r.condition(spec.bad, slot);
+      if (!bad || std::find(seen.begin(), seen.end(), bad->object) != seen.end()) continue;
+      seen.push_back(bad->object);
+      Check out{spec.name, std::move(*bad), spec.alarm, r.model.object(seen.back()).slot, spec.text, {}};
+      for (const WriteSpec& write : spec.remedy)
+        if (const std::optional<ObjectWrite> one = r.write(write, slot)) out.remedy.push_back(*one);
+      if (out.remedy.size() != spec.remedy.size()) out.remedy.clear();  // half a remedy is none
+      r.model.checks.push_back(std::move(out));
+    }
+  }
+}
+
+void resolve_setup(Resolving& r) {
+  for (const WriteSpec& spec : r.profile.setup) {
+    if (!spec.on.empty() && std::find(spec.on.begin(), spec.on.end(), r.input.protocol) == spec.on.end()) continue;
+    std::vector<ObjectId> seen;
+    for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
+      const std::optional<ObjectWrite> write = r.write(spec, static_cast<bus::AxisSlot>(i));
+      if (!write || std::find(seen.begin(), seen.end(), write->object) != seen.end()) continue;
+      seen.push_back(write->object);
+      r.model.setup.push_back(*write);
+    }
+  }
+}
+
+void resolve_fence(Resolving& r, const ProtocolSpec& protocol) {
+  r.model.fence.worst_reply = protocol.worst_reply;
+  r.model.fence.by_length = r.input.protocol == "modbus-rtu";
+  for (const FenceSpec& read : protocol.fence) {
+    const ObjectId id = r.id(read.name, 0);
+    if (id == kNoObject) continue;
+    if (read.counts.empty()) r.model.fence.candidates.push_back({id, 0});
+    for (const std::uint8_t count : read.counts) r.model.fence.candidates.push_back({id, count});
+  }
+}
+
+}  // namespace
+
+void resolve_drive(Resolving& r) {
+  const ProtocolSpec& protocol = r.profile.protocols.find(r.input.protocol)->second;
+  r.model.profile = r.profile.name;
+  r.model.title = r.profile.title;
+  r.model.protocol = r.input.protocol;
+  r.model.node = r.input.node;
+  r.model.poll_period = r.input.poll;
+  r.model.stops_by_itself = protocol.stops_by_itself;
+  r.model.timeout = protocol.timeout;
+  r.model.rtu = protocol.rtu;
+  r.model.nvm = r.profile.nvm;
+  resolve_fence(r, protocol);
+  for (const AlarmSpec& row : r.profile.alarms)
+    if (r.id(r.profile.fault_words[row.word], 0) != kNoObject)
+      r.model.alarms.push_back({row.word, row.bit.value_or(0), row.value, row.code, row.text, row.remedy});
+  resolve_setup(r);
+  resolve_checks(r);
+}
+
+}  // namespace axisgate::drive

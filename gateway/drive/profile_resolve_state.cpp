@@ -1,0 +1,158 @@
+// How the state of one axis is known, its modes and its homing.
+#include <algorithm>
+
+#include "gateway/drive/profile_resolving.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+/// A mode whose set-point the gateway cannot give is not offered: what would run then is whatever the drive still
+/// holds.
+std::optional<Quantity> setpoint_of(std::int16_t mode) {
+  switch (mode) {
+    case 1:
+    case 7:
+    case 8:
+      return Quantity::target_position;
+    case 3:
+    case 9:
+      return Quantity::target_velocity;
+    case 4:
+    case 10:
+      return Quantity::target_torque;
+    case 6:
+      return Quantity::homing_method;
+    default:
+      return std::nullopt;
+  }
+}
+
+ObjectId make_object(Resolving& r, bus::AxisSlot slot, const std::string& name, DataType type, bool writable) {
+  ObjectDef def;
+  def.name = r.profile.axes.size() > 1 ? r.profile.axes[slot] + "." + name : name;
+  def.slot = slot;
+  def.size = type.size;
+  def.is_signed = type.is_signed;
+  def.writable = writable;
+  def.made = true;
+  r.model.objects.push_back(std::move(def));
+  return static_cast<ObjectId>(r.model.objects.size() - 1);
+}
+
+std::optional<Condition> condition(const Resolving& r, const std::optional<ConditionSpec>& spec, bus::AxisSlot slot) {
+  return spec ? r.condition(*spec, slot) : std::nullopt;
+}
+
+void resolve_roles(Resolving& r, bus::AxisSlot slot) {
+  AxisModel& axis = r.model.axes[slot];
+  const auto object_of = [&](Quantity quantity) {
+    const Binding* binding = axis.binding(quantity);
+    return binding == nullptr ? kNoObject : binding->object;
+  };
+  axis.statusword = object_of(Quantity::statusword);
+  axis.controlword = object_of(Quantity::controlword);
+  axis.mode = object_of(Quantity::mode);
+  const ObjectId display = object_of(Quantity::mode_display);
+  axis.mode_display = display == kNoObject ? axis.mode : display;
+  axis.cia402.mode_display = axis.mode_display != axis.mode;
+  axis.cia402.setpoint_acknowledge = r.profile.state.is_virtual || r.profile.state.setpoint_acknowledge;
+  for (std::size_t i = 0; i < r.profile.fault_words.size(); ++i)
+    axis.fault_words[i] = r.id(r.profile.fault_words[i], slot);
+  for (const std::string& name : r.profile.state.zero_before_enable)
+    if (const ObjectId id = r.id(name, slot); id != kNoObject) axis.zero_before_enable.push_back(id);
+  axis.moving = condition(r, r.profile.state.moving, slot);
+}
+
+/// Every object once, the fault first: a drive that is there always answers for it.
+void add_state_sources(const VirtualFacts& facts, AxisModel& axis) {
+  const auto add = [&](const Condition& condition) {
+    if (std::find(axis.state_sources.begin(), axis.state_sources.end(), condition.object) == axis.state_sources.end())
+      axis.state_sources.push_back(condition.object);
+  };
+  add(facts.fault);
+  add(facts.enabled);
+  for (const std::optional<Condition>& more : {axis.moving, facts.reached, facts.limit})
+    if (more) add(*more);
+}
+
+void resolve_machine(Resolving& r, bus::AxisSlot slot) {
+  const StateSpec& spec = r.profile.state;
+  AxisModel& axis = r.model.axes[slot];
+  if (!spec.is_virtual) {
+    axis.state_sources = {axis.statusword};
+    for (const auto& [role, object] : {std::pair("statusword", axis.statusword),
+                                       std::pair("controlword", axis.controlword), std::pair("mode", axis.mode)})
+      if (object == kNoObject)
+        r.fault("/profile", "profile \"" + r.profile.name + "\" has no " + role + " on " + r.input.protocol +
+                                ", so nothing can be done there");
+    return;
+  }
+  VirtualFacts out;
+  out.enabled = condition(r, spec.enabled, slot).value();  // load_profile() has seen to it that every protocol has them
+  out.fault = condition(r, spec.fault, slot).value();
+  out.limit = condition(r, spec.limit, slot);
+  out.reached = condition(r, spec.reached, slot);
+  out.within = spec.within;
+  out.homed_at = condition(r, r.profile.homing.homed_at, slot);
+  out.gate_only = spec.gate_only;
+  out.quick_stop_energised = spec.quick_stop_energised;
+  add_state_sources(out, axis);
+  axis.virtual_axis = std::move(out);
+}
+
+void resolve_modes(Resolving& r, AxisModel& axis) {
+  for (const auto& [mode, raw] : r.profile.modes) {
+    const std::optional<Quantity> setpoint = setpoint_of(mode);
+    if (setpoint && axis.binding(*setpoint) == nullptr) continue;
+    axis.modes.emplace_back(mode, r.profile.state.is_virtual ? mode : raw);  // a mode object of ours holds the register
+    if (mode >= 1 && mode <= 16) axis.supported_modes |= static_cast<std::uint16_t>(1U << (mode - 1));
+  }
+}
+
+void resolve_homing(Resolving& r, bus::AxisSlot slot) {
+  const HomingSpec& spec = r.profile.homing;
+  AxisModel& axis = r.model.axes[slot];
+  for (const auto& [method, raw] : spec.methods) axis.homing_methods.push_back(method);
+  for (const auto& [method, need] : spec.needs) {
+    HomingNeed out{method, {}, need.equals};
+    for (const std::string& name : need.any_of)
+      if (const ObjectId id = r.id(name, slot); id != kNoObject) out.any_of.push_back(id);
+    if (!out.any_of.empty()) axis.homing_needs.push_back(std::move(out));
+  }
+  axis.homed = condition(r, spec.homed, slot);
+  axis.homing_failed = condition(r, spec.failed, slot);
+  const std::optional<std::int16_t> configured = r.input.axes[slot].homing_method;
+  if (!configured || spec.methods.contains(*configured)) return;
+  std::string known;
+  for (const std::int16_t method : axis.homing_methods) known += (known.empty() ? "" : ", ") + std::to_string(method);
+  r.fault("/axes/" + std::to_string(slot) + "/homing_method", "this drive has no homing method " +
+                                                                  std::to_string(*configured) + ": it has " +
+                                                                  (known.empty() ? "none" : known));
+}
+
+}  // namespace
+
+void make_objects(Resolving& r, bus::AxisSlot slot) {
+  AxisModel& axis = r.model.axes[slot];
+  axis.statusword = make_object(r, slot, "statusword", {2, false}, false);
+  axis.controlword = make_object(r, slot, "controlword", {2, false}, true);
+  axis.mode = make_object(r, slot, "mode", {1, true}, true);
+}
+
+void resolve_state(Resolving& r, bus::AxisSlot slot) {
+  resolve_roles(r, slot);
+  AxisModel& axis = r.model.axes[slot];
+  const ResolveAxis& input = r.input.axes[slot];
+  axis.number = input.number;
+  axis.name = input.name;
+  axis.inverted = input.inverted;
+  axis.standstill_velocity = input.standstill_velocity;
+  axis.homing_timeout = input.homing_timeout;
+  axis.homing_method = input.homing_method;
+  axis.configured_torque_limit = input.torque_limit.has_value();
+  resolve_machine(r, slot);
+  resolve_modes(r, axis);
+  resolve_homing(r, slot);
+}
+
+}  // namespace axisgate::drive

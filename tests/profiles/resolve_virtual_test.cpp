@@ -1,0 +1,158 @@
+// A drive that is no CiA 402 one, resolved: the gateway's own objects, what the state is made from, codes and values.
+#include <gmock/gmock.h>
+
+#include "tests/profiles/resolving.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+using testing::ElementsAre;
+using testing::Pair;
+
+DriveModel virtual_drive() { return resolved(valid_file("virtual"), one_axis("modbus-rtu")); }
+
+std::vector<std::string> names(const DriveModel& model, const std::vector<ObjectId>& ids) {
+  std::vector<std::string> out;
+  for (const ObjectId id : ids) out.push_back(model.object(id).name);
+  return out;
+}
+
+TEST(VirtualDrive, HasAStatuswordAControlwordAndAModeThatTheGatewayMakes) {
+  const DriveModel model = virtual_drive();
+  const AxisModel& axis = model.axes[0];
+  const std::vector<ObjectId> made{axis.statusword, axis.controlword, axis.mode};
+  EXPECT_THAT(names(model, made), ElementsAre("statusword", "controlword", "mode"));
+  for (const ObjectId id : made) {
+    EXPECT_TRUE(model.object(id).made);
+    EXPECT_TRUE(model.object(id).readable);
+    EXPECT_EQ(model.object(id).slot, 0);
+  }
+  EXPECT_EQ(model.object(axis.statusword).size, 2);
+  EXPECT_FALSE(model.object(axis.statusword).writable);
+  EXPECT_TRUE(model.object(axis.controlword).writable);
+  EXPECT_EQ(model.object(axis.mode).range(), (Range{-128, 127}));
+  for (std::size_t i = 0; i < model.objects.size(); ++i)
+    EXPECT_EQ(model.objects[i].made, std::find(made.begin(), made.end(), i) != made.end()) << model.objects[i].name;
+  EXPECT_EQ(model.find({0, 0}), kNoObject) << "they have no address of the drive";
+}
+
+TEST(VirtualDrive, SupportsWhatTheGatewayMakes) {
+  const DriveModel model = virtual_drive();
+  const AxisModel& axis = model.axes[0];
+  for (const Quantity q : {Quantity::statusword, Quantity::mode_display, Quantity::controlword, Quantity::mode})
+    EXPECT_NE(axis.supported & bit(q), 0U) << row(q).name;
+  EXPECT_EQ(axis.writable & bit(Quantity::statusword), 0U);
+  EXPECT_NE(axis.writable & bit(Quantity::controlword), 0U);
+  EXPECT_NE(axis.writable & bit(Quantity::mode), 0U);
+  EXPECT_EQ(binding(model, Quantity::statusword).poll, PollClass::fast);
+  EXPECT_EQ(binding(model, Quantity::mode_display).poll, PollClass::fast);
+  EXPECT_EQ(binding(model, Quantity::mode_display).object, axis.mode);
+  EXPECT_EQ(axis.mode_display, axis.mode);
+  EXPECT_TRUE(axis.cia402.setpoint_acknowledge);
+  EXPECT_EQ(binding(model, Quantity::controlword).limits, (Range{0, 65534}));
+  EXPECT_EQ(binding(model, Quantity::mode).limits, (Range{-128, 127}));
+}
+
+TEST(VirtualDrive, ItsModesAreTheRegistersOwnNumbers) {
+  // The drive calls them otherwise, but is never sent one; torque has no set-point here.
+  EXPECT_THAT(virtual_drive().axes[0].modes, ElementsAre(Pair(1, 1), Pair(3, 3), Pair(6, 6)));
+  EXPECT_EQ(virtual_drive().axes[0].supported_modes, 0x0025);
+}
+
+TEST(VirtualDrive, ItsStateIsMadeFromTheFaultFirst) {
+  const DriveModel model = virtual_drive();
+  EXPECT_THAT(names(model, model.axes[0].state_sources), ElementsAre("fault_code", "run_state"));
+  const DriveModel kinco = resolved(shipped("kinco-jd"), kinco_axis());
+  EXPECT_THAT(names(kinco, kinco.axes[0].state_sources), ElementsAre("statusword"));
+  EXPECT_FALSE(kinco.axes[0].virtual_axis);
+}
+
+TEST(VirtualDrive, TellsItsMachineWhatItGoesBy) {
+  const DriveModel model = virtual_drive();
+  const auto& facts = model.axes[0].virtual_axis;
+  ASSERT_TRUE(facts);
+  EXPECT_EQ(model.object(facts->fault.object).name, "fault_code");
+  EXPECT_TRUE(facts->fault.holds(model.object(facts->fault.object), 14));
+  EXPECT_TRUE(facts->enabled.holds(model.object(facts->enabled.object), 3));
+  EXPECT_FALSE(facts->limit);
+  ASSERT_TRUE(facts->reached);
+  EXPECT_EQ(facts->within, 4);
+  ASSERT_TRUE(facts->homed_at);
+  EXPECT_FALSE(facts->gate_only);
+  EXPECT_FALSE(facts->quick_stop_energised);
+  ASSERT_TRUE(model.axes[0].moving);
+  EXPECT_TRUE(model.axes[0].moving->holds(model.object(facts->enabled.object), 3));
+}
+
+TEST(VirtualDrive, OfTwoMotorsHasObjectsForEach) {
+  ResolveInput input = one_axis("modbus-rtu");
+  input.axes.emplace_back();
+  const DriveModel model = resolved(valid_file("virtual-pair"), input);
+  ASSERT_EQ(model.axes.size(), 2U);
+  EXPECT_THAT(names(model, {model.axes[0].statusword, model.axes[1].statusword, model.axes[1].mode}),
+              ElementsAre("A.statusword", "B.statusword", "B.mode"));
+  EXPECT_EQ(model.object(model.axes[1].controlword).slot, 1);
+  EXPECT_THAT(names(model, model.axes[1].state_sources), ElementsAre("fault", "B.run_state"));
+  EXPECT_EQ(model.axes[1].virtual_axis->within, 0);
+  EXPECT_TRUE(model.axes[1].virtual_axis->quick_stop_energised);
+}
+
+TEST(VirtualDrive, HomingMethodsAreTranslatedBothWays) {
+  const DriveModel model = virtual_drive();
+  const Binding& method = binding(model, Quantity::homing_method);
+  EXPECT_THAT(method.codes, ElementsAre(Pair(17, 3), Pair(18, 2), Pair(35, 4)));
+  EXPECT_EQ(method.limits, (Range{17, 35}));
+  EXPECT_EQ(method.to_register(2), 18);
+  EXPECT_EQ(method.to_register(0), std::nullopt) << "a mode of the drive that no method stands for";
+  EXPECT_EQ(sent(model, Quantity::homing_method, 35), 4);
+  EXPECT_EQ(sent(model, Quantity::homing_method, 19), std::nullopt);
+  EXPECT_TRUE(binding(resolved(shipped("kinco-md"), kinco_axis()), Quantity::homing_method).codes.empty());
+}
+
+TEST(VirtualDrive, AMethodMayNeedAnInput) {
+  const DriveModel model = virtual_drive();
+  ASSERT_EQ(model.axes[0].homing_needs.size(), 1U);
+  const HomingNeed& need = model.axes[0].homing_needs[0];
+  EXPECT_EQ(need.method, 17);
+  EXPECT_EQ(need.equals, 10);
+  EXPECT_THAT(names(model, need.any_of), ElementsAre("input_function"));
+}
+
+TEST(VirtualDrive, TakesAPositionByValueAndNeedsNoModeForIt) {
+  const DriveModel model = virtual_drive();
+  const auto& command = model.axes[0].command(Command::set_position);
+  ASSERT_TRUE(command);
+  EXPECT_FALSE(command->zero_only);
+  ASSERT_EQ(command->steps.size(), 2U);
+  EXPECT_EQ(command->steps[0].source, Step::Source::set_position);
+  EXPECT_EQ(command->steps[0].quantity, Quantity::position_actual);
+  EXPECT_EQ(model.object(command->steps[0].object).name, "new_position");
+  EXPECT_EQ(command->steps[1].source, Step::Source::literal);
+}
+
+TEST(VirtualDrive, OnlyRunVelocityRepeatsOnChange) {
+  const DriveModel model = virtual_drive();
+  for (std::uint16_t number = 1; number <= kLastCommand; ++number) {
+    const auto& command = model.axes[0].commands[number];
+    const bool repeats = command && command->repeat_on_change;
+    EXPECT_EQ(repeats, number == static_cast<std::uint16_t>(Command::run_velocity)) << number;
+  }
+  EXPECT_FALSE(resolved(shipped("kinco-jd"), kinco_axis()).axes[0].command(Command::run_velocity)->repeat_on_change);
+}
+
+TEST(VirtualDrive, AlarmsByValueKeepTheirOrder) {
+  const DriveModel model = virtual_drive();
+  ASSERT_EQ(model.alarms.size(), 2U);
+  EXPECT_EQ(model.alarms[0].value, 14U);
+  EXPECT_EQ(model.alarms[0].code, 0x3210);
+  EXPECT_EQ(model.alarms[1].value, 10U);
+  for (const AlarmRow& row : resolved(shipped("kinco-jd"), kinco_axis()).alarms) EXPECT_FALSE(row.value) << row.text;
+}
+
+TEST(VirtualDrive, RegistersThatAreNotListedWearAsTheProfileSays) {
+  EXPECT_EQ(virtual_drive().nvm, Nvm::unknown);
+  EXPECT_EQ(resolved(shipped("kinco-jd"), kinco_axis()).nvm, Nvm::no);
+}
+
+}  // namespace
+}  // namespace axisgate::drive
