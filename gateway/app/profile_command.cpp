@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 #include "gateway/app/faults_told.hpp"
 #include "gateway/drive/profile_loader.hpp"
@@ -25,6 +26,8 @@ bool has_place(const Profile& profile, const std::string& object, std::string_vi
 /// check`'s to say: it knows the configured drive.
 bool given(const Profile& profile, const QuantityRow& row, std::string_view protocol) {
   if (row.quantity == Quantity::error_code) return !profile.alarms.empty();  // made from the alarm table
+  constexpr std::array kMade{Quantity::statusword, Quantity::mode_display, Quantity::controlword, Quantity::mode};
+  if (profile.state.is_virtual && std::find(kMade.begin(), kMade.end(), row.quantity) != kMade.end()) return true;
   const drive::QuantitySpec* quantity = profile.find(row.quantity);
   if (quantity == nullptr) return false;
   const auto place = [&](const std::string& object) { return has_place(profile, object, protocol); };

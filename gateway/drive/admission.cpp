@@ -1,6 +1,7 @@
 #include "gateway/drive/admission.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "gateway/drive/planner.hpp"
 
@@ -18,6 +19,60 @@ Errc admit_command(const AxisCore& core, Command command) {
   // Every drive can be halted: where it has no halt, quick_stop takes its place.
   const bool supported = (core.model.supported_commands & (1U << static_cast<unsigned>(command))) != 0;
   return supported ? Errc::ok : Errc::not_supported;
+}
+
+// The steps of a command that is nothing but this one write.
+bool is_alone(const Steps& steps, ObjectId id, std::int64_t number) {
+  const auto writes = [](const Step& step) { return step.verb == Step::Verb::write; };
+  const auto first = std::find_if(steps.begin(), steps.end(), writes);
+  return first != steps.end() && std::count_if(steps.begin(), steps.end(), writes) == 1 && first->object == id &&
+         first->source == Step::Source::literal && first->literal == number;
+}
+
+bool belongs_to_a_command(const AxisCore& core, ObjectId id) {
+  return std::any_of(core.model.commands.begin(), core.model.commands.end(), [&](const auto& def) {
+    return def && std::any_of(def->steps.begin(), def->steps.end(),
+                              [&](const Step& step) { return step.verb == Step::Verb::write && step.object == id; });
+  });
+}
+
+// Registers have no bounds between objects: a write of half a target, or of a target and its neighbour, would go past
+// the limits, the latch and the gate.
+bool cuts_a_quantity(const AxisCore& core, const ObjectRequest& request) {
+  if (!core.drive.fence.by_length) return false;
+  const auto last = [](int first, std::uint8_t size) { return first + (size > 2 ? 1 : 0); };
+  const auto guarded = [&](ObjectId id) {
+    const auto& bindings = core.model.bindings;
+    return belongs_to_a_command(core, id) || std::any_of(bindings.begin(), bindings.end(), [&](const Binding& b) {
+             return b.object == id && b.writable;
+           });
+  };
+  for (std::size_t i = 0; i < core.drive.objects.size(); ++i) {
+    const ObjectDef& object = core.drive.objects[i];
+    if (object.made || !object.writable || !guarded(static_cast<ObjectId>(i))) continue;
+    const int first = object.address.index;
+    const bool overlaps = request.index <= last(first, object.size) && last(request.index, request.size) >= first;
+    if (overlaps && (request.index != first || request.size != object.size)) return true;
+  }
+  return false;
+}
+
+// A virtual axis's drive takes its commands as numbers in an object: by the mailbox they are the same commands, with
+// the gate and the latch. What the gateway has no command for needs an axis that may start. No value: it is none.
+std::optional<Errc> as_command(const AxisCore& core, ObjectId id, std::int64_t number, Group& out) {
+  if (!core.is_virtual() || !core.object(id).trigger || !belongs_to_a_command(core, id)) return std::nullopt;
+  constexpr std::array kCommands{Command::quick_stop,    Command::halt,          Command::fault_reset,
+                                 Command::move_absolute, Command::move_relative, Command::run_velocity,
+                                 Command::home};
+  for (const Command command : kCommands) {
+    const auto& def = core.model.command(command);
+    if (!def || !is_alone(def->steps, id, number)) continue;
+    out.object.reset();
+    out.command = command;
+    return Errc::ok;
+  }
+  if (number != 0 && !core.motion.may_start(core.facts())) return Errc::state_unsuitable;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -78,14 +133,19 @@ bool starts_motion(const AxisCore& core, const Group& group) {
 Translated as_quantities(const AxisCore& core, const Group& group) {
   if (!group.object || !group.object->write) return {group, Errc::ok};
   const ObjectRequest& request = *group.object;
+  if (cuts_a_quantity(core, request)) return {group, Errc::bad_value};
   const ObjectId id = core.drive.find({request.index, request.subindex});
   if (id == kNoObject) return {group, Errc::ok};
   const ObjectDef& object = core.object(id);
   Group out = group;
-  out.object.reset();
+  if (const auto trigger = as_command(core, id, object.number(request.data), out)) {
+    if (request.size != object.size) return {group, Errc::bad_value};
+    return {out, *trigger};
+  }
   const auto& bindings = core.model.bindings;
   const auto binding =
       std::find_if(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.object == id && b.writable; });
+  out.object.reset();
   const bool of_a_quantity = id == core.model.controlword || id == core.model.mode || binding != bindings.end();
   if (!of_a_quantity) return {group, Errc::ok};
   // A width of its own would cut the value, behind the limits' back.

@@ -41,7 +41,8 @@ std::vector<PollItem> poll_items(const DriveModel& model) {
     for (const HomingNeed& need : axis.homing_needs)
       for (const ObjectId id : need.any_of) add(items, id, PollClass::once);
   for (const Check& check : model.checks) add(items, check.bad.object, PollClass::once);
-  for (const ObjectId id : constant_objects(model)) add(items, id, PollClass::once);
+  // Scales depend on them, and a panel or the mailbox may change what they follow from.
+  for (const ObjectId id : constant_objects(model)) add(items, id, PollClass::slow);
   return items;
 }
 

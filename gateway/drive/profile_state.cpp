@@ -34,7 +34,7 @@ void check_cia402(Reading& reading, const json& node) {
 }
 
 void check_virtual(Reading& reading, const json& node) {
-  for (const char* key : {"enabled", "fault"})
+  for (const char* key : {"enabled", "fault", "moving"})
     if (member(node, key) == nullptr)
       reading.fault("/state", std::string("a virtual drive needs condition \"") + key + "\"");
   for (const Quantity quantity : {Quantity::statusword, Quantity::mode_display, Quantity::controlword, Quantity::mode})
@@ -199,7 +199,9 @@ void read_homing(Reading& reading) {
 /// What a virtual state is made from must be there on every protocol.
 void check_state_places(Reading& reading) {
   const StateSpec& state = reading.profile.state;
-  for (const auto& [key, condition] : {std::pair("enabled", &state.enabled), std::pair("fault", &state.fault)}) {
+  if (!state.is_virtual) return;
+  for (const auto& [key, condition] :
+       {std::pair("enabled", &state.enabled), std::pair("fault", &state.fault), std::pair("moving", &state.moving)}) {
     if (!condition->has_value()) continue;
     reading.each_meaning((*condition)->object, [&](const Object& object) {
       for (const auto& [protocol, unused] : reading.profile.protocols)

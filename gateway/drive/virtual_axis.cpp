@@ -62,7 +62,8 @@ void VirtualAxis::follow(const Seen& seen, const VirtualFacts& facts) {
       }
       break;
     case MotionKind::homing:
-      if (settled) end_ = seen.homed_at ? End::reached : End::failed;
+      // A drive that stands at the homing position and ignored the command has not homed.
+      if (settled) end_ = seen.homed_at && run_.moved ? End::reached : End::failed;
       break;
     case MotionKind::none:
     case MotionKind::velocity:

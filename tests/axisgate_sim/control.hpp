@@ -3,9 +3,11 @@
 // Never touches a socket.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "tests/axisgate_sim/control_words.hpp"
 #include "tests/axisgate_sim/simulator.hpp"
 
 namespace axisgate::simulated {
@@ -22,19 +24,21 @@ class Control {
   struct Target {
     PortLine& port;
     std::size_t position;
-    KincoDrive& drive() const { return port.line->drive(position); }
     DriveFaults& faults() const { return port.line->faults(position); }
   };
-  using Words = std::vector<std::string>;
 
-  std::string carry_out(const Words& words);
-  std::string on_line(const Words& words);
-  std::string on_drive(const Words& words);
-  std::string switch_fault(const Words& words, const Target& target);
+  std::string carry_out(const ControlWords& words);
+  std::string on_line(const ControlWords& words);
+  std::string on_drive(const ControlWords& words);
+  std::string switch_fault(const ControlWords& words, const Target& target);
   PortLine& port_named(const std::string& name);
   Target target_named(const std::string& text);
 
   Simulator& simulator_;
 };
+
+// What a drive of its kind alone can do. Nothing: it is no such command.
+std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& words);
+std::optional<std::string> ask_id286pro(Id286pro& drive, const ControlWords& words);
 
 }  // namespace axisgate::simulated

@@ -1,4 +1,4 @@
-// axisgate-sim: simulated Kinco JD and MD drives on pseudo-terminals, for demos, tests and benchmarks.
+// axisgate-sim: simulated Kinco and iD286pro drives on pseudo-terminals, for demos, tests and benchmarks.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <optional>
@@ -16,7 +16,8 @@ struct Options {
   bool cascade = false;
   bool rs485 = false;
   bool factory_fresh = false;
-  double reply_delay_ms = 0;
+  std::optional<double> reply_delay_ms;
+  double frame_gap_ms = 2;
   double boot_ms = 1000;
   double store_ms = 50;
   std::uint32_t baud = 0;
@@ -28,22 +29,29 @@ Time milliseconds_of(double amount) { return Time{static_cast<std::int64_t>(amou
 void describe_options(CLI::App& app, Options& options) {
   app.footer(
       "Example: axisgate-sim --line /tmp/lift:jd@1 --line /tmp/table:md@1,jd@2 --cascade --control /tmp/sim.sock\n"
+      "Modbus RTU:  axisgate-sim --line /tmp/axes:rtu:id286pro@1,jd@2,md@3\n"
       "A drive may carry +fresh, +cascade, +home=FROM..TO and +limits=FROM..TO (counts of the motor): jd@1+fresh.\n"
+      "On Modbus RTU a Kinco may carry +errors=83, an id286pro any stored register: id286pro@1+400=11+home=0..500.\n"
       "The control socket takes text lines: echo 'mute lift/1 on' | socat - UNIX:/tmp/sim.sock; 'help' lists them.");
   app.add_option("--line", options.lines,
-                 "PATH:TYPE@STATION[,TYPE@STATION...], type jd or md; one pty each, linked at PATH")
+                 "PATH:TYPE@STATION[,TYPE@STATION...], type jd or md; PATH:rtu:TYPE@UNIT[,...] for Modbus RTU, type "
+                 "jd, md or id286pro; one pty each, linked at PATH")
       ->required();
   app.add_flag("--cascade", options.cascade,
                "All drives have 6510:0B = 1 and return the host's frames, as several on one RS232 line always do");
   app.add_flag("--rs485", options.rs485, "The lines are RS485 with Kinco's protocol (MD drives only)");
   app.add_flag("--factory-fresh", options.factory_fresh,
-               "Drives as delivered: DIN1 and DIN3 block the bus, limits unwired");
-  app.add_option("--reply-delay-ms", options.reply_delay_ms, "Time a drive takes to answer")
+               "Drives as delivered: DIN1 and DIN3 block the bus, limits unwired; an id286pro waits for pulses");
+  app.add_option("--reply-delay-ms", options.reply_delay_ms,
+                 "Time a drive takes to answer; else 0, and 20 for an id286pro")
       ->check(CLI::Range(0.0, 60000.0));
   app.add_option("--boot-ms", options.boot_ms, "Time a restarted drive is silent")->check(CLI::Range(0.0, 600000.0));
   app.add_option("--store-ms", options.store_ms, "Time a store to the EEPROM takes")->check(CLI::Range(0.0, 600000.0));
   app.add_option("--baud-timing", options.baud, "Let each byte take its time at this rate; 0: none")
       ->check(CLI::Range(0, 1000000));
+  app.add_option("--frame-gap-ms", options.frame_gap_ms,
+                 "Modbus RTU: the silence that ends a frame where no baud rate gives it")
+      ->check(CLI::Range(0.0, 1000.0));
   app.add_option("--seed", options.seed, "Seed of the faults' chances");
   app.add_option("--fault", options.faults,
                  "NAME@LINE/STATION[=RATE], for example mute@lift/1 or corrupt@table/2=0.01");
@@ -56,17 +64,19 @@ void build(Simulator& simulator, Control& control, const Options& options) {
   drive.factory_fresh = options.factory_fresh;
   drive.boot_time = milliseconds_of(options.boot_ms);
   drive.store_time = milliseconds_of(options.store_ms);
-  LineOptions line;
-  line.wiring = options.rs485 ? Wiring::rs485 : Wiring::rs232;
-  line.baud = options.baud;
-  line.reply_delay = milliseconds_of(options.reply_delay_ms);
+  LineTimings timings;
+  timings.serial.wiring = options.rs485 ? Wiring::rs485 : Wiring::rs232;
+  timings.serial.baud = timings.rtu.baud = options.baud;
+  timings.serial.reply_delay = milliseconds_of(options.reply_delay_ms.value_or(0));
+  if (options.reply_delay_ms) timings.rtu.reply_delay = milliseconds_of(*options.reply_delay_ms);
+  if (options.baud == 0) timings.rtu.frame_gap = milliseconds_of(options.frame_gap_ms);
   std::uint64_t seed = options.seed;
   for (const std::string& text : options.lines) {
     LineSpec spec = parse_line_spec(text, drive);
     // Several drives on RS232 are a chain, which works with 6510:0B = 1 in each of them only (JD 2.1).
     const bool chain = spec.drives.size() > 1 && !options.rs485;
     for (DriveOptions& one : spec.drives) one.cascade = one.cascade || chain;
-    simulator.add(spec, line, seed++);
+    simulator.add(spec, timings, seed++);
   }
   for (const std::string& text : options.faults) control.set_fault(text);
 }
@@ -74,7 +84,8 @@ void build(Simulator& simulator, Control& control, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Simulated Kinco JD and MD drives on pseudo-terminals, as their fact sheets describe them."};
+  CLI::App app{
+      "Simulated Kinco JD, MD and iD286pro drives on pseudo-terminals, as their makers' manuals describe them."};
   Options options;
   describe_options(app, options);
   CLI11_PARSE(app, argc, argv);

@@ -8,22 +8,32 @@ namespace axisgate::simulated {
 
 Time Simulator::now() const { return std::chrono::steady_clock::now() - begin_; }
 
-void Simulator::add(const LineSpec& spec, const LineOptions& options, std::uint64_t seed) {
+void Simulator::add(const LineSpec& spec, const LineTimings& timings, std::uint64_t seed) {
   if (lines_.contains(spec.name)) {
     throw std::invalid_argument("two lines are called '" + spec.name + "': give their links different names");
   }
   PortLine& port = lines_[spec.name];
   port.spec = spec;
-  port.line = std::make_unique<SerialLine>(options, Random(seed), [&port](const ToHost& arrived) {
+  const auto to_port = [&port](const ToHost& arrived) {
     if (port.pty) port.pty->write(arrived.bytes);
-  });
-  for (const DriveOptions& drive : spec.drives) port.line->add(drive);
+  };
+  if (spec.rtu) {
+    auto line = std::make_unique<RtuLine>(timings.rtu, Random(seed), to_port);
+    for (const RtuDriveOptions& drive : spec.rtu_drives) line->add(drive);
+    port.rtu = line.get();
+    port.line = std::move(line);
+  } else {
+    auto line = std::make_unique<SerialLine>(timings.serial, Random(seed), to_port);
+    for (const DriveOptions& drive : spec.drives) line->add(drive);
+    port.serial = line.get();
+    port.line = std::move(line);
+  }
   plug(port);
 }
 
 void Simulator::plug(PortLine& port) {
   port.pty = std::make_unique<Pty>(port.spec.path);
-  std::cout << "ready " << port.spec.path << " -> " << port.pty->slave_name() << ' ' << describe(port.spec.drives)
+  std::cout << "ready " << port.spec.path << " -> " << port.pty->slave_name() << ' ' << port.spec.describe()
             << std::endl;
 }
 

@@ -11,14 +11,22 @@
 
 #include "tests/axisgate_sim/line_spec.hpp"
 #include "tests/axisgate_sim/pty.hpp"
+#include "tests/simulated/rtu_line.hpp"
 #include "tests/simulated/serial_line.hpp"
 
 namespace axisgate::simulated {
 
 struct PortLine {
   LineSpec spec;
-  std::unique_ptr<SerialLine> line;
+  std::unique_ptr<DriveLine> line;
+  SerialLine* serial = nullptr;  // the same line, as what it is
+  RtuLine* rtu = nullptr;
   std::unique_ptr<Pty> pty;  // none while unplugged
+};
+
+struct LineTimings {
+  LineOptions serial;
+  RtuLineOptions rtu;
 };
 
 class Simulator {
@@ -26,7 +34,7 @@ class Simulator {
   Time now() const;
 
   // Throws std::invalid_argument or std::runtime_error.
-  void add(const LineSpec& spec, const LineOptions& options, std::uint64_t seed);
+  void add(const LineSpec& spec, const LineTimings& timings, std::uint64_t seed);
   void plug(PortLine& line);  // prints the ready line
   void unplug(PortLine& line);
   PortLine* find(const std::string& name);

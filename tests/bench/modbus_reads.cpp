@@ -8,6 +8,7 @@
 
 #include "adapters/asio/asio_runtime.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/descriptors.hpp"
 #include "gateway/upstream/modbus_tcp/server.hpp"
 #include "tests/bench/closed_loop_clients.hpp"
 #include "tests/bench/echo_server.hpp"
@@ -30,9 +31,8 @@ void serve_axisgate(const Listening& listening) {
   modbus_tcp::ListenerSettings settings;
   settings.port = 0;
   settings.max_clients_per_address = 0;
-  modbus_tcp::raise_descriptor_limit();
   modbus_tcp::Server server(io, runtime, std::span(&settings, 1), image, port, clients, log);
-  server.start();
+  server.start(modbus_tcp::take_descriptors({.clients = settings.max_clients}));
   listening(server.ports()[0]);
   io.run();
 }

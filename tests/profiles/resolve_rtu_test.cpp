@@ -42,7 +42,7 @@ TEST(KincoRtu, GivesWhatItsManualListsARegisterFor) {
 
 TEST(KincoRtu, ReadsTheModeBackWhereNoDisplayHasARegister) {
   for (const std::string drive : {"kinco-jd", "kinco-md"}) {
-    const AxisModel& axis = on_rtu(drive).axes[0];
+    const AxisModel axis = on_rtu(drive).axes[0];
     EXPECT_EQ(axis.mode_display, axis.mode) << drive;
     EXPECT_FALSE(axis.cia402.mode_display) << drive;
   }

@@ -1,12 +1,14 @@
 // The fault switches of one drive on a line: each a probability per reply, and a number of next replies for tests.
 // Promises that a switch which is off draws no random number, so switching one fault on shifts no other draw before it.
-// Never touches the drive or the line; SerialLine asks it.
+// Never touches the drive or the line; the line asks it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "tests/simulated/random.hpp"
 #include "tests/simulated/time.hpp"
@@ -24,10 +26,15 @@ enum class DriveFault : std::uint8_t {
   duplicate,      // the reply comes twice
   wrong_station,  // the reply names another station, with a right checksum
   restart,        // the drive reboots on the request, before or after acting on it, and never answers it
-  babble,         // bursts of random bytes every `babble_period`, unasked
+  babble,         // bursts of random bytes every `babble_period`, unasked; frames too, where a frame has no fixed form
+  // Modbus RTU alone:
+  half,          // the reply breaks off
+  wrong_length,  // a register more or less than was asked for, with a right CRC
+  glued,         // the reply and, without a gap, a copy of the drive's reply before it
+  exception,     // the drive does not act and refuses with `exception_code`
 };
 
-inline constexpr std::size_t drive_fault_count = 11;
+inline constexpr std::size_t drive_fault_count = 15;
 
 std::string_view name_of(DriveFault fault);
 std::optional<DriveFault> drive_fault_named(std::string_view name);
@@ -38,6 +45,7 @@ class DriveFaults {
   Time split_gap = std::chrono::milliseconds(3);
   Time babble_period = std::chrono::milliseconds(10);
   std::uint64_t longest_noise = 12;  // bytes
+  std::uint8_t exception_code = 4;
 
   void set_rate(DriveFault fault, double probability) { switches_[number(fault)].rate = probability; }
   void next(DriveFault fault, std::uint64_t times = 1) { switches_[number(fault)].next = times; }
@@ -52,6 +60,13 @@ class DriveFaults {
       return true;
     }
     return random.chance(chosen.rate);
+  }
+
+  // Random bytes, at most `longest_noise`.
+  std::vector<std::uint8_t> noise(Random& random) const {
+    std::vector<std::uint8_t> bytes(1 + random.below(std::max<std::uint64_t>(longest_noise, 1)));
+    for (std::uint8_t& byte : bytes) byte = random.byte();
+    return bytes;
   }
 
  private:

@@ -5,38 +5,66 @@
 
 #include <cstdint>
 #include <deque>
+#include <utility>
 #include <vector>
 
+#include "tests/simulated/rtu_frame.hpp"
 #include "tests/simulated/ten_byte_frame.hpp"
 #include "tests/simulated/time.hpp"
 
 namespace axisgate::simulated {
 
-struct Exchange {
+template <class Request>
+struct ExchangeOf {
   std::uint64_t tag = 0;  // 1, 2, 3, ... per line
   Time received{};
   std::uint8_t station = 0;  // of the drive that heard it
-  TenByteFrame request{};
+  Request request{};
   Time reply_ready{};              // when the drive began to send
   std::vector<std::uint8_t> sent;  // what it put on the wire, faults included; empty if it did not answer
 };
 
-class Journal {
+template <class Request>
+class JournalOf {
  public:
-  explicit Journal(std::size_t capacity) : capacity_(capacity) {}
+  explicit JournalOf(std::size_t capacity) : capacity_(capacity) {}
 
-  void record(Exchange exchange);
-  const std::deque<Exchange>& entries() const { return entries_; }
+  void record(ExchangeOf<Request> exchange) {
+    ++recorded_;
+    mix(exchange.tag);
+    mix(static_cast<std::uint64_t>(exchange.received.count()));
+    mix(exchange.station);
+    for (const std::uint8_t byte : exchange.request) mix(byte);
+    mix(static_cast<std::uint64_t>(exchange.reply_ready.count()));
+    mix(exchange.sent.size());
+    for (const std::uint8_t byte : exchange.sent) mix(byte);
+    if (capacity_ == 0) return;
+    if (entries_.size() == capacity_) entries_.pop_front();
+    entries_.push_back(std::move(exchange));
+  }
+  const std::deque<ExchangeOf<Request>>& entries() const { return entries_; }
   std::uint64_t recorded() const { return recorded_; }
   std::uint64_t hash() const { return hash_; }
 
  private:
-  void mix(std::uint64_t value);
+  void mix(std::uint64_t value) {
+    for (int i = 0; i < 8; ++i) {
+      hash_ ^= (value >> (8 * i)) & 0xFFU;
+      hash_ *= 0x100000001B3U;
+    }
+  }
 
   std::size_t capacity_;
-  std::deque<Exchange> entries_;
+  std::deque<ExchangeOf<Request>> entries_;
   std::uint64_t recorded_ = 0;
   std::uint64_t hash_ = 0xCBF29CE484222325U;  // FNV-1a
 };
+
+using Exchange = ExchangeOf<TenByteFrame>;
+using Journal = JournalOf<TenByteFrame>;
+
+// `request` and `sent` are whole frames with their CRC. The reply tells what the drive held at `received`.
+using RtuExchange = ExchangeOf<RtuBytes>;
+using RtuJournal = JournalOf<RtuBytes>;
 
 }  // namespace axisgate::simulated

@@ -7,6 +7,7 @@ namespace {
 
 constexpr ObjectKey station_number{0x100B, 0x00};
 constexpr ObjectKey cascade_switch{0x6510, 0x0B};
+constexpr ObjectKey rs485_protocol{0x6510, 0x0C};
 constexpr ObjectKey store_command{0x2FF0, 0x01};
 constexpr ObjectKey store_motor_command{0x2FF0, 0x03};
 
@@ -24,11 +25,12 @@ KincoDrive::KincoDrive(const DriveOptions& options)
     : options_(options),
       model_(model_of(options.type)),
       encoder_counts_(options.encoder_counts != 0 ? options.encoder_counts : model_.encoder_counts),
-      objects_(model_.motion_objects, model_.setup_objects, model_.out_of_range),
+      objects_(model_.motion_objects, model_.setup_objects, options.out_of_range.value_or(model_.out_of_range)),
       inputs_(model_.digital_inputs),
       axis_(options_.mechanics, encoder_counts_) {
   objects_.set_stored(station_number, options_.station);
   objects_.set_stored(cascade_switch, options_.cascade ? 1 : 0);
+  if (options_.rs485_modbus && objects_.find(rs485_protocol) != nullptr) objects_.set_stored(rs485_protocol, 0);
   for (int input = 1; !options_.factory_fresh && input <= model_.digital_inputs; ++input) {
     const ObjectKey key = input_function_object(input);
     const bool limit = (objects_.get(key) & (0x0010 | 0x0020)) != 0;

@@ -25,12 +25,17 @@ class KincoDrive {
 
   // What the line needs.
   std::optional<TenByteFrame> answer(const TenByteFrame& request, std::uint64_t tag, Time now);
+  // The same for a protocol that addresses objects otherwise. `raw` in the low `width` bytes.
+  std::optional<std::int64_t> read(ObjectKey key, Time now);
+  Refusal write(ObjectKey key, int width, std::uint32_t raw, std::uint64_t tag, Time now);
+  const ObjectEntry* entry(ObjectKey key) const { return objects_.find(key); }
   void advance(Time now);
   bool booting() const { return boot_until_.has_value(); }
   std::uint8_t station() const { return station_; }
   bool cascade() const { return cascade_; }
   std::uint32_t rs232_baud() const { return rs232_baud_; }
   bool rs485_speaks_kinco() const { return rs485_speaks_kinco_; }
+  bool rs485_speaks_modbus() const { return !rs485_speaks_kinco_; }
 
   // What a world does to it.
   void restart(Time now);                                 // power off and on: RAM lost, silent for the boot time
@@ -65,7 +70,7 @@ class KincoDrive {
   void begin_store(Keep what);
 
   // kinco_drive_objects.cpp: reads and writes
-  Refusal write(ObjectKey key, int width, std::uint32_t raw, std::uint64_t tag, bool counted);
+  Refusal take_write(ObjectKey key, int width, std::uint32_t raw, std::uint64_t tag, bool counted);
   Refusal may_write(ObjectKey key, std::int64_t value) const;
   void written(ObjectKey key, std::int64_t value, std::uint64_t tag);
   void couple(ObjectKey key, std::int64_t value);

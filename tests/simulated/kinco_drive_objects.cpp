@@ -55,9 +55,19 @@ std::optional<TenByteFrame> KincoDrive::answer(const TenByteFrame& request, std:
   }
   const int width = width_of(command);
   if (width == 0) return std::nullopt;  // no request: another drive's reply on a shared line
-  const Refusal refusal = write(key, width, data_of(request), tag, true);
+  const Refusal refusal = take_write(key, width, data_of(request), tag, true);
   if (refusal != Refusal::none) return reply(FrameCommand::error, static_cast<std::uint32_t>(refusal));
   return reply(FrameCommand::write_done, options_.echo_written_value ? data_of(request) & mask_of(width) : 0);
+}
+
+std::optional<std::int64_t> KincoDrive::read(ObjectKey key, Time now) {
+  advance(now);
+  return peek(key);
+}
+
+Refusal KincoDrive::write(ObjectKey key, int width, std::uint32_t raw, std::uint64_t tag, Time now) {
+  advance(now);
+  return take_write(key, width, raw, tag, true);
 }
 
 Refusal KincoDrive::may_write(ObjectKey key, std::int64_t value) const {
@@ -73,7 +83,7 @@ Refusal KincoDrive::may_write(ObjectKey key, std::int64_t value) const {
   return Refusal::none;
 }
 
-Refusal KincoDrive::write(ObjectKey key, int width, std::uint32_t raw, std::uint64_t tag, bool counted) {
+Refusal KincoDrive::take_write(ObjectKey key, int width, std::uint32_t raw, std::uint64_t tag, bool counted) {
   std::int64_t value = 0;
   Refusal refusal = objects_.check_write(key, width, raw, value);
   if (refusal == Refusal::none) refusal = may_write(key, value);
@@ -176,7 +186,7 @@ Refusal KincoDrive::poke(ObjectKey key, std::int64_t value) {
   const ObjectEntry* entry = objects_.find(key);
   if (entry == nullptr) return Refusal::no_such_object;
   if (entry->access == Access::rw) {
-    return write(key, bytes_of(entry->type), static_cast<std::uint32_t>(value), 0, false);
+    return take_write(key, bytes_of(entry->type), static_cast<std::uint32_t>(value), 0, false);
   }
   if (measured(key)) return Refusal::read_only;
   objects_.set(key, value_in(entry->type, static_cast<std::uint32_t>(value)));

@@ -8,7 +8,11 @@
 namespace axisgate::simulated {
 
 SerialLine::SerialLine(const LineOptions& options, Random random, Sink sink)
-    : options_(options), random_(random), sink_(std::move(sink)), journal_(options.journal_capacity) {}
+    : options_(options),
+      random_(random),
+      sink_(std::move(sink)),
+      journal_(options.journal_capacity),
+      outgoing_(options.baud) {}
 
 KincoDrive& SerialLine::add(const DriveOptions& options) {
   const KincoModel& model = model_of(options.type);
@@ -25,9 +29,9 @@ KincoDrive& SerialLine::add(const DriveOptions& options) {
   return *slots_.back().drive;
 }
 
-Time SerialLine::duration(std::size_t bytes) const {
-  if (options_.baud == 0) return Time{};
-  return Time{static_cast<std::int64_t>(bytes) * 10'000'000'000 / options_.baud};
+bool SerialLine::has(DriveFault fault) const {
+  return fault != DriveFault::half && fault != DriveFault::wrong_length && fault != DriveFault::exception &&
+         fault != DriveFault::glued;
 }
 
 bool SerialLine::passes_on(const Slot& slot) const {
@@ -51,7 +55,7 @@ bool SerialLine::reaches_host(std::size_t position) const {
 void SerialLine::from_host(std::span<const std::uint8_t> bytes, Time now) {
   advance(now);
   for (const std::uint8_t byte : bytes) {
-    host_line_free_ = std::max(host_line_free_, now) + duration(1);
+    host_line_free_ = std::max(host_line_free_, now) + byte_time(options_.baud);
     incoming_.push_back({host_line_free_, byte});
   }
   advance(now);
@@ -61,8 +65,7 @@ std::optional<Time> SerialLine::next_event() const {
   std::optional<Time> next;
   const auto consider = [&next](Time at) { next = next ? std::min(*next, at) : at; };
   if (!incoming_.empty()) consider(incoming_.front().at);
-  if (!waiting_.empty()) consider(waiting_.begin()->first.first);
-  if (!arriving_.empty()) consider(arriving_.begin()->first.first);
+  if (const auto event = outgoing_.next_event()) consider(*event);
   for (const Slot& slot : slots_) {
     if (slot.faults.armed(DriveFault::babble)) consider(slot.next_babble);
   }
@@ -76,13 +79,11 @@ void SerialLine::advance(Time now) {
     const auto next = next_event();
     if (!next || *next > now) break;
     now_ = std::max(now_, *next);
-    if (!arriving_.empty() && arriving_.begin()->first.first == *next) {
-      auto node = arriving_.extract(arriving_.begin());
-      const Chunk& chunk = node.mapped();
+    if (outgoing_.arrives_at(*next)) {
+      const Chunk chunk = outgoing_.take_arrived();
       sink_({*next, chunk.tag, chunk.origin, chunk.bytes});
-    } else if (!waiting_.empty() && waiting_.begin()->first.first == *next) {
-      auto node = waiting_.extract(waiting_.begin());
-      put_on_wire(*next, std::move(node.mapped()));
+    } else if (outgoing_.begins_at(*next)) {
+      outgoing_.begin();
     } else if (!incoming_.empty() && incoming_.front().at == *next) {
       const IncomingByte arrived = incoming_.front();
       incoming_.pop_front();
@@ -120,7 +121,7 @@ void SerialLine::byte_arrives(std::uint8_t byte, Time at) {
 
 void SerialLine::flush_echo(Time at) {
   if (echo_.empty()) return;
-  send(at, {0, ByteOrigin::echo, slots_.size(), std::exchange(echo_, {})});
+  outgoing_.send(at, {0, ByteOrigin::echo, slots_.size(), std::exchange(echo_, {})});
 }
 
 void SerialLine::request_arrives(std::size_t position, const TenByteFrame& request, Time at) {
@@ -150,12 +151,6 @@ void SerialLine::request_arrives(std::size_t position, const TenByteFrame& reque
   journal_.record(std::move(exchange));
 }
 
-std::vector<std::uint8_t> SerialLine::noise(const DriveFaults& faults) {
-  std::vector<std::uint8_t> bytes(1 + random_.below(std::max<std::uint64_t>(faults.longest_noise, 1)));
-  for (std::uint8_t& byte : bytes) byte = random_.byte();
-  return bytes;
-}
-
 std::vector<std::uint8_t> SerialLine::distort(Slot& slot, TenByteFrame reply) {
   if (slot.faults.strikes(DriveFault::wrong_station, random_)) {
     const auto other = static_cast<std::uint8_t>(station_of(reply) % 127 + 1);
@@ -167,11 +162,11 @@ std::vector<std::uint8_t> SerialLine::distort(Slot& slot, TenByteFrame reply) {
     bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ (1U << (bit % 8)));
   }
   if (slot.faults.strikes(DriveFault::noise_before, random_)) {
-    const auto before = noise(slot.faults);
+    const auto before = slot.faults.noise(random_);
     bytes.insert(bytes.begin(), before.begin(), before.end());
   }
   if (slot.faults.strikes(DriveFault::noise_after, random_)) {
-    const auto after = noise(slot.faults);
+    const auto after = slot.faults.noise(random_);
     bytes.insert(bytes.end(), after.begin(), after.end());
   }
   return bytes;
@@ -182,19 +177,12 @@ void SerialLine::send_reply(std::size_t position, std::uint64_t tag, Time ready,
   if (!reaches_host(position)) return;  // a drive further down the chain does not pass it on
   if (slot.faults.strikes(DriveFault::split, random_)) {
     const auto cut_at = static_cast<std::ptrdiff_t>(1 + random_.below(bytes.size() - 1));
-    send(ready, {tag, ByteOrigin::reply, position, {bytes.begin(), bytes.begin() + cut_at}});
+    outgoing_.send(ready, {tag, ByteOrigin::reply, position, {bytes.begin(), bytes.begin() + cut_at}});
     slot.reply_ready = ready + slot.faults.split_gap;
-    send(slot.reply_ready, {tag, ByteOrigin::reply, position, {bytes.begin() + cut_at, bytes.end()}});
+    outgoing_.send(slot.reply_ready, {tag, ByteOrigin::reply, position, {bytes.begin() + cut_at, bytes.end()}});
     return;
   }
-  send(ready, {tag, ByteOrigin::reply, position, std::move(bytes)});
-}
-
-void SerialLine::send(Time ready, Chunk chunk) { waiting_.emplace(std::pair{ready, ++chunks_}, std::move(chunk)); }
-
-void SerialLine::put_on_wire(Time ready, Chunk chunk) {
-  drive_line_free_ = std::max(drive_line_free_, ready) + duration(chunk.bytes.size());
-  arriving_.emplace(std::pair{drive_line_free_, ++chunks_}, std::move(chunk));
+  outgoing_.send(ready, {tag, ByteOrigin::reply, position, std::move(bytes)});
 }
 
 void SerialLine::babble(Time now) {
@@ -203,13 +191,13 @@ void SerialLine::babble(Time now) {
     if (!slot.faults.armed(DriveFault::babble) || slot.next_babble > now) continue;
     slot.next_babble = now + std::max(slot.faults.babble_period, one_millisecond);
     if (slot.faults.strikes(DriveFault::babble, random_)) {
-      send(now, {0, ByteOrigin::noise, position, noise(slot.faults)});
+      outgoing_.send(now, {0, ByteOrigin::noise, position, slot.faults.noise(random_)});
     }
   }
 }
 
 void SerialLine::restart(std::size_t position, Time now) {
-  std::erase_if(waiting_, [position](const auto& entry) { return entry.second.drive == position; });
+  outgoing_.forget(position);
   slots_[position].receiver.forget();
   slots_[position].drive->restart(now);
 }

@@ -1,35 +1,21 @@
-// One serial line with its simulated drives, as the host's end of the cable sees it: bytes in, bytes out, time pushed
-// in. Promises: an RS232 chain gives the host's bytes back exactly when every drive in it has 6510:0B = 1 (JD 2.1); a
-// drive answers in order; the same seed and the same calls give the same bytes at the same times. Never reads a clock
-// and never delivers a byte outside from_host() and advance().
+// One serial line with Kinco drives that speak Kinco's own protocol.
+// Promises: an RS232 chain gives the host's bytes back exactly when every drive in it has 6510:0B = 1 (JD 2.1); a drive
+// answers in order. Never reads a clock and never delivers a byte outside from_host() and advance().
 #pragma once
 
 #include <deque>
-#include <functional>
-#include <map>
 #include <memory>
-#include <optional>
-#include <span>
 #include <vector>
 
-#include "tests/simulated/drive_faults.hpp"
 #include "tests/simulated/frame_receiver.hpp"
 #include "tests/simulated/journal.hpp"
 #include "tests/simulated/kinco_drive.hpp"
+#include "tests/simulated/outgoing_wire.hpp"
 
 namespace axisgate::simulated {
 
 // rs232: one drive, or a chain in which each hears what the one before it passes on. rs485: all hear the host.
 enum class Wiring : std::uint8_t { rs232, rs485 };
-
-enum class ByteOrigin : std::uint8_t { echo, reply, noise };
-
-struct ToHost {
-  Time at;            // when the last of the bytes has arrived
-  std::uint64_t tag;  // of the request that caused a reply; 0 for echo and noise
-  ByteOrigin origin;
-  std::span<const std::uint8_t> bytes;
-};
 
 struct LineOptions {
   Wiring wiring = Wiring::rs232;
@@ -39,27 +25,30 @@ struct LineOptions {
   std::size_t journal_capacity = 1000;
 };
 
-class SerialLine {
+class SerialLine final : public DriveLine {
  public:
-  using Sink = std::function<void(const ToHost&)>;  // may call from_host()
+  using Sink = ToHostSink;
 
   SerialLine(const LineOptions& options, Random random, Sink sink);
 
   // Drives in the order of the chain. Throws std::invalid_argument for one that cannot be on this line.
   KincoDrive& add(const DriveOptions& options);
-  std::size_t size() const { return slots_.size(); }
+  std::size_t size() const override { return slots_.size(); }
   KincoDrive& drive(std::size_t position) { return *slots_.at(position).drive; }
   const KincoDrive& drive(std::size_t position) const { return *slots_.at(position).drive; }
-  DriveFaults& faults(std::size_t position) { return slots_.at(position).faults; }
-  void set_reply_delay(Time delay) { options_.reply_delay = delay; }
-  void restart(std::size_t position, Time now);  // with it go the replies it had not sent yet
+  DriveFaults& faults(std::size_t position) override { return slots_.at(position).faults; }
+  bool has(DriveFault fault) const override;
+  void set_reply_delay(Time delay) override { options_.reply_delay = delay; }
+  void restart(std::size_t position, Time now) override;
 
-  void from_host(std::span<const std::uint8_t> bytes, Time now);
-  void advance(Time now);
-  std::optional<Time> next_event() const;
-  void cut() {
-    incoming_.clear(), waiting_.clear(), arriving_.clear();
-  }  // the cable is pulled: bytes under way are gone
+  void from_host(std::span<const std::uint8_t> bytes, Time now) override;
+  void advance(Time now) override;
+  std::optional<Time> next_event() const override;
+  void cut() override {
+    incoming_.clear();
+    outgoing_.cut();
+  }
+  std::uint64_t requests_heard() const override { return journal_.recorded(); }
 
   const Journal& journal() const { return journal_; }
 
@@ -75,14 +64,6 @@ class SerialLine {
     Time at;
     std::uint8_t byte;
   };
-  struct Chunk {
-    std::uint64_t tag;
-    ByteOrigin origin;
-    std::size_t drive;  // whose restart takes it away; the number of drives for an echo
-    std::vector<std::uint8_t> bytes;
-  };
-  using ChunkQueue = std::map<std::pair<Time, std::uint64_t>, Chunk>;
-
   bool passes_on(const Slot& slot) const;
   bool hears(std::size_t position) const;
   bool reaches_host(std::size_t position) const;
@@ -91,11 +72,7 @@ class SerialLine {
   void request_arrives(std::size_t position, const TenByteFrame& request, Time at);
   std::vector<std::uint8_t> distort(Slot& slot, TenByteFrame reply);
   void send_reply(std::size_t position, std::uint64_t tag, Time ready, std::vector<std::uint8_t> bytes);
-  void send(Time ready, Chunk chunk);
-  void put_on_wire(Time ready, Chunk chunk);
   void babble(Time now);
-  std::vector<std::uint8_t> noise(const DriveFaults& faults);
-  Time duration(std::size_t bytes) const;
 
   LineOptions options_;
   Random random_;
@@ -103,14 +80,11 @@ class SerialLine {
   Journal journal_;
   std::vector<Slot> slots_;
   std::deque<IncomingByte> incoming_;
-  ChunkQueue waiting_;   // by the time the drive begins to send
-  ChunkQueue arriving_;  // by the time the last byte is there
+  OutgoingWire outgoing_;
   std::vector<std::uint8_t> echo_;
-  Time host_line_free_{};   // host to drives
-  Time drive_line_free_{};  // drives to host
+  Time host_line_free_{};
   Time now_{};
   std::uint64_t tags_ = 0;
-  std::uint64_t chunks_ = 0;
 };
 
 }  // namespace axisgate::simulated

@@ -1,5 +1,6 @@
-// The shipped gateway core on a stage: manual time, simulated lines, shipped profiles; a client speaks to the command
-// port. Promises that nothing happens but by the clock that the test moves. Never opens a device or a socket.
+// The shipped gateway core on a stage: manual time, simulated lines of either kind, shipped profiles; a client speaks
+// to the command port. Promises that nothing happens but by the clock that the test moves. Never opens a device or a
+// socket.
 #pragma once
 
 #include <map>
@@ -9,6 +10,7 @@
 
 #include "gateway/app/gateway.hpp"
 #include "gateway/drive/profile_loader.hpp"
+#include "tests/stage/rtu_link_sim.hpp"
 #include "tests/stage/sim_link.hpp"
 
 namespace axisgate::test {
@@ -20,6 +22,13 @@ struct StageDrive {
   std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
 };
 
+/// The same on a Modbus RTU line; its profile is the shipped one of its type.
+struct RtuStageDrive {
+  simulated::RtuDriveOptions options{};
+  drive::ResolveAxis axis{};
+  std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
+};
+
 class GatewayStage {
  public:
   struct Line {
@@ -27,13 +36,20 @@ class GatewayStage {
     std::vector<StageDrive> drives;
     simulated::LineOptions options{};
     std::optional<std::array<Duration, 3>> poll{};  ///< fast, normal, slow; none: the defaults
+    /// Any here makes it a Modbus RTU line, and `drives` and `options` do not count.
+    std::vector<RtuStageDrive> rtu_drives{};
+    simulated::RtuLineOptions rtu_options{};
+    std::optional<Duration> timeout{};  ///< none: 100 ms, and on Modbus RTU what the product takes for these drives
   };
   explicit GatewayStage(std::vector<Line> lines, std::uint64_t seed = 1);
 
   [[nodiscard]] app::Gateway& gateway() { return *gateway_; }
   [[nodiscard]] ManualRuntime& runtime() { return runtime_; }
-  [[nodiscard]] SimLink& link(std::size_t line) { return *links_[line]; }
+  [[nodiscard]] SimLink& link(std::size_t line) { return *links_.at(line).kinco; }
+  [[nodiscard]] RtuLinkSim& rtu_link(std::size_t line) { return *links_.at(line).rtu; }
+  /// Brought up to now. The drive there must be of this kind, on whichever line.
   [[nodiscard]] simulated::KincoDrive& drive(std::size_t line, std::size_t position = 0);
+  [[nodiscard]] simulated::Id286pro& id286pro(std::size_t line, std::size_t position = 0);
   [[nodiscard]] const AxisImage& axis(AxisNumber number) { return *gateway_->image().find(number); }
   [[nodiscard]] std::vector<std::string>& log() { return log_lines_; }
 
@@ -60,11 +76,18 @@ class GatewayStage {
   ManualRuntime runtime_;
   std::vector<std::string> log_lines_;
   Log log_;
-  std::vector<SimLink*> links_;
+  /// One of both.
+  struct LinkOfLine {
+    SimLink* kinco = nullptr;
+    RtuLinkSim* rtu = nullptr;
+  };
+  std::vector<LinkOfLine> links_;
   std::unique_ptr<app::Gateway> gateway_;
 };
 
 /// A commissioned drive on a line of its own.
 [[nodiscard]] GatewayStage::Line line_of(simulated::KincoType type, AxisNumber axis);
+/// Commissioned drives on one Modbus RTU line, with axes from `first` on.
+[[nodiscard]] GatewayStage::Line rtu_line_of(std::vector<simulated::RtuDriveOptions> drives, AxisNumber first);
 
 }  // namespace axisgate::test

@@ -4,34 +4,24 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <limits>
 
 namespace axisgate::modbus_tcp {
 
-DescriptorRule descriptor_rule(std::uint64_t soft_limit) {
-  const std::uint64_t above = soft_limit > kSelectLimit ? soft_limit - kSelectLimit : 0;
-  const std::uint64_t low = std::min(soft_limit, kSelectLimit);
-  const std::uint64_t below = low > kOwnDescriptors ? low - kOwnDescriptors : 0;
-  const std::uint64_t room = std::max(above, below);
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  return {above >= below && above > 0, static_cast<std::uint32_t>(std::min(room, kMost))};
+DescriptorLimits descriptor_limits() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return {kSelectLimit, kSelectLimit};
+  return {limit.rlim_cur, limit.rlim_max};
 }
 
-std::uint64_t raise_descriptor_limit() {
-  rlimit limit{};
-  if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < limit.rlim_max) {
-    limit.rlim_cur = limit.rlim_max;
-    // Refused (a container's policy): the old limit stays, and descriptor_rule() makes do with it.
-    static_cast<void>(setrlimit(RLIMIT_NOFILE, &limit));
-  }
-  return descriptor_limit();
-}
-
-std::uint64_t descriptor_limit() {
-  rlimit limit{};
-  return getrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : kSelectLimit;
+DescriptorPlan take_descriptors(const DescriptorNeeds& needs) {
+  const DescriptorLimits before = descriptor_limits();
+  const DescriptorPlan plan = plan_descriptors(before, needs);
+  if (plan.soft_limit == before.soft) return plan;
+  const rlimit raised{plan.soft_limit, before.hard};
+  if (setrlimit(RLIMIT_NOFILE, &raised) == 0) return plan;
+  // Refused (a container's policy): the plan makes do with what is in force.
+  return plan_descriptors({before.soft, before.soft}, needs);
 }
 
 int moved_up(int descriptor) {

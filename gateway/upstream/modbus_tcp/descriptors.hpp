@@ -1,27 +1,16 @@
-// The descriptor rule: libmodbus waits for serial ports with select(), which breaks on descriptors of 1024 and more.
-// Promises that client sockets leave the numbers below 1024 to serial ports, or, where the system's limit forbids that,
-// that there are never so many clients that a port could be pushed above. Never closes anything but what it has just
-// moved.
+// What the descriptor plan asks of the system: the limit on open files, and sockets moved to higher numbers.
+// Promises that the plan it returns is in force, whatever the system has refused.
+// Never closes anything but what it has just moved.
 #pragma once
 
-#include <cstdint>
+#include "gateway/upstream/modbus_tcp/descriptor_plan.hpp"
 
 namespace axisgate::modbus_tcp {
 
-inline constexpr std::uint64_t kSelectLimit = 1024;  ///< FD_SETSIZE of the libmodbus we link
-inline constexpr std::uint64_t kOwnDescriptors =
-    128;  ///< ports, listeners, timers, log, the DDS link: kept free of clients
+[[nodiscard]] DescriptorLimits descriptor_limits();
 
-struct DescriptorRule {
-  bool move_up = false;           ///< client sockets go to 1024 and above
-  std::uint32_t max_clients = 0;  ///< of all listeners together
-};
-/// Pure: what follows from the process's soft limit. Of the two ways the one with room for more clients.
-[[nodiscard]] DescriptorRule descriptor_rule(std::uint64_t soft_limit);
-
-/// Raises the soft limit to the hard one, as far as the system lets us; the limit then in force. Once, at start-up.
-std::uint64_t raise_descriptor_limit();
-[[nodiscard]] std::uint64_t descriptor_limit();
+/// Raises the soft limit as far as the needs ask and the system lets us. Once, before the first client.
+[[nodiscard]] DescriptorPlan take_descriptors(const DescriptorNeeds& needs);
 
 /// Moves an accepted socket to the lowest free number from 1024 up and closes the old one. -1: none free (errno says
 /// why), and `descriptor` is closed all the same.

@@ -13,6 +13,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "gateway/upstream/modbus_tcp/descriptors.hpp"
+
 namespace axisgate::modbus_tcp {
 
 namespace ip = boost::asio::ip;

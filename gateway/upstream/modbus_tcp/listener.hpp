@@ -11,7 +11,7 @@
 
 #include "gateway/upstream/modbus_tcp/access.hpp"
 #include "gateway/upstream/modbus_tcp/connection.hpp"
-#include "gateway/upstream/modbus_tcp/descriptors.hpp"
+#include "gateway/upstream/modbus_tcp/descriptor_plan.hpp"
 #include "gateway/upstream/modbus_tcp/server_counters.hpp"
 
 namespace axisgate::modbus_tcp {
@@ -28,7 +28,7 @@ struct ServerContext {
   CommandPort& commands;
   ClientRegistry& clients;
   const Log& log;
-  DescriptorRule descriptors;
+  DescriptorPlan descriptors;
   ServerCounters counters;
 };
 

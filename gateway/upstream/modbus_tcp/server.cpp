@@ -16,25 +16,17 @@ Server::Server(boost::asio::io_context& io, Runtime& runtime, std::span<const Li
 
 Server::~Server() { stop(); }
 
-void Server::start() {
-  context_->descriptors = modbus_tcp::descriptor_rule(descriptor_limit());
+void Server::start(const DescriptorPlan& descriptors) {
+  context_->descriptors = descriptors;
   try {
     for (const auto& listener : listeners_) listener->open();
   } catch (...) {
     stop();
     throw;
   }
-  std::uint64_t wanted = 0;
   for (const auto& listener : listeners_) {
-    wanted += listener->settings().max_clients;
     context_->log.write(LogLevel::info, "modbus", "listening on " + listener->name());
     listener->start();
-  }
-  if (wanted > context_->descriptors.max_clients) {
-    context_->log.write(LogLevel::warning, "modbus",
-                        "only " + std::to_string(context_->descriptors.max_clients) + " of " + std::to_string(wanted) +
-                            " clients fit under the system's descriptor limit; raise LimitNOFILE to " +
-                            std::to_string(kSelectLimit + wanted));
   }
 }
 
@@ -49,6 +41,5 @@ std::vector<std::uint16_t> Server::ports() const {
 }
 
 const ServerCounters& Server::counters() const { return context_->counters; }
-const DescriptorRule& Server::descriptor_rule() const { return context_->descriptors; }
 
 }  // namespace axisgate::modbus_tcp

@@ -12,7 +12,7 @@
 #include "gateway/core/log.hpp"
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/process_image.hpp"
-#include "gateway/upstream/modbus_tcp/descriptors.hpp"
+#include "gateway/upstream/modbus_tcp/descriptor_plan.hpp"
 #include "gateway/upstream/modbus_tcp/listener_settings.hpp"
 #include "gateway/upstream/modbus_tcp/server_counters.hpp"
 
@@ -31,17 +31,15 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Binds all listeners, then accepts. Call raise_descriptor_limit() before it. Throws std::runtime_error, and has
-  /// then opened nothing.
-  void start();
+  /// Binds all listeners, then accepts as many clients as `descriptors` leaves room for (take_descriptors()). Throws
+  /// std::runtime_error, and has then opened nothing.
+  void start(const DescriptorPlan& descriptors);
   /// Closes listeners and connections. Not from inside a CommandPort call or a result's callback.
   void stop();
 
   /// In the order of the settings; the ports really in force where 0 was asked for.
   [[nodiscard]] std::vector<std::uint16_t> ports() const;
   [[nodiscard]] const ServerCounters& counters() const;
-  /// What start() found: where it limits the clients, `check`, log and alarm say so.
-  [[nodiscard]] const DescriptorRule& descriptor_rule() const;
 
  private:
   std::unique_ptr<ServerContext> context_;

@@ -13,6 +13,7 @@
 
 #include "adapters/asio/asio_runtime.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/descriptors.hpp"
 #include "gateway/upstream/modbus_tcp/server.hpp"
 #include "tests/unit/modbus_server/filled_image.hpp"
 
@@ -80,7 +81,7 @@ int serve(int argc, char** argv) {
     if (std::strcmp(argv[i], "--per-axis") == 0) settings.per_axis_units = true;
   }
   modbus_tcp::Server server(io, runtime, std::span(&settings, 1), image, port, clients, log);
-  server.start();
+  server.start(modbus_tcp::take_descriptors({.clients = settings.max_clients}));
   std::printf("PORT %u\n", static_cast<unsigned>(server.ports()[0]));
   std::fflush(stdout);
 

@@ -1,6 +1,5 @@
 // What happens to clients that are too many, not allowed, too slow, gone or not speaking Modbus.
 #include <gmock/gmock.h>
-#include <sys/resource.h>
 
 #include "tests/unit/modbus_server/served.hpp"
 
@@ -228,43 +227,6 @@ TEST(ModbusServerLimits, WhatWasAskedBeforeBytesThatAreNoFrameIsAnsweredFirst) {
   client.send(bytes);
   EXPECT_EQ(client.receive(13).size(), 13U);
   EXPECT_TRUE(client.closed_by_server());
-}
-
-/// Lowers the number of descriptors this process may have, for a scope.
-class FewDescriptors {
- public:
-  explicit FewDescriptors(rlim_t limit) {
-    EXPECT_EQ(getrlimit(RLIMIT_NOFILE, &before_), 0);
-    rlimit lowered = before_;
-    lowered.rlim_cur = limit;
-    EXPECT_EQ(setrlimit(RLIMIT_NOFILE, &lowered), 0);
-  }
-  ~FewDescriptors() { EXPECT_EQ(setrlimit(RLIMIT_NOFILE, &before_), 0); }
-  FewDescriptors(const FewDescriptors&) = delete;
-  FewDescriptors& operator=(const FewDescriptors&) = delete;
-
- private:
-  rlimit before_{};
-};
-
-TEST(ModbusServerLimits, WithoutDescriptorsAcceptingPausesInsteadOfSpinningAndThenGoesOn) {
-  Served served;
-  served.start();
-  TestClient first(served);
-  expect_served(first);
-  TestClient second(served);
-  {
-    const FewDescriptors none_free(3);
-    ASSERT_TRUE(served.await([&] { return served.server->counters().accept_pauses == 1; }));
-    for (int i = 0; i < 100; ++i) served.settle();
-    EXPECT_EQ(served.server->counters().accept_pauses, 1U) << "it tries again only after its pause";
-    expect_served(first);
-    served.pass(std::chrono::milliseconds(200));
-    EXPECT_EQ(served.server->counters().accept_pauses, 2U);
-  }
-  served.pass(std::chrono::milliseconds(200));
-  expect_served(second);
-  EXPECT_EQ(lines_with(served, "cannot accept").size(), 1U);
 }
 
 }  // namespace

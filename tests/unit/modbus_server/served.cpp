@@ -10,6 +10,8 @@
 #include <array>
 #include <cerrno>
 
+#include "gateway/upstream/modbus_tcp/descriptors.hpp"
+
 namespace axisgate::test {
 
 std::vector<Byte> read_request(std::uint16_t transaction, std::uint16_t address, std::uint16_t count) {
@@ -40,8 +42,14 @@ Served::~Served() {
 }
 
 void Served::start() {
+  std::uint32_t wanted = 0;
+  for (const auto& listener : listeners) wanted += listener.max_clients;
+  start(modbus_tcp::take_descriptors({.clients = wanted, .listeners = listeners.size()}));
+}
+
+void Served::start(const modbus_tcp::DescriptorPlan& descriptors) {
   server = std::make_unique<modbus_tcp::Server>(io, runtime, listeners, image, port, clients, log);
-  server->start();
+  server->start(descriptors);
 }
 
 bool Served::await(const std::function<bool()>& seen) {

@@ -33,8 +33,9 @@ class Served {
   Served();
   ~Served();
 
-  /// On the settings in `listeners`.
+  /// On the settings in `listeners`, with as many descriptors as the system gives.
   void start();
+  void start(const modbus_tcp::DescriptorPlan& descriptors);
   /// Turns the loop until `seen` holds.
   [[nodiscard]] bool await(const std::function<bool()>& seen);
   /// Turns the loop until nothing is ready.

@@ -1,6 +1,4 @@
 // What clients get from the server when all goes well, and that no client costs another its turn.
-#include <unistd.h>
-
 #include "gateway/upstream/modbus_tcp/session.hpp"
 #include "tests/unit/modbus_server/served.hpp"
 
@@ -165,33 +163,6 @@ TEST(ModbusServer, AFloodOfRequestsDoesNotStarveAnotherClient) {
   EXPECT_EQ(modest.receive(13), position_reply(2));
   EXPECT_LT(flooding.received_so_far() / 13, sent / 2) << "the modest client had to wait for the flood's end";
   EXPECT_EQ(flooding.receive(sent * 13).size(), sent * 13);
-}
-
-TEST(ModbusServer, ClientSocketsAreMovedAbove1023) {
-  Served served;
-  if (modbus_tcp::raise_descriptor_limit() < 2 * modbus_tcp::kSelectLimit + modbus_tcp::kOwnDescriptors) {
-    served.start();
-    ASSERT_LE(served.server->descriptor_rule().max_clients, modbus_tcp::kSelectLimit);
-    return;
-  }
-  served.start();
-  ASSERT_TRUE(served.server->descriptor_rule().move_up);
-  TestClient first(served);
-  served.settle();
-  ASSERT_EQ(served.server->counters().open, 1U);
-  // The server's end of the first connection had the lowest free number only for a moment.
-  // The numbers need not follow on one another: a test runner leaves descriptors of its own open.
-  const int lowest_free = ::dup(0);
-  const int next_free = ::dup(0);
-  ASSERT_GE(next_free, 0);
-  ::close(lowest_free);
-  ::close(next_free);
-  TestClient second(served);
-  served.settle();
-  ASSERT_EQ(served.server->counters().open, 2U);
-  const int still_lowest_but_for_the_client = ::dup(0);
-  EXPECT_EQ(still_lowest_but_for_the_client, next_free);
-  ::close(still_lowest_but_for_the_client);
 }
 
 }  // namespace

@@ -19,7 +19,33 @@ TEST(LineSpec, NamesThePathTheLineAndItsDrives) {
   EXPECT_TRUE(spec.drives[1].factory_fresh);
   EXPECT_EQ(spec.drives[1].mechanics.home_from, -10);
   EXPECT_EQ(spec.drives[1].mechanics.home_to, 20);
-  EXPECT_EQ(describe(spec.drives), "md@1,jd@2");
+  EXPECT_FALSE(spec.rtu);
+  EXPECT_EQ(spec.describe(), "md@1,jd@2");
+}
+
+TEST(LineSpec, NamesAModbusRtuLineAndItsDrives) {
+  DriveOptions common;
+  common.boot_time = std::chrono::milliseconds(7);
+  const LineSpec spec =
+      parse_line_spec("/tmp/axes:rtu:id286pro@1+400=11+319=-5000+home=5..9,jd@2+errors=83,md@3+fresh", common);
+  EXPECT_EQ(spec.path, "/tmp/axes");
+  EXPECT_EQ(spec.name, "axes");
+  EXPECT_TRUE(spec.rtu);
+  EXPECT_TRUE(spec.drives.empty());
+  ASSERT_EQ(spec.rtu_drives.size(), 3U);
+  const auto& stepper = std::get<Id286proOptions>(spec.rtu_drives[0]);
+  EXPECT_TRUE(stepper.internal_pulses);
+  EXPECT_THAT(stepper.stored, testing::ElementsAre(testing::Pair(319, -5000), testing::Pair(400, 11)));
+  EXPECT_EQ(stepper.mechanics.home_to, 9);
+  EXPECT_EQ(stepper.boot_time, common.boot_time);
+  const auto& jd = std::get<KincoRtuDrive>(spec.rtu_drives[1]);
+  EXPECT_EQ(jd.drive.type, KincoType::jd);
+  EXPECT_EQ(jd.rtu.read_error_function, 0x83);
+  EXPECT_TRUE(std::get<KincoRtuDrive>(spec.rtu_drives[2]).drive.factory_fresh);
+  EXPECT_EQ(spec.describe(), "rtu:id286pro@1,jd@2,md@3");
+  EXPECT_THAT(spec.stations(), testing::ElementsAre(1, 2, 3));
+  EXPECT_FALSE(
+      std::get<Id286proOptions>(parse_line_spec("/x:rtu:id286pro@254+fresh", {}).rtu_drives[0]).internal_pulses);
 }
 
 TEST(LineSpec, SaysWhatToChange) {
@@ -39,6 +65,15 @@ TEST(LineSpec, SaysWhatToChange) {
   EXPECT_THAT(message("/tmp/x:jd@1,md@1"), HasSubstr("already on the line"));
   EXPECT_THAT(message("/tmp/x:jd@1+old"), HasSubstr("use fresh"));
   EXPECT_THAT(message("/tmp/x:jd@1+home=5"), HasSubstr("FROM..TO"));
+  EXPECT_THAT(message("/tmp/x:id286pro@1"), HasSubstr("type jd or md"));
+  EXPECT_THAT(message("/tmp/x:rtu:abc@1"), HasSubstr("type jd, md or id286pro"));
+  EXPECT_THAT(message("/tmp/x:rtu:jd@128"), HasSubstr("1 to 127"));
+  EXPECT_THAT(message("/tmp/x:rtu:id286pro@255"), HasSubstr("1 to 254"));
+  EXPECT_THAT(message("/tmp/x:rtu:jd@1,id286pro@1"), HasSubstr("already on the line"));
+  EXPECT_THAT(message("/tmp/x:rtu:jd@1+cascade"), HasSubstr("errors=83"));
+  EXPECT_THAT(message("/tmp/x:rtu:id286pro@1+107=1"), HasSubstr("a stored register"));
+  EXPECT_THAT(message("/tmp/x:rtu:id286pro@1+400=31"), HasSubstr("a stored register"));
+  EXPECT_THAT(message("/tmp/x:rtu:id286pro@1+"), HasSubstr("a stored register"));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "tests/axisgate_sim/descriptor.hpp"
+#include "tests/simulated/rtu_frame.hpp"
 #include "tests/unit/simulated/bench.hpp"
 
 namespace axisgate::simulated {
@@ -146,6 +147,58 @@ TEST_F(Program, ObeysTheControlSocket) {
   EXPECT_THAT(control("fly lift/1"), testing::StartsWith("error 'fly' is no command"));
   EXPECT_THAT(control("get lift/1 6041"), testing::HasSubstr("INDEX.SUB"));
   EXPECT_THAT(control("help"), testing::StartsWith("ok "));
+}
+
+TEST_F(Program, SpeaksModbusRtuOnALineOfSeveralKinds) {
+  start({"--line", folder / "axes:rtu:id286pro@1+305=2,jd@2", "--control", folder / "control"});
+  ASSERT_TRUE(wait_for_log("control "));
+  EXPECT_THAT(log(), testing::HasSubstr(" rtu:id286pro@1,jd@2"));
+  const Descriptor port = open_port("axes");
+  EXPECT_EQ(exchange(port, from_hex("01 03 00 6C 00 02 04 16"), 9), from_hex("01 03 04 00 00 00 02 7B F2"));
+  EXPECT_EQ(exchange(port, seal_rtu(2, read_pdu(0x3200, 1)), 7), seal_rtu(2, Bytes{0x03, 2, 0x40, 0x50}));
+  const Bytes stop = from_hex("01 06 01 43 00 06 F9 E0");
+  EXPECT_EQ(exchange(port, stop, 8), stop);
+  EXPECT_EQ(control("exchanges axes"), "ok 3");
+  EXPECT_EQ(control("half axes/1 next"), "ok");
+  EXPECT_LT(exchange(port, stop, 8, 200).size(), 8U);
+  EXPECT_EQ(control("exception axes/1 6 next"), "ok");
+  EXPECT_EQ(exchange(port, stop, 5), seal_rtu(1, Bytes{0x86, 6}));
+  EXPECT_EQ(control("wrong-length axes/2 next"), "ok");
+  EXPECT_EQ(exchange(port, seal_rtu(2, read_pdu(0x3200, 1)), 9).size(), 9U);
+}
+
+TEST_F(Program, ControlsAnId286pro) {
+  start({"--line", folder / "axes:rtu:id286pro@7", "--line", folder / "lift:jd@1", "--control", folder / "control"});
+  ASSERT_TRUE(wait_for_log("control "));
+  const Descriptor port = open_port("axes");
+  for (const auto& pdu : {write_pdu(305, 1), write_pdu(305, 1), write_pdu(306, 900), write_long_pdu(313, 500)}) {
+    EXPECT_EQ(exchange(port, seal_rtu(7, pdu), 8).size(), 8U);
+  }
+  EXPECT_EQ(control("eeprom axes/7"), "ok 305:2 unknown 313:1 segments 0");
+  EXPECT_EQ(control("writes axes/7 306"), "ok 1");
+  EXPECT_EQ(control("get axes/7 306"), "ok 900 0x00000384");
+  EXPECT_EQ(control("state axes/7"), "ok stopped");
+  EXPECT_EQ(exchange(port, seal_rtu(7, write_pdu(323, 1)), 8).size(), 8U);
+  for (int i = 0; i < 500 && control("position axes/7") != "ok 500"; ++i) std::this_thread::sleep_for(milliseconds(10));
+  EXPECT_EQ(control("position axes/7"), "ok 500");
+  EXPECT_THAT(control("starts axes/7"), testing::MatchesRegex("ok 1 [0-9]+ms:#5:1"));
+  EXPECT_EQ(control("fault axes/7 14 hardware"), "ok");
+  EXPECT_EQ(control("state axes/7"), "ok disabled fault 14");
+  EXPECT_THAT(control("clear axes/7 11"), testing::HasSubstr("no fault 11"));
+  EXPECT_EQ(control("clear axes/7 14"), "ok");
+  EXPECT_EQ(control("restart axes/7"), "ok");
+  EXPECT_EQ(control("state axes/7"), "ok booting");
+  EXPECT_EQ(control("restarts axes/7"), "ok 1");
+  EXPECT_EQ(control("enable axes/7 off"), "ok");
+  EXPECT_EQ(control("input axes/7 3 on"), "ok");
+  EXPECT_THAT(control("input axes/7 4 on"), testing::HasSubstr("no input 4"));
+  EXPECT_EQ(control("set axes/7 400 11"), "ok");
+  EXPECT_THAT(control("set axes/7 400 99"), testing::HasSubstr("exception 3"));
+  EXPECT_THAT(control("get axes/7 107"), testing::HasSubstr("no register 107"));
+  EXPECT_THAT(control("stores axes/7"), testing::HasSubstr("no command"));
+  EXPECT_EQ(control("position lift/1"), "ok 0");
+  EXPECT_THAT(control("half lift/1 next"), testing::HasSubstr("Modbus RTU alone"));
+  EXPECT_THAT(control("eeprom lift/1"), testing::HasSubstr("no command"));
 }
 
 TEST_F(Program, UnplugsAndPlugsALineUnderTheSameName) {

@@ -10,6 +10,7 @@
 
 #include "adapters/asio/asio_runtime.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/descriptors.hpp"
 #include "gateway/upstream/modbus_tcp/server.hpp"
 #include "tests/unit/modbus_server/filled_image.hpp"
 
@@ -27,7 +28,7 @@ class RunningServer {
     settings.port = settings.port == 1502 ? 0 : settings.port;
     server_ =
         std::make_unique<modbus_tcp::Server>(io_, runtime_, std::span(&settings, 1), image_, port_, clients_, log_);
-    server_->start();
+    server_->start(modbus_tcp::take_descriptors({.clients = settings.max_clients}));
     listening_on_ = server_->ports()[0];
     thread_ = std::thread([this] { io_.run(); });
   }

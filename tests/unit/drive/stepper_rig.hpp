@@ -1,0 +1,61 @@
+// One simulated iD286pro behind the shipped core, with the words in which these tests speak. Promises a fresh world per
+// rig. Never decides what is right: the tests do.
+#pragma once
+
+#include <string>
+
+#include "tests/unit/drive/rig.hpp"
+
+namespace axisgate::test {
+
+struct StepperOptions {
+  simulated::Id286proOptions drive{};
+  drive::ResolveAxis axis{};
+};
+
+class StepperRig {
+ public:
+  explicit StepperRig(StepperOptions options = {});
+
+  GatewayStage stage;
+
+  [[nodiscard]] const AxisImage& axis() { return stage.axis(1); }
+  [[nodiscard]] simulated::Id286pro& motor();
+  [[nodiscard]] simulated::DriveFaults& faults();
+
+  void online();
+  void enable();
+  /// Runs at this velocity (0.001 rpm), and has reached it.
+  void run_at(std::int64_t velocity);
+  [[nodiscard]] static Errc code(const GroupResult& result) { return result.outcome.code; }
+  GroupResult command(Command command) { return stage.command(1, command); }
+  GroupResult write(Quantity quantity, std::int64_t value) { return stage.write(1, quantity, value); }
+  GroupResult ask(const Group& group) { return stage.ask(1, group); }
+  GroupResult move_to(std::int64_t position);
+  GroupResult move_by(std::int64_t distance);
+  GroupResult mailbox_write(std::uint16_t address, std::uint8_t size, std::uint32_t data);
+  GroupResult mailbox_read(std::uint16_t address, std::uint8_t size);
+
+  /// The motion ends within a minute, however.
+  bool motion_ends();
+  /// The motor and its image stand within five seconds.
+  bool stands();
+  void cut();
+  void plug();
+
+  /// What reached the wire since the last mark(), or since the beginning.
+  void mark();
+  [[nodiscard]] std::size_t writes();
+  /// Requests that read this many registers from there.
+  [[nodiscard]] std::size_t reads_of(std::uint16_t address, std::uint16_t registers);
+
+  [[nodiscard]] bool has_command(Command command) {
+    return (axis().supported_commands >> static_cast<unsigned>(command) & 1U) != 0;
+  }
+  [[nodiscard]] bool has_event(EventKind kind, const std::string& part);
+
+ private:
+  std::size_t marked_ = 0;
+};
+
+}  // namespace axisgate::test

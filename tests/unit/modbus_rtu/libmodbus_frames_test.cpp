@@ -1,0 +1,290 @@
+// Frames over libmodbus on a pty: whole ones with their number, and everything that is none.
+#include "tests/unit/modbus_rtu/id286pro_frames.hpp"
+#include "tests/unit/modbus_rtu/libmodbus_link_stage.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+class LibmodbusFrames : public LibmodbusLinkStage {
+ protected:
+  void SetUp() override { open_at(pty.device()); }
+  void expect_frames(const std::vector<std::string>& expected) {
+    EXPECT_TRUE(await([&] { return diary.frames.size() >= expected.size(); }));
+    EXPECT_EQ(diary.frames, expected);
+  }
+  void expect_noise(std::size_t bytes) {
+    EXPECT_TRUE(await([&] { return diary.noise >= bytes; }));
+    EXPECT_EQ(diary.noise, bytes);
+  }
+  /// The worker listens for frames again once it has been silent or something was sent: the latter can be awaited.
+  void end_noise() {
+    const std::size_t before = diary.frames.size();
+    send(1, "01 03 32 00 00 01");
+    request_at(pty, 8);
+    EXPECT_EQ(diary.frames.size(), before);
+  }
+  Pty pty;
+};
+
+TEST_F(LibmodbusFrames, carry_the_crc_that_the_sheets_print) {
+  modbus_rtu::ExchangeNumber number = 0;
+  for (const SheetExchange& sheet : kId286pro) {
+    link->transmit(++number, modbus_rtu::request_of(sheet.exchange, stepper_node()));
+    EXPECT_EQ(request_at(pty, from_hex(sheet.request).size()), sheet.request);
+    answer(pty, from_hex(sheet.reply));
+    EXPECT_TRUE(await([&] { return diary.frames.size() == number; }));
+    EXPECT_EQ(diary.frames.back(), fmt::format("{}: {}", number, hex_text(without_crc(from_hex(sheet.reply)))));
+  }
+  EXPECT_EQ(diary.noise, 0u);
+}
+
+TEST_F(LibmodbusFrames, the_longest_there_are_go_both_ways) {
+  ByteRow longest = from_hex("01 10 00 00 00 7B F6");
+  longest.resize(253, 0x5A);
+  link->transmit(1, longest);
+  EXPECT_EQ(request_at(pty, 255), hex_text(with_crc(longest)));
+  ByteRow reply = from_hex("01 03 FA");
+  reply.resize(253, 0xA5);
+  answer(pty, with_crc(reply));
+  expect_frames({"1: " + hex_text(reply)});
+}
+
+TEST_F(LibmodbusFrames, errors_come_whole_also_with_the_function_that_kinco_prints) {
+  send(1, "01 03 32 00 00 01");
+  request_at(pty, 8);
+  for (const char* error : {"01 83 02", "01 81 02", "01 86 03", "01 90 04", "01 FF 0B"}) answer(pty, error);
+  expect_frames({"1: 01 83 02", "1: 01 81 02", "1: 01 86 03", "1: 01 90 04", "1: 01 FF 0B"});
+}
+
+TEST_F(LibmodbusFrames, an_answer_split_at_any_byte_is_one_answer) {
+  modbus_rtu::ExchangeNumber number = 0;
+  for (const char* reply : {"01 03 04 C3 50 00 00", "01 06 31 00 00 0F", "01 10 6F 00 00 02", "01 83 02"}) {
+    const ByteRow bytes = with_crc(reply);
+    for (std::size_t cut = 1; cut < bytes.size(); ++cut) {
+      send(++number, "01 03 32 00 00 02");
+      request_at(pty, 8);
+      answer(pty, ByteRow(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(cut)));
+      context.restart();
+      context.run_for(1ms);  // mostly long enough for the first part to be read alone; right either way
+      answer(pty, ByteRow(bytes.begin() + static_cast<std::ptrdiff_t>(cut), bytes.end()));
+      ASSERT_TRUE(await([&] { return diary.frames.size() == number; })) << reply << " cut at " << cut;
+      EXPECT_EQ(diary.frames.back(), fmt::format("{}: {}", number, reply));
+    }
+  }
+  EXPECT_EQ(diary.noise, 0u);
+}
+
+TEST_F(LibmodbusFrames, glued_together_they_are_told_one_by_one) {
+  answer(pty, with_crc("01 03 02 C0 37") + with_crc("02 06 31 00 00 0F") + with_crc("01 83 02") +
+                  with_crc("01 10 6F 00 00 02") + with_crc("FA 03 04 00 01 00 02"));
+  expect_frames(
+      {"0: 01 03 02 C0 37", "0: 02 06 31 00 00 0F", "0: 01 83 02", "0: 01 10 6F 00 00 02", "0: FA 03 04 00 01 00 02"});
+  EXPECT_EQ(diary.noise, 0u);
+}
+
+TEST_F(LibmodbusFrames, of_every_unit_are_told_and_only_with_a_right_crc) {
+  // libmodbus leaves the CRC of all units but the one asked to us, and knows none above 247.
+  send(1, "FE 03 32 00 00 01");
+  request_at(pty, 8);
+  std::vector<std::string> expected;
+  for (int unit = 0; unit < 256; ++unit) {
+    const ByteRow frame{static_cast<Byte>(unit), 0x03, 0x02, 0x12, 0x34};
+    answer(pty, with_crc(frame));
+    expected.push_back("1: " + hex_text(frame));
+    ASSERT_TRUE(await([&] { return diary.frames.size() == expected.size(); }));
+  }
+  EXPECT_EQ(diary.frames, expected);
+  for (int unit = 0; unit < 256; ++unit) {
+    ByteRow frame = with_crc(ByteRow{static_cast<Byte>(unit), 0x03, 0x02, 0x12, 0x34});
+    frame.back() ^= 1;
+    const std::size_t before = diary.noise;
+    answer(pty, frame);
+    ASSERT_TRUE(await([&] { return diary.noise == before + frame.size(); })) << "unit " << unit;
+    end_noise();
+  }
+  EXPECT_EQ(diary.frames.size(), 256u);
+}
+
+TEST_F(LibmodbusFrames, with_any_bit_turned_on_the_line_are_no_frames) {
+  const ByteRow good = with_crc("01 03 02 C0 37");
+  for (std::size_t at = 0; at < good.size(); ++at) {
+    if (at == 1 || at == 2) continue;  // another length: see LibmodbusHalfFrames
+    for (int bit = 0; bit < 8; ++bit) {
+      ByteRow bad = good;
+      bad[at] = static_cast<Byte>(bad[at] ^ (1 << bit));
+      const std::size_t before = diary.noise;
+      answer(pty, bad);
+      ASSERT_TRUE(await([&] { return diary.noise == before + bad.size(); })) << "byte " << at << " bit " << bit;
+      end_noise();
+    }
+  }
+  EXPECT_THAT(diary.frames, IsEmpty());
+}
+
+// --- What nobody asked for -----------------------------------------------------------------------------------------
+
+TEST_F(LibmodbusFrames, nobody_asked_for_carry_the_number_of_the_newest_request) {
+  answer(pty, "01 03 02 00 01");
+  expect_frames({"0: 01 03 02 00 01"});
+  send(7, "01 03 32 00 00 01");
+  request_at(pty, 8);
+  answer(pty, "01 03 02 00 02");
+  answer(pty, "01 03 02 00 03");
+  expect_frames({"0: 01 03 02 00 01", "7: 01 03 02 00 02", "7: 01 03 02 00 03"});
+}
+
+TEST_F(LibmodbusFrames, that_came_before_a_request_is_sent_are_told_with_the_older_number) {
+  const int far_side = ::open(pty.device().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(far_side, 0);
+  for (modbus_rtu::ExchangeNumber number = 1; number <= 200; ++number) {
+    send(number, "01 03 32 00 00 01");
+    request_at(pty, 8);
+    answer(pty, "01 03 02 00 01");  // too late for its exchange, and yet before the next
+    int waiting = 0;
+    ASSERT_TRUE(
+        await([&] { return diary.frames.size() == number || (::ioctl(far_side, FIONREAD, &waiting), waiting > 0); }));
+    send(number + 1, "01 03 37 00 00 02");
+    request_at(pty, 8);
+    ASSERT_TRUE(await([&] { return diary.frames.size() == number; }));
+    ASSERT_EQ(diary.frames.back(), fmt::format("{}: 01 03 02 00 01", number));
+  }
+  ::close(far_side);
+}
+
+TEST_F(LibmodbusFrames, a_core_that_has_no_time_is_kept_from_a_flood_and_told_what_it_missed) {
+  // The far end has sent more than any buffer holds, so the worker has read it, while the core's loop stood still.
+  const ByteRow frame = with_crc("01 03 02 C0 37");
+  std::size_t sent = 0;
+  while (sent < 30'000 * frame.size()) {
+    const ssize_t taken = ::write(pty.master(), frame.data() + sent % frame.size(), frame.size() - sent % frame.size());
+    if (taken > 0) sent += static_cast<std::size_t>(taken);
+  }
+  context.restart();
+  context.poll_one();
+  EXPECT_LE(diary.frames.size(), modbus_rtu::PortWorker::kMaxHeard) << "in one turn of the loop";
+  EXPECT_TRUE(await([&] { return diary.frames.size() * frame.size() + diary.noise == sent; }))
+      << diary.frames.size() << " frames and " << diary.noise << " bytes";
+  EXPECT_GT(diary.noise, 0u);
+  EXPECT_THAT(diary.frames, Each("0: 01 03 02 C0 37"));
+  send(1, "01 03 32 00 00 01");
+  EXPECT_EQ(request_at(pty, 8), "01 03 32 00 00 01 8A B2");
+}
+
+TEST_F(LibmodbusFrames, a_slave_that_babbles_keeps_no_request_from_leaving) {
+  for (const ByteRow& babble : {ByteRow(64, 0x55), with_crc("09 03 02 00 01")}) {
+    std::string got;
+    modbus_rtu::ExchangeNumber number = 10;
+    for (int i = 0; i < 100; ++i) {
+      static_cast<void>(::write(pty.master(), babble.data(), babble.size()));
+      turn();
+    }
+    send(++number, "01 03 32 00 00 01");
+    EXPECT_TRUE(await([&] {
+      static_cast<void>(::write(pty.master(), babble.data(), babble.size()));
+      got += pty.read();
+      return got.size() >= 8;
+    }));
+    EXPECT_EQ(hex_text({reinterpret_cast<const Byte*>(got.data()), got.size()}), "01 03 32 00 00 01 8A B2");
+  }
+}
+
+TEST_F(LibmodbusFrames, a_request_given_up_before_it_left_does_not_leave) {
+  // The worker waits for the rest of this frame, for 20 s: the requests wait with it.
+  const ByteRow frame = with_crc("01 03 02 C0 37");
+  answer(pty, ByteRow(frame.begin(), frame.begin() + 2));
+  context.restart();
+  context.run_for(5ms);
+  send(1, "01 06 31 00 00 3F");
+  link->withdraw(1);
+  send(2, "01 03 32 00 00 01");
+  answer(pty, ByteRow(frame.begin() + 2, frame.end()));
+  EXPECT_EQ(request_at(pty, 8), "01 03 32 00 00 01 8A B2");
+  EXPECT_THAT(log_lines, SizeIs(1)) << "the second one had its place";
+}
+
+// --- Half frames and noise, with the patience that the product has -------------------------------------------------
+
+class LibmodbusHalfFrames : public LibmodbusFrames {
+ protected:
+  void SetUp() override { open_at(pty.device(), modbus_rtu::kAdapterLatency); }
+  void expect_that_all_is_well() {
+    diary.frames.clear();
+    send(100, "01 03 32 00 00 01");
+    request_at(pty, 8);
+    answer(pty, "01 03 02 C0 37");
+    expect_frames({"100: 01 03 02 C0 37"});
+  }
+};
+
+TEST_F(LibmodbusHalfFrames, are_noise_when_the_rest_does_not_come) {
+  const ByteRow whole = with_crc("01 03 04 C3 50 00 00");
+  for (std::size_t size = 1; size < whole.size(); ++size) {
+    diary.noise = 0;
+    answer(pty, ByteRow(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
+    expect_noise(size);
+    EXPECT_THAT(diary.frames, IsEmpty());
+    expect_that_all_is_well();
+    diary.frames.clear();
+  }
+}
+
+TEST_F(LibmodbusHalfFrames, are_noise_when_their_length_has_suffered) {
+  const ByteRow whole = with_crc("01 03 02 C0 37");
+  for (const std::size_t at : {1U, 2U}) {
+    for (int bit = 0; bit < 8; ++bit) {
+      ByteRow bad = whole;
+      bad[at] = static_cast<Byte>(bad[at] ^ (1 << bit));
+      diary.noise = 0;
+      answer(pty, bad);
+      expect_noise(bad.size());
+      EXPECT_THAT(diary.frames, IsEmpty()) << hex_text(bad);
+      expect_that_all_is_well();
+      diary.frames.clear();
+    }
+  }
+}
+
+TEST_F(LibmodbusHalfFrames, of_a_function_that_libmodbus_cannot_measure_are_noise_to_the_last_byte) {
+  const ByteRow identification = with_crc("01 2B 0E 01 01 00 00 01 00 03 41 42 43");
+  answer(pty, identification);
+  expect_noise(identification.size());
+  expect_that_all_is_well();
+}
+
+TEST_F(LibmodbusHalfFrames, an_answer_after_any_noise_and_a_silence_is_heard) {
+  std::uint32_t random = 1;
+  for (int i = 0; i < 50; ++i) {
+    ByteRow noise;
+    for (int size = 1 + i; size > 0; --size) {
+      random = random * 1664525 + 1013904223;
+      const auto byte = static_cast<Byte>(random >> 24);
+      noise.push_back(byte == 0xA5 ? Byte{0} : byte);  // not the byte by which half frames are measured
+    }
+    diary.noise = 0;
+    answer(pty, noise);
+    expect_noise(noise.size());
+    expect_that_all_is_well();
+  }
+}
+
+TEST_F(LibmodbusHalfFrames, an_answer_glued_to_noise_is_lost_or_heard_and_never_another) {
+  for (const char* noise : {"00", "FF", "00 00", "01", "01 03", "01 03 02", "55 55 55 55 55", "01 83 02 00 00"}) {
+    diary.frames.clear();
+    diary.noise = 0;
+    send(1, "01 03 32 00 00 01");
+    request_at(pty, 8);
+    const ByteRow all = from_hex(noise) + with_crc("01 03 02 C0 37");
+    answer(pty, all);
+    EXPECT_TRUE(await([&] { return diary.noise + 7 * diary.frames.size() == all.size(); })) << noise;
+    EXPECT_THAT(diary.frames, Each("1: 01 03 02 C0 37"));
+    expect_that_all_is_well();
+  }
+}
+
+}  // namespace
+}  // namespace axisgate::test
