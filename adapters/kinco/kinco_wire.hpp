@@ -11,7 +11,7 @@
 #include "adapters/bus/byte_link.hpp"
 #include "adapters/bus/wire.hpp"
 #include "adapters/kinco/kinco_receiver.hpp"
-#include "adapters/kinco/noise_watch.hpp"
+#include "adapters/bus/noise_watch.hpp"
 #include "gateway/core/log.hpp"
 
 namespace axisgate::kinco {
@@ -46,7 +46,7 @@ class KincoWire final : public bus::Wire, private bus::ByteLinkEvents {
   const Log& log_;
   bus::WireEvents* events_ = nullptr;
   Receiver receiver_;
-  NoiseWatch noise_;
+  bus::NoiseWatch noise_;
   bool decode_ = false;
   bool link_up_ = false;
   bool reported_up_ = false;

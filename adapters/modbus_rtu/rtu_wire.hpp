@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adapters/bus/wire.hpp"
-#include "adapters/kinco/noise_watch.hpp"
+#include "adapters/bus/noise_watch.hpp"
 #include "adapters/modbus_rtu/rtu_codec.hpp"
 #include "adapters/modbus_rtu/rtu_timing.hpp"
 #include "gateway/core/log.hpp"
@@ -66,7 +66,7 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   bus::WireEvents* events_ = nullptr;
   ExchangeNumber last_number_ = 0;
   std::optional<Outstanding> outstanding_;
-  kinco::NoiseWatch noise_;
+  bus::NoiseWatch noise_;
   bool decode_ = false;
   bool link_up_ = false;
   bool reported_up_ = false;

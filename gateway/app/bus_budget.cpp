@@ -25,13 +25,13 @@ int load_permille(const std::array<BusBudget::Polled, 3>& classes, Duration BusB
   return permille > whole ? whole + 1 : whole;
 }
 
-Duration answer_of(const drive::DriveModel& model) { return std::max(kAssumedAnswer, model.rtu.answer); }
-
 Duration stretched(Duration period, int permille) {
   return permille <= 1000 ? period : Duration(period.count() / 1000 * permille);
 }
 
 }  // namespace
+
+Duration answer_of(const drive::DriveModel& model) { return std::max(kAssumedAnswer, model.rtu.answer); }
 
 BusTiming timing_of(const BusConfig& bus) {
   BusTiming timing{{}, bus.min_gap, bus.settle, bus.timeout, bus.poll};

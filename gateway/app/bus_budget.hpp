@@ -12,9 +12,10 @@
 
 namespace axisgate::app {
 
-/// What a drive is taken to need for its answer, beside the time on the wire: no sheet states it. The drives' own limit
-/// is the bus's timeout.
+/// What a drive is taken to need for its answer, beside the time on the wire, where its profile states no longer time.
+/// The drives' own limit is the bus's timeout.
 inline constexpr Duration kAssumedAnswer = std::chrono::milliseconds(5);
+[[nodiscard]] Duration answer_of(const drive::DriveModel& model);
 /// Above this share of the line the polls leave commands little room; suggested periods stay below it.
 inline constexpr int kComfortablePermille = 800;
 
@@ -41,8 +42,8 @@ struct BusBudget {
   };
   std::array<Polled, 3> classes;
   int load_on_wire = 0;   ///< 0.1 %, drives that answer at once
-  int load_answered = 0;  ///< 0.1 %, drives that answer after kAssumedAnswer
-  Duration exchange{};    ///< one request and its answer after kAssumedAnswer
+  int load_answered = 0;  ///< 0.1 %, drives that answer after answer_of()
+  Duration exchange{};    ///< the longest request, with the slowest answer_of()
   Duration cycle{};       ///< in which each fast value is read once; longer than its period where the bus is over 100 %
   Duration command_wait{};       ///< the exchange on the wire, and one poll whose turn it is
   Duration stop_wait{};          ///< the exchange on the wire

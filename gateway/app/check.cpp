@@ -39,10 +39,20 @@ std::string suggestion(const BusBudget& budget) {
                      in_ms(periods[1]), in_ms(periods[2]));
 }
 
-void add_load(std::string& out, const BusBudget& budget) {
+/// "5 ms", or "5 to 20 ms" where some drives state a longer time than is assumed of the others.
+std::string answers_text(const std::vector<drive::DriveModel>& drives) {
+  if (drives.empty()) return fmt::format("{:.0f} ms", in_ms(kAssumedAnswer));
+  const auto [quickest, slowest] =
+      std::minmax_element(drives.begin(), drives.end(),
+                          [](const auto& one, const auto& other) { return answer_of(one) < answer_of(other); });
+  if (answer_of(*quickest) == answer_of(*slowest)) return fmt::format("{:.0f} ms", in_ms(answer_of(*slowest)));
+  return fmt::format("{:.0f} to {:.0f} ms", in_ms(answer_of(*quickest)), in_ms(answer_of(*slowest)));
+}
+
+void add_load(std::string& out, const BusBudget& budget, const std::vector<drive::DriveModel>& drives) {
   add_line(out, "planned load",
-           fmt::format("{:.1f} % with drives that answer after {:.0f} ms, {:.1f} % on the wire alone",
-                       budget.load_answered / 10.0, in_ms(kAssumedAnswer), budget.load_on_wire / 10.0));
+           fmt::format("{:.1f} % with drives that answer after {}, {:.1f} % on the wire alone",
+                       budget.load_answered / 10.0, answers_text(drives), budget.load_on_wire / 10.0));
   if (budget.overloaded()) {
     add_line(
         out, "OVERLOADED",
@@ -62,7 +72,7 @@ bool add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::Dr
   for (const auto& model : drives) names.push_back(fmt::format("{} at node {}", model.title, model.node));
   add_line(out, "drives", fmt::format("{}", fmt::join(names, ", ")));
   add_line(out, "polls", polls_text(budget));
-  add_load(out, budget);
+  add_load(out, budget, drives);
   add_line(out, "cycle", fmt::format("fast values are read each {:.0f} ms", in_ms(budget.cycle)));
   add_line(out, "command waits",
            fmt::format("at most {:.1f} ms; beside a mute drive at most {:.1f} ms", in_ms(budget.command_wait),
@@ -130,6 +140,9 @@ void add_axis(std::string& out, const AxisConfig& config, const drive::AxisModel
                ? "the drive notices and stops by itself"
                : fmt::format("THE DRIVE DOES NOT STOP BY ITSELF on {}: it goes on with what it was told last",
                              drive.protocol));
+  if (axis.virtual_axis && !drive.stops_by_itself) {
+    add_line(out, "client leaves", "quick stop when the connection of the client that commanded the motion ends");
+  }
 }
 
 bool any_lease(const Config& config) {

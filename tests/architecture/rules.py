@@ -12,6 +12,8 @@ ARROWS = {
     "gateway/upstream/*": {"gateway/image", "gateway/core"},
     "adapters/bus": {"gateway/core"},
     "adapters/asio": {"gateway/core"},
+    # A second link over the same serial ports: it shares how they are opened, locked and found again.
+    "adapters/modbus_rtu": {"adapters/serial", "adapters/bus", "gateway/core"},
     "adapters/*": {"adapters/bus", "gateway/core"},
     # The simulated drives come from the makers' sheets: what they share with the gateway could be wrong on both sides.
     "tests/simulated": set(),
@@ -29,7 +31,7 @@ ONE_PLACE = {
 }
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
-DECIDING = ("gateway/core/", "gateway/image/", "gateway/drive/", "gateway/upstream/modbus_tcp/", "adapters/bus/", "adapters/kinco/",
+DECIDING = ("gateway/core/", "gateway/image/", "gateway/drive/", "gateway/upstream/modbus_tcp/", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_",
             "gateway/app/config_", "gateway/app/bus_budget", "gateway/app/check.")
 SHELLS = tuple(f"gateway/upstream/modbus_tcp/{shell}" for shell in ("server", "listener", "connection"))
 IMPURE = re.compile(r'#include <(boost/asio|boost/beast|sys/socket|sys/epoll|poll\.h|thread|mutex|condition_variable|atomic|random)'

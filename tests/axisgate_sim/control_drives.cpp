@@ -58,9 +58,7 @@ int input_in(const std::string& text, int inputs) {
   return static_cast<int>(input);
 }
 
-}  // namespace
-
-std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& words) {
+std::optional<std::string> tell(const KincoDrive& drive, const ControlWords& words) {
   const std::string& command = words[0];
   if (command == "state") return " " + std::string(drive.booting() ? "booting" : name_of(drive.state()));
   if (command == "position") return " " + std::to_string(drive.position());
@@ -73,6 +71,15 @@ std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& word
     if (!value) refuse_word("this drive has no object " + words[2]);
     return value_text(*value);
   }
+  if (command == "writes") {
+    need_words(words, 3, "writes LINE/STATION INDEX.SUB");
+    return " " + std::to_string(drive.writes(object_in(words[2])));
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> change(KincoDrive& drive, const ControlWords& words) {
+  const std::string& command = words[0];
   if (command == "set") {
     need_words(words, 4, "set LINE/STATION INDEX.SUB VALUE");
     const Refusal refusal = drive.poke(object_in(words[2]), number_in(words[3]));
@@ -80,10 +87,6 @@ std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& word
       refuse_word("the drive refuses " + words[2] + " with " + in_hex(static_cast<int>(refusal)));
     }
     return "";
-  }
-  if (command == "writes") {
-    need_words(words, 3, "writes LINE/STATION INDEX.SUB");
-    return " " + std::to_string(drive.writes(object_in(words[2])));
   }
   if (command == "fault") {
     need_words(words, 4, "fault LINE/STATION 2601|2602 BITS");
@@ -108,7 +111,7 @@ std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& word
   return std::nullopt;
 }
 
-std::optional<std::string> ask_id286pro(Id286pro& drive, const ControlWords& words) {
+std::optional<std::string> tell(const Id286pro& drive, const ControlWords& words) {
   const std::string& command = words[0];
   if (command == "state") return state(drive);
   if (command == "position") return " " + std::to_string(drive.position());
@@ -121,6 +124,15 @@ std::optional<std::string> ask_id286pro(Id286pro& drive, const ControlWords& wor
     if (!value) refuse_word("this drive has no register " + words[2]);
     return value_text(*value);
   }
+  if (command == "writes") {
+    need_words(words, 3, "writes LINE/UNIT REGISTER");
+    return " " + std::to_string(drive.registers().writes(register_in(words[2])));
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> change(Id286pro& drive, const ControlWords& words) {
+  const std::string& command = words[0];
   if (command == "set") {
     need_words(words, 4, "set LINE/UNIT REGISTER VALUE");
     const RtuException refused = drive.poke(register_in(words[2]), number_in(words[3]));
@@ -128,10 +140,6 @@ std::optional<std::string> ask_id286pro(Id286pro& drive, const ControlWords& wor
       refuse_word("the drive refuses " + words[2] + " with exception " + std::to_string(static_cast<int>(refused)));
     }
     return "";
-  }
-  if (command == "writes") {
-    need_words(words, 3, "writes LINE/UNIT REGISTER");
-    return " " + std::to_string(drive.registers().writes(register_in(words[2])));
   }
   if (command == "fault") {
     const bool hardware = words.size() == 4 && words[3] == "hardware";
@@ -161,6 +169,18 @@ std::optional<std::string> ask_id286pro(Id286pro& drive, const ControlWords& wor
     return "";
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& words) {
+  const auto told = tell(drive, words);
+  return told ? told : change(drive, words);
+}
+
+std::optional<std::string> ask_id286pro(Id286pro& drive, const ControlWords& words) {
+  const auto told = tell(drive, words);
+  return told ? told : change(drive, words);
 }
 
 }  // namespace axisgate::simulated

@@ -58,4 +58,8 @@ class StepperRig {
   std::size_t marked_ = 0;
 };
 
+[[nodiscard]] inline bool reads(const AxisImage& axis, Quantity quantity, std::int64_t value) {
+  return axis[quantity].valid && axis[quantity].value == value;
+}
+
 }  // namespace axisgate::test

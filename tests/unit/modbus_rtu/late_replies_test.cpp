@@ -1,7 +1,8 @@
 // Replies that come too late, over wire, link, libmodbus and a pty: three reads of one register each, the first one's
 // answer late. The wire by itself keeps apart what was heard before a request from what was heard after it; a late
 // answer of the right unit, function and length that comes after the next request cannot be told from that one's, and
-// is why a drive that was late gets a fence before anything it says counts.
+// is why a drive that was late gets a fence before anything it says counts. And a line that babbles, over the same
+// road.
 #include "adapters/modbus_rtu/rtu_wire.hpp"
 #include "tests/unit/modbus_rtu/libmodbus_link_stage.hpp"
 
@@ -19,7 +20,10 @@ class LateReplies : public LibmodbusLinkStage, private bus::WireEvents {
     wire->start(*this);
     ASSERT_TRUE(await([this] { return up; }));
   }
-  void on_wire_up() override { up = true; }
+  void on_wire_up() override {
+    up = true;
+    ++ups;
+  }
   void on_wire_down(std::string_view) override { up = false; }
   void on_reply(const bus::ExchangeResult& result) override { replies.push_back(result); }
 
@@ -40,6 +44,7 @@ class LateReplies : public LibmodbusLinkStage, private bus::WireEvents {
 
   Pty pty;
   bool up = false;
+  int ups = 0;
   std::vector<bus::ExchangeResult> replies;
   std::unique_ptr<modbus_rtu::RtuWire> wire;
 };
@@ -124,6 +129,29 @@ TEST_F(LateReplies, of_before_a_loss_of_the_line_answer_nothing_after_it) {
   pty.hang_up();
   ASSERT_TRUE(await([this] { return !up; }));
   EXPECT_THAT(replies, IsEmpty());
+}
+
+TEST_F(LateReplies, a_line_that_babbles_is_opened_anew_and_serves_when_it_is_quiet) {
+  const ByteRow babble(16, 0x55);
+  ASSERT_TRUE(await([&] {
+    static_cast<void>(::write(pty.master(), babble.data(), babble.size()));
+    runtime.advance_by(1ms);
+    return ups == 2;
+  }));
+  EXPECT_GE(wire->statistics().reconnects, 1u);
+  EXPECT_GT(wire->statistics().dropped_bytes, 0u);
+  ASSERT_TRUE(await([this] {
+    // What is left of the babble may still open the line anew, and it may be down meanwhile.
+    runtime.advance_by(10ms);
+    if (up && replies.empty()) {
+      wire->abandon();
+      wire->send(read_of(100));
+      static_cast<void>(pty.read());
+      answer(pty, kHundred);
+    }
+    return !replies.empty();
+  }));
+  EXPECT_THAT(replies, ElementsAre(value_of(100, 2, 100)));
 }
 
 }  // namespace

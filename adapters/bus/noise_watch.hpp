@@ -5,7 +5,7 @@
 
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::kinco {
+namespace axisgate::bus {
 
 class NoiseWatch {
  public:
@@ -27,4 +27,4 @@ class NoiseWatch {
   Instant last_ = kLongAgo;
 };
 
-}  // namespace axisgate::kinco
+}  // namespace axisgate::bus

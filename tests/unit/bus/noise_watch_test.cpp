@@ -1,8 +1,8 @@
-#include "adapters/kinco/noise_watch.hpp"
+#include "adapters/bus/noise_watch.hpp"
 
 #include <gtest/gtest.h>
 
-namespace axisgate::kinco {
+namespace axisgate::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -54,4 +54,4 @@ TEST(NoiseWatch, silence_ends_it) {
 }
 
 }  // namespace
-}  // namespace axisgate::kinco
+}  // namespace axisgate::bus
