@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "adapters/bus/wire.hpp"
 #include "adapters/bus/noise_watch.hpp"
+#include "adapters/bus/wire.hpp"
 #include "adapters/modbus_rtu/rtu_codec.hpp"
 #include "adapters/modbus_rtu/rtu_timing.hpp"
 #include "gateway/core/log.hpp"

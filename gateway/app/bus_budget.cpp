@@ -59,10 +59,10 @@ BusBudget plan_bus(const BusTiming& timing, const std::vector<drive::DriveModel>
   for (const drive::DriveModel& model : drives) {
     answer = std::max(answer, answer_of(model));
     for (const drive::PlannedRead& read : drive::planned_reads(model)) {
-      if (read.poll_class == drive::PollClass::once) continue;  // read at bring-up and after writes only
-      BusBudget::Polled& polled = budget.classes[static_cast<std::size_t>(read.poll_class)];
       const Duration on_wire = wire_time_of(timing, read.exchange);
       longest = std::max(longest, on_wire);
+      if (read.poll_class == drive::PollClass::once) continue;  // at bring-up and after writes, but a stop may meet it
+      BusBudget::Polled& polled = budget.classes[static_cast<std::size_t>(read.poll_class)];
       ++polled.reads;
       polled.on_wire += on_wire + timing.min_gap;
       polled.answered += on_wire + timing.min_gap + answer_of(model);

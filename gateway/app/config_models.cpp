@@ -104,7 +104,7 @@ std::optional<drive::DriveModel> load_model(const BusConfig& bus, const DriveCon
   const std::size_t motors = profile->profile.axes.size();
   if (config.axes.size() > motors) {
     faults.add(config.pointer + "/axes",
-               fmt::format("a {} drives {} motor{}, and {} axes are given: remove what is too many",
+               fmt::format("the {} drives {} motor{}, and {} axes are given: remove what is too many",
                            profile->profile.title, motors, motors == 1 ? "" : "s", config.axes.size()));
     return std::nullopt;
   }

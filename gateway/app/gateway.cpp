@@ -65,6 +65,7 @@ std::optional<GroupResult> Gateway::submit(AxisNumber axis, const Group& group, 
 }
 
 void Gateway::client_gone(ClientId client) {
+  if (stopping_) return;  // it ends them all itself, and nothing is sent any more
   for (const auto& drive : drives_) drive->client_gone(client);
 }
 

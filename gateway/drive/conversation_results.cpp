@@ -135,7 +135,9 @@ void Conversation::reach(const Action& action, Instant now) {
   if (overtaken_by_stop(action.mark)) return;
   Motion& motion = core_.motion;
   const auto start = [&](MotionKind kind) {
-    motion.start(kind, group_.command_id, now, core_.store.exchange());
+    // A set-point that changes what runs is no new motion.
+    const bool goes_on = motion.running() == kind && group_.command == Command::none && !group_.controlword;
+    motion.start(kind, goes_on ? motion.id() : group_.command_id, now, core_.store.exchange());
     core_.started(kind, action.number != 0);
   };
   switch (action.mark) {

@@ -16,8 +16,9 @@ Plan plan_close(const AxisCore& core) {
 }
 
 Plan plan_open(const AxisCore& core) {
+  if (core.alarm(AxisAlarm::local_control)) return Plan::refuse(Errc::state_unsuitable);
   Plan plan;
-  if (core.facts().faulted() || core.alarm(AxisAlarm::local_control)) return plan;
+  if (core.facts().faulted()) return plan;  // as a servo does: the word is taken, and nothing comes of it
   static_cast<void>(add_command_steps(core, Command::enable, plan));
   return plan;
 }

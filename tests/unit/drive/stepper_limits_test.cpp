@@ -18,6 +18,9 @@ TEST(Stepper, FollowingExternalPulsesItRefusesToBeEnabledAndSaysWhy) {
   EXPECT_NE(rig.axis().alarms & bit(AxisAlarm::local_control), 0U);
   EXPECT_FALSE(rig.axis().has(AxisInput::ready));
   EXPECT_EQ(rig.code(rig.command(Command::enable)), Errc::state_unsuitable);
+  ASSERT_EQ(rig.code(rig.write(Quantity::controlword, 0x06)), Errc::ok);
+  EXPECT_EQ(rig.code(rig.write(Quantity::controlword, 0x0F)), Errc::state_unsuitable) << "nor by the raw words";
+  EXPECT_FALSE(rig.axis().has(AxisInput::enabled));
 }
 
 TEST(Stepper, FoundRunningItIsAdoptedAndNothingIsWrittenToIt) {

@@ -209,6 +209,19 @@ TEST(Stepper, HaltStopsStaysEnabledAndNothingResumes) {
   EXPECT_TRUE(rig.motion_ends());
 }
 
+TEST(Stepper, ALongRampIsNoReasonToKeepTheClientWaiting) {
+  StepperRig rig;
+  rig.online();
+  rig.enable();
+  ASSERT_EQ(rig.code(rig.write(Quantity::profile_deceleration, 6'000)), Errc::ok) << "10 rev/s2";
+  rig.run_at(3'000'000);
+  ASSERT_EQ(rig.code(rig.command(Command::halt)), Errc::ok);
+  EXPECT_TRUE(rig.axis().has(AxisInput::moving));
+  EXPECT_EQ(rig.axis().axis_state, AxisState::stopping);
+  EXPECT_EQ(rig.axis().motion_state, MotionState::aborted);
+  EXPECT_TRUE(rig.stage.run_until([&] { return rig.axis().axis_state == AxisState::standstill; }, 10s));
+}
+
 TEST(Stepper, AFaultIsShownWithItsCodeAndResetLeavesTheAxisDisabled) {
   StepperRig rig;
   rig.online();
