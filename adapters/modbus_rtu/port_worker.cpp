@@ -49,8 +49,7 @@ struct Outgoing {
 struct Commands {
   bool stop = false;
   bool close = false;
-  std::optional<OpeningNumber> open;
-  std::optional<Outgoing> outgoing;
+  std::optional<OpeningNumber> open{};
 };
 
 }  // namespace
@@ -72,7 +71,7 @@ class PortWorker::Mailbox : public std::enable_shared_from_this<Mailbox> {
   void command(Change change) {
     {
       const std::lock_guard lock(mutex_);
-      change(commands_);
+      change(commands_, outgoing_);
     }
     const std::uint64_t one = 1;
     static_cast<void>(::write(wake_, &one, sizeof one));  // fails only where it is awake already
@@ -87,6 +86,14 @@ class PortWorker::Mailbox : public std::enable_shared_from_this<Mailbox> {
     static_cast<void>(::read(wake_, &times, sizeof times));
     const std::lock_guard lock(mutex_);
     return std::exchange(commands_, {});
+  }
+  [[nodiscard]] bool has_outgoing() {
+    const std::lock_guard lock(mutex_);
+    return outgoing_.has_value();
+  }
+  [[nodiscard]] std::optional<Outgoing> take_outgoing() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(outgoing_, std::nullopt);
   }
   /// State is always told, and there is little of it: one opening and one end of it for each that was asked for.
   void tell(Told told) {
@@ -142,6 +149,7 @@ class PortWorker::Mailbox : public std::enable_shared_from_this<Mailbox> {
   int wake_;
   std::mutex mutex_;
   Commands commands_;
+  std::optional<Outgoing> outgoing_;  // stays until it leaves: up to then it may be withdrawn
   std::vector<Told> told_;
   std::size_t heard_ = 0;
   Told overflow_;
@@ -158,14 +166,14 @@ class PortWorker::Loop {
   void run() {
     while (true) {
       const short ready = wait();
-      Commands todo = mailbox_->take_commands();
+      const Commands todo = mailbox_->take_commands();
       if (todo.stop) return;
       if (todo.close) port_.close();
-      if (todo.open) {
-        open(*todo.open);
-      } else if (todo.outgoing && port_.is_open()) {
-        send(*todo.outgoing);
-      } else if (ready != 0 && port_.is_open()) {
+      if (todo.open) open(*todo.open);
+      to_send_ = port_.is_open() && mailbox_->has_outgoing();
+      if (to_send_) {
+        listen_or_send();
+      } else if (ready != 0 && port_.is_open() && !todo.open) {
         listen(ready);
       }
     }
@@ -175,9 +183,11 @@ class PortWorker::Loop {
   /// Until something is to be done. What the port has; 0 where it has nothing.
   [[nodiscard]] short wait() {
     std::array<pollfd, 2> waited{{{mailbox_->wake_descriptor(), POLLIN, 0}, {port_.descriptor(), POLLIN, 0}}};
+    const timespec at_once{};
     const timespec silence{0, static_cast<long>(gap_time(port_.settings().baud).count())};
-    const int ready = ::ppoll(waited.data(), waited.size(), noisy_ ? &silence : nullptr, nullptr);
-    if (ready == 0) noisy_ = false;
+    const timespec* longest = to_send_ ? &at_once : noisy_ ? &silence : nullptr;
+    const int ready = ::ppoll(waited.data(), waited.size(), longest, nullptr);
+    if (ready == 0 && !to_send_) noisy_ = false;
     return ready > 0 ? waited[1].revents : short{0};
   }
 
@@ -193,15 +203,20 @@ class PortWorker::Loop {
     }
   }
 
-  void send(const Outgoing& outgoing) {
-    // What has come by now was heard before this frame was sent, and must be told so.
-    for (int reads = 0; reads < kMaxReadsBeforeSending && port_.is_open() && port_.bytes_waiting() > 0; ++reads) {
+  /// What has come by now was heard before the frame is sent, and must be told so.
+  void listen_or_send() {
+    if (reads_before_sending_ < kMaxReadsBeforeSending && port_.bytes_waiting() > 0) {
+      ++reads_before_sending_;
       listen(POLLIN);
+      return;
     }
-    if (!port_.is_open()) return;
+    reads_before_sending_ = 0;
+    to_send_ = false;
+    const std::optional<Outgoing> outgoing = mailbox_->take_outgoing();
+    if (!outgoing) return;
     noisy_ = false;
-    newest_ = outgoing.number;
-    if (std::string why = port_.transmit(outgoing.frame); !why.empty()) lose(std::move(why));
+    newest_ = outgoing->number;
+    if (std::string why = port_.transmit(outgoing->frame); !why.empty()) lose(std::move(why));
   }
 
   void listen(short ready) {
@@ -234,7 +249,9 @@ class PortWorker::Loop {
   LibmodbusPort port_;
   OpeningNumber opening_ = 0;
   ExchangeNumber newest_ = 0;
-  bool noisy_ = false;  ///< after what was no frame, until the line is silent
+  bool noisy_ = false;    ///< after what was no frame, until the line is silent
+  bool to_send_ = false;  ///< a frame waits to leave
+  int reads_before_sending_ = 0;
 };
 
 PortWorker::PortWorker(serial::SerialSettings settings, Duration adapter_latency, boost::asio::io_context& context,
@@ -252,37 +269,36 @@ PortWorker::PortWorker(serial::SerialSettings settings, Duration adapter_latency
 
 PortWorker::~PortWorker() {
   mailbox_->forget();
-  mailbox_->command([](Commands& commands) { commands.stop = true; });
+  mailbox_->command([](Commands& commands, auto&) { commands.stop = true; });
   thread_.join();
 }
 
 void PortWorker::open(OpeningNumber opening) {
-  mailbox_->command([&](Commands& commands) {
+  mailbox_->command([&](Commands& commands, std::optional<Outgoing>& outgoing) {
     commands.open = opening;
-    commands.outgoing.reset();
+    outgoing.reset();
   });
 }
 
 void PortWorker::close() {
-  mailbox_->command([](Commands& commands) {
-    commands.close = true;
-    commands.open.reset();
-    commands.outgoing.reset();
+  mailbox_->command([](Commands& commands, std::optional<Outgoing>& outgoing) {
+    commands = {.stop = commands.stop, .close = true};
+    outgoing.reset();
   });
 }
 
 bool PortWorker::send(ExchangeNumber number, Bytes frame) {
   bool line_was_free = true;
-  mailbox_->command([&](Commands& commands) {
-    line_was_free = !commands.outgoing;
-    commands.outgoing = {number, Frame(frame.begin(), frame.end())};
+  mailbox_->command([&](Commands&, std::optional<Outgoing>& outgoing) {
+    line_was_free = !outgoing;
+    outgoing = {number, Frame(frame.begin(), frame.end())};
   });
   return line_was_free;
 }
 
 void PortWorker::withdraw(ExchangeNumber number) {
-  mailbox_->command([&](Commands& commands) {
-    if (commands.outgoing && commands.outgoing->number == number) commands.outgoing.reset();
+  mailbox_->command([&](Commands&, std::optional<Outgoing>& outgoing) {
+    if (outgoing && outgoing->number == number) outgoing.reset();
   });
 }
 

@@ -166,7 +166,10 @@ Conversation::Move Conversation::advance(Instant now) {
     } else if (action.kind == Action::Kind::write && core_.object(action.object).made) {
       const Action made = action;
       pop();
-      core_.make(made.object, made.number);
+      // A stop never opens the gate: another one may have closed it since this halt was planned.
+      const bool opens = request_of(static_cast<std::uint16_t>(made.number)) == Request402::enable_operation;
+      if (made.object != core_.model.controlword || !opens || !is_stop() || core_.facts().enabled())
+        core_.make(made.object, made.number);
     } else {
       return exchange_for(action);
     }

@@ -155,8 +155,11 @@ Instant stale_deadline(const AxisCore& core, Instant now) {
 }
 
 std::string alarm_text(const AxisCore& core, AxisAlarm alarm) {
-  for (const Check& check : core.drive.checks)
-    if (check.alarm == alarm && !check.text.empty()) return std::string(text(alarm)) + ": " + check.text;
+  for (const Check& check : core.drive.checks) {
+    const ObjectState& s = core.store[check.bad.object];
+    const bool found = s.known && check.bad.holds(core.object(check.bad.object), static_cast<std::uint32_t>(s.number));
+    if (check.alarm == alarm && found && !check.text.empty()) return std::string(text(alarm)) + ": " + check.text;
+  }
   return std::string(text(alarm));
 }
 

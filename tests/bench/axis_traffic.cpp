@@ -9,28 +9,37 @@ namespace {
 // profile_velocity, profile_acceleration, profile_deceleration, homing_speed_switch, _zero, homing_acceleration
 constexpr std::array<std::uint16_t, ParameterWriter::kParameters> kOffsets{48, 50, 52, 62, 64, 66};
 
-constexpr std::array<DriveObject, 16> kObjects{{{0x6041, 0, 2},
-                                                {0x6063, 0, 4},
-                                                {0x606C, 0, 2},
-                                                {0x6078, 0, 2},
-                                                {0x60FD, 0, 4},
-                                                {0x2010, 0x0A, 2},
-                                                {0x2010, 0x14, 2},
-                                                {0x2601, 0, 2},
-                                                {0x2602, 0, 2},
-                                                {0x607A, 0, 4},
-                                                {0x6081, 0, 4},
-                                                {0x6083, 0, 4},
-                                                {0x6084, 0, 4},
-                                                {0x60FF, 0, 4},
-                                                {0x6073, 0, 2},
-                                                {0x6080, 0, 2}}};
+/// The same object on both protocols.
+struct Readable {
+  DriveObject serial;
+  std::uint16_t rtu;  ///< register
+};
+constexpr std::array<Readable, 16> kObjects{{{{0x6041, 0, 2}, 0x3200},
+                                             {{0x6063, 0, 4}, 0x3700},
+                                             {{0x606C, 0, 2}, 0x3B00},
+                                             {{0x6078, 0, 2}, 0x3E00},
+                                             {{0x60FD, 0, 4}, 0x6D00},
+                                             {{0x2010, 0x0A, 2}, 0x08A0},
+                                             {{0x2010, 0x14, 2}, 0x0940},
+                                             {{0x2601, 0, 2}, 0x1F00},
+                                             {{0x607C, 0, 4}, 0x4100},
+                                             {{0x607A, 0, 4}, 0x4000},
+                                             {{0x6081, 0, 4}, 0x4A00},
+                                             {{0x6083, 0, 4}, 0x4B00},
+                                             {{0x6084, 0, 4}, 0x4C00},
+                                             {{0x60FF, 0, 4}, 0x6F00},
+                                             {{0x6073, 0, 2}, 0x3D00},
+                                             {{0x6080, 0, 2}, 0x4900}}};
 
 std::uint16_t address_of(int axis, int offset) { return static_cast<std::uint16_t>(100 * axis + offset); }
 
 }  // namespace
 
-DriveObject readable_object(int number) { return kObjects[static_cast<std::size_t>(number) % kObjects.size()]; }
+DriveObject readable_object(int number, LineProtocol protocol) {
+  const Readable& object = kObjects[static_cast<std::size_t>(number) % kObjects.size()];
+  if (protocol == LineProtocol::kinco_serial) return object.serial;
+  return {object.rtu, 0, object.serial.size};
+}
 
 ParameterWriter::ParameterWriter(int axis, int parameter)
     : address_(address_of(axis, kOffsets[static_cast<std::size_t>(parameter % kParameters)])) {}

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 
+#include "tests/bench/line_protocol.hpp"
 #include "tests/bench/modbus_client.hpp"
 
 namespace axisgate::bench {
@@ -16,7 +17,7 @@ struct DriveObject {
   std::uint8_t size;
 };
 /// Objects that a Kinco JD can be asked for at any time; the number is taken modulo theirs.
-[[nodiscard]] DriveObject readable_object(int number);
+[[nodiscard]] DriveObject readable_object(int number, LineProtocol protocol = LineProtocol::kinco_serial);
 
 /// Writes another value than the last one each time: one it is known to hold would not be sent.
 class ParameterWriter {

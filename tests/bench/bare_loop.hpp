@@ -1,6 +1,6 @@
-// What the gateway is measured against: the same ten-byte exchanges by a loop of write, poll and read, and nothing
-// else. Promises one exchange at a time, timed from before the write to the reply's last byte. Never checks more of a
-// reply than its length.
+// What the gateway is measured against on Kinco's protocol: the same ten-byte exchanges by a loop of write, poll and
+// read, and nothing else. Promises one exchange at a time, timed from before the write to the reply's last byte. Never
+// checks more of a reply than its length.
 #pragma once
 
 #include <chrono>

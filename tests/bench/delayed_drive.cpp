@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/bench/axis_traffic.hpp"
+#include "tests/bench/bare_libmodbus.hpp"
 #include "tests/bench/bare_loop.hpp"
 #include "tests/bench/busy_clients.hpp"
 #include "tests/bench/figures.hpp"
@@ -29,9 +30,9 @@ BusyClients::Turn writing(int parameter) {
   };
 }
 
-BusyClients::Turn reading(int object, std::chrono::microseconds pause) {
-  return [object, pause](ModbusClient& client) {
-    static_cast<void>(read_object(client, 1, readable_object(object), pause));
+BusyClients::Turn reading(int number, LineProtocol protocol, std::chrono::microseconds pause) {
+  return [object = readable_object(number, protocol), pause](ModbusClient& client) {
+    static_cast<void>(read_object(client, 1, object, pause));
   };
 }
 
@@ -40,15 +41,15 @@ struct Load {
   std::vector<BusyClients::Turn> clients;
 };
 
-std::vector<Load> loads() {
+std::vector<Load> loads(LineProtocol protocol) {
   std::vector<Load> all;
   all.push_back({"1 client writes parameters", {writing(0)}});
-  all.push_back({"1 client reads objects", {reading(1, {})}});
+  all.push_back({"1 client reads objects", {reading(1, protocol, {})}});
   all.push_back({"32 clients read objects", {}});
-  for (int i = 0; i < 32; ++i) all.back().clients.push_back(reading(i, kAskAgain));
+  for (int i = 0; i < 32; ++i) all.back().clients.push_back(reading(i, protocol, kAskAgain));
   all.push_back({"32 clients: 6 write parameters, 26 read objects", {}});
   for (int i = 0; i < 32; ++i)
-    all.back().clients.push_back(i < ParameterWriter::kParameters ? writing(i) : reading(i, kAskAgain));
+    all.back().clients.push_back(i < ParameterWriter::kParameters ? writing(i) : reading(i, protocol, kAskAgain));
   return all;
 }
 
@@ -56,10 +57,12 @@ struct Rates {
   std::vector<double> gateway, drive, bare, share;
 };
 
-double bare_rate(const DriveProcess& drives, std::chrono::milliseconds lasting) {
+double bare_rate(const DriveProcess& drives, std::chrono::microseconds silence, std::chrono::milliseconds lasting) {
   stay_on_processor(0);
   const auto began = SteadyClock::now();
-  const auto exchanges = static_cast<double>(bare_exchanges(drives.device(), lasting).size());
+  const bool rtu = drives.shape().protocol == LineProtocol::modbus_rtu;
+  const auto exchanges = static_cast<double>(
+      (rtu ? bare_rtu_exchanges(drives.device(), silence, lasting) : bare_exchanges(drives.device(), lasting)).size());
   const auto took = SteadyClock::now() - began;
   stay_on_processor(1);
   return exchanges / std::chrono::duration<double>(took).count();
@@ -91,23 +94,21 @@ void measure_gateway(const Load& load, const BenchOptions& options, const DriveP
 /// The bare loop before and after the gateway, never beside it: they would take each other's replies.
 void measure(const Load& load, const BenchOptions& options, const DriveProcess& drives, Rates& rates) {
   const auto lasting = options.lasting(std::chrono::milliseconds(3000));
-  const double bare_before = bare_rate(drives, lasting / 2);
+  const double bare_before = bare_rate(drives, kFrameSilence, lasting / 2);
   measure_gateway(load, options, drives, lasting, rates);
-  rates.bare.push_back((bare_before + bare_rate(drives, lasting / 2)) / 2);
+  rates.bare.push_back((bare_before + bare_rate(drives, kFrameSilence, lasting / 2)) / 2);
   rates.share.push_back(rates.gateway.back() / rates.bare.back());
 }
 
-}  // namespace
-
-void delayed_drive(const BenchOptions& options) {
-  fmt::print(
-      "P2, a drive that answers after 5 ms, exchanges per second (goal: 95 % of the bare loop), polled as by default\n"
-      "{:<50} {:>9} {:>9} {:>9} {:>8} {:>14}\n",
-      "load", "gateway", "at drive", "bare", "share", "of the rounds");
+void measure_loads(const BenchOptions& options, LineProtocol protocol, std::chrono::milliseconds reply_after) {
   DriveLines shape;
-  shape.reply_after = std::chrono::milliseconds(5);
+  shape.reply_after = reply_after;
+  shape.protocol = protocol;
   const DriveProcess drives(shape, options.folder);
-  for (const Load& load : loads()) {
+  if (protocol == LineProtocol::modbus_rtu)
+    fmt::print("answers after {} ms; libmodbus in a loop without silence between frames: {:.1f} exchanges/s\n",
+               reply_after.count(), bare_rate(drives, {}, options.lasting(std::chrono::milliseconds(2000))));
+  for (const Load& load : loads(protocol)) {
     Rates rates;
     for (int round = 0; round < options.times(5); ++round) measure(load, options, drives, rates);
     const auto [least, most] = std::minmax_element(rates.share.begin(), rates.share.end());
@@ -115,6 +116,20 @@ void delayed_drive(const BenchOptions& options) {
                median(rates.drive), median(rates.bare), 100 * median(rates.share), 100 * *least, 100 * *most);
     std::fflush(stdout);
   }
+}
+
+}  // namespace
+
+void delayed_drive(const BenchOptions& options, LineProtocol protocol) {
+  constexpr std::chrono::milliseconds kAtOnce{0}, kDelayed{5};
+  const bool rtu = protocol == LineProtocol::modbus_rtu;
+  fmt::print(
+      "P2, a drive that answers {}, exchanges per second (goal: 95 % of the bare loop), polled as by default\n"
+      "{:<50} {:>9} {:>9} {:>9} {:>8} {:>14}\n",
+      rtu ? "at once and after 5 ms" : "after 5 ms", "load", "gateway", "at drive", rtu ? "bare+1.75" : "bare", "share",
+      "of the rounds");
+  if (rtu) measure_loads(options, protocol, kAtOnce);
+  measure_loads(options, protocol, kDelayed);
 }
 
 }  // namespace axisgate::bench

@@ -13,9 +13,8 @@
 #include <stdexcept>
 
 #include "tests/axisgate_sim/pty.hpp"
+#include "tests/bench/answering_line.hpp"
 #include "tests/bench/server_process.hpp"
-#include "tests/simulated/frame_receiver.hpp"
-#include "tests/simulated/kinco_drive.hpp"
 
 namespace axisgate::bench {
 namespace {
@@ -26,10 +25,8 @@ Time steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); 
 
 struct Line {
   std::unique_ptr<simulated::Pty> port;
-  std::vector<std::unique_ptr<simulated::KincoDrive>> drives;
-  simulated::FrameReceiver receiver;
-  std::optional<simulated::TenByteFrame> reply;  // waits for its time
-  TappedExchange exchange;
+  std::unique_ptr<AnsweringLine> drives;
+  std::optional<Answer> answer;  // waits for its time
 };
 
 class Responder {
@@ -45,58 +42,43 @@ class Responder {
       static_cast<void>(::ppoll(watched.data(), watched.size(), &wait, nullptr));
       for (std::size_t i = 0; i < lines_.size(); ++i) {
         if (watched[i].revents != 0) hear(lines_[i], i);
-        if (lines_[i].reply && steady_now() >= due(lines_[i])) answer(lines_[i]);
+        if (lines_[i].answer && steady_now() >= due(lines_[i])) answer(lines_[i]);
       }
     }
   }
 
  private:
-  [[nodiscard]] Time due(const Line& line) const { return Time(line.exchange.asked_at) + reply_after_; }
+  [[nodiscard]] Time due(const Line& line) const { return Time(line.answer->exchange.asked_at) + reply_after_; }
 
   [[nodiscard]] timespec until_next_reply() const {
     Time wait = std::chrono::milliseconds(100);
     const Time now = steady_now();
     for (const Line& line : lines_)
-      if (line.reply) wait = std::min(wait, std::max(due(line) - now, Time{}));
+      if (line.answer) wait = std::min(wait, std::max(due(line) - now, Time{}));
     return {wait / std::chrono::seconds(1), (wait % std::chrono::seconds(1)).count()};
   }
 
   void hear(Line& line, std::size_t number) {
     const auto bytes = line.port->read();
     const Time now = steady_now();
-    for (const std::uint8_t byte : bytes) {
-      const auto request = line.receiver.receive(byte, now);
-      if (!request) continue;
-      for (const auto& drive : line.drives) {
-        if (drive->station() != simulated::station_of(*request)) continue;
-        line.exchange = {now.count(), 0, *request, static_cast<std::uint8_t>(number)};
-        line.reply = drive->answer(*request, 0, now);
-      }
-    }
+    auto answer = line.drives->hear(bytes, tap_.mute(), now);
+    if (!answer) return;
+    line.answer = std::move(answer);
+    line.answer->exchange.asked_at = now.count();
+    line.answer->exchange.line = static_cast<std::uint8_t>(number);
   }
 
   void answer(Line& line) {
-    line.exchange.answered_at = steady_now().count();
-    tap_.record(line.exchange);
-    line.port->write(*std::exchange(line.reply, std::nullopt));
+    line.answer->exchange.answered_at = steady_now().count();
+    tap_.record(line.answer->exchange);
+    line.port->write(line.answer->bytes);
+    line.answer.reset();
   }
 
   std::vector<Line> lines_;
   Time reply_after_;
   ExchangeTap& tap_;
 };
-
-Line make_line(const std::string& device, int drives) {
-  Line line;
-  line.port = std::make_unique<simulated::Pty>(device);
-  for (int station = 1; station <= drives; ++station) {
-    simulated::DriveOptions options;
-    options.station = static_cast<std::uint8_t>(station);
-    line.drives.push_back(std::make_unique<simulated::KincoDrive>(options));
-    line.drives.back()->advance(steady_now());
-  }
-  return line;
-}
 
 }  // namespace
 
@@ -113,7 +95,9 @@ DriveProcess::DriveProcess(const DriveLines& shape, const std::string& folder) :
     stay_on_processor(shape.processor);
     try {
       std::vector<Line> lines;
-      for (const std::string& device : devices_) lines.push_back(make_line(device, shape.drives_per_line));
+      for (const std::string& device : devices_)
+        lines.push_back({std::make_unique<simulated::Pty>(device),
+                         make_answering_line(shape.protocol, shape.drives_per_line, steady_now()), std::nullopt});
       static_cast<void>(!::write(ready[1], "", 1));
       Responder(std::move(lines), shape.reply_after, *tap_.operator->()).serve();
     } catch (const std::exception& error) {

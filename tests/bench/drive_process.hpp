@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/bench/exchange_tap.hpp"
+#include "tests/bench/line_protocol.hpp"
 
 namespace axisgate::bench {
 
@@ -18,6 +19,7 @@ struct DriveLines {
   int drives_per_line = 1;                  ///< stations 1, 2, ... on each
   std::chrono::nanoseconds reply_after{0};  ///< from the request's last byte to the reply's first
   unsigned processor = 1;
+  LineProtocol protocol = LineProtocol::kinco_serial;
 };
 
 class DriveProcess {
@@ -31,6 +33,7 @@ class DriveProcess {
   [[nodiscard]] const DriveLines& shape() const { return shape_; }
   [[nodiscard]] const std::string& device(int line = 0) const { return devices_.at(static_cast<std::size_t>(line)); }
   [[nodiscard]] const ExchangeTap& tap() const { return *tap_; }
+  void mute(std::uint8_t station) { tap_->mute(station); }
 
  private:
   DriveLines shape_;

@@ -1,4 +1,4 @@
-// What the simulated drives saw and when, in memory that the bench shares with their process.
+// What the simulated drives saw and when, and who of them is mute, in memory that the bench shares with their process.
 // Promises that a record is whole before it is counted; times are of the steady clock, which all processes share.
 // Never blocks the drives: the oldest records are overwritten, and a reader that comes too late is told.
 #pragma once
@@ -8,14 +8,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "tests/simulated/ten_byte_frame.hpp"
-
 namespace axisgate::bench {
 
 struct TappedExchange {
   std::int64_t asked_at = 0;     ///< ns of the steady clock: the request's last byte was read
   std::int64_t answered_at = 0;  ///< just before the reply was written
-  simulated::TenByteFrame request{};
+  std::uint16_t object = 0;      ///< index, or the first register
+  bool write = false;
   std::uint8_t line = 0;
 };
 
@@ -29,10 +28,14 @@ class ExchangeTap {
     recorded_.store(number + 1, std::memory_order_release);
   }
   [[nodiscard]] std::uint64_t recorded() const { return recorded_.load(std::memory_order_acquire); }
+  /// This station of every line hears and answers nothing from now on; 0: all do.
+  void mute(std::uint8_t station) { mute_.store(station, std::memory_order_relaxed); }
+  [[nodiscard]] std::uint8_t mute() const { return mute_.load(std::memory_order_relaxed); }
   /// From the one that `recorded()` counted as the first'th on. Throws std::runtime_error if they are gone.
   [[nodiscard]] std::vector<TappedExchange> since(std::uint64_t first) const;
 
  private:
+  std::atomic<std::uint8_t> mute_{0};
   std::atomic<std::uint64_t> recorded_{0};
   std::array<TappedExchange, kKept> kept_;
 };

@@ -37,6 +37,7 @@ std::uint16_t free_port() {
 }
 
 std::string configuration(std::uint16_t port, const DriveProcess& drives, const PollPeriods& periods) {
+  const LineProtocol protocol = drives.shape().protocol;
   std::string buses;
   int axis = 0;
   for (int line = 0; line < drives.shape().lines; ++line) {
@@ -46,10 +47,10 @@ std::string configuration(std::uint16_t port, const DriveProcess& drives, const 
           R"({}{{"profile": "kinco-jd", "node": {}, "constants": {{"peak_current_a": 27.5}}, "axes": [{{"axis": {}}}]}})",
           station == 1 ? "" : ", ", station, ++axis);
     }
-    buses += fmt::format(
-        R"({}{{"name": "line{}", "adapter": "kinco-serial", "device": "{}", "rs485": "off", "baud": 38400,)"
-        R"( "poll": {{"fast": {}, "normal": {}, "slow": {}}}, "drives": [{}]}})",
-        line == 0 ? "" : ",\n", line, drives.device(line), periods.fast, periods.normal, periods.slow, entries);
+    buses += fmt::format(R"({}{{"name": "line{}", "adapter": "{}", "device": "{}", "rs485": "off", "baud": {},)"
+                         R"( "poll": {{"fast": {}, "normal": {}, "slow": {}}}, "drives": [{}]}})",
+                         line == 0 ? "" : ",\n", line, adapter_of(protocol), drives.device(line), baud_of(protocol),
+                         periods.fast, periods.normal, periods.slow, entries);
   }
   return fmt::format("{{\"modbus_tcp\": [{{\"listen\": \"127.0.0.1:{}\"}}],\n\"buses\": [{}]}}\n", port, buses);
 }

@@ -16,6 +16,7 @@
 #include "tests/bench/footprint.hpp"
 #include "tests/bench/immediate_drive.hpp"
 #include "tests/bench/modbus_reads.hpp"
+#include "tests/bench/mute_neighbour.hpp"
 #include "tests/bench/shared_polling.hpp"
 #include "tests/bench/stop_latency.hpp"
 
@@ -29,16 +30,28 @@ struct Bench {
   void (*run)(const BenchOptions&);
 };
 
+template <void (*bench)(const BenchOptions&, LineProtocol), LineProtocol protocol>
+void on(const BenchOptions& options) {
+  bench(options, protocol);
+}
+constexpr LineProtocol kKinco = LineProtocol::kinco_serial;
+constexpr LineProtocol kRtu = LineProtocol::modbus_rtu;
+
 constexpr std::array kBenches{
-    Bench{"immediate", "P2: time added to an exchange with a drive that answers at once", immediate_drive},
-    Bench{"delayed", "P2: share of a bare loop's rate with a drive that answers after 5 ms", delayed_drive},
-    Bench{"stops", "P4: exchanges before a stop, behind 32 busy clients", stop_latency},
+    Bench{"immediate", "P2: time added to an exchange with a drive that answers at once", on<immediate_drive, kKinco>},
+    Bench{"delayed", "P2: share of a bare loop's rate with a drive that answers after 5 ms", on<delayed_drive, kKinco>},
+    Bench{"stops", "P4: exchanges before a stop, behind 32 busy clients", on<stop_latency, kKinco>},
     Bench{"reads", "P5: Modbus reads per second beside a bare Asio echo server",
           [](const BenchOptions& options) {
             modbus_reads(options.quick ? ReadsOptions{3, 100} : ReadsOptions{});
           }},
-    Bench{"sharing", "P6: exchanges on the bus with 0, 1 and 32 reading clients", shared_polling},
+    Bench{"sharing", "P6: exchanges on the bus with 0, 1 and 32 reading clients", on<shared_polling, kKinco>},
     Bench{"footprint", "P8: memory and processor time", footprint},
+    Bench{"rtu-immediate", "P2 on Modbus RTU, beside libmodbus in a loop", on<immediate_drive, kRtu>},
+    Bench{"rtu-delayed", "P2 on Modbus RTU, drives that answer at once and after 5 ms", on<delayed_drive, kRtu>},
+    Bench{"rtu-mute", "P3: a live drive's writes beside a dead one, on Modbus RTU", on<mute_neighbour, kRtu>},
+    Bench{"rtu-stops", "P4 on Modbus RTU", on<stop_latency, kRtu>},
+    Bench{"rtu-sharing", "P6 on Modbus RTU", on<shared_polling, kRtu>},
 };
 
 /// A folder for one run; gone with the object.
@@ -61,7 +74,7 @@ class RunFolder {
 
 int help(int status) {
   fmt::print("usage: axisgate-bench [--quick] [--axisgate PROGRAM] [BENCH...]\nWithout a name, all of these run:\n");
-  for (const Bench& bench : kBenches) fmt::print("  {:<10} {}\n", bench.name, bench.what);
+  for (const Bench& bench : kBenches) fmt::print("  {:<14} {}\n", bench.name, bench.what);
   fmt::print("--quick shows in seconds that they work; its figures mean nothing.\n");
   return status;
 }

@@ -18,7 +18,7 @@ constexpr std::uint16_t kRegisters = 39;
 
 }  // namespace
 
-void shared_polling(const BenchOptions& options) {
+void shared_polling(const BenchOptions& options, LineProtocol protocol) {
   stay_on_processor(1);
   fmt::print(
       "P6, clients that read one axis without a pause, drive answers after 1 ms, polled as by default\n"
@@ -30,6 +30,7 @@ void shared_polling(const BenchOptions& options) {
   store_be16(request, 10, kRegisters);
   DriveLines shape;
   shape.reply_after = std::chrono::milliseconds(1);
+  shape.protocol = protocol;
   const DriveProcess drives(shape, options.folder);
   const GatewayProcess gateway(options.program, options.folder, drives, {});
   const auto lasting = options.lasting(std::chrono::milliseconds(5000));

@@ -4,9 +4,10 @@
 #pragma once
 
 #include "tests/bench/bench_options.hpp"
+#include "tests/bench/line_protocol.hpp"
 
 namespace axisgate::bench {
 
-void shared_polling(const BenchOptions& options);
+void shared_polling(const BenchOptions& options, LineProtocol protocol);
 
 }  // namespace axisgate::bench

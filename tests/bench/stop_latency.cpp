@@ -30,12 +30,7 @@ struct Stops {
   std::vector<double> waiting;        // orders that waited for the bus just before
 };
 
-bool is_controlword_write(const TappedExchange& exchange) {
-  return simulated::index_of(exchange.request) == 0x6040 &&
-         simulated::command_of(exchange.request) == simulated::FrameCommand::write_2;
-}
-
-void one_stop(ModbusClient& client, const ExchangeTap& tap, Stops& stops) {
+void one_stop(ModbusClient& client, const ExchangeTap& tap, std::uint16_t controlword, Stops& stops) {
   stops.waiting.push_back(client.read(50'003, 1).front());
   const std::uint64_t first = tap.recorded();
   const std::int64_t sent_at = SteadyClock::now().time_since_epoch().count();
@@ -44,7 +39,8 @@ void one_stop(ModbusClient& client, const ExchangeTap& tap, Stops& stops) {
   auto tapped = tap.since(first);
   // The one on the wire: asked before, answered after.
   std::erase_if(tapped, [&](const TappedExchange& e) { return e.asked_at < sent_at; });
-  const auto stop = std::find_if(tapped.begin(), tapped.end(), is_controlword_write);
+  const auto stop = std::find_if(tapped.begin(), tapped.end(),
+                                 [&](const TappedExchange& e) { return e.write && e.object == controlword; });
   if (stop == tapped.end()) throw std::runtime_error("a stop did not reach the drive");
   ++stops.before[static_cast<std::size_t>(stop - tapped.begin())];
   stops.waits_ms.push_back(static_cast<double>(stop->asked_at - sent_at) / 1e6);
@@ -52,19 +48,20 @@ void one_stop(ModbusClient& client, const ExchangeTap& tap, Stops& stops) {
   if (client.write_coil(kQuickStop, false) != 0) throw std::runtime_error("a coil was refused");
 }
 
-void measure(const BenchOptions& options, std::chrono::nanoseconds reply_after, int count) {
+void measure(const BenchOptions& options, LineProtocol protocol, std::chrono::nanoseconds reply_after, int count) {
   DriveLines shape;
   shape.reply_after = reply_after;
+  shape.protocol = protocol;
   const DriveProcess drives(shape, options.folder);
   const GatewayProcess gateway(options.program, options.folder, drives, {});
   BusyClients clients(gateway.port());
   for (int i = 0; i < kClients; ++i) {
     const auto writer = std::make_shared<ParameterWriter>(1, i);
-    clients.add([i, writer](ModbusClient& client) {
+    clients.add([i, writer, protocol](ModbusClient& client) {
       if (i < ParameterWriter::kParameters)
         static_cast<void>(writer->write(client));
       else
-        static_cast<void>(read_object(client, 1, readable_object(i), std::chrono::milliseconds(20)));
+        static_cast<void>(read_object(client, 1, readable_object(i, protocol), std::chrono::milliseconds(20)));
     });
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -75,15 +72,13 @@ void measure(const BenchOptions& options, std::chrono::nanoseconds reply_after, 
   std::minstd_rand random(1);
   for (int i = 0; i < count; ++i) {
     std::this_thread::sleep_for(std::chrono::microseconds(20'000 + random() % 20'000));
-    one_stop(client, drives.tap(), stops);
+    one_stop(client, drives.tap(), jd_addresses(protocol).controlword, stops);
   }
   const double seconds = std::chrono::duration<double>(SteadyClock::now() - began).count();
   const std::uint64_t after = drives.tap().recorded();
   const auto newest = drives.tap().since(std::max(before, after - std::min(after, ExchangeTap::kKept / 2)));
   clients.stop();
-  const auto writes = std::count_if(newest.begin(), newest.end(), [](const TappedExchange& e) {
-    return simulated::command_of(e.request) != simulated::FrameCommand::read;
-  });
+  const auto writes = std::count_if(newest.begin(), newest.end(), [](const TappedExchange& e) { return e.write; });
 
   fmt::print(
       "drive answers after {:>5} ms: {} stops in {:.0f} exchanges/s, {:.0f} % of them writes, {:.0f} orders waiting",
@@ -101,7 +96,7 @@ void measure(const BenchOptions& options, std::chrono::nanoseconds reply_after, 
 
 }  // namespace
 
-void stop_latency(const BenchOptions& options) {
+void stop_latency(const BenchOptions& options, LineProtocol protocol) {
   stay_on_processor(1);
   fmt::print(
       "P4, quick stops behind {} busy clients (6 write parameters, 26 read objects), polled as by default\n"
@@ -112,9 +107,9 @@ void stop_latency(const BenchOptions& options) {
       "the drive that answers at once it may be more: an exchange is over sooner than a request has come to the "
       "gateway.\n",
       kClients);
-  measure(options, std::chrono::milliseconds(5), options.times(500));
-  measure(options, std::chrono::milliseconds(20), options.times(200));
-  measure(options, {}, options.times(500));
+  measure(options, protocol, std::chrono::milliseconds(5), options.times(500));
+  measure(options, protocol, std::chrono::milliseconds(20), options.times(200));
+  measure(options, protocol, {}, options.times(500));
 }
 
 }  // namespace axisgate::bench

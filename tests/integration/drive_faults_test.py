@@ -15,9 +15,11 @@ QUANTITY = {"position_actual": 2, "velocity_actual": 3, "error_code": 7, "vendor
 class Line(Story):
     """Axes 1, 2, 3 on one line; the middle one has the fault."""
 
+    adapter = "kinco-serial"
+
     def setUp(self):
         super().setUp()
-        self.start(buses=[bus(self.path(self.line), *self.drives())])
+        self.start(buses=[bus(self.path(self.line), *self.drives(), adapter=self.adapter)])
         self.axes = [self.axis(number) for number in (1, 2, 3)]
         for axis in self.axes:
             axis.set(profile_velocity=600 * RPM, profile_acceleration=30000, profile_deceleration=30000)

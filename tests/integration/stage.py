@@ -17,14 +17,14 @@ from processes import NEVER, Ports, Program, until
 
 AXISGATE, SIMULATOR, SOURCE = (os.path.abspath(path) for path in sys.argv[1:4])
 PORTS = Ports()
-DRIVES = {"jd": ("kinco-jd", 27.5), "md": ("kinco-md", 36)}
+DRIVES = {"jd": ("kinco-jd", {"peak_current_a": 27.5}), "md": ("kinco-md", {"peak_current_a": 36}), "id286pro": ("id286pro", {})}
 
 
 def drive(kind, node, axis, **more):
     """A drive as a configuration has it."""
-    profile, peak = DRIVES[kind]
+    profile, constants = DRIVES[kind]
     entry = {"axis": axis, "name": f"{kind}-{axis}", "lease": None, **more}
-    return {"profile": profile, "node": node, "constants": {"peak_current_a": peak}, "axes": [entry]}
+    return {"profile": profile, "node": node, "constants": constants, "axes": [entry]}
 
 
 def bus(device, *drives, **more):

@@ -66,16 +66,16 @@ DriveWatch::DriveWatch(const app::Gateway& gateway, SimLink& link, std::size_t p
       link_(link),
       position_(position),
       axis_(axis),
-      asked_(asked),
       runtime_(runtime),
       violated_(std::move(violated)),
-      seen_(gateway.drive_of(axis)->model().objects.size()),
-      enables_seen_until_(runtime.now()) {}
+      watch_(gateway, axis, asked, runtime, violated_),
+      seen_(gateway.drive_of(axis)->model().objects.size()) {}
 
 void DriveWatch::check() {
   check_values();
-  check_enables();
-  check_validity();
+  watch_.check_enables(link_.line().drive(position_),
+                       [&](simulated::Time at) { return link_.time_of(runtime_.now()) - at; });
+  watch_.check_validity();
 }
 
 // The line's journal ties each reply to its request; a value in the store must be the one sent for the request that
@@ -110,21 +110,31 @@ void DriveWatch::check_values() {
   }
 }
 
-void DriveWatch::check_enables() {
-  // An enable that was asked for is on the wire within its start and answer deadlines, or never.
-  constexpr Duration kLongest = std::chrono::milliseconds(1500);
-  for (const simulated::Transition& t : link_.line().drive(position_).transitions()) {
-    const Instant at = runtime_.now() - (link_.time_of(runtime_.now()) - t.at);
+AxisWatch::AxisWatch(const app::Gateway& gateway, AxisNumber axis, const Asked& asked, Runtime& runtime,
+                     std::function<void(std::string)> violated)
+    : gateway_(gateway),
+      axis_(axis),
+      asked_(asked),
+      runtime_(runtime),
+      violated_(std::move(violated)),
+      enables_seen_until_(runtime.now()) {}
+
+bool AxisWatch::enable_was_asked(Instant at) const {
+  return std::any_of(asked_.enables.begin(), asked_.enables.end(),
+                     [&](const Asked::Enable& e) { return e.axis == axis_ && e.at <= at && at - e.at <= kLongestWay; });
+}
+
+void AxisWatch::check_enables(const simulated::KincoDrive& drive, const std::function<Duration(simulated::Time)>& age) {
+  for (const simulated::Transition& t : drive.transitions()) {
+    const Instant at = runtime_.now() - age(t.at);
     if (at <= enables_seen_until_ || t.to != simulated::Cia402State::operation_enabled) continue;
-    const bool asked = std::any_of(asked_.enables.begin(), asked_.enables.end(), [&](const Asked::Enable& e) {
-      return e.axis == axis_ && e.at <= at && at - e.at <= kLongest;
-    });
-    if (!asked || t.tag == 0) violated_("I10: axis " + std::to_string(axis_) + " was enabled although nobody asked");
+    if (!enable_was_asked(at) || t.tag == 0)
+      violated_("I10: axis " + std::to_string(axis_) + " was enabled although nobody asked");
   }
   enables_seen_until_ = runtime_.now();
 }
 
-void DriveWatch::check_validity() {
+void AxisWatch::check_validity() const {
   const drive::Drive& drive = *gateway_.drive_of(axis_);
   const AxisImage& image = *const_cast<app::Gateway&>(gateway_).image().find(axis_);
   for (const drive::Binding& binding : drive.model().axes.front().bindings) {

@@ -37,6 +37,29 @@ class CableWatch {
   std::uint64_t hash_ = 0xCBF29CE484222325U;
 };
 
+/// What was asked for is on the wire within its start and answer deadlines, or never.
+inline constexpr Duration kLongestWay = std::chrono::milliseconds(1500);
+
+/// I6 and I10 of one axis, whatever line it is on.
+class AxisWatch {
+ public:
+  AxisWatch(const app::Gateway& gateway, AxisNumber axis, const Asked& asked, Runtime& runtime,
+            std::function<void(std::string)> violated);
+  /// I6: nothing valid is stale, nor valid of a drive that is not there.
+  void check_validity() const;
+  /// I10 of a drive that has a state machine: `age` tells how long ago it was enabled.
+  void check_enables(const simulated::KincoDrive& drive, const std::function<Duration(simulated::Time)>& age);
+  [[nodiscard]] bool enable_was_asked(Instant at) const;
+
+ private:
+  const app::Gateway& gateway_;
+  AxisNumber axis_;
+  const Asked& asked_;
+  Runtime& runtime_;
+  std::function<void(std::string)> violated_;
+  Instant enables_seen_until_;
+};
+
 /// I2 a stored value is what the drive sent in answer to that very request; I6 nothing valid is stale; I7 bounds;
 /// I10 nothing is enabled unasked.
 class DriveWatch {
@@ -47,17 +70,14 @@ class DriveWatch {
 
  private:
   void check_values();
-  void check_enables();
-  void check_validity();
   const app::Gateway& gateway_;
   SimLink& link_;
   std::size_t position_;
   AxisNumber axis_;
-  const Asked& asked_;
   Runtime& runtime_;
   std::function<void(std::string)> violated_;
+  AxisWatch watch_;
   std::vector<std::uint64_t> seen_;  ///< exchange of each object when it was last checked
-  Instant enables_seen_until_;
 };
 
 }  // namespace axisgate::test

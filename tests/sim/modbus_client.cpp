@@ -11,7 +11,7 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t value) { return (hash ^ valu
 }  // namespace
 
 ModbusClient::ModbusClient(const modbus_tcp::SessionContext& context, Runtime& runtime, std::uint64_t seed,
-                           std::uint16_t port, std::vector<AxisNumber> axes, Asked& asked,
+                           std::uint16_t port, std::vector<ClientAxis> axes, Asked& asked,
                            std::function<void(std::string)> violated)
     : context_(context),
       runtime_(runtime),
@@ -112,6 +112,7 @@ void ModbusClient::command(AxisNumber axis, std::uint16_t number) {
   if (expected_.size() >= kMaxUnanswered) return;
   if (number == 1) asked_.enables.push_back({runtime_.now(), axis});
   if (number == 6 || number == 7) ++asked_.starts;
+  if (number >= 6 && number <= 10) asked_.motions.push_back({runtime_.now(), axis, number});
   // Alone, and with a new id each second time: both edge rules are used.
   const std::uint16_t id = random_.chance(1, 2) ? static_cast<std::uint16_t>(++command_id_ + 1) : std::uint16_t{0};
   if (id == 0) {
@@ -123,7 +124,8 @@ void ModbusClient::command(AxisNumber axis, std::uint16_t number) {
 }
 
 void ModbusClient::ask_something() {
-  const AxisNumber axis = axes_[static_cast<std::size_t>(random_.below(axes_.size()))];
+  const ClientAxis& chosen = axes_[static_cast<std::size_t>(random_.below(axes_.size()))];
+  const AxisNumber axis = chosen.number;
   const auto target = static_cast<std::uint32_t>(random_.below(200'000));
   const auto halves = [](std::uint32_t v) {
     return std::vector<std::uint16_t>{static_cast<std::uint16_t>(v >> 16), static_cast<std::uint16_t>(v & 0xFFFF)};
@@ -132,6 +134,7 @@ void ModbusClient::ask_something() {
     case 0:
       return write(axis, 42, halves(target));
     case 1:
+      asked_.motions.push_back({runtime_.now(), axis, Asked::kVelocityWritten});
       return write(axis, 44, halves(target));
     case 2:
     case 3:
@@ -149,12 +152,8 @@ void ModbusClient::ask_something() {
     case 9:
       return command(axis, random_.chance(1, 2) ? 7 : 10);
     case 10:
-      return write(axis, 60, {35});
-    case 11: {
-      // The object mailbox: statusword, or an object that does not exist.
-      const bool exists = random_.chance(1, 2);
-      return write(axis, 80, {1, static_cast<std::uint16_t>(exists ? 0x6041 : 0x5FFF), 0, 2});
-    }
+    case 11:
+      return ask_rarely(chosen);
     default: {
       std::vector<Byte> pdu(5);
       pdu[0] = random_.chance(1, 2) ? 3 : 4;
@@ -165,9 +164,34 @@ void ModbusClient::ask_something() {
   }
 }
 
+void ModbusClient::ask_rarely(const ClientAxis& axis) {
+  switch (random_.below(4)) {
+    case 0:
+    case 1: {
+      const auto& methods = axis.homing_methods;
+      return write(axis.number, 60, {methods[static_cast<std::size_t>(random_.below(methods.size()))]});
+    }
+    case 2:
+      if (axis.wears) {
+        // About a million units each way: never in the way of a move, and almost never what the drive holds.
+        const auto low = static_cast<std::uint16_t>(random_.below(0x10000));
+        return write(axis.number, 72, {0xFFF0, low, 0x000F, low});
+      }
+      [[fallthrough]];
+    default: {
+      // The object mailbox: an object of the drive, or one that does not exist.
+      const std::uint16_t object = random_.chance(1, 2) ? axis.an_object : std::uint16_t{0x5FFF};
+      return write(axis.number, 80, {1, object, 0, 2});
+    }
+  }
+}
+
 void ModbusClient::act() {
   next_action_ = runtime_.now() + std::chrono::milliseconds(1 + random_.below(120));
-  if (retired_) return;
+  if (retired_) {
+    if (stopped_ < axes_.size() && expected_.size() < kMaxUnanswered) write(axes_[stopped_++].number, 54, {3});
+    return;
+  }
   if (random_.chance(1, 200)) disconnect();
   ask_something();
 }
@@ -175,7 +199,6 @@ void ModbusClient::act() {
 void ModbusClient::retire() {
   retired_ = true;
   disconnect();
-  for (const AxisNumber axis : axes_) write(axis, 54, {3});
 }
 
 }  // namespace axisgate::test

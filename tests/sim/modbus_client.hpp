@@ -23,16 +23,32 @@ struct Asked {
     AxisNumber axis;
   };
   std::deque<Enable> enables;
+  /// What may move an axis: commands 6, 7, 8 and 10, and target_velocity, which the iD286pro takes with a command.
+  struct Motion {
+    Instant at;
+    AxisNumber axis;
+    std::uint16_t command;  ///< kVelocityWritten: target_velocity
+  };
+  static constexpr std::uint16_t kVelocityWritten = 0;
+  std::deque<Motion> motions;
   std::uint64_t starts = 0;  ///< move commands
   std::uint64_t requests = 0;
   std::uint64_t replies = 0;
   std::uint32_t next_unique = 1;  ///< profile_velocity values, 0.001 rpm, each used once
 };
 
+/// What a client's programmer knows of an axis.
+struct ClientAxis {
+  AxisNumber number = 0;
+  std::vector<std::uint16_t> homing_methods{35};
+  std::uint16_t an_object = 0x6041;  ///< that the drive has, of two bytes
+  bool wears = false;                ///< homing method and position limits are kept in memory that wears out
+};
+
 class ModbusClient {
  public:
   ModbusClient(const modbus_tcp::SessionContext& context, Runtime& runtime, std::uint64_t seed, std::uint16_t port,
-               std::vector<AxisNumber> axes, Asked& asked, std::function<void(std::string)> violated);
+               std::vector<ClientAxis> axes, Asked& asked, std::function<void(std::string)> violated);
   ~ModbusClient();
 
   /// When it wants to act next.
@@ -49,6 +65,7 @@ class ModbusClient {
   void send(std::vector<Byte> pdu);
   void write(AxisNumber axis, std::uint16_t offset, const std::vector<std::uint16_t>& registers);
   void ask_something();
+  void ask_rarely(const ClientAxis& axis);
   void command(AxisNumber axis, std::uint16_t number);
   void receive();
   void take_reply(Bytes adu);
@@ -57,7 +74,7 @@ class ModbusClient {
   Runtime& runtime_;
   Random random_;
   modbus_tcp::Peer peer_;
-  std::vector<AxisNumber> axes_;
+  std::vector<ClientAxis> axes_;
   Asked& asked_;
   std::function<void(std::string)> violated_;
   std::unique_ptr<modbus_tcp::Session> session_;
@@ -71,6 +88,7 @@ class ModbusClient {
   std::uint16_t transaction_ = 0;
   std::uint16_t command_id_ = 0;
   bool retired_ = false;
+  std::size_t stopped_ = 0;  ///< axes, in retirement
   bool in_session_ = false;
   Instant next_action_;
   std::uint64_t hash_ = 0xCBF29CE484222325U;

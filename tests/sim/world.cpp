@@ -8,9 +8,8 @@ namespace {
 constexpr std::size_t kMaxViolations = 5;
 constexpr int kClients = 3;
 
-/// Two lines with one drive each, or both drives in one RS232 chain, or two MDs on one RS485 line (a JD's speaks
-/// Modbus).
-std::vector<GatewayStage::Line> layout(Random& random) {
+/// Two lines with one drive each, or both drives in one RS232 chain, or two MDs on one RS485 line.
+std::vector<GatewayStage::Line> kinco_lines(Random& random) {
   GatewayStage::Line jd = line_of(simulated::KincoType::jd, 1);
   GatewayStage::Line md = line_of(simulated::KincoType::md, 2);
   for (GatewayStage::Line* line : {&jd, &md}) {
@@ -31,28 +30,97 @@ std::vector<GatewayStage::Line> layout(Random& random) {
   return {jd};
 }
 
+/// Points that the iD286pro's manual leaves open, and an origin switch in half of the seeds.
+simulated::Id286proOptions stepper(Random& random) {
+  simulated::Id286proOptions options;
+  options.speed_follows_register = random.chance(1, 2);
+  options.command_reads_back = random.chance(1, 2);
+  options.refuses_what_cannot_act = random.chance(1, 2);
+  if (random.chance(1, 4)) options.most_registers = 2;
+  if (random.chance(1, 2)) {
+    options.stored = {{400, 11}};
+    options.mechanics.home_from = -60'000;
+    options.mechanics.home_to = -40'000;
+  }
+  return options;
+}
+
+simulated::KincoRtuDrive servo(simulated::KincoType type, std::uint8_t unit, Random& random) {
+  simulated::KincoRtuDrive drive;
+  drive.drive.type = type;
+  drive.drive.station = unit;
+  drive.rtu.read_error_function = random.chance(1, 2) ? 0x81 : 0x83;
+  drive.rtu.answer_delay = std::chrono::microseconds(100 + random.below(5000));
+  return drive;
+}
+
+/// An iD286pro, a JD and an MD on one line.
+GatewayStage::Line rtu_line(Random& random, AxisNumber first) {
+  GatewayStage::Line line = rtu_line_of(
+      {stepper(random), servo(simulated::KincoType::jd, 2, random), servo(simulated::KincoType::md, 3, random)}, first);
+  if (random.chance(1, 2)) line.rtu_options.baud = 115200;
+  return line;
+}
+
+/// Kinco's own protocol, Modbus RTU, or both.
+std::vector<GatewayStage::Line> layout(Random& random) {
+  const std::uint64_t kind = random.below(3);
+  std::vector<GatewayStage::Line> lines;
+  if (kind != 1) lines = kinco_lines(random);
+  if (kind != 0) lines.push_back(rtu_line(random, kind == 1 ? 1 : 3));
+  return lines;
+}
+
 }  // namespace
 
-World::World(std::uint64_t seed) : random_(seed), stage_(layout(random_), seed), began_(stage_.runtime().now()) {
-  const auto report = [this](const std::string& what) { violated(what); };
-  std::vector<SimLink*> links;
-  AxisNumber axis = 1;
-  for (std::size_t l = 0; l < stage_.gateway().bus_count(); ++l) {
-    SimLink& link = stage_.link(l);
-    links.push_back(&link);
-    cables_.push_back(
-        std::make_unique<CableWatch>(link, stage_.runtime(), stage_.gateway().bus(l).settings().timeout, report));
-    for (std::size_t d = 0; d < link.line().size(); ++d, ++axis)
-      drives_.push_back(
-          std::make_unique<DriveWatch>(stage_.gateway(), link, d, axis, asked_, stage_.runtime(), report));
+World::World(std::uint64_t seed)
+    : random_(seed), lines_(layout(random_)), stage_(lines_, seed), began_(stage_.runtime().now()) {
+  for (std::size_t l = 0; l < lines_.size(); ++l) {
+    if (lines_[l].rtu_drives.empty())
+      watch_kinco(l);
+    else
+      watch_rtu(l);
   }
-  nemesis_ = std::make_unique<Nemesis>(links, stage_.runtime(), random_.next());
+  nemesis_ = std::make_unique<Nemesis>(victims_, stage_.runtime(), random_.next());
+  add_clients();
+}
+
+void World::watch_kinco(std::size_t line) {
+  const auto report = [this](const std::string& what) { violated(what); };
+  SimLink& link = stage_.link(line);
+  const Duration timeout = stage_.gateway().bus(line).settings().timeout;
+  cables_.push_back(std::make_unique<CableWatch>(link, stage_.runtime(), timeout, report));
+  for (std::size_t d = 0; d < link.line().size(); ++d) {
+    axes_.push_back({.number = static_cast<AxisNumber>(axes_.size() + 1)});
+    drives_.push_back(
+        std::make_unique<DriveWatch>(stage_.gateway(), link, d, axes_.back().number, asked_, stage_.runtime(), report));
+  }
+  victims_.push_back(victim(link, stage_.runtime()));
+}
+
+void World::watch_rtu(std::size_t line) {
+  const auto report = [this](const std::string& what) { violated(what); };
+  RtuLinkSim& link = stage_.rtu_link(line);
+  const Duration timeout = stage_.gateway().bus(line).settings().timeout;
+  rtu_cables_.push_back(std::make_unique<RtuCableWatch>(link, stage_.runtime(), timeout, report));
+  for (std::size_t d = 0; d < link.line().size(); ++d) {
+    const AxisNumber axis = lines_[line].rtu_drives[d].axis.number;
+    const bool stepper = link.line().id286pro(d) != nullptr;
+    axes_.push_back(stepper ? ClientAxis{axis, {19, 21}, 109, true} : ClientAxis{.number = axis, .an_object = 0x3200});
+    rtu_drives_.push_back(
+        std::make_unique<RtuDriveWatch>(stage_.gateway(), link, d, axis, asked_, stage_.runtime(), report));
+    rtu_cables_.back()->also_tell([watch = rtu_drives_.back().get()](const RtuRequest& r) { watch->on_request(r); });
+  }
+  victims_.push_back(victim(link, stage_.runtime()));
+}
+
+void World::add_clients() {
   const modbus_tcp::SessionContext context{settings_, stage_.gateway().image(), stage_.gateway(), registry_,
                                            quiet_,    &stage_.runtime()};
   for (int c = 0; c < kClients; ++c)
     clients_.push_back(std::make_unique<ModbusClient>(context, stage_.runtime(), random_.next(),
-                                                      static_cast<std::uint16_t>(50000 + c),
-                                                      std::vector<AxisNumber>{1, 2}, asked_, report));
+                                                      static_cast<std::uint16_t>(50000 + c), axes_, asked_,
+                                                      [this](const std::string& what) { violated(what); }));
 }
 
 World::~World() = default;
@@ -72,6 +140,7 @@ void World::step(Instant until) {
   for (const auto& client : clients_)
     if (client->next_action() <= now) client->act();
   for (const auto& drive : drives_) drive->check();
+  for (const auto& drive : rtu_drives_) drive->check();
   for (std::size_t b = 0; b < stage_.gateway().bus_count(); ++b)
     if (stage_.gateway().bus(b).queue_depth() > bus::kMaxOrdersPerBus + 32) violated("I7: the queue is over its bound");
 }
@@ -79,15 +148,24 @@ void World::step(Instant until) {
 void World::run(Duration length) {
   const Instant end = stage_.runtime().now() + length;
   while (stage_.runtime().now() < end && violations_.empty()) step(end);
+  if (starts() > asked_.starts) violated("I5: more moves were started than asked for");
+}
+
+std::uint64_t World::starts() const {
   std::uint64_t starts = 0;
   for (const auto& cable : cables_) starts += cable->starts();
-  if (starts > asked_.starts) violated("I5: more moves were started than asked for");
+  for (const auto& cable : rtu_cables_) starts += cable->starts();
+  for (const auto& drive : rtu_drives_) starts += drive->starts();
+  return starts;
 }
 
 void World::recover() {
   nemesis_->retire();
-  // The longest pause between two probes of a mute drive is 200 timeouts of 100 ms.
-  const Instant online_by = stage_.runtime().now() + std::chrono::seconds(26);
+  // The longest pause between two probes of a mute drive is 200 timeouts.
+  Duration longest{};
+  for (std::size_t b = 0; b < stage_.gateway().bus_count(); ++b)
+    longest = std::max(longest, 200 * stage_.gateway().bus(b).settings().timeout);
+  const Instant online_by = stage_.runtime().now() + longest + std::chrono::seconds(6);
   while (stage_.runtime().now() < online_by && violations_.empty()) step(online_by);
   if (!violations_.empty()) return;  // the first one tells the story; the rest would be its consequences
   for (const auto& axis : stage_.gateway().image().axes())
@@ -110,6 +188,7 @@ void World::recover() {
 std::uint64_t World::hash() const {
   std::uint64_t hash = 0;
   for (const auto& cable : cables_) hash = hash * 31 + cable->hash();
+  for (const auto& cable : rtu_cables_) hash = hash * 31 + cable->hash();
   for (const auto& client : clients_) hash = hash * 31 + client->hash();
   return hash;
 }

@@ -1,10 +1,12 @@
-// The simulated world of one seed: the shipped core with two Kinco drives, three Modbus clients and the faults of the
-// seed. Promises that equal seeds give equal hashes, and a transcript of the last moments before the first violation.
-// Never uses real time, sockets or devices.
+// The simulated world of one seed: the shipped core with two Kinco drives on their own protocol, or three drives of all
+// kinds on a Modbus RTU line, or both; three Modbus clients and the faults of the seed. Promises that equal seeds give
+// equal hashes, and a transcript of the last moments before the first violation. Never uses real time, sockets or
+// devices.
 #pragma once
 
 #include "tests/sim/invariants.hpp"
 #include "tests/sim/nemesis.hpp"
+#include "tests/sim/rtu_invariants.hpp"
 #include "tests/stage/gateway_stage.hpp"
 
 namespace axisgate::test {
@@ -25,10 +27,15 @@ class World {
   [[nodiscard]] std::string summary();
 
  private:
+  void watch_kinco(std::size_t line);
+  void watch_rtu(std::size_t line);
+  void add_clients();
   void step(Instant until);
+  [[nodiscard]] std::uint64_t starts() const;
   void violated(const std::string& what);
 
   Random random_;
+  std::vector<GatewayStage::Line> lines_;
   GatewayStage stage_;
   modbus_tcp::ListenerSettings settings_;
   modbus_tcp::ClientRegistry registry_;
@@ -38,6 +45,10 @@ class World {
   Instant began_;
   std::vector<std::unique_ptr<CableWatch>> cables_;
   std::vector<std::unique_ptr<DriveWatch>> drives_;
+  std::vector<std::unique_ptr<RtuCableWatch>> rtu_cables_;
+  std::vector<std::unique_ptr<RtuDriveWatch>> rtu_drives_;
+  std::vector<Victim> victims_;
+  std::vector<ClientAxis> axes_;
   std::unique_ptr<Nemesis> nemesis_;
   std::vector<std::unique_ptr<ModbusClient>> clients_;
 };

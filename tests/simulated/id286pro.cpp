@@ -95,6 +95,7 @@ void Id286pro::scan_inputs() {
   if (!enabled()) motion_.end();
 }
 
+// What a fault does to the run state is not stated; a motor without current is free, which is what 1 stands for.
 bool Id286pro::enabled() const {
   if (!enable_switch_ || fault_ != 0) return false;
   if (!internal_) return !inputs_.terminal(3);  // FREE conducts

@@ -33,6 +33,7 @@ LoadedConfig one_axis() {
   drive::AxisModel axis_model;
   axis_model.binding_of.fill(-1);
   axis_model.statusword = 0;
+  axis_model.state_sources = {0};
   axis_model.supported = bit(Quantity::statusword) | bit(Quantity::position_actual);
   axis_model.supported_commands = 1U << static_cast<unsigned>(Command::enable);
   model.axes.push_back(axis_model);

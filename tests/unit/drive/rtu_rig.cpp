@@ -26,6 +26,7 @@ std::vector<GatewayStage::Line> lines(RtuKind kind, const RtuRigOptions& options
     if (options.neighbours && other != kind) drives.push_back(drive_of(other, ++unit, {}));
   GatewayStage::Line line = rtu_line_of(std::move(drives), 1);
   line.rtu_options.baud = 38400;
+  line.rtu_options.journal_capacity = 10'000;
   line.timeout = options.timeout;
   return {line};
 }
@@ -36,18 +37,22 @@ std::string name(RtuKind kind) {
   return kind == RtuKind::jd ? "KincoJd" : kind == RtuKind::md ? "KincoMd" : "Id286pro";
 }
 
-RtuRig::RtuRig(RtuKind kind, const RtuRigOptions& options) : stage(lines(kind, options)), kind_(kind) {
+RtuRig::RtuRig(RtuKind kind, const RtuRigOptions& options)
+    : stage(lines(kind, options)), kind_(kind), neighbours_stay_(options.neighbours_stay) {
   RtuLinkSim& link = stage.rtu_link(0);
   for (std::size_t i = 0; i < link.line().size(); ++i)
     truths_.push_back(std::make_unique<RtuTruth>(stage.gateway(), link, static_cast<AxisNumber>(i + 1)));
   link.on_traffic = [this](bool to_drive, Bytes frame) {
     if (!to_drive) return;
     const RtuRequest request = request_in(frame);
+    Instant& served = served_[request.unit];
+    const Instant now = stage.runtime().now();
+    if (request.unit != kUnderTest && served != Instant{}) longest_wait_ = std::max(longest_wait_, now - served);
+    served = now;
     const LinkState state = axis().link_state;
     const bool speaks = state == LinkState::online || state == LinkState::setup;
     if (request.unit == kUnderTest && request.write && !speaks && !is_stop(request))
-      wrong("a write of register " + std::to_string(request.start) + " to a drive that is " +
-            std::string(text(state)));
+      wrong("a write of register " + std::to_string(request.start) + " to a drive that is " + std::string(text(state)));
     on_request(request);
   };
 }
@@ -71,10 +76,16 @@ void RtuRig::watch() {
     if (const auto lie = truth->lie()) wrong(*lie);
   for (std::size_t i = 1; i < truths_.size(); ++i) {
     const auto number = static_cast<AxisNumber>(i + 1);
-    if (!online(number)) wrong("axis " + std::to_string(number) + " is " + std::string(text(axis(number).link_state)));
-    const Duration age = stage.runtime().now() - axis(number)[Quantity::position_actual].at;
-    oldest_ = std::max(oldest_, age);
+    if (neighbours_stay_ && !online(number))
+      wrong("axis " + std::to_string(number) + " is " + std::string(text(axis(number).link_state)));
   }
+}
+
+Duration RtuRig::longest_owed() {
+  Duration longest{};
+  for (const auto& exchange : stage.rtu_link(0).line().journal().entries())
+    if (exchange.station == kUnderTest) longest = std::max(longest, exchange.reply_ready - exchange.received);
+  return longest;
 }
 
 void RtuRig::come_up_running() {
@@ -85,7 +96,7 @@ void RtuRig::come_up_running() {
   must(stage.command(1, Command::enable));
   must(stage.ask(1, with_command(Command::run_velocity, {{Quantity::target_velocity, 60'000}})));
   run(500ms);
-  oldest_ = {};
+  forget_waits();
 }
 
 void RtuRig::run(Duration time) {

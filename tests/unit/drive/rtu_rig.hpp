@@ -1,7 +1,9 @@
 // Three simulated drives on one Modbus RTU line behind the shipped core: the one under test as axis 1, and one of each
 // other kind beside it. Promises that every step is watched: no value that its drive did not send for it, no write but
-// a stop to a drive that is suspect or gone, and what became of the neighbours. Never decides which faults there are.
+// a stop to a drive that is suspect or gone, and neighbours that stay online. Never decides which faults there are.
 #pragma once
+
+#include <map>
 
 #include "tests/unit/drive/rig.hpp"
 #include "tests/unit/drive/rtu_truth.hpp"
@@ -15,6 +17,7 @@ inline constexpr std::array kRtuKinds{RtuKind::jd, RtuKind::md, RtuKind::stepper
 struct RtuRigOptions {
   simulated::KincoRtuOptions kinco{};
   bool neighbours = true;
+  bool neighbours_stay = true;  ///< that one leaves the state online is wrong
   Duration timeout = std::chrono::milliseconds(200);
 };
 
@@ -48,8 +51,11 @@ class RtuRig {
   std::function<void(const RtuRequest&)> on_request = [](const RtuRequest&) {};
   /// What was seen that must not be, each kind once.
   [[nodiscard]] const std::vector<std::string>& wrongs() const { return wrongs_; }
-  /// The oldest that a neighbour's position has become since it came up, or since the last call.
-  [[nodiscard]] Duration oldest_of_neighbours() { return std::exchange(oldest_, Duration{}); }
+  /// The longest pause between two requests to the same neighbour, all of them being up.
+  [[nodiscard]] Duration longest_wait() const { return longest_wait_; }
+  void forget_waits() { longest_wait_ = {}; }
+  /// The longest that the drive under test has owed a reply.
+  [[nodiscard]] Duration longest_owed();
   [[nodiscard]] std::uint64_t looked_at() const { return truths_.front()->looked_at(); }
 
   /// Registers of the drive under test: its position, and what tells its state.
@@ -62,9 +68,11 @@ class RtuRig {
   [[nodiscard]] bool is_stop(const RtuRequest& request) const;
 
   RtuKind kind_;
+  bool neighbours_stay_;
   std::vector<std::unique_ptr<RtuTruth>> truths_;
   std::vector<std::string> wrongs_;
-  Duration oldest_{};
+  std::map<std::uint8_t, Instant> served_;  ///< by unit
+  Duration longest_wait_{};
   std::int64_t next_value_ = 600'000;
 };
 

@@ -48,9 +48,8 @@ inline ByteRow with_crc(ByteRow frame) {
 }
 inline ByteRow with_crc(std::string_view hex) { return with_crc(from_hex(hex)); }
 /// What the wire sees of it.
-inline ByteRow without_crc(ByteRow frame) {
-  frame.resize(frame.size() - modbus_rtu::kCrcSize);
-  return frame;
+inline ByteRow without_crc(const ByteRow& frame) {
+  return {frame.begin(), frame.end() - std::ptrdiff_t{modbus_rtu::kCrcSize}};
 }
 
 /// As both Kinco sheets describe them: low word first, and 0x81 for the error of a read.

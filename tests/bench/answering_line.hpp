@@ -1,0 +1,35 @@
+// The simulated Kinco JD drives of one line, on either protocol, with as little between a request and its answer as
+// possible. Promises the answers of tests/simulated, one for each whole request. Never waits, and never sends.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tests/bench/exchange_tap.hpp"
+#include "tests/bench/line_protocol.hpp"
+#include "tests/simulated/time.hpp"
+
+namespace axisgate::bench {
+
+struct Answer {
+  TappedExchange exchange;  ///< without its times and line
+  std::vector<std::uint8_t> bytes;
+};
+
+class AnsweringLine {
+ public:
+  AnsweringLine() = default;
+  AnsweringLine(const AnsweringLine&) = delete;
+  AnsweringLine& operator=(const AnsweringLine&) = delete;
+  virtual ~AnsweringLine() = default;
+  /// Of the last whole request among the bytes; `mute`: the station that hears and answers nothing, 0 for none.
+  virtual std::optional<Answer> hear(std::span<const std::uint8_t> bytes, std::uint8_t mute, simulated::Time now) = 0;
+};
+
+/// Stations 1 to `drives`.
+[[nodiscard]] std::unique_ptr<AnsweringLine> make_answering_line(LineProtocol protocol, int drives,
+                                                                 simulated::Time now);
+
+}  // namespace axisgate::bench

@@ -1,0 +1,33 @@
+// What the benches' drives speak, and where a Kinco JD keeps the same objects on each protocol.
+// Promises addresses as the drive's manual prints them. Never knows a frame.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace axisgate::bench {
+
+enum class LineProtocol : std::uint8_t { kinco_serial, modbus_rtu };
+
+/// As a configuration names it.
+[[nodiscard]] constexpr std::string_view adapter_of(LineProtocol protocol) {
+  return protocol == LineProtocol::modbus_rtu ? "modbus-rtu" : "kinco-serial";
+}
+
+/// Index, or register on Modbus RTU.
+struct JdAddresses {
+  std::uint16_t controlword;
+  std::uint16_t statusword;
+  std::uint16_t profile_velocity;
+};
+[[nodiscard]] constexpr JdAddresses jd_addresses(LineProtocol protocol) {
+  if (protocol == LineProtocol::modbus_rtu) return {0x3100, 0x3200, 0x4A00};
+  return {0x6040, 0x6041, 0x6081};
+}
+
+/// On a pty bytes take no time; on Modbus RTU the silence between frames does, and above 19200 baud it is 1.75 ms.
+[[nodiscard]] constexpr std::uint32_t baud_of(LineProtocol protocol) {
+  return protocol == LineProtocol::modbus_rtu ? 115'200 : 38'400;
+}
+
+}  // namespace axisgate::bench
