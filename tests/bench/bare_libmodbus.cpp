@@ -15,6 +15,8 @@ namespace axisgate::bench {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
+/// A gateway that was ended in the middle of an exchange leaves a reply behind that comes later.
+constexpr std::chrono::milliseconds kLastReply{50};
 
 struct Free {
   void operator()(modbus_t* modbus) const {
@@ -29,6 +31,8 @@ std::unique_ptr<modbus_t, Free> opened(const std::string& device) {
   std::unique_ptr<modbus_t, Free> modbus(modbus_new_rtu(device.c_str(), baud, 'N', 8, 1));
   if (modbus == nullptr || modbus_set_slave(modbus.get(), kUnit) != 0 || modbus_connect(modbus.get()) != 0)
     throw std::runtime_error(device + ": " + modbus_strerror(errno));
+  std::this_thread::sleep_for(kLastReply);
+  static_cast<void>(modbus_flush(modbus.get()));
   return modbus;
 }
 

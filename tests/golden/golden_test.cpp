@@ -101,5 +101,96 @@ TEST(Golden, ADriveThatRefuses) {
   compare(story, "kinco-md.refusal");
 }
 
+simulated::RtuDriveOptions jd_on_rs485() { return simulated::KincoRtuDrive{}; }
+
+TEST(Golden, AStepperComesUp) {
+  Recorder story(simulated::Id286proOptions{}, true);
+  story.read(0, 39);
+  compare(story, "id286pro.bring-up");
+}
+
+TEST(Golden, AStepperIsEnabledMovesAndCompletes) {
+  Recorder story(simulated::Id286proOptions{}, false);
+  story.write(54, {1});
+  story.say("target 5000 units, half a turn");
+  story.write(42, {0, 5000});
+  story.write(54, {0});
+  story.write(54, {6});
+  story.run(400ms);
+  story.read(31, 3);
+  story.say("a relative move back by 1000 units");
+  story.write(42, {0xFFFF, 0xFC18});
+  story.write(54, {7});
+  story.run(300ms);
+  story.write(54, {2});
+  story.read(25, 14);
+  compare(story, "id286pro.move");
+}
+
+TEST(Golden, AStepperHasAFaultAndIsReset) {
+  Recorder story(simulated::Id286proOptions{}, false);
+  story.write(54, {1});
+  story.say("the supply rises above 90 V");
+  story.stage().id286pro(0).inject_fault(14);
+  story.run(250ms);
+  story.read(0, 18);
+  story.say("fault_reset while the cause is still there, then after it is gone");
+  story.write(54, {5});
+  story.stage().id286pro(0).clear_fault_cause();
+  story.coil(1, true);
+  story.run(150ms);
+  story.read(0, 18);
+  compare(story, "id286pro.fault");
+}
+
+TEST(Golden, AStepperIsStoppedQuicklyAndLatched) {
+  Recorder story(simulated::Id286proOptions{}, false);
+  story.write(54, {1});
+  story.write(44, {4, 0x93E0});
+  story.write(54, {8});
+  story.run(300ms);
+  story.coil(2, true);
+  story.say("latched: a start is refused until it is enabled anew");
+  story.write(54, {6});
+  story.coil(0, true);
+  compare(story, "id286pro.quick-stop");
+}
+
+TEST(Golden, AStepperIsLateAndTheFenceHasAnotherLength) {
+  Recorder story(simulated::Id286proOptions{}, false);
+  story.say("the reply to the next request comes 150 ms late: the fence asks for one register, not for two");
+  story.faults().late_by = 150ms;
+  story.faults().next(DriveFault::late);
+  story.run(500ms);
+  story.read(18, 1);
+  story.say(
+      "the next two come 300 ms late each: two fences, then offline; nothing counts until the drive comes up anew");
+  story.faults().late_by = 300ms;
+  story.faults().next(DriveFault::late, 2);
+  story.run(1100ms);
+  story.read(18, 1);
+  compare(story, "id286pro.late-reply");
+}
+
+TEST(Golden, JdComesUpOnModbusRtu) {
+  Recorder story(jd_on_rs485(), true);
+  story.read(0, 39);
+  compare(story, "kinco-jd-rtu.bring-up");
+}
+
+TEST(Golden, ALateReplyOnModbusRtuIsToldByItsLength) {
+  Recorder story(jd_on_rs485(), false);
+  story.say("the reply to the next request comes 300 ms late: it is a write, and read back once the fence stands");
+  story.faults().late_by = 300ms;
+  story.faults().next(DriveFault::late);
+  story.write(48, {0, 1000});
+  story.run(300ms);
+  story.say("and now a read's");
+  story.faults().next(DriveFault::late);
+  story.run(1s);
+  story.read(18, 1);
+  compare(story, "kinco-jd-rtu.late-reply");
+}
+
 }  // namespace
 }  // namespace axisgate::test

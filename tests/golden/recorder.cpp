@@ -14,6 +14,12 @@ GatewayStage::Line staged(simulated::KincoType type) {
   return line;
 }
 
+GatewayStage::Line staged(const simulated::RtuDriveOptions& drive) {
+  GatewayStage::Line line = rtu_line_of({drive}, 1);
+  line.poll = {std::chrono::milliseconds(100), std::chrono::hours(1), std::chrono::hours(1)};
+  return line;
+}
+
 std::string number_text(const char* format, std::int64_t number) {
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, static_cast<long long>(number));
@@ -22,16 +28,25 @@ std::string number_text(const char* format, std::int64_t number) {
 
 }  // namespace
 
-Recorder::Recorder(simulated::KincoType type, bool bring_up)
-    : stage_({staged(type)}), began_(stage_.runtime().now()), recording_(bring_up) {
+Recorder::Recorder(simulated::KincoType type, bool bring_up) : Recorder(staged(type), bring_up) {}
+
+Recorder::Recorder(const simulated::RtuDriveOptions& drive, bool bring_up) : Recorder(staged(drive), bring_up) {}
+
+Recorder::Recorder(const GatewayStage::Line& staged_line, bool bring_up)
+    : rtu_(!staged_line.rtu_drives.empty()),
+      stage_({staged_line}),
+      began_(stage_.runtime().now()),
+      recording_(bring_up) {
   const modbus_tcp::SessionContext context{settings_, stage_.gateway().image(), stage_.gateway(), registry_,
                                            quiet_,    &stage_.runtime()};
   modbus_tcp::Peer peer;
   peer.role = Role::engineer;
   session_ = std::make_unique<modbus_tcp::Session>(context, peer, stage_.runtime().now(), [] {});
-  stage_.link(0).on_traffic = [this](bool to_drive, Bytes bytes) {
-    line(to_drive ? "bus    ->" : "bus    <-", hex_text(bytes));
-  };
+  const auto tell = [this](bool to_drive, Bytes bytes) { line(to_drive ? "bus    ->" : "bus    <-", hex_text(bytes)); };
+  if (rtu_)
+    stage_.rtu_link(0).on_traffic = tell;
+  else
+    stage_.link(0).on_traffic = tell;
   while (stage_.axis(1).link_state != LinkState::online) step();
   began_ = stage_.runtime().now();
   if (!recording_) show_image();  // remembers, without a word

@@ -18,6 +18,8 @@ class Recorder {
  public:
   /// One drive of this type on one line, axis 1. `bring_up`: whether the bring-up is part of the story.
   Recorder(simulated::KincoType type, bool bring_up);
+  /// The same on a Modbus RTU line.
+  Recorder(const simulated::RtuDriveOptions& drive, bool bring_up);
 
   /// A remark of the teller, as a line of its own.
   void say(const std::string& text);
@@ -27,16 +29,20 @@ class Recorder {
   void read(std::uint16_t offset, std::uint16_t count);
   void run(Duration time);
   [[nodiscard]] GatewayStage& stage() { return stage_; }
-  [[nodiscard]] simulated::DriveFaults& faults() { return stage_.link(0).line().faults(0); }
+  [[nodiscard]] simulated::DriveFaults& faults() {
+    return rtu_ ? stage_.rtu_link(0).line().faults(0) : stage_.link(0).line().faults(0);
+  }
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
+  Recorder(const GatewayStage::Line& line, bool bring_up);
   void line(const std::string& who, const std::string& what);
   void send(std::vector<Byte> pdu, const std::string& meaning);
   void take_output();
   void step();
   void show_image();
 
+  bool rtu_;
   GatewayStage stage_;
   modbus_tcp::ListenerSettings settings_;
   modbus_tcp::ClientRegistry registry_;

@@ -94,11 +94,11 @@ void RtuDriveWatch::check() {
 
 // A drive that owes a reply for longer than the timeout and the silence together may be taken at its late word.
 bool RtuDriveWatch::keeps_its_word() const {
-  const drive::Drive& drive = *gateway_.drive_of(axis_);
+  const drive::DriveModel& model = gateway_.drive_of(axis_)->model();
   const auto& journal = link_.line().journal().entries();
   return std::none_of(journal.begin(), journal.end(), [&](const simulated::RtuExchange& exchange) {
-    return exchange.station == drive.model().node &&
-           exchange.reply_ready - exchange.received > drive.model().fence.worst_reply;
+    return exchange.station == model.node &&
+           exchange.reply_ready - exchange.received > model.timeout + model.fence.worst_reply;
   });
 }
 

@@ -151,6 +151,7 @@ TEST(Alarms, TellOfEachThingThatWasFound) {
   Rig md(KincoType::md);
   md.online();
   EXPECT_NE(md.axis().alarms & bit(AxisAlarm::stop_options), 0U) << "605B is 0: the motor coasts";
+  EXPECT_TRUE(md.has_event(EventKind::warning, "605B is 0")) << "the event names the check that found it";
   ASSERT_EQ(md.mailbox_write(0x605B, 0, 2, 1).outcome.code, Errc::ok);
   md.stage.run(2s);
   EXPECT_EQ(md.axis().alarms & bit(AxisAlarm::stop_options), 0U) << "judged anew";

@@ -246,6 +246,19 @@ TEST_F(LibmodbusHalfFrames, are_noise_when_their_length_has_suffered) {
   }
 }
 
+TEST_F(LibmodbusHalfFrames, that_drip_in_are_not_waited_for_to_their_end) {
+  // Never a long pause, and yet far too slow: the whole frame has its time, not each byte of it.
+  ByteRow slow = from_hex("01 03 FA");
+  EXPECT_TRUE(await([&] {
+    answer(pty, slow);
+    slow = {0};
+    return diary.noise > 0;
+  }));
+  EXPECT_LT(diary.noise, 200u);
+  EXPECT_THAT(diary.frames, IsEmpty());
+  expect_that_all_is_well();
+}
+
 TEST_F(LibmodbusHalfFrames, of_a_function_that_libmodbus_cannot_measure_are_noise_to_the_last_byte) {
   const ByteRow identification = with_crc("01 2B 0E 01 01 00 00 01 00 03 41 42 43");
   answer(pty, identification);

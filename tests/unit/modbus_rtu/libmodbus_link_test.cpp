@@ -187,6 +187,28 @@ TEST_F(LibmodbusLinkTest, asked_to_open_anew_while_down_it_tries_at_once) {
   EXPECT_LT(runtime.now() - before, 1s);
 }
 
+TEST_F(LibmodbusLinkTest, asked_to_open_anew_while_it_is_being_lost_it_tells_one_end) {
+  for (int moment = 0; moment < 30; ++moment) {
+    RtuLinkDiary one;
+    Pty first;
+    Pty second;
+    point(folder / "device", first.device());
+    link = make_link(folder / "device");
+    link->start(one);
+    ASSERT_TRUE(await([&] { return one.up(); }));
+    point(folder / "device", second.device());
+    first.hang_up();
+    for (int i = 0; i < 100 * moment; ++i) std::this_thread::yield();  // the worker may have noticed by now, or not
+    link->reopen("noise");
+    ASSERT_TRUE(await([&] {
+      pass(20ms);
+      return one.told.size() >= 3;
+    }));
+    EXPECT_THAT(one.told, ElementsAre("up", StartsWith("down: "), "up"));
+    link.reset();
+  }
+}
+
 // --- The end -------------------------------------------------------------------------------------------------------
 
 TEST_F(LibmodbusLinkTest, may_be_destroyed_from_inside_its_events) {
@@ -224,6 +246,15 @@ TEST_F(LibmodbusLinkTest, destroyed_with_frames_on_the_way_to_the_core_it_calls_
   pass(10s);
   EXPECT_THAT(diary.told, ElementsAre("up"));
   EXPECT_THAT(diary.frames, IsEmpty());
+}
+
+TEST_F(LibmodbusLinkTest, destroyed_after_it_was_asked_to_open_anew_it_calls_nobody) {
+  Pty pty;
+  open_at(pty.device());
+  link->reopen("noise");
+  link.reset();
+  pass(10s);
+  EXPECT_THAT(diary.told, ElementsAre("up"));
 }
 
 TEST_F(LibmodbusLinkTest, destroyed_in_the_middle_of_a_frame_it_ends_within_its_patience) {
