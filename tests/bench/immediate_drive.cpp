@@ -42,7 +42,8 @@ void add_turnarounds(const std::vector<TappedExchange>& tapped, bool writes_only
 }
 
 struct Measured {
-  Samples bare, bare_hasty, bare_pair, bare_turn, read, write, write_turn, mailbox, write_between_polls;
+  Samples bare, bare_hasty, bare_pair, bare_turn, read, write, write_turn, exchanges_per_write, mailbox,
+      write_between_polls;
 };
 
 void measure_bare(const DriveProcess& drives, std::chrono::milliseconds lasting, Measured& to) {
@@ -73,8 +74,12 @@ void measure_hardly_polled(const BenchOptions& options, const DriveProcess& driv
                            Measured& to) {
   const GatewayProcess gateway(options.program, options.folder, drives, kHardlyPolled, kHostProcessor);
   const std::uint64_t before = drives.tap().recorded();
+  const std::size_t writes_before = to.write.size();
   measure_writes(gateway, lasting, to.write);
-  add_turnarounds(drives.tap().since(before), true, to.write_turn);
+  const auto tapped = drives.tap().since(before);
+  to.exchanges_per_write.push_back(static_cast<double>(tapped.size()) /
+                                   static_cast<double>(to.write.size() - writes_before));
+  add_turnarounds(tapped, true, to.write_turn);
   ModbusClient client(gateway.port());
   time_each(lasting, to.mailbox, [&] {
     if (!read_object(client, 1, readable_object(1, drives.shape().protocol)))
@@ -125,7 +130,8 @@ void immediate_drive(const BenchOptions& options, LineProtocol protocol) {
   print("parameter write / 2, polling off", m.write, 2, &m.bare_pair);
   print("parameter write / 2, polled as by default", m.write_between_polls, 2, &m.bare_pair);
   print("mailbox read, polling off: request and result, 2+ Modbus", m.mailbox, 1, &m.bare);
-  fmt::print("of these:\n");
+  fmt::print("of these:\n  exchanges at the drive for each parameter write, polling off: {:.2f} (polls keep a fifth)\n",
+             median(m.exchanges_per_write));
   print("  Modbus read of 39 registers, no exchange", m.read, 1, nullptr);
   print("  at the drive, reply to next request: bare loop", m.bare_turn, 1, nullptr);
   print("  at the drive, reply to next request: inside a write", m.write_turn, 1, &m.bare_turn);

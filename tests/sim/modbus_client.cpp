@@ -1,5 +1,7 @@
 #include "tests/sim/modbus_client.hpp"
 
+#include <array>
+
 namespace axisgate::test {
 namespace {
 
@@ -172,6 +174,7 @@ void ModbusClient::ask_rarely(const ClientAxis& axis) {
       return write(axis.number, 60, {methods[static_cast<std::size_t>(random_.below(methods.size()))]});
     }
     case 2:
+      if (random_.chance(1, 2)) return raw_controlword(axis.number);
       if (axis.wears) {
         // About a million units each way: never in the way of a move, and almost never what the drive holds.
         const auto low = static_cast<std::uint16_t>(random_.below(0x10000));
@@ -184,6 +187,20 @@ void ModbusClient::ask_rarely(const ClientAxis& axis) {
       return write(axis.number, 80, {1, object, 0, 2});
     }
   }
+}
+
+// Each word alone, as a servo's programmer writes them. What it may lead to depends on the mode: all of it is asked for.
+void ModbusClient::raw_controlword(AxisNumber axis) {
+  constexpr std::array<std::uint16_t, 7> kWords{0x00, 0x02, 0x06, 0x07, 0x0F, 0x1F, 0x010F};
+  const std::uint16_t word = kWords[static_cast<std::size_t>(random_.below(kWords.size()))];
+  if (expected_.size() >= kMaxUnanswered) return;
+  if ((word & 0xF) == 0xF) {
+    asked_.enables.push_back({runtime_.now(), axis});
+    for (const std::uint16_t leads_to : {std::uint16_t{6}, std::uint16_t{8}, std::uint16_t{10}})
+      asked_.motions.push_back({runtime_.now(), axis, leads_to});
+    ++asked_.starts;
+  }
+  write(axis, 40, {word});
 }
 
 void ModbusClient::act() {

@@ -66,6 +66,7 @@ class ModbusClient {
   void write(AxisNumber axis, std::uint16_t offset, const std::vector<std::uint16_t>& registers);
   void ask_something();
   void ask_rarely(const ClientAxis& axis);
+  void raw_controlword(AxisNumber axis);
   void command(AxisNumber axis, std::uint16_t number);
   void receive();
   void take_reply(Bytes adu);

@@ -282,6 +282,20 @@ TEST_F(LibmodbusHalfFrames, an_answer_after_any_noise_and_a_silence_is_heard) {
   }
 }
 
+TEST_F(LibmodbusHalfFrames, an_answer_after_noise_is_heard_without_anything_being_sent_in_between) {
+  send(1, "01 03 32 00 00 01");
+  request_at(pty, 8);
+  answer(pty, from_hex("01 83 02 00 00"));
+  expect_noise(5);
+  EXPECT_TRUE(await([&] {
+    answer(pty, "01 03 02 C0 37");
+    context.restart();
+    context.run_for(5ms);  // the silence that the standard asks for before the next frame, and more
+    return !diary.frames.empty();
+  }));
+  EXPECT_THAT(diary.frames, Each("1: 01 03 02 C0 37"));
+}
+
 TEST_F(LibmodbusHalfFrames, an_answer_glued_to_noise_is_lost_or_heard_and_never_another) {
   for (const char* noise : {"00", "FF", "00 00", "01", "01 03", "01 03 02", "55 55 55 55 55", "01 83 02 00 00"}) {
     diary.frames.clear();
