@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "adapters/modbus_rtu/rtu_codec.hpp"
 
 namespace axisgate::modbus_rtu {

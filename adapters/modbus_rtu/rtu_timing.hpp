@@ -33,7 +33,7 @@ inline constexpr Duration kFixedGap = std::chrono::microseconds(1750);
 [[nodiscard]] constexpr Duration gap_time(std::uint32_t baud) {
   assert(baud > 0);
   if (baud > kLastBaudOfCharacters) return kFixedGap;
-  constexpr std::int64_t kHalfBits = 7 * 11;  // 3.5 characters
+  constexpr std::int64_t kHalfBits = 77;  // 7 half characters
   return Duration(std::chrono::seconds(1)) * kHalfBits / (2 * std::int64_t{baud});
 }
 

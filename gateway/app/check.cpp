@@ -141,7 +141,9 @@ void add_axis(std::string& out, const AxisConfig& config, const drive::AxisModel
                : fmt::format("THE DRIVE DOES NOT STOP BY ITSELF on {}: it goes on with what it was told last",
                              drive.protocol));
   if (axis.virtual_axis && !drive.stops_by_itself) {
-    add_line(out, "client leaves", "quick stop when the connection of the client that commanded the motion ends");
+    add_line(out, "client leaves",
+             "quick stop when the connection of the client that commanded the motion ends; not where \"client\" is "
+             "\"address\"");
   }
 }
 

@@ -189,7 +189,8 @@ void ModbusClient::ask_rarely(const ClientAxis& axis) {
   }
 }
 
-// Each word alone, as a servo's programmer writes them. What it may lead to depends on the mode: all of it is asked for.
+// Each word alone, as a servo's programmer writes them. What it may lead to depends on the mode: all of it is asked
+// for.
 void ModbusClient::raw_controlword(AxisNumber axis) {
   constexpr std::array<std::uint16_t, 7> kWords{0x00, 0x02, 0x06, 0x07, 0x0F, 0x1F, 0x010F};
   const std::uint16_t word = kWords[static_cast<std::size_t>(random_.below(kWords.size()))];

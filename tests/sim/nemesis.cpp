@@ -70,7 +70,8 @@ void Nemesis::draw_rates(const simulated::DriveLine& line, simulated::DriveFault
   maybe(DriveFault::wrong_station);
   if (!line.has(DriveFault::half)) return;
   maybe(DriveFault::half);
-  maybe(DriveFault::wrong_length);
+  // The length is all that tells a late reply from the fence's: a drive may break one of both rules.
+  if (!faults.armed(DriveFault::late)) maybe(DriveFault::wrong_length);
   maybe(DriveFault::glued);
   // Not now, but perhaps later: no drive says at random that it has no such register.
   constexpr std::array<std::uint8_t, 5> kForNow{4, 5, 6, 8, 11};

@@ -110,9 +110,9 @@ void RtuDriveWatch::check_values() {
 void RtuDriveWatch::on_request(const RtuRequest& request) {
   const simulated::Id286pro* stepper = link_.line().id286pro(position_);
   if (stepper == nullptr || request.unit != stepper->unit() || !request.write) return;
-  const AxisImage& image = *const_cast<app::Gateway&>(gateway_).image().find(axis_);
-  if (request.start == kSteppersControl && begins_motion(request.values.front()) && !image.has(AxisInput::enabled))
-    violated("a motion was started while it was not shown enabled");
+  const bool enabled = gateway_.drive_of(axis_)->axis(0).core().facts().enabled();
+  if (request.start == kSteppersControl && begins_motion(request.values.front()) && !enabled)
+    violated("a motion was started while it was not enabled");
 }
 
 void RtuDriveWatch::check_stepper(const simulated::Id286pro& stepper) {

@@ -40,7 +40,7 @@ class RtuCableWatch {
   std::uint64_t hash_ = 0xCBF29CE484222325U;
 };
 
-/// I2, I6 and I10 of one drive. Of an iD286pro also: no motion that was not asked for, none while the axis is not shown
+/// I2, I6 and I10 of one drive. Of an iD286pro also: no motion that was not asked for, none while the axis is not
 /// enabled, and not more writes of its memory than the budget has.
 class RtuDriveWatch {
  public:

@@ -19,15 +19,17 @@ ClientRegistry::Connected ClientRegistry::connect(const Address& address, bool s
   Connected connected;
   Entry& entry = hosts_[address];
   const bool expired = entry.host != nullptr && entry.host->connections == 0 && now - entry.host->left_at >= kHostKept;
+  ClientId id = 0;
   if (entry.host == nullptr || expired) {
-    if (entry.shared_client != nullptr) connected.forgotten = entry.shared_client->id;
+    // What it wrote is forgotten, but who comes back is the client that left: nothing it commanded may end by that.
+    if (entry.shared_client != nullptr) id = entry.shared_client->id;
     entry = {std::make_shared<Host>(), nullptr};
   }
   ++entry.host->connections;
   connected.client = shared ? entry.shared_client : nullptr;
   if (connected.client == nullptr) {
     connected.client = std::make_shared<Client>();
-    connected.client->id = ++last_id_;
+    connected.client->id = id != 0 ? id : ++last_id_;
     connected.client->address = address;
     connected.client->host = entry.host;
     if (shared) entry.shared_client = connected.client;

@@ -148,7 +148,9 @@ TEST(RtuLine, CheckReportsTheLine) {
 
 TEST(RtuLine, CheckSaysWhichAxisStopsWhenItsClientLeaves) {
   constexpr const char* kLeaves =
-      "client leaves   quick stop when the connection of the client that commanded the motion ends\n";
+      "client leaves   quick stop when the connection of the client that commanded the motion ends; not where "
+      "\"client\" is "
+      "\"address\"\n";
   EXPECT_THAT(check(load_line(kStepper)).text, HasSubstr(kLeaves));
   EXPECT_THAT(check(load_line(kJd)).text, Not(HasSubstr(kLeaves)));
 }
