@@ -33,7 +33,7 @@ inline constexpr Duration kFixedGap = std::chrono::microseconds(1750);
 [[nodiscard]] constexpr Duration gap_time(std::uint32_t baud) {
   assert(baud > 0);
   if (baud > kLastBaudOfCharacters) return kFixedGap;
-  constexpr std::int64_t kHalfBits = 77;  // 7 half characters
+  constexpr std::int64_t kHalfBits = 77;  // 3.5 characters
   return Duration(std::chrono::seconds(1)) * kHalfBits / (2 * std::int64_t{baud});
 }
 

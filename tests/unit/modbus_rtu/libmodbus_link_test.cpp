@@ -198,7 +198,9 @@ TEST_F(LibmodbusLinkTest, asked_to_open_anew_while_it_is_being_lost_it_tells_one
     ASSERT_TRUE(await([&] { return one.up(); }));
     point(folder / "device", second.device());
     first.hang_up();
-    for (int i = 0; i < 100 * moment; ++i) std::this_thread::yield();  // the worker may have noticed by now, or not
+    // The worker may have noticed by now, or not.
+    const auto until = std::chrono::steady_clock::now() + moment * 20us;
+    while (std::chrono::steady_clock::now() < until) continue;
     link->reopen("noise");
     ASSERT_TRUE(await([&] {
       pass(20ms);
