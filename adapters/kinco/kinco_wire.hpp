@@ -9,9 +9,9 @@
 #include <string>
 
 #include "adapters/bus/byte_link.hpp"
+#include "adapters/bus/noise_watch.hpp"
 #include "adapters/bus/wire.hpp"
 #include "adapters/kinco/kinco_receiver.hpp"
-#include "adapters/bus/noise_watch.hpp"
 #include "gateway/core/log.hpp"
 
 namespace axisgate::kinco {

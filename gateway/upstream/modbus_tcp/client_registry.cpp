@@ -22,7 +22,7 @@ ClientRegistry::Connected ClientRegistry::connect(const Address& address, bool s
   ClientId id = 0;
   if (entry.host == nullptr || expired) {
     // What it wrote is forgotten, but who comes back is the client that left: nothing it commanded may end by that.
-    if (entry.shared_client != nullptr) id = entry.shared_client->id;
+    if (shared && entry.shared_client != nullptr) id = entry.shared_client->id;
     entry = {std::make_shared<Host>(), nullptr};
   }
   ++entry.host->connections;
