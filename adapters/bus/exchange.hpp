@@ -3,10 +3,12 @@
 // value. Never knows units, quantities or axes: the drive profile gives those a meaning.
 #pragma once
 
+#include <array>
 #include <boost/container/static_vector.hpp>
 #include <compare>
 #include <cstdint>
 
+#include "gateway/core/bytes.hpp"
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
 
@@ -20,7 +22,19 @@ struct ObjectAddress {
   friend auto operator<=>(const ObjectAddress&, const ObjectAddress&) = default;
 };
 
-enum class Access : std::uint8_t { read, write };
+enum class Access : std::uint8_t {
+  read,
+  write,
+  command,  ///< CANopen: an NMT command, `raw` is its code. Nobody answers it: it ends ok when it was sent
+};
+
+/// An object longer than 4 bytes is carried by a chain of exchanges (CANopen: segmented or block SDO), all with the
+/// same node, access and object. Between two of them the wire is free for other nodes.
+enum class Part : std::uint8_t {
+  whole,  ///< no chain: 4 bytes at most; a reply that would be longer is refused
+  first,  ///< begins one; ExchangeResult::more tells whether it is over already
+  next,   ///< goes on with the one that is open
+};
 
 /// The longest list one answer can carry: a run of 26 registers (iD286pro) as 16-bit fields.
 inline constexpr std::size_t kMaxReplyFields = 26;
@@ -41,6 +55,9 @@ struct Exchange {
   /// Modbus RTU, reads alone: objects at higher registers than `object`, ascending, read in one request from the first
   /// register of `object` to the last of the last; registers between that are nobody's are read and dropped.
   boost::container::static_vector<Neighbour, kMaxReplyFields - 1> more{};
+  /// Any other exchange with a node that has a chain open ends that chain (CiA 301: abort 0x08000022).
+  Part part = Part::whole;
+  ObjectBytes bytes{};  ///< Part::first of a write: all that is written, in the object's own order
   friend bool operator==(const Exchange&, const Exchange&) = default;
 };
 
@@ -61,7 +78,37 @@ struct ExchangeResult {
   ReplyFields fields{};
   /// refused_by_drive: not now, but perhaps later (busy, under local control). Else the drive does not have the object.
   bool for_now = false;
+  bool more = false;    ///< of a chain: it goes on with Part::next
+  ObjectBytes bytes{};  ///< at the end of a chain that read, where the object did not fit a field
   friend bool operator==(const ExchangeResult&, const ExchangeResult&) = default;
 };
+
+/// CiA 301 NMT states, as far as somebody outside can see them.
+enum class NodeState : std::uint8_t { unknown, stopped, pre_operational, operational };
+
+/// What a drive says without being asked.
+struct Notice {
+  enum class Kind : std::uint8_t {
+    started,    ///< it has just started: whatever it held is gone (CANopen boot-up)
+    present,    ///< it is there, in `state`: at its first sign of life, and whenever the state changes
+    gone,       ///< its heartbeat is overdue, or guarding it was not answered
+    values,     ///< `fields`: process data, as map_process_data() has named it
+    emergency,  ///< CiA 301 EMCY: `code`, `error_register`, `vendor`; `repeats` more like it were left out before
+    twin,       ///< two devices answer to this number
+    babbling,   ///< it floods the bus: `code` is the COB-ID
+  };
+  Kind kind = Kind::present;
+  std::uint8_t node = 0;
+  NodeState state = NodeState::unknown;
+  std::uint16_t code = 0;
+  std::uint8_t error_register = 0;
+  std::array<std::uint8_t, 5> vendor{};
+  std::uint32_t repeats = 0;
+  ReplyFields fields{};
+  friend bool operator==(const Notice&, const Notice&) = default;
+};
+
+/// What one process data object of a node carries, in its order (CANopen: a TPDO holds 8 bytes).
+using ProcessMap = boost::container::static_vector<Neighbour, 8>;
 
 }  // namespace axisgate::bus

@@ -21,6 +21,8 @@ class WireEvents {
   virtual void on_wire_down(std::string_view why) = 0;
   /// The answer to the exchange sent last. Its code is ok, refused_by_drive or bad_reply.
   virtual void on_reply(const ExchangeResult& result) = 0;
+  /// Never from inside send() or another call of the wire.
+  virtual void on_notice(const Notice& /*notice*/) {}
 };
 
 class Wire {
@@ -36,6 +38,11 @@ class Wire {
   virtual void send(const Exchange& exchange) = 0;
   /// The exchange outstanding is given up (timeout): its reply, should it come, is late.
   virtual void abandon() = 0;
+  /// From now on process data object `number` (1, 2, ...) of the node carries these; none: what comes of it is dropped.
+  virtual void map_process_data(std::uint8_t /*node*/, std::uint8_t /*number*/, const ProcessMap& /*objects*/) {}
+  /// Asks the node for a sign of life, beside the exchanges (CANopen: a node guarding frame); it answers with a notice,
+  /// if it does. False: this protocol has no such thing, only exchanges tell.
+  [[nodiscard]] virtual bool call(std::uint8_t /*node*/) { return false; }
   /// The adapter adds what it counts: bad_frames, late_replies, dropped_bytes, reconnects.
   [[nodiscard]] virtual const Statistics& statistics() const = 0;
   /// Decode level (design section 6): log every frame sent and received.

@@ -1,18 +1,25 @@
 // Views of raw bytes and the two byte orders of our wires.
 // Promises that no read or write leaves the span it was given (an assertion stops the process first).
-// Never allocates.
+// Never allocates, but for the text.
 #pragma once
 
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace axisgate {
 
 using Byte = std::uint8_t;
 using Bytes = std::span<const Byte>;
+
+/// The content of a long object, as the drive sends it; shared, so that it is copied nowhere on its way.
+using ObjectBytes = std::shared_ptr<const std::vector<Byte>>;
+/// Longer objects are refused (design 7, point 3).
+inline constexpr std::size_t kMaxObjectBytes = 4096;
 
 [[nodiscard]] constexpr std::uint16_t load_be16(Bytes from, std::size_t at) {
   assert(at + 2 <= from.size());

@@ -3,6 +3,7 @@
 // factors are exact. Never changes after that, and holds no state of the drive.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -272,6 +273,37 @@ struct RtuFacts {
   Duration answer{};  ///< how long the drive waits before it answers
 };
 
+/// A TPDO as the gateway maps it (CiA 301 section 7.5.2.37); its COB-ID is the predefined one.
+struct TpdoFacts {
+  std::uint8_t number = 1;                  ///< 1 to 4: 1800h/1A00h + number - 1
+  std::vector<ObjectId> map;                ///< 8 bytes at most; what the drive refuses to map is polled
+  std::uint8_t type = 255;                  ///< transmission type, sub 2
+  std::optional<std::uint16_t> inhibit{};   ///< sub 3, as this drive counts; none: left alone
+  std::optional<std::uint16_t> event_ms{};  ///< sub 5; none: the drive is not said to have one
+};
+
+/// How a drive speaks CANopen.
+struct CanopenFacts {
+  Duration heartbeat{};   ///< the drive sends one so often (1017h is in the setup list); 0: it is guarded instead
+  Duration guard_time{};  ///< node guarding by the gateway; 0: none
+  std::uint8_t life_factor = 3;
+  Duration own_heartbeat{};  ///< the gateway's, so that the drive notices its death (1016h, in the setup list); 0: none
+  Duration sync{};           ///< SYNC is produced so often; 0: this drive needs none
+  Duration boot{};           ///< from reset to boot-up, at most
+  bool sdo_block = false;    ///< its server offers block transfer
+  std::vector<TpdoFacts> tpdos;
+  std::vector<std::uint8_t> unused_tpdos;              ///< switched off at bring-up
+  Duration confirm = std::chrono::milliseconds(1000);  ///< a mapped value is read by SDO when it was silent so long
+  /// 1018h sub 1 to 4 as the configuration has them: vendor, product, revision, serial.
+  std::array<std::optional<std::uint32_t>, 4> identity{};
+  [[nodiscard]] bool identity_given() const {
+    return std::any_of(identity.begin(), identity.end(), [](const auto& number) { return number.has_value(); });
+  }
+};
+
+/// The gateway's own node-ID: in the drives' 1016h, and in no configuration of a drive.
+inline constexpr std::uint8_t kOwnNode = 127;
+
 struct DriveModel {
   std::string profile;   ///< "kinco-jd"
   std::string title;     ///< "Kinco JD"
@@ -287,8 +319,11 @@ struct DriveModel {
   Duration timeout =
       std::chrono::milliseconds(100);  ///< profile's reply timeout, for a bus whose configuration names none
   bool stops_by_itself = false;        ///< it notices a dead gateway on this protocol; else alarm no_comm_watchdog
-  RtuFacts rtu;                        ///< Modbus RTU alone
-  Nvm nvm = Nvm::no;                   ///< of objects that are not in `objects` (the mailbox reaches them)
+  /// Written in the setup list so that it does: alarm no_comm_watchdog where the drive does not hold what was written.
+  std::vector<ObjectId> loss_objects;
+  RtuFacts rtu;          ///< Modbus RTU alone
+  CanopenFacts canopen;  ///< CANopen alone
+  Nvm nvm = Nvm::no;     ///< of objects that are not in `objects` (the mailbox reaches them)
   std::array<Duration, 3> poll_period{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
                                       std::chrono::milliseconds(1000)};
 

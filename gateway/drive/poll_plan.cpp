@@ -9,7 +9,7 @@ void add(std::vector<PollItem>& items, ObjectId object, PollClass poll_class) {
   if (object == kNoObject) return;
   const auto found = std::find_if(items.begin(), items.end(), [&](const PollItem& i) { return i.object == object; });
   if (found == items.end())
-    items.push_back({object, poll_class});
+    items.push_back({object, poll_class, false});
   else
     found->poll_class = std::min(found->poll_class, poll_class);
 }
@@ -43,6 +43,9 @@ std::vector<PollItem> poll_items(const DriveModel& model) {
   for (const Check& check : model.checks) add(items, check.bad.object, PollClass::once);
   // Scales depend on them, and a panel or the mailbox may change what they follow from.
   for (const ObjectId id : constant_objects(model)) add(items, id, PollClass::slow);
+  for (PollItem& item : items)
+    for (const TpdoFacts& tpdo : model.canopen.tpdos)
+      item.mapped = item.mapped || std::find(tpdo.map.begin(), tpdo.map.end(), item.object) != tpdo.map.end();
   return items;
 }
 

@@ -13,6 +13,7 @@ namespace axisgate::drive {
 struct PollItem {
   ObjectId object = kNoObject;
   PollClass poll_class = PollClass::normal;
+  bool mapped = false;  ///< planned to come by TPDO: then read only where it was silent for CanopenFacts::confirm
 };
 
 /// Every object that must be read to keep the image of these axes true, each once, in its fastest class.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "gateway/core/bytes.hpp"
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
 #include "gateway/image/axis_image.hpp"
@@ -44,13 +45,16 @@ enum class Role : std::uint8_t { none = 0, viewer = 1, operator_ = 2, engineer =
 /// One client of any face: a TCP connection, a host (listener option "client": "address"), a DDS writer. Never reused.
 using ClientId = std::uint64_t;
 
-/// The object mailbox (registers 80..88) and, later, FC 43/13.
+/// The object mailbox (registers 80..88) and FC 43/13.
 struct ObjectRequest {
   bool write = false;
   std::uint16_t index = 0;
   std::uint8_t subindex = 0;
-  std::uint8_t size = 0;  ///< bytes: 1, 2 or 4
+  std::uint8_t size = 0;  ///< bytes: 1, 2 or 4. 0 in a read: all there are; in a write: `bytes`
   std::uint32_t data = 0;
+  /// Of a read with size 0, where the protocol knows no sizes (Modbus RTU): bytes wanted, 0: 2.
+  std::uint16_t count = 0;
+  ObjectBytes bytes{};  ///< of a write with size 0: 1 to kMaxObjectBytes
 };
 
 struct Setpoint {
@@ -81,8 +85,12 @@ struct Group {
 
 struct GroupResult {
   Outcome outcome;
-  std::uint32_t object_data = 0;  ///< of a mailbox read
-  std::uint8_t object_size = 0;
+  std::uint32_t object_data = 0;  ///< of an object read, up to 4 bytes
+  std::uint8_t object_size = 0;   ///< bytes of it; 0: `object_bytes`
+  ObjectBytes object_bytes{};     ///< of an object read with size 0 that is longer
+  /// Of an object request that the drive refused: the reason as a CiA 301 abort code, whatever the drive speaks
+  /// (`outcome.detail` is what it said itself).
+  std::uint32_t abort_code = 0;
 };
 
 }  // namespace axisgate

@@ -14,6 +14,9 @@ ARROWS = {
     "adapters/asio": {"gateway/core"},
     # A second link over the same serial ports: it shares how they are opened, locked and found again.
     "adapters/modbus_rtu": {"adapters/serial", "adapters/bus", "gateway/core"},
+    # A Lawicel adapter is a serial port: the CAN links share how those are opened and found again.
+    "adapters/can": {"adapters/serial", "adapters/bus", "gateway/core"},
+    "adapters/canopen": {"adapters/can", "adapters/bus", "gateway/core"},
     "adapters/*": {"adapters/bus", "gateway/core"},
     # The simulated drives come from the makers' sheets: what they share with the gateway could be wrong on both sides.
     "tests/simulated": set(),
@@ -23,7 +26,7 @@ EVERYTHING = ("gateway/app", "gateway/main.cpp", "tests")
 # Headers that only one place may know.
 ONE_PLACE = {
     r"<modbus(/modbus)?\.h>": ("adapters/modbus_rtu/",),
-    r"<linux/can": ("adapters/canopen/",),
+    r"<linux/can": ("adapters/can/", "tests/axisgate_sim/", "tests/unit/can/", "tests/vcan/", "tests/bench/"),
     r"<fastdds|<fastrtps": ("gateway/upstream/dds/",),
     r"<termios\.h>|<sys/inotify\.h>|<linux/serial\.h>": ("adapters/serial/",),
     r"<valijson/": ("gateway/drive/json_schema.cpp",),
@@ -31,8 +34,8 @@ ONE_PLACE = {
 }
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
-DECIDING = ("gateway/core/", "gateway/image/", "gateway/drive/", "gateway/upstream/modbus_tcp/", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_",
-            "gateway/app/config_", "gateway/app/bus_budget", "gateway/app/check.")
+DECIDING = ("gateway/core/", "gateway/image/", "gateway/drive/", "gateway/upstream/modbus_tcp/", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_", "adapters/canopen/",
+            "adapters/can/can_", "adapters/can/lawicel", "gateway/app/config_", "gateway/app/bus_budget", "gateway/app/check.")
 SHELLS = tuple(f"gateway/upstream/modbus_tcp/{shell}" for shell in ("server", "listener", "connection"))
 IMPURE = re.compile(r'#include <(boost/asio|boost/beast|sys/socket|sys/epoll|poll\.h|thread|mutex|condition_variable|atomic|random)'
                     r'|(steady|system|high_resolution)_clock::now|std::chrono::\w*clock::now|\bsleep_for\b|\brand\(')

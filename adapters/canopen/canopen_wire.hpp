@@ -1,0 +1,41 @@
+// CANopen (CiA 301) on a CAN link, as the bus sees it: SDO requests out, answers back; beside them NMT, heartbeats,
+// guarding, EMCY, process data and SYNC.
+// Promises at most one reply per send(), none after abandon() or a loss of the link, and none but to the request that
+// asked for it (node, command, index, sub-index, toggle); that a transfer given up is aborted at the server; that what
+// nodes say by themselves is told in order and within bounds.
+// Never queues or repeats a request, and never judges a value.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adapters/bus/wire.hpp"
+#include "adapters/can/can_link.hpp"
+#include "gateway/core/log.hpp"
+
+namespace axisgate::canopen {
+
+/// What the wire must know of a drive before it speaks to it.
+struct CanopenNode {
+  std::uint8_t node = 1;  ///< 1 to 126
+  Duration heartbeat{};   ///< the period it is told to send one in; 0: none is expected
+  Duration guard_time{};  ///< node guarding by us, this often; 0: none
+  std::uint8_t life_factor = 3;
+  bool sdo_block = false;  ///< its server offers block transfer
+};
+
+struct CanopenSettings {
+  std::string name;                                   ///< the bus's, for the log
+  std::uint8_t own_node = 127;                        ///< whose heartbeat ours is
+  Duration own_heartbeat{};                           ///< 0: none is sent
+  Duration sync{};                                    ///< SYNC is sent this often; 0: never
+  Duration timeout = std::chrono::milliseconds(100);  ///< of an SDO exchange: two of them tell a twin's second reply
+  std::vector<CanopenNode> nodes;
+};
+
+/// `runtime` and `log` must outlive the wire.
+[[nodiscard]] std::unique_ptr<bus::Wire> make_canopen_wire(CanopenSettings settings, std::unique_ptr<can::CanLink> link,
+                                                           Runtime& runtime, const Log& log);
+
+}  // namespace axisgate::canopen
