@@ -66,7 +66,7 @@ void Bus::pump() {
   pumping_ = true;
   int turns = 0;
   bool more = true;
-  while (more) more = take_wire_event() || (turns++ < kMaxTurnsPerPump && take_turn());
+  while (more) more = take_wire_event() || (turns++ < kMaxTurnsPerPump && (take_notice() || take_turn()));
   pumping_ = false;
   if (turns > kMaxTurnsPerPump) {
     timer_->expires_at(now());
@@ -96,6 +96,25 @@ bool Bus::take_wire_event() {
     return true;
   }
   return false;
+}
+
+/// A drive that has started anew, or is gone, will answer nothing any more: its exchange ends now, not at its timeout.
+bool Bus::take_notice() {
+  if (heard_notices_.empty()) return false;
+  const Notice notice = heard_notices_.front();
+  heard_notices_.pop_front();
+  if (!up_) return true;
+  const auto named = std::ranges::find_if(drives_, [&](const BusDrive* drive) {
+    return drive != nullptr && drive->node() != 0 && drive->node() == notice.node;
+  });
+  if (named == drives_.end()) return true;
+  const bool ends = notice.kind == Notice::Kind::started || notice.kind == Notice::Kind::gone;
+  if (ends && outstanding_ && drives_[outstanding_->drive] == *named) {
+    wire_->abandon();
+    end_exchange({.code = Errc::link_lost}, settings_.min_gap);
+  }
+  (*named)->on_notice(notice);
+  return true;
 }
 
 /// One callback to one drive, if there is reason for one.
@@ -146,6 +165,7 @@ void Bus::link_up() {
 void Bus::link_down(const std::string& why) {
   if (!up_) return;
   up_ = false;  // from here on nothing new is accepted, so what follows is bounded
+  heard_notices_.clear();
   log_.write(LogLevel::warning, log_source(), "link down: " + why);
   if (outstanding_) end_exchange({.code = Errc::link_lost}, Duration{});
   arbiter_.end_all(Errc::offline, Errc::link_lost);
@@ -168,6 +188,15 @@ void Bus::on_wire_down(std::string_view why) {
 
 void Bus::on_reply(const ExchangeResult& result) {
   heard_reply_ = result;
+  pump();
+}
+
+void Bus::on_notice(const Notice& notice) {
+  if (heard_notices_.size() >= kMaxNotices) {
+    const auto values = std::ranges::find(heard_notices_, Notice::Kind::values, &Notice::kind);
+    heard_notices_.erase(values == heard_notices_.end() ? heard_notices_.begin() : values);
+  }
+  heard_notices_.push_back(notice);
   pump();
 }
 

@@ -4,6 +4,7 @@
 // (drive).
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,7 +30,14 @@ class BusDrive {
   /// The arbiter has ended this order of the drive: its exchange, if one is on the wire, still gets its on_result().
   virtual void on_order_ended(OrderId id, Errc code) = 0;
   virtual void on_link(bool up) = 0;
+  /// The number by which notices name it; 0: it takes none.
+  [[nodiscard]] virtual std::uint8_t node() const { return 0; }
+  /// What it said unasked. Where it has started anew or is gone, its exchange on the wire has ended before (link_lost).
+  virtual void on_notice(const Notice& /*notice*/) {}
 };
+
+/// Notices that wait while a drive is being called; the oldest process data goes first.
+inline constexpr std::size_t kMaxNotices = 256;
 
 struct BusSettings {
   std::string name;
@@ -53,6 +61,10 @@ class Bus final : private WireEvents {
   void finish(OrderId id);
   void set_poll_due(DriveSlot drive, Instant due);
   void end_drive(DriveSlot drive, Errc waiting, Errc started);
+  void map_process_data(std::uint8_t node, std::uint8_t number, const ProcessMap& objects) {
+    wire_->map_process_data(node, number, objects);
+  }
+  [[nodiscard]] bool call(std::uint8_t node) { return up_ && wire_->call(node); }
 
   [[nodiscard]] const BusSettings& settings() const { return settings_; }
   [[nodiscard]] bool up() const { return up_; }
@@ -67,6 +79,7 @@ class Bus final : private WireEvents {
   void on_wire_up() override;
   void on_wire_down(std::string_view why) override;
   void on_reply(const ExchangeResult& result) override;
+  void on_notice(const Notice& notice) override;
 
   struct Outstanding {
     Exchange exchange;
@@ -79,6 +92,7 @@ class Bus final : private WireEvents {
 
   void pump();
   bool take_wire_event();
+  bool take_notice();
   bool take_turn();
   void grant(const Arbiter::Grant& grant);
   void end_exchange(const ExchangeResult& result, Duration silence);
@@ -99,6 +113,7 @@ class Bus final : private WireEvents {
   std::optional<ExchangeResult> heard_reply_;
   std::optional<std::string> heard_down_;
   bool heard_up_ = false;
+  std::deque<Notice> heard_notices_;
   Statistics statistics_;  // requests, replies, timeouts
   LoadMeter load_;
   // Last, so that they go first: neither may call into a bus that is half gone.

@@ -75,6 +75,16 @@ std::optional<Errc> as_command(const AxisCore& core, ObjectId id, std::int64_t n
   return std::nullopt;
 }
 
+// A width that this protocol can carry; 0 stands for all there is, and in a write for `bytes`.
+bool size_fits(const AxisCore& core, const ObjectRequest& request) {
+  const auto fits_a_field = [](std::size_t size) { return size == 1 || size == 2 || size == 4; };
+  if (request.size != 0) return fits_a_field(request.size);
+  const bool by_length = core.drive.fence.by_length;
+  if (!request.write) return !by_length || request.count == 0 || fits_a_field(request.count);
+  // Longer objects, and such of 3 bytes, are carried by a chain of exchanges: CANopen alone has them.
+  return is_canopen(core.drive) && request.bytes && !request.bytes->empty() && request.bytes->size() <= kMaxObjectBytes;
+}
+
 }  // namespace
 
 Errc admit(const AxisCore& core, const Group& group) {
@@ -84,10 +94,7 @@ Errc admit(const AxisCore& core, const Group& group) {
   if (group.controlword && !writable(core, Quantity::controlword)) return Errc::not_supported;
   if (group.set_position_value && !core.model.command(Command::set_position)) return Errc::not_supported;
   if (const Errc code = admit_command(core, group.command); code != Errc::ok) return code;
-  if (group.object) {
-    const std::uint8_t size = group.object->size;
-    if (size != 1 && size != 2 && size != 4) return Errc::bad_value;
-  }
+  if (group.object && !size_fits(core, *group.object)) return Errc::bad_value;
   for (const Setpoint& sp : group.setpoints) {
     const Binding* binding = core.model.binding(sp.quantity);
     if (!binding->limits.holds(sp.value) || !binding->to_raw(sp.value, core.object(binding->object)))
@@ -102,6 +109,11 @@ Errc admit(const AxisCore& core, const Group& group) {
       return Errc::bad_value;
   }
   return limits_in_order(core, group) ? Errc::ok : Errc::bad_value;
+}
+
+bool reads_alone(const Group& group) {
+  return group.object && !group.object->write && group.setpoints.empty() && !group.mode && !group.controlword &&
+         group.command == Command::none && !group.set_position_value;
 }
 
 bool holds_stop(const Group& group) {
@@ -179,7 +191,9 @@ bus::Order order_for(const AxisCore& core, const Group& group, bool stop) {
   if (group.object && plain && !setpoints) {
     order.priority = bus::Priority::interactive;
     order.survives_stop = true;
-    if (!group.object->write) order.read = bus::ObjectAddress{group.object->index, group.object->subindex};
+    // Reads of one object may be one, where both want it in the same width.
+    if (!group.object->write && group.object->size != 0)
+      order.read = bus::ObjectAddress{group.object->index, group.object->subindex};
     return order;
   }
   order.setpoints_only = plain && !group.object && !group.set_position_value;

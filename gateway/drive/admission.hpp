@@ -11,6 +11,8 @@ namespace axisgate::drive {
 
 /// ok, not_supported or bad_value.
 [[nodiscard]] Errc admit(const AxisCore& core, const Group& group);
+/// The group reads an object and does nothing else.
+[[nodiscard]] bool reads_alone(const Group& group);
 /// The group holds a stop by design 3.4.
 [[nodiscard]] bool holds_stop(const Group& group);
 /// What is left of a group that holds a stop when everything else is taken out of it.

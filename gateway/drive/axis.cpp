@@ -42,6 +42,7 @@ void Axis::on_bring_up() {
   if (core_.model.homing_method) core_.homing_method = *core_.model.homing_method;
   core_.offset_owed.reset();
   core_.mode_chosen = false;
+  core_.emergency = 0;
   reference_doubted_ = false;
   core_.homed = false;
   if (!core_.is_virtual()) return;
@@ -76,11 +77,13 @@ void Axis::on_client_gone(ClientId client) {
 
 // --- Taking a group ------------------------------------------------------------------------------------------------
 
-Errc Axis::link_admits(bool stop) const {
+Errc Axis::link_admits(bool stop, bool reads_alone) const {
+  const bool another = core_.alarm(AxisAlarm::identity_mismatch);
   switch (host_.link_state()) {
     case LinkState::online:
     case LinkState::suspect:
-      return core_.alarm(AxisAlarm::identity_mismatch) && !stop ? Errc::identity_mismatch : Errc::ok;
+      // A drive that is not the configured one is read-only.
+      return another && !stop && !reads_alone ? Errc::identity_mismatch : Errc::ok;
     case LinkState::setup:
     case LinkState::unknown:
       // Nothing is known of it yet, and it may be running: a stop is worth its try.
@@ -137,7 +140,7 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   }
   // Accepted in every state: the latch is set even where nothing can be sent.
   if (stop) accept_stop(group);
-  if (const Errc of_link = link_admits(stop); of_link != Errc::ok) {
+  if (const Errc of_link = link_admits(stop, reads_alone(group)); of_link != Errc::ok) {
     if (stop) publish(core_.now);
     return refuse(asked, of_link);
   }
@@ -156,6 +159,9 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   // "Done" is up to 2 s away by the contract (command 12), later than a client's usual deadline.
   constexpr Duration kSaving = std::chrono::milliseconds(2500);
   if (group.command == Command::save_parameters) group.answer_by = std::max(group.answer_by, core_.now + kSaving);
+  // A long object takes many exchanges, and a client that asks for one is told to wait (43/13).
+  constexpr Duration kLongObject = std::chrono::seconds(5);
+  if (group.object && group.object->size == 0) group.answer_by = std::max(group.answer_by, core_.now + kLongObject);
   pending.by_mailbox = asked.object.has_value();
   pending.conversation = std::make_unique<Conversation>(core_, group, stop, asked.object && !group.object);
   pending.starts_motion = starts_motion(core_, group);
@@ -223,6 +229,12 @@ bool Axis::insists(bus::OrderId id) const {
   return std::any_of(pending_.begin(), pending_.end(), [&](const Pending& p) {
     return p.conversation->is_stop() && (p.id == id ? p.conversation->would_repeat() : !p.conversation->begun());
   });
+}
+
+bus::OrderId Axis::chain_order() const {
+  for (const Pending& p : pending_)
+    if (p.conversation->chain_open()) return p.id;
+  return 0;
 }
 
 void Axis::on_result(bus::OrderId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted) {

@@ -46,6 +46,8 @@ class Axis {
 
   /// The drive comes up anew: nothing is known, nothing survives.
   void on_bring_up();
+  /// The drive has sent an emergency code; 0: what it told of is over.
+  void on_emergency(std::uint16_t code) { core_.emergency = code; }
   /// It was suspect: it may have restarted unseen.
   void on_doubt() { reference_doubted_ = true; }
   void set_alarm(AxisAlarm alarm, bool on);
@@ -64,6 +66,8 @@ class Axis {
   void on_result(bus::OrderId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted);
   void on_order_ended(bus::OrderId id, Errc code);
   [[nodiscard]] bool has(bus::OrderId id) const { return find(id) != nullptr; }
+  /// The order whose long object is under way; 0: none.
+  [[nodiscard]] bus::OrderId chain_order() const;
 
   /// Deadlines of groups.
   void on_time(Instant now);
@@ -94,7 +98,7 @@ class Axis {
     GroupResult result;
     std::vector<GroupCallback> callbacks;
   };
-  [[nodiscard]] Errc link_admits(bool stop) const;
+  [[nodiscard]] Errc link_admits(bool stop, bool reads_alone) const;
   [[nodiscard]] bool join_stop(const Group& group, GroupCallback& on_result);
   void accept_stop(const Group& group);
   [[nodiscard]] GroupResult refuse(const Group& group, Errc code);

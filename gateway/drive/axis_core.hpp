@@ -19,6 +19,7 @@ struct AxisCore {
   Instant now = kLongAgo;                       ///< of the turn in which this is looked at
   std::uint32_t alarms = 0;                     ///< AxisAlarm bits found by checks and by what was seen
   LinkState link = LinkState::unknown;          ///< the drive's
+  std::uint16_t emergency = 0;                  ///< the drive's last EMCY code; 0: none, or it said that it is over
   std::optional<std::int64_t> homing_method{};  ///< written or configured since bring-up
   std::optional<std::int64_t> offset_owed{};    ///< homing offset that set_position could not put back yet
   bool mode_chosen = false;                     ///< a client has chosen the mode since bring-up

@@ -6,7 +6,7 @@
 
 namespace axisgate::drive {
 
-BringUp::BringUp(const DriveModel& model) : model_(model) {
+BringUp::BringUp(const DriveModel& model) : model_(model), identity_(model), node_(model) {
   const auto add = [&](ObjectId id) {
     if (id != kNoObject && std::find(reads_.begin(), reads_.end(), id) == reads_.end()) reads_.push_back(id);
   };
@@ -29,6 +29,8 @@ void BringUp::begin() {
   setup_written_ = read_back_ = adopted_ = false;
   confirm_after_.reset();
   unheld_.clear();
+  identity_.begin();
+  node_.begin();
 }
 
 bool BringUp::any_enabled(const ObjectStore& store) const {
@@ -46,13 +48,22 @@ std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
     if (!s.known && !s.refused) return Next{reads_[read_at_], false, 0};
     ++read_at_;
   }
+  if (is_node())
+    if (const auto identity = identity_.next()) return Next{kNoObject, false, 0, identity};
   // Everything else was read meanwhile: somebody may have enabled it since its state was read, and on a busy line what
   // was read first has grown stale.
   if (!confirm_after_) confirm_after_ = store.exchange();
   for (const ObjectId id : confirmed_)
     if (!store[id].refused && store[id].exchange <= *confirm_after_) return Next{id, false, 0};
   adopted_ = any_enabled(store);
-  if (adopted_) return std::nullopt;
+  if (adopted_ || !identity_.mismatch().empty()) return std::nullopt;
+  if (const auto setup = next_setup(store)) return setup;
+  if (is_node())
+    if (const auto node = node_.next()) return Next{kNoObject, false, 0, node};
+  return std::nullopt;
+}
+
+std::optional<BringUp::Next> BringUp::next_setup(const ObjectStore& store) {
   while (setup_at_ < model_.setup.size()) {
     const ObjectWrite& setup = model_.setup[setup_at_];
     if (read_back_) return Next{setup.object, false, 0};
@@ -66,6 +77,13 @@ std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
     return Next{setup.object, true, setup.raw};
   }
   return std::nullopt;
+}
+
+void BringUp::answered(const bus::ExchangeResult& result) {
+  if (identity_.next())
+    identity_.on_result(result);
+  else
+    node_.on_result(result);
 }
 
 void BringUp::written() {

@@ -129,10 +129,17 @@ bool Conversation::within_nvm_budget(const bus::Exchange& exchange, Instant now)
 
 Conversation::Move Conversation::advance_object() const {
   const ObjectRequest& o = *group_.object;
-  const bus::Access access = o.write ? bus::Access::write : bus::Access::read;
-  return {Move::Kind::exchange,
-          {core_.drive.node, access, {o.index, o.subindex}, o.size, o.write ? wire_bits(o.data, o.size) : 0},
-          kLongAgo};
+  bus::Exchange exchange{core_.drive.node,
+                         o.write ? bus::Access::write : bus::Access::read,
+                         {o.index, o.subindex},
+                         o.size,
+                         o.write ? wire_bits(o.data, o.size) : 0};
+  if (o.size == 0 && core_.drive.fence.by_length) exchange.size = static_cast<std::uint8_t>(o.count == 0 ? 2 : o.count);
+  if (o.size == 0 && is_canopen(core_.drive)) {
+    exchange.part = chain_open_ ? bus::Part::next : bus::Part::first;
+    if (!chain_open_) exchange.bytes = o.bytes;
+  }
+  return {Move::Kind::exchange, exchange, kLongAgo};
 }
 
 Conversation::Move Conversation::advance(Instant now) {

@@ -40,6 +40,8 @@ class Conversation {
   [[nodiscard]] bool begun() const { return begun_; }  ///< something was sent
   /// A stop that would be sent once more if the exchange on the wire stays without an answer.
   [[nodiscard]] bool would_repeat() const { return phase_ == Phase::stop && attempts_ + 1 < kStopAttempts; }
+  /// A long object is under way: another exchange with this drive would end it.
+  [[nodiscard]] bool chain_open() const { return chain_open_ && !finished(); }
   /// The stop itself is over: what is left of the group has no claim to go first.
   [[nodiscard]] bool stop_is_over() const { return stop_ && !handed_over_ && phase_ > Phase::settle_stop; }
   /// The rest of the group was queued anew, without the stop's precedence.
@@ -83,6 +85,7 @@ class Conversation {
   void on_lost_write(const Action& action);
   void on_read(ObjectId object, const bus::ExchangeResult& result);
   void on_object(const bus::ExchangeResult& result);
+  [[nodiscard]] std::uint32_t abort_code(std::uint32_t detail) const;
   [[nodiscard]] std::int64_t number_of(const Action& action) const;
 
   AxisCore& core_;
@@ -110,6 +113,7 @@ class Conversation {
   Instant look_after_ = kLongAgo;
   Duration look_pause_{};
   bool object_done_ = false;
+  bool chain_open_ = false;
 };
 
 }  // namespace axisgate::drive

@@ -88,19 +88,27 @@ void Conversation::on_read(ObjectId object, const bus::ExchangeResult& result) {
   }
 }
 
+// What the drive said, as CiA 301 would have said it (design 3.1, FC 43/13).
+std::uint32_t Conversation::abort_code(std::uint32_t detail) const {
+  constexpr std::uint32_t kGeneral = 0x08000000, kNoSuchObject = 0x06020000, kModbusIllegalAddress = 2;
+  if (is_canopen(core_.drive) || detail == kNoSuchObject) return detail;
+  return core_.drive.fence.by_length && detail == kModbusIllegalAddress ? kNoSuchObject : kGeneral;
+}
+
 void Conversation::on_object(const bus::ExchangeResult& result) {
-  if (result.code == Errc::ok && !group_.object->write && result.fields.empty()) {
-    fail(Errc::bad_reply);
-    return;
-  }
   if (result.code != Errc::ok) {
+    if (result.code == Errc::refused_by_drive) result_.abort_code = abort_code(result.detail);
     fail(result.code, result.detail);
     return;
   }
+  chain_open_ = result.more;
+  if (chain_open_) return;
   object_done_ = true;
   if (group_.object->write) {
     last_acknowledged_ = core_.store.exchange();
     core_.store.doubt_all();
+  } else if (result.bytes) {
+    result_.object_bytes = result.bytes;
   } else {
     // Neighbours may have been read in the same request.
     const bus::ObjectAddress asked{group_.object->index, group_.object->subindex};

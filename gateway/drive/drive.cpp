@@ -21,7 +21,8 @@ Drive::Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> imag
       constants_(model_.constants.size()),
       bring_up_(model_),
       backoff_(bus.settings().timeout),
-      timer_(runtime.make_timer([this] { on_time(); })) {
+      timer_(runtime.make_timer([this] { on_time(); })),
+      mapped_(model_.objects.size(), false) {
   assert(images.size() == model_.axes.size());
   AxisHost& host = *this;
   for (std::size_t i = 0; i < images.size(); ++i)
@@ -54,10 +55,12 @@ void Drive::event(AxisNumber axis, EventKind kind, std::uint32_t code, std::stri
 
 // --- What goes on the wire -----------------------------------------------------------------------------------------
 
-std::optional<bus::Exchange> Drive::on_grant(bus::OrderId id, bus::Priority) {
+std::optional<bus::Exchange> Drive::on_grant(bus::OrderId id, bus::Priority priority) {
   on_wire_ = {id, false, false, false, now()};
+  if (waits_for_chain(id, priority)) return std::nullopt;
   auto exchange = id == 0 ? own_exchange() : exchange_of(id);
   if (exchange) {
+    if (exchange->part != bus::Part::next) break_chain();
     widen(*exchange);
     store_.begin_exchange();
   } else {
@@ -83,6 +86,25 @@ std::optional<bus::Exchange> Drive::exchange_of(bus::OrderId id) {
   return id == setup_order_ ? next_of_bring_up() : std::nullopt;
 }
 
+bool Drive::chain_open() const {
+  return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->chain_order() != 0; });
+}
+
+bool Drive::waits_for_chain(bus::OrderId id, bus::Priority priority) {
+  if (!chain_open() || priority < bus::Priority::interactive) return false;
+  if (std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->chain_order() == id; }))
+    return false;
+  constexpr Duration kChainPause = std::chrono::milliseconds(1);
+  if (id != 0) bus_.wait(id, now() + kChainPause);
+  return true;
+}
+
+// The adapter tells the drive; the client whose object it was is told here.
+void Drive::break_chain() {
+  for (auto& axis : axes_)
+    if (axis->chain_order() != 0) axis->on_order_ended(axis->chain_order(), Errc::busy);
+}
+
 // A probe of a drive that is not there: its reply must not be one to something lost long ago.
 std::optional<bus::Exchange> Drive::probe() {
   if (now() < probe_due_) return std::nullopt;
@@ -94,6 +116,17 @@ std::optional<bus::Exchange> Drive::probe() {
     }
     fence_.waited_out();
   }
+  if (is_canopen(model_) && heard_ && node_state_ == bus::NodeState::stopped) {
+    // It answers no SDO in this state, and so tells nothing; what its motor does is not changed by leaving it.
+    on_wire_.probe = false;
+    probe_due_ = now() + backoff_.next();
+    return nmt(model_.node, NmtCommand::enter_pre_operational);
+  }
+  if (is_canopen(model_) && asked_ && !heard_ && bus_.call(model_.node)) {
+    probe_due_ = now() + backoff_.next();
+    return std::nullopt;
+  }
+  asked_ = true;
   return plain_read();
 }
 
@@ -131,7 +164,7 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
     on_timeout(exchange, stop_insists);
   } else if (result.code == Errc::link_lost) {
     fence_.lost(exchange, now());  // its reply may still come, after the line's return
-  } else {
+  } else if (exchange.access != bus::Access::command) {  // which nobody answers
     on_answer(exchange, result);
     // Nobody asked for the neighbours: whoever asked for the one asks again, in smaller company.
     if (split(exchange, result)) {
@@ -176,6 +209,7 @@ void Drive::on_timeout(const bus::Exchange& exchange, bool stop_insists) {
   if (mute_ >= kMuteTimeouts && !stop_insists) {
     set_state(LinkState::offline);
     setup_order_ = 0;
+    unmap_values();
     bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
     probe_due_ = now() + backoff_.next();
   } else if (state_ == LinkState::online) {
@@ -209,6 +243,9 @@ void Drive::on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& 
 void Drive::on_link(bool up) {
   mute_ = 0;
   setup_order_ = 0;
+  heard_ = asked_ = false;
+  node_state_ = bus::NodeState::unknown;
+  unmap_values();
   backoff_.reset();
   set_state(up ? LinkState::unknown : LinkState::link_down);
   probe_due_ = up ? now() : kNever;  // where a reply is still owed, the probe keeps silence first
@@ -259,7 +296,7 @@ void Drive::bring_up_to_date() {
   } else if (fence_.suspect()) {
     bus_.set_poll_due(slot_, fence_.exhausted() ? fence_.silent_until() : now());
   } else {
-    bus_.set_poll_due(slot_, brought_up() ? plan_.next_due() : kNever);
+    bus_.set_poll_due(slot_, brought_up() && !chain_open() ? plan_.next_due() : kNever);
   }
 }
 

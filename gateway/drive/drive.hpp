@@ -38,6 +38,8 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result) override;
   void on_order_ended(bus::OrderId id, Errc code) override;
   void on_link(bool up) override;
+  [[nodiscard]] std::uint8_t node() const override { return model_.node; }
+  void on_notice(const bus::Notice& notice) override;
 
  private:
   /// Who asked for the exchange on the wire.
@@ -73,6 +75,10 @@ class Drive final : public bus::BusDrive, private AxisHost {
   [[nodiscard]] std::optional<bus::Exchange> own_exchange();
   [[nodiscard]] std::optional<bus::Exchange> exchange_of(bus::OrderId id);
   [[nodiscard]] std::optional<bus::Exchange> next_of_bring_up();
+  /// A long object is under way in another order: an order that can wait does, any other ends it.
+  [[nodiscard]] bool waits_for_chain(bus::OrderId id, bus::Priority priority);
+  [[nodiscard]] bool chain_open() const;
+  void break_chain();
   void store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result);
   void on_timeout(const bus::Exchange& exchange, bool stop_insists);
   void on_write_without_owner(const bus::Exchange& exchange, const bus::ExchangeResult& result, bool trusted);
@@ -82,7 +88,18 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result);
   void end_bring_up();
   void judge_checks();
+  void judge_loss_reaction();
   void leave_adoption();
+  // What the drive says by itself (drive_notices.cpp).
+  void on_started();
+  void on_present(bus::NodeState state);
+  void on_gone();
+  void on_values(const bus::ReplyFields& fields);
+  void on_emergency(const bus::Notice& notice);
+  void left_operational(bus::NodeState state);
+  void map_values();
+  void unmap_values();
+  void tell_all(EventKind kind, std::uint32_t code, const std::string& text);
   void set_state(LinkState state);
   void after_event();
   void bring_up_to_date();
@@ -111,6 +128,13 @@ class Drive final : public bus::BusDrive, private AxisHost {
   std::uint64_t doubts_seen_ = 0;
   Instant probe_due_ = kNever;
   bool adopted_ = false;
+  /// CANopen: the node has given a sign of life since it was last gone. One that has not is not asked by SDO but once
+  /// after the link came up, to find what was there before us: then it is called (design 7, point 3).
+  bool heard_ = false;
+  bool asked_ = false;
+  bus::NodeState node_state_ = bus::NodeState::unknown;  ///< as it told last
+  Instant started_at_ = kLongAgo;  ///< when it was told to become operational
+  std::vector<bool> mapped_;       ///< objects that come by TPDO
 };
 
 }  // namespace axisgate::drive

@@ -12,6 +12,10 @@ std::optional<bus::Exchange> Drive::next_of_bring_up() {
     end_bring_up();
     return std::nullopt;
   }
+  if (next->exchange) {
+    if (next->exchange->access == bus::Access::command) started_at_ = now();
+    return next->exchange;
+  }
   bus::Exchange exchange = read(next->object);
   if (next->write) {
     exchange.access = bus::Access::write;
@@ -25,6 +29,7 @@ void Drive::begin_bring_up(bool restarted) {
   store_.forget_all();
   fence_.answered();
   backoff_.reset();
+  unmap_values();
   bring_up_.begin();
   plan_.restart(now());
   if (restarted)
@@ -43,6 +48,13 @@ void Drive::begin_bring_up(bool restarted) {
 
 void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
   if (state_ != LinkState::setup) return;
+  const auto next = bring_up_.next(store_);
+  if (next && next->exchange) {
+    // Lost: asked once more, when the fence stands.
+    if (*next->exchange == exchange && (result.code == Errc::ok || result.code == Errc::refused_by_drive))
+      bring_up_.answered(result);
+    return;
+  }
   const bool was_write = exchange.access == bus::Access::write;
   if (was_write) {
     if (result.code == Errc::refused_by_drive)
@@ -63,10 +75,16 @@ void Drive::end_bring_up() {
   bus_.finish(setup_order_);
   setup_order_ = 0;
   adopted_ = bring_up_.adopted();
+  const std::string& mismatch = bring_up_.mismatch();
+  if (!mismatch.empty()) tell_all(EventKind::warning, 0, "not the configured drive: " + mismatch + ": read-only");
+  for (const std::string& note : bring_up_.node().notes()) tell_all(EventKind::warning, 0, note);
+  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::identity_mismatch, !mismatch.empty());
+  if (!adopted_ && mismatch.empty()) map_values();
   for (const ObjectId id : bring_up_.unheld())
     event(axes_.front()->core().model.number, EventKind::warning, 0,
           "setup: the drive does not hold what was written to " + model_.object(id).name);
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, adopted_);
+  judge_loss_reaction();
   set_state(LinkState::online);
   for (const auto& axis : axes_)
     event(axis->core().model.number, EventKind::boot, 0, adopted_ ? "online, found enabled: adopted" : "online");
@@ -82,6 +100,17 @@ void Drive::judge_checks() {
       axis->set_alarm(check.alarm, true);
     }
   }
+}
+
+// Whether the drive notices a dead gateway: what makes it do so must be in it.
+void Drive::judge_loss_reaction() {
+  if (model_.loss_objects.empty()) return;
+  const bool armed = std::all_of(model_.setup.begin(), model_.setup.end(), [&](const ObjectWrite& setup) {
+    const bool counts =
+        std::find(model_.loss_objects.begin(), model_.loss_objects.end(), setup.object) != model_.loss_objects.end();
+    return !counts || (store_[setup.object].known && store_[setup.object].number == setup.raw);
+  });
+  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::no_comm_watchdog, !model_.stops_by_itself || !armed);
 }
 
 // Full bring-up at the first disabled state after an adoption.

@@ -38,6 +38,8 @@ struct ObjectDef {
   bool readable = true;
   bool writable = false;
   bool trigger = false;  ///< the write itself starts something: never skipped as unchanged, never repeated
+  /// Nobody has printed its width: read with Exchange::size 0 it is as wide as the drive answers, `size` at most.
+  bool any_width = false;
   bool made = false;     ///< not in the drive: statusword, controlword and mode of a virtual axis (virtual_axis.hpp)
   Nvm nvm = Nvm::no;
   /// The low `size` bytes as the number they stand for.
@@ -165,6 +167,15 @@ struct AlarmRow {
 struct ObjectWrite {
   ObjectId object = kNoObject;
   std::int64_t raw = 0;
+  std::string why;
+};
+
+/// A setup write that only takes the place of what the drive left its factory with: what somebody has set stays.
+struct FactoryWrite {
+  ObjectId object = kNoObject;
+  std::vector<std::int64_t> instead_of;  ///< raw; at least one
+  Rational amount{1};                    ///< raw = amount * recipe.fixed * product(mul) / product(div)
+  ScaleRecipe recipe{};                  ///< what it waits for; `recipe.raw` is what the object takes
   std::string why;
 };
 
@@ -314,6 +325,7 @@ struct DriveModel {
   std::vector<AxisModel> axes;
   std::vector<AlarmRow> alarms;  ///< in the order in which error_code looks for the first active one
   std::vector<ObjectWrite> setup;
+  std::vector<FactoryWrite> factory_writes;  ///< judged at each bring-up, see setup_writes()
   std::vector<Check> checks;
   FenceFacts fence;
   Duration timeout =
@@ -321,9 +333,10 @@ struct DriveModel {
   bool stops_by_itself = false;        ///< it notices a dead gateway on this protocol; else alarm no_comm_watchdog
   /// Written in the setup list so that it does: alarm no_comm_watchdog where the drive does not hold what was written.
   std::vector<ObjectId> loss_objects;
-  RtuFacts rtu;          ///< Modbus RTU alone
-  CanopenFacts canopen;  ///< CANopen alone
-  Nvm nvm = Nvm::no;     ///< of objects that are not in `objects` (the mailbox reaches them)
+  std::string loss_text;  ///< what the drive then does, and what is not known of it; may be empty
+  RtuFacts rtu;           ///< Modbus RTU alone
+  CanopenFacts canopen;   ///< CANopen alone
+  Nvm nvm = Nvm::no;      ///< of objects that are not in `objects` (the mailbox reaches them)
   std::array<Duration, 3> poll_period{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
                                       std::chrono::milliseconds(1000)};
 
@@ -331,11 +344,19 @@ struct DriveModel {
   [[nodiscard]] ObjectId find(bus::ObjectAddress address) const;  ///< kNoObject where no object has it
 };
 
+[[nodiscard]] inline bool is_canopen(const DriveModel& model) { return model.protocol == "canopen"; }
+
 /// What must be read to know DriveModel::constants, each object once.
 [[nodiscard]] std::vector<ObjectId> constant_objects(const DriveModel& model);
 /// The number of a constant by what the drive holds (`number_of` gives no value for what is not known); none where a
 /// rule cannot be judged, none applies or the result fits no rational number.
 [[nodiscard]] std::optional<Rational> value_of(const DriveConstant& constant,
                                                const std::function<std::optional<std::int64_t>(ObjectId)>& number_of);
+
+/// The setup list as it is due by what the drive holds: all of `setup`, then each of `factory_writes` whose object
+/// holds a number it takes the place of, and whose amount is known and fits. Afterwards its object holds another
+/// number, so that it is not due again.
+[[nodiscard]] std::vector<ObjectWrite> setup_writes(
+    const DriveModel& model, const std::function<std::optional<std::int64_t>(ObjectId)>& number_of);
 
 }  // namespace axisgate::drive

@@ -25,7 +25,7 @@ struct ObjectState {
 
 class ObjectStore {
  public:
-  explicit ObjectStore(std::size_t objects) : states_(objects) {}
+  explicit ObjectStore(std::size_t objects) : states_(objects), periods_(objects) {}
 
   [[nodiscard]] const ObjectState& operator[](ObjectId id) const {
     assert(id < states_.size());
@@ -66,6 +66,9 @@ class ObjectStore {
   /// How often doubt_all() was called: whoever keeps the image true reads everything anew then.
   [[nodiscard]] std::uint64_t doubts() const { return doubts_; }
   void forget(ObjectId id) { at(id) = {}; }
+  /// How often the object is confirmed, where that is not its poll class's period; 0: it is.
+  void set_period(ObjectId id, Duration period) { periods_[id] = period; }
+  [[nodiscard]] Duration period(ObjectId id) const { return periods_[id]; }
   /// Bring-up begins: nothing is known but what is the gateway's own.
   void forget_all() {
     for (ObjectState& s : states_)
@@ -78,6 +81,7 @@ class ObjectStore {
     return states_[id];
   }
   std::vector<ObjectState> states_;
+  std::vector<Duration> periods_;
   std::uint64_t exchange_ = 0;
   std::uint64_t doubts_ = 0;
 };

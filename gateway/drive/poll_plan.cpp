@@ -53,12 +53,39 @@ PollPlan::PollPlan(const DriveModel& model) {
   for (const PollItem& item : poll_items(model)) {
     const auto index = static_cast<std::size_t>(item.poll_class);
     const Duration period = item.poll_class == PollClass::once ? Duration{} : model.poll_period[index];
-    entries_.push_back({item.object, period, kNever, false});
+    entries_.push_back({item.object, period, kNever, false, period, {}});
   }
 }
 
 void PollPlan::restart(Instant now) {
-  for (Entry& e : entries_) e = {e.object, e.period, now, false};
+  for (Entry& e : entries_) e = {e.object, e.beat, now, false, e.beat, {}};
+}
+
+void PollPlan::map(ObjectId object, std::optional<Duration> event, Duration confirm) {
+  Entry* e = entry(object);
+  if (e == nullptr || e->beat == Duration{}) return;
+  constexpr int kMissedEvents = 3;
+  e->silence = event ? kMissedEvents * *event : confirm;
+  e->period = event ? e->beat : std::max(e->beat, confirm);
+}
+
+void PollPlan::unmap_all(Instant now) {
+  for (Entry& e : entries_) {
+    if (e.silence == Duration{}) continue;
+    e.silence = {};
+    e.period = e.beat;
+    if (!e.dropped) e.due = std::min(e.due, now);
+  }
+}
+
+void PollPlan::received(ObjectId object, Instant now) {
+  Entry* e = entry(object);
+  if (e != nullptr && e->silence != Duration{} && !e->dropped) e->due = now + e->silence;
+}
+
+void PollPlan::hurry(ObjectId object, Instant now) {
+  Entry* e = entry(object);
+  if (e != nullptr && !e->dropped) e->due = std::min(e->due, now);
 }
 
 const PollPlan::Entry* PollPlan::earliest() const {
@@ -93,6 +120,10 @@ void PollPlan::done(ObjectId object, Instant now) {
   if (e == nullptr || e->due == kNever) return;
   if (e->period == Duration{}) {
     e->due = kNever;
+    return;
+  }
+  if (e->silence != Duration{}) {
+    e->due = now + e->period;
     return;
   }
   // On time: keep the beat. Read early by somebody else, or late (an overloaded bus stretches instead of piling up):

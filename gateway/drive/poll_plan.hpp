@@ -23,8 +23,17 @@ class PollPlan {
  public:
   explicit PollPlan(const DriveModel& model);
 
-  /// All objects are due at once (the drive came online), those of class once included.
+  /// All objects are due at once (the drive came online), those of class once included; none comes by itself.
   void restart(Instant now);
+  /// It comes by TPDO from now on: with an event timer, it is read in its own beat where three of them were missed;
+  /// without, once in `confirm` where it was silent.
+  void map(ObjectId object, std::optional<Duration> event, Duration confirm);
+  /// Nothing comes by TPDO any more: what did is read in its own beat again.
+  void unmap_all(Instant now);
+  /// It came by TPDO.
+  void received(ObjectId object, Instant now);
+  /// It is read as soon as its turn comes: something was heard that it will tell of.
+  void hurry(ObjectId object, Instant now);
   /// The object to read now: the one longest overdue. None before next_due().
   [[nodiscard]] std::optional<ObjectId> next(Instant now) const;
   [[nodiscard]] bool due(ObjectId object, Instant now) const;
@@ -48,6 +57,8 @@ class PollPlan {
     Duration period;  ///< 0: once
     Instant due;
     bool dropped = false;
+    Duration beat;       ///< its period where it does not come by TPDO
+    Duration silence{};  ///< it comes by TPDO, and is read after so long without one; 0: it does not
   };
   static constexpr Duration kRefreshPause = std::chrono::milliseconds(20);
   [[nodiscard]] const Entry* earliest() const;

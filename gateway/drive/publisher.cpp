@@ -27,11 +27,20 @@ bool refused(const AxisCore& core, const Binding& binding) {
 
 Duration stale_after(const AxisCore& core, const Binding& binding) {
   if (binding.poll == PollClass::once) return Duration::max();
-  return std::max(kStaleAtLeast, 3 * core.drive.poll_period[static_cast<std::size_t>(binding.poll)]);
+  Duration period = core.drive.poll_period[static_cast<std::size_t>(binding.poll)];
+  const auto mapped = [&](ObjectId id) {
+    if (id != kNoObject) period = std::max(period, core.store.period(id));
+  };
+  mapped(binding.object);
+  for (const BitField& field : binding.bits) mapped(field.object);
+  if (binding.quantity == Quantity::error_code)
+    for (const ObjectId word : core.model.fault_words) mapped(word);
+  return std::max(kStaleAtLeast, 3 * period);
 }
 
 std::int64_t error_code(const AxisCore& core, const AxisFacts& facts) {
   if (const AlarmRow* row = active_alarm(core)) return row->code;
+  if (facts.faulted() && core.emergency != 0) return core.emergency;
   constexpr std::int64_t kGenericError = 0x1000;  // CiA 402-2 error codes: generic error
   return facts.faulted() ? kGenericError : 0;
 }

@@ -113,6 +113,12 @@ class DiaryDrive final : public bus::BusDrive {
     if (link_hook) link_hook(up);
   }
 
+  std::uint8_t node() const override { return node_; }
+  void on_notice(const bus::Notice& notice) override {
+    diary_.push_back(fmt::format("drive {}: notice {}", node_, static_cast<int>(notice.kind)));
+    if (notice_hook) notice_hook(notice);
+  }
+
   [[nodiscard]] Exchange exchange() const {
     return {.node = node_, .access = Access::read, .object = {0x6041, 0}, .size = 2};
   }
@@ -122,6 +128,7 @@ class DiaryDrive final : public bus::BusDrive {
   std::function<void(const ExchangeResult&)> result_hook;
   std::function<void(OrderId, Errc)> ended_hook;
   std::function<void(bool)> link_hook;
+  std::function<void(const bus::Notice&)> notice_hook;
 
  private:
   std::uint8_t node_;

@@ -1,0 +1,161 @@
+// What a drive says without being asked: that it has started, lives, is gone, has a fault; and its process data.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gateway/drive/drive.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+// A heartbeat that was on its way when the node was told to start tells of the state before.
+constexpr Duration kNmtSettles = std::chrono::milliseconds(100);
+
+std::string_view text(bus::NodeState state) {
+  switch (state) {
+    case bus::NodeState::stopped:
+      return "stopped";
+    case bus::NodeState::pre_operational:
+      return "pre-operational";
+    case bus::NodeState::operational:
+      return "operational";
+    case bus::NodeState::unknown:
+      break;
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+void Drive::tell_all(EventKind kind, std::uint32_t code, const std::string& text) {
+  for (const auto& axis : axes_) event(axis->core().model.number, kind, code, text);
+}
+
+void Drive::on_notice(const bus::Notice& notice) {
+  switch (notice.kind) {
+    case bus::Notice::Kind::started:
+      on_started();
+      break;
+    case bus::Notice::Kind::present:
+      on_present(notice.state);
+      break;
+    case bus::Notice::Kind::gone:
+      on_gone();
+      break;
+    case bus::Notice::Kind::values:
+      on_values(notice.fields);
+      break;
+    case bus::Notice::Kind::emergency:
+      on_emergency(notice);
+      break;
+    case bus::Notice::Kind::twin:
+      for (auto& axis : axes_) axis->set_alarm(AxisAlarm::duplicate_node, true);
+      tell_all(EventKind::warning, model_.node,
+               fmt::format("two devices answer as node {}: give one of them another number", model_.node));
+      break;
+    case bus::Notice::Kind::babbling:
+      tell_all(EventKind::warning, notice.code, fmt::format("floods the bus with frames 0x{:03X}", notice.code));
+      break;
+  }
+  after_event();
+}
+
+// Whatever was sent to it is void; nothing that it held survives. It is brought up anew, and never enabled by us.
+void Drive::on_started() {
+  heard_ = true;
+  node_state_ = bus::NodeState::pre_operational;
+  mute_ = 0;
+  if (state_ == LinkState::link_down) return;
+  if (brought_up()) tell_all(EventKind::boot, 0, "the drive has restarted");
+  setup_order_ = 0;
+  bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
+  begin_bring_up(true);
+}
+
+void Drive::on_present(bus::NodeState state) {
+  heard_ = true;
+  node_state_ = state;
+  if (state_ == LinkState::unknown || state_ == LinkState::offline) {
+    backoff_.reset();
+    probe_due_ = now();
+    return;
+  }
+  const bool left = state == bus::NodeState::pre_operational || state == bus::NodeState::stopped;
+  if (left && brought_up() && !adopted_ && now() - started_at_ > kNmtSettles) left_operational(state);
+}
+
+// Somebody else has stopped it, or it fell back by itself. Its process data is dead; what runs is polled, and it is set
+// up anew as soon as its motor is disabled: a node with an enabled motor gets no NMT command.
+void Drive::left_operational(bus::NodeState state) {
+  tell_all(EventKind::warning, 0, fmt::format("the node has become {}, by no command of ours", text(state)));
+  unmap_values();
+  adopted_ = true;
+}
+
+void Drive::on_gone() {
+  heard_ = false;
+  if (state_ == LinkState::link_down || state_ == LinkState::offline) return;
+  tell_all(EventKind::warning, 0, "no sign of life from the node any more");
+  set_state(LinkState::offline);
+  setup_order_ = 0;
+  mute_ = 0;
+  unmap_values();
+  backoff_.reset();
+  bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
+  probe_due_ = now() + backoff_.next();
+}
+
+void Drive::on_values(const bus::ReplyFields& fields) {
+  // A drive that owes a reply is not trusted in anything, until its fence stands.
+  if (!brought_up() || fence_.suspect()) return;
+  for (const bus::ReplyField& field : fields) {
+    const ObjectId id = model_.find(field.object);
+    if (id == kNoObject || !mapped_[id] || field.size != model_.object(id).size) continue;
+    store_.read(id, model_.object(id).number(field.raw), now());
+    plan_.received(id, now());
+  }
+  for (auto& axis : axes_) axis->on_samples();
+}
+
+// The code may be all that is told (faults.md row 12): what the fault words say is asked for at once.
+void Drive::on_emergency(const bus::Notice& notice) {
+  for (auto& axis : axes_) axis->on_emergency(notice.code);
+  std::string text = notice.code == 0 ? std::string("EMCY 0x0000: the errors are over")
+                                      : fmt::format("EMCY 0x{:04X}, error register 0x{:02X}, {}", notice.code,
+                                                    notice.error_register, hex_text(notice.vendor));
+  if (notice.repeats > 0) text += fmt::format(" ({} more were left out)", notice.repeats);
+  tell_all(notice.code == 0 ? EventKind::warning : EventKind::fault, notice.code, text);
+  for (const AxisModel& axis : model_.axes) {
+    for (const ObjectId id : axis.state_sources) plan_.hurry(id, now());
+    for (const ObjectId id : axis.fault_words)
+      if (id != kNoObject) plan_.hurry(id, now());
+  }
+}
+
+void Drive::map_values() {
+  for (const MappedTpdo& tpdo : bring_up_.node().mapped()) {
+    bus::ProcessMap map;
+    const auto event =
+        tpdo.event_ms ? std::optional<Duration>(std::chrono::milliseconds(*tpdo.event_ms)) : std::nullopt;
+    for (const ObjectId id : tpdo.objects) {
+      map.push_back({model_.object(id).address, model_.object(id).size});
+      mapped_[id] = true;
+      plan_.map(id, event, model_.canopen.confirm);
+      store_.set_period(id, event.value_or(model_.canopen.confirm));
+    }
+    bus_.map_process_data(model_.node, tpdo.number, map);
+  }
+}
+
+void Drive::unmap_values() {
+  if (!is_canopen(model_)) return;
+  for (const TpdoFacts& tpdo : model_.canopen.tpdos) bus_.map_process_data(model_.node, tpdo.number, {});
+  for (std::size_t i = 0; i < mapped_.size(); ++i) {
+    if (!mapped_[i]) continue;
+    mapped_[i] = false;
+    store_.set_period(static_cast<ObjectId>(i), Duration{});
+  }
+  plan_.unmap_all(now());
+}
+
+}  // namespace axisgate::drive

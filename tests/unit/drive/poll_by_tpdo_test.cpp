@@ -1,0 +1,89 @@
+// What the poll plan makes of values that come by TPDO.
+#include <gtest/gtest.h>
+
+#include "gateway/drive/poll_plan.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Instant kStart{1h};
+
+/// One object of class fast (20 ms).
+DriveModel one_value() {
+  DriveModel model;
+  model.objects.resize(1);
+  model.axes.resize(1);
+  Binding binding;
+  binding.object = 0;
+  binding.poll = PollClass::fast;
+  model.axes[0].bindings.push_back(binding);
+  return model;
+}
+
+TEST(PollByTpdo, AValueThatKeepsComingIsNotAskedFor) {
+  const DriveModel model = one_value();
+  PollPlan plan(model);
+  plan.restart(kStart);
+  plan.map(0, 100ms, 1s);
+  for (Instant now = kStart; now < kStart + 10s; now += 100ms) {
+    plan.received(0, now);
+    EXPECT_GT(plan.next_due(), now + 100ms);
+  }
+}
+
+TEST(PollByTpdo, WithoutAnEventTimerItIsReadOnceInConfirm) {
+  const DriveModel model = one_value();
+  PollPlan plan(model);
+  plan.restart(kStart);
+  plan.map(0, std::nullopt, 1s);
+  plan.done(0, kStart);
+  EXPECT_EQ(plan.next_due(), kStart + 1s);
+  plan.received(0, kStart + 400ms);
+  EXPECT_EQ(plan.next_due(), kStart + 1400ms);
+  plan.done(0, kStart + 1400ms);
+  EXPECT_EQ(plan.next_due(), kStart + 2400ms);
+}
+
+TEST(PollByTpdo, WithAnEventTimerThreeMissedOnesBringThePollBack) {
+  const DriveModel model = one_value();
+  PollPlan plan(model);
+  plan.restart(kStart);
+  plan.map(0, 100ms, 1s);
+  plan.received(0, kStart);
+  EXPECT_EQ(plan.next_due(), kStart + 300ms);
+  plan.done(0, kStart + 300ms);
+  EXPECT_EQ(plan.next_due(), kStart + 320ms) << "in its own beat, as long as nothing comes";
+  plan.received(0, kStart + 310ms);
+  EXPECT_EQ(plan.next_due(), kStart + 610ms);
+}
+
+TEST(PollByTpdo, OneThatStopsComingForGoodIsPolledAsIfItNeverHad) {
+  const DriveModel model = one_value();
+  PollPlan plan(model);
+  plan.restart(kStart);
+  plan.map(0, std::nullopt, 1s);
+  plan.received(0, kStart);
+  plan.unmap_all(kStart + 10ms);
+  EXPECT_EQ(plan.next_due(), kStart + 10ms);
+  plan.done(0, kStart + 10ms);
+  EXPECT_EQ(plan.next_due(), kStart + 30ms);
+  plan.received(0, kStart + 20ms);
+  EXPECT_EQ(plan.next_due(), kStart + 30ms) << "what is not mapped does not count";
+}
+
+TEST(PollByTpdo, WhatTheDriveDoesNotHaveStaysDropped) {
+  const DriveModel model = one_value();
+  PollPlan plan(model);
+  plan.restart(kStart);
+  plan.map(0, std::nullopt, 1s);
+  plan.drop(0);
+  plan.received(0, kStart);
+  plan.hurry(0, kStart);
+  plan.unmap_all(kStart);
+  EXPECT_EQ(plan.next_due(), kNever);
+}
+
+}  // namespace
+}  // namespace axisgate::drive
