@@ -9,7 +9,7 @@
 #include <string>
 
 #include "adapters/bus/byte_link.hpp"
-#include "adapters/bus/noise_watch.hpp"
+#include "adapters/bus/line_watch.hpp"
 #include "adapters/bus/wire.hpp"
 #include "adapters/kinco/kinco_receiver.hpp"
 #include "gateway/core/log.hpp"
@@ -18,10 +18,6 @@ namespace axisgate::kinco {
 
 class KincoWire final : public bus::Wire, private bus::ByteLinkEvents {
  public:
-  static constexpr int kReopensInARow = 3;
-  /// How often a line that was given up is looked at again.
-  static constexpr Duration kSecondLook = std::chrono::seconds(1);
-
   /// `name` is the bus's, for the log.
   KincoWire(std::string name, std::unique_ptr<bus::ByteLink> link, Runtime& runtime, const Log& log);
   ~KincoWire() override;
@@ -36,27 +32,16 @@ class KincoWire final : public bus::Wire, private bus::ByteLinkEvents {
   void on_link_up() override;
   void on_link_down(std::string_view why) override;
   void on_bytes(Bytes bytes) override;
-  void on_babble();
-  void look_again();
-  void report(bool up, std::string_view why);
   void log_frame(std::string_view direction, Bytes bytes, const Frame& frame, std::string_view remark) const;
 
   std::string log_source_;
-  Runtime& runtime_;
   const Log& log_;
   bus::WireEvents* events_ = nullptr;
   Receiver receiver_;
-  bus::NoiseWatch noise_;
   bool decode_ = false;
-  bool link_up_ = false;
-  bool reported_up_ = false;
-  bool ever_up_ = false;
-  bool given_up_ = false;  ///< reported down for its noise, though the link is open
-  int reopens_ = 0;        ///< since the last answer
-  std::uint32_t reconnects_ = 0;
   mutable bus::Statistics statistics_;
   // Last, so that they go first: neither may call into a wire that is half gone.
-  std::unique_ptr<Timer> timer_;
+  bus::LineWatch watch_;
   std::unique_ptr<bus::ByteLink> link_;
 };
 

@@ -26,7 +26,7 @@ RtuWire::RtuWire(std::string name, std::vector<RtuNode> nodes, LineSpeed speed, 
       runtime_(runtime),
       log_(log),
       broadcast_timer_(runtime.make_timer([this] { broadcast_over(); })),
-      look_timer_(runtime.make_timer([this] { look_again(); })),
+      watch_(runtime, {.reopen = [this](std::string_view why) { link_->reopen(why); }, .drop = [this] { abandon(); }}),
       link_(std::move(link)) {
   assert(!nodes_.empty() && link_ != nullptr);
 }
@@ -35,11 +35,12 @@ RtuWire::~RtuWire() = default;
 
 void RtuWire::start(bus::WireEvents& events) {
   events_ = &events;
+  watch_.start(events);
   link_->start(*this);
 }
 
 void RtuWire::send(const bus::Exchange& exchange) {
-  assert(reported_up_ && !outstanding_);
+  assert(watch_.up() && !outstanding_);
   const bool broadcast = is_broadcast(exchange.node);
   assert(!broadcast || exchange.access == bus::Access::write);
   const Frame frame = request_of(exchange, node_of(exchange.node));
@@ -57,9 +58,14 @@ void RtuWire::abandon() {
   outstanding_.reset();
 }
 
+const bus::Statistics& RtuWire::statistics() const {
+  statistics_.reconnects = watch_.reconnects();
+  return statistics_;
+}
+
 void RtuWire::end(const bus::ExchangeResult& result) {
   outstanding_.reset();
-  if (reported_up_) events_->on_reply(result);  // last: the bus may send its next request from inside this call
+  if (watch_.up()) events_->on_reply(result);  // last: the bus may send its next request from inside this call
 }
 
 void RtuWire::broadcast_over() {
@@ -67,16 +73,13 @@ void RtuWire::broadcast_over() {
 }
 
 void RtuWire::on_link_up() {
-  link_up_ = true;
   outstanding_.reset();
-  noise_.clear();
-  if (!given_up_) report(true, "");
+  watch_.on_link_up();
 }
 
 void RtuWire::on_link_down(std::string_view why) {
-  link_up_ = false;
   outstanding_.reset();
-  report(false, why);
+  watch_.on_link_down(why);
 }
 
 void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
@@ -86,8 +89,7 @@ void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
     const auto* result = std::get_if<bus::ExchangeResult>(&judgement);
     if (result != nullptr && newest == outstanding_->number) {
       if (decode_) log_frame("<-", frame, describe_reply(frame));
-      noise_.clear();
-      reopens_ = 0;
+      watch_.on_answer();
       end(*result);
       return;
     }
@@ -98,51 +100,11 @@ void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
 }
 
 void RtuWire::on_bad_frame(ExchangeNumber, std::size_t bytes) {
-  const Instant now = runtime_.now();
   // A run of noise is one bad frame, in however many parts it is told.
-  if (!noise_.heard_lately(now)) ++statistics_.bad_frames;
+  if (!watch_.noisy()) ++statistics_.bad_frames;
   statistics_.dropped_bytes += static_cast<std::uint32_t>(bytes);
   if (decode_) log_.write(LogLevel::info, log_source_, fmt::format("<- {} bytes that are no frame", bytes));
-  noise_.on_noise(now);
-  if (!given_up_ && noise_.babbles(now)) on_babble();
-}
-
-void RtuWire::on_babble() {
-  static constexpr std::string_view kWhy =
-      "noise without a pause: wrong baud rate, another protocol, or a fault on the line";
-  noise_.clear();
-  if (reopens_ < kReopensInARow) {
-    ++reopens_;
-    link_->reopen(kWhy);
-    return;
-  }
-  given_up_ = true;
-  look_timer_->expires_at(runtime_.now() + kSecondLook);
-  abandon();
-  report(false, fmt::format("{}; opened anew {} times, waiting for silence", kWhy, kReopensInARow));
-}
-
-/// Of a line that was given up: still noisy, then it is opened anew; quiet, then it is taken back.
-void RtuWire::look_again() {
-  if (!given_up_) return;
-  if (link_up_ && !noise_.heard_lately(runtime_.now())) {
-    given_up_ = false;
-    reopens_ = 0;
-    report(true, "");
-    return;
-  }
-  look_timer_->expires_at(runtime_.now() + kSecondLook);
-  if (link_up_) link_->reopen("the line is still noisy");
-}
-
-void RtuWire::report(bool up, std::string_view why) {
-  if (up == std::exchange(reported_up_, up)) return;
-  if (!up) {
-    events_->on_wire_down(why);
-    return;
-  }
-  if (std::exchange(ever_up_, true)) ++statistics_.reconnects;
-  events_->on_wire_up();
+  watch_.on_noise();
 }
 
 bool RtuWire::is_broadcast(std::uint8_t unit) const {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "adapters/bus/noise_watch.hpp"
+#include "adapters/bus/line_watch.hpp"
 #include "adapters/bus/wire.hpp"
 #include "adapters/modbus_rtu/rtu_codec.hpp"
 #include "adapters/modbus_rtu/rtu_timing.hpp"
@@ -19,10 +19,6 @@ namespace axisgate::modbus_rtu {
 
 class RtuWire final : public bus::Wire, private RtuLinkEvents {
  public:
-  static constexpr int kReopensInARow = 3;
-  /// How often a line that was given up is looked at again.
-  static constexpr Duration kSecondLook = std::chrono::seconds(1);
-
   /// `name` is the bus's, for the log; `nodes` are its drives. `runtime` and `log` must outlive the wire.
   RtuWire(std::string name, std::vector<RtuNode> nodes, LineSpeed speed, std::unique_ptr<RtuLink> link,
           Runtime& runtime, const Log& log);
@@ -33,7 +29,7 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   /// has had the time to carry it.
   void send(const bus::Exchange& exchange) override;
   void abandon() override;
-  [[nodiscard]] const bus::Statistics& statistics() const override { return statistics_; }
+  [[nodiscard]] const bus::Statistics& statistics() const override;
   void set_decode(bool on) override { decode_ = on; }
 
  private:
@@ -50,9 +46,6 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
 
   void end(const bus::ExchangeResult& result);
   void broadcast_over();
-  void on_babble();
-  void look_again();
-  void report(bool up, std::string_view why);
   [[nodiscard]] bool is_broadcast(std::uint8_t unit) const;
   [[nodiscard]] const RtuNode& node_of(std::uint8_t unit) const;
   [[nodiscard]] bool knows(std::uint8_t unit) const;
@@ -66,17 +59,11 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   bus::WireEvents* events_ = nullptr;
   ExchangeNumber last_number_ = 0;
   std::optional<Outstanding> outstanding_;
-  bus::NoiseWatch noise_;
   bool decode_ = false;
-  bool link_up_ = false;
-  bool reported_up_ = false;
-  bool ever_up_ = false;
-  bool given_up_ = false;  ///< reported down for its noise, though the link is open
-  int reopens_ = 0;        ///< since the last answer
-  bus::Statistics statistics_;
+  mutable bus::Statistics statistics_;
   // Last, so that they go first: none may call into a wire that is half gone.
   std::unique_ptr<Timer> broadcast_timer_;
-  std::unique_ptr<Timer> look_timer_;
+  bus::LineWatch watch_;
   std::unique_ptr<RtuLink> link_;
 };
 

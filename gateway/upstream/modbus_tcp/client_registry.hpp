@@ -13,6 +13,7 @@
 #include "gateway/upstream/modbus_tcp/diagnostics.hpp"
 #include "gateway/upstream/modbus_tcp/edges.hpp"
 #include "gateway/upstream/modbus_tcp/listener_settings.hpp"
+#include "gateway/upstream/modbus_tcp/object_buffers.hpp"
 
 namespace axisgate::modbus_tcp {
 
@@ -60,6 +61,7 @@ struct Client {
   std::shared_ptr<Host> host;
   std::map<AxisNumber, ClientAxis> axes;  ///< those it has written to
   std::uint16_t heartbeat = 0;            ///< gateway register 8
+  ObjectBuffers objects;                  ///< function 43/13
 
   /// nullptr where it has written nothing to this axis yet.
   [[nodiscard]] const ClientAxis* find(AxisNumber axis) const;

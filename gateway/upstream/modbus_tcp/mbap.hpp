@@ -4,6 +4,7 @@
 // connection must close.
 #pragma once
 
+#include <boost/container/static_vector.hpp>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +16,9 @@ inline constexpr std::size_t kMbapSize = 7;       ///< transaction, protocol, le
 inline constexpr std::size_t kMaxPdu = 253;       ///< V1.1b3 section 4.1
 inline constexpr std::uint16_t kMinLength = 2;    ///< unit and a function code
 inline constexpr std::uint16_t kMaxLength = 254;  ///< unit and the largest PDU
+
+/// One to be sent.
+using Pdu = boost::container::static_vector<Byte, kMaxPdu>;
 
 struct Frame {
   std::uint16_t transaction = 0;

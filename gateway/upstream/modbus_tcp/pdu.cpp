@@ -69,8 +69,17 @@ Checked diagnostics(Bytes pdu, Request& request) {
   return {};
 }
 
+Checked general_reference(Bytes pdu, Request& request) {
+  request.reference = decode_reference(pdu);
+  if (!request.reference) return kBad;
+  const Bytes data = pdu.subspan(request.reference->data_at());
+  request.data.assign(data.begin(), data.end());
+  return {};
+}
+
 Checked encapsulated(Bytes pdu, Request& request) {
   if (pdu.size() < 2) return kBad;
+  if (pdu[1] == kGeneralReference) return general_reference(pdu, request);
   if (pdu[1] != kDeviceIdentification) return ModbusException::illegal_function;
   if (pdu.size() != 4 || pdu[2] < 1 || pdu[2] > 4) return kBad;
   request.identification = pdu[2];

@@ -5,10 +5,12 @@
 
 #include <boost/container/static_vector.hpp>
 #include <cstdint>
+#include <optional>
 #include <variant>
 
 #include "gateway/core/bytes.hpp"
 #include "gateway/core/error.hpp"
+#include "gateway/upstream/modbus_tcp/general_reference.hpp"
 #include "gateway/upstream/modbus_tcp/mbap.hpp"
 
 namespace axisgate::modbus_tcp {
@@ -43,14 +45,17 @@ struct Request {
   // What is written: functions 5, 6, 15, 16, 22 and 23.
   std::uint16_t write_address = 0;
   std::uint16_t write_count = 0;
-  /// Written registers, most significant byte first, or coils, eight a byte from bit 0; of function 8 the data.
+  /// Written registers, most significant byte first, or coils, eight a byte from bit 0; of function 8 the data; of
+  /// 43/13 what is written.
   boost::container::static_vector<Byte, kMaxPdu> data;
-  std::uint16_t and_mask = 0;       ///< 22
-  std::uint16_t or_mask = 0;        ///< 22
-  std::uint16_t sub_function = 0;   ///< 8
-  std::uint8_t identification = 0;  ///< 43/14: 1 basic, 2 regular, 3 extended, 4 one object
-  std::uint8_t object = 0;          ///< 43/14: where to begin, or which one
+  std::uint16_t and_mask = 0;                   ///< 22
+  std::uint16_t or_mask = 0;                    ///< 22
+  std::uint16_t sub_function = 0;               ///< 8
+  std::uint8_t identification = 0;              ///< 43/14: 1 basic, 2 regular, 3 extended, 4 one object
+  std::uint8_t object = 0;                      ///< 43/14: where to begin, or which one
+  std::optional<GeneralReference> reference{};  ///< 43/13
 
+  // Of the map; function 43/13 does neither.
   [[nodiscard]] bool reads() const { return read_count != 0; }
   [[nodiscard]] bool writes() const { return write_count != 0; }
   [[nodiscard]] bool writes_coils() const {
@@ -63,7 +68,6 @@ struct Request {
 /// `pdu`: 1..253 bytes. Exceptions: illegal_function, illegal_data_value for lengths and counts (6.x state diagrams).
 [[nodiscard]] std::variant<Request, ModbusException> decode_request(Bytes pdu);
 
-using Pdu = boost::container::static_vector<Byte, kMaxPdu>;
 /// `function` as it was in the request, known or not (section 7).
 [[nodiscard]] Pdu exception_pdu(std::uint8_t function, ModbusException exception);
 /// Answers of functions 5, 6, 15, 16 and 22 repeat the head of the request.

@@ -6,9 +6,13 @@
 
 #include "gateway/upstream/modbus_tcp/device_identification.hpp"
 #include "gateway/upstream/modbus_tcp/reads.hpp"
+#include "gateway/upstream/modbus_tcp/references.hpp"
 
 namespace axisgate::modbus_tcp {
 namespace {
+
+/// What is carried out by the command port, or may be; all else is answered from the image.
+bool is_carried_out(const Request& request) { return request.writes() || request.reference.has_value(); }
 
 /// "writes": "posted": what range, role, owner and queue checks found is the answer; what became of the write otherwise
 /// is told by registers 25, 26 and 30, so that FC 23 never loses its read to a link.
@@ -37,7 +41,7 @@ void Pipeline::accept(const Frame& frame, Instant now) {
   std::variant<Request, ModbusException> decoded = decode_request(frame.pdu);
   Request* const request = std::get_if<Request>(&decoded);
   // The common case, and the only one that must be quick: a read with nothing before it.
-  if (entries_.empty() && view && request != nullptr && !request->writes()) {
+  if (entries_.empty() && view && request != nullptr && !is_carried_out(*request)) {
     return send(frame.transaction, frame.unit, answer(*request, *view, now));
   }
   Entry& entry = entries_.emplace_back();
@@ -50,7 +54,7 @@ void Pipeline::accept(const Frame& frame, Instant now) {
   } else if (request == nullptr) {
     entry.reply = exception_pdu(frame.pdu[0], std::get<ModbusException>(decoded));
   } else {
-    entry.stage = request->writes() ? Stage::waiting : Stage::at_turn;
+    entry.stage = is_carried_out(*request) ? Stage::waiting : Stage::at_turn;
     entry.request = *request;
   }
   start_ready(now);
@@ -61,7 +65,7 @@ void Pipeline::accept(const Frame& frame, Instant now) {
 bool Pipeline::must_wait(std::size_t position) const {
   if (entries_[position].request.function != Function::mask_write_register) return false;
   for (std::size_t i = 0; i < position; ++i)
-    if (entries_[i].stage == Stage::running) return true;
+    if (entries_[i].is_running_write()) return true;
   return false;
 }
 
@@ -83,16 +87,22 @@ void Pipeline::start_ready(Instant now) {
 
 /// What the client asked for before it asked to stop must not be carried out after the stop.
 void Pipeline::drop_waiting_before(std::size_t stop) {
-  const AxisNumber axis = axis_of_write(entries_[stop].request, *entries_[stop].view, context_.image);
+  const AxisNumber axis = written_axis(entries_[stop]);
   for (std::size_t i = 0; i < stop; ++i) {
     Entry& entry = entries_[i];
-    if (entry.stage == Stage::waiting && axis_of_write(entry.request, *entry.view, context_.image) == axis) {
+    if (entry.stage == Stage::waiting && written_axis(entry) == axis) {
       finish(entry, {Errc::dropped_by_stop, 0});
     }
   }
 }
 
+AxisNumber Pipeline::written_axis(const Entry& entry) const {
+  return entry.request.reference ? axis_of_object_write(entry.request, *entry.view, context_.image)
+                                 : axis_of_write(entry.request, *entry.view, context_.image);
+}
+
 void Pipeline::start(Entry& entry, Instant now) {
+  if (entry.request.reference) return start_object(entry, now);
   Planned planned = plan_write(entry.request, *entry.view, onlooker(now), *client_);
   if (const Errc* const refused = std::get_if<Errc>(&planned)) {
     // The outcome table's "command_result 0": no older result may be taken for this write's.
@@ -118,22 +128,52 @@ void Pipeline::start(Entry& entry, Instant now) {
   }
 }
 
+/// "writes": "posted" changes nothing here: the reply is the only place that tells how it ended.
+void Pipeline::start_object(Entry& entry, Instant now) {
+  const ReferencePlan plan = plan_reference(entry.request, *entry.view, onlooker(now), *client_);
+  if (plan.refused != Errc::ok) return refuse(entry, modbus_exception(plan.refused));
+  entry.object_axis = plan.axis;
+  entry.stage = Stage::at_turn;
+  if (!plan.group) return;
+  entry.object_run = std::make_shared<ObjectRun>(client_, plan.axis);
+  entry.stage = Stage::running;
+  const auto at_once =
+      entry.object_run->start(context_.commands, *plan.group, [this, number = entry.number](const GroupResult& result) {
+        for (Entry& each : entries_)
+          if (each.number == number) finish_object(each, result);
+        on_result_(number, result.outcome);
+      });
+  if (at_once) finish_object(entry, *at_once);
+}
+
+/// Its reply, and what it does to the client's buffers, come at its turn.
+void Pipeline::finish_object(Entry& entry, const GroupResult& result) {
+  entry.object_run = nullptr;
+  entry.object_result = result;
+  entry.stage = Stage::at_turn;
+  log_failure(entry.request, result.outcome);
+}
+
 void Pipeline::finish(Entry& entry, const Outcome& outcome) {
   entry.run = nullptr;
-  if (outcome.code != Errc::ok) {
-    if (context_.log.wants(LogLevel::debug)) {
-      context_.log.write(LogLevel::debug, "modbus",
-                         "write to " + std::to_string(entry.request.write_address) + " ended: " +
-                             std::string(text(outcome.code)) + ", detail " + std::to_string(outcome.detail));
-    }
-    return refuse(entry, modbus_exception(outcome.code));
-  }
+  log_failure(entry.request, outcome);
+  if (outcome.code != Errc::ok) return refuse(entry, modbus_exception(outcome.code));
   if (entry.request.reads()) {
     entry.stage = Stage::at_turn;
     return;
   }
   entry.stage = Stage::answered;
   entry.reply = write_reply(entry.request);
+}
+
+void Pipeline::log_failure(const Request& request, const Outcome& outcome) const {
+  if (outcome.code == Errc::ok || !context_.log.wants(LogLevel::debug)) return;
+  const auto& reference = request.reference;
+  const std::string what = reference ? "object " + hex_text({reference->head.data(), reference->head.size()})
+                                     : "write to " + std::to_string(request.write_address);
+  context_.log.write(
+      LogLevel::debug, "modbus",
+      what + " ended: " + std::string(text(outcome.code)) + ", detail " + std::to_string(outcome.detail));
 }
 
 void Pipeline::refuse(Entry& entry, ModbusException exception) {
@@ -143,8 +183,8 @@ void Pipeline::refuse(Entry& entry, ModbusException exception) {
 
 void Pipeline::conclude(std::uint64_t number, const Outcome& outcome, Instant now) {
   for (Entry& entry : entries_) {
-    if (entry.number != number || entry.stage != Stage::running) continue;
-    finish(entry, outcome);
+    if (entry.number != number) continue;
+    if (entry.stage == Stage::running) finish(entry, outcome);
     start_ready(now);
     return flush(now);
   }
@@ -153,10 +193,16 @@ void Pipeline::conclude(std::uint64_t number, const Outcome& outcome, Instant no
 void Pipeline::flush(Instant now) {
   while (!entries_.empty() && entries_.front().stage >= Stage::at_turn) {
     Entry& first = entries_.front();
-    if (first.stage == Stage::at_turn) first.reply = answer(first.request, *first.view, now);
+    if (first.stage == Stage::at_turn) first.reply = answer(first, now);
     send(first.transaction, first.unit, first.reply);
     entries_.pop_front();
   }
+}
+
+Pdu Pipeline::answer(const Entry& entry, Instant now) const {
+  return entry.request.reference
+             ? answer_reference(entry.request, entry.object_axis, entry.object_result, *client_, now)
+             : answer(entry.request, *entry.view, now);
 }
 
 Pdu Pipeline::answer(const Request& request, const UnitView& view, Instant now) const {
@@ -178,8 +224,10 @@ void Pipeline::send(std::uint16_t transaction, std::uint8_t unit, const Pdu& rep
 
 void Pipeline::abandon() {
   context_.clients.counters.unanswered += static_cast<std::uint32_t>(entries_.size());
-  for (Entry& entry : entries_)
+  for (Entry& entry : entries_) {
     if (entry.run != nullptr) entry.run->abandon();
+    if (entry.object_run != nullptr) entry.object_run->abandon();
+  }
   entries_.clear();
 }
 

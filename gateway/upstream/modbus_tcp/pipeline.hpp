@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "gateway/upstream/modbus_tcp/mbap.hpp"
+#include "gateway/upstream/modbus_tcp/object_run.hpp"
 #include "gateway/upstream/modbus_tcp/pdu.hpp"
 #include "gateway/upstream/modbus_tcp/session.hpp"
 #include "gateway/upstream/modbus_tcp/unit_view.hpp"
@@ -18,8 +19,8 @@ namespace axisgate::modbus_tcp {
 class Pipeline {
  public:
   using Emit = std::function<void(std::uint16_t transaction, std::uint8_t unit, const Pdu& reply)>;
-  /// `on_result` is called with the number of a request whose write has ended, never from inside accept() or
-  /// carry_out().
+  /// `on_result` is called with the number of a request whose write, or whose object, has ended, never from inside
+  /// accept().
   using OnResult = std::function<void(std::uint64_t number, const Outcome& outcome)>;
 
   Pipeline(const SessionContext& context, Role role, std::shared_ptr<Client> client, Emit emit, OnResult on_result);
@@ -30,15 +31,15 @@ class Pipeline {
   [[nodiscard]] std::size_t under_way() const { return entries_.size(); }
   /// Only while under_way() < kMaxPipelined.
   void accept(const Frame& frame, Instant now);
-  /// The end of a write, as on_result told it. Unknown numbers are harmless.
+  /// The end of a request, as on_result told it. Unknown numbers are harmless.
   void conclude(std::uint64_t number, const Outcome& outcome, Instant now);
   /// Nobody is left to answer.
   void abandon();
 
  private:
   enum class Stage : std::uint8_t {
-    waiting,   ///< a write that has not begun
-    running,   ///< a write in the command port
+    waiting,   ///< a write, or a function 43/13, that has not begun
+    running,   ///< in the command port
     at_turn,   ///< answered when all before it are: the newest values, and the effect of its own write (FC 23)
     answered,  ///< the reply stands
   };
@@ -51,15 +52,29 @@ class Pipeline {
     Request request;
     Pdu reply;
     std::shared_ptr<WriteRun> run;
+    // Of function 43/13.
+    std::shared_ptr<ObjectRun> object_run;
+    AxisNumber object_axis = 0;
+    std::optional<GroupResult> object_result;
+
+    /// What has to have ended before a value is masked.
+    [[nodiscard]] bool is_running_write() const {
+      return stage == Stage::running && !(request.reference && !request.reference->write);
+    }
   };
 
   void start_ready(Instant now);
   [[nodiscard]] bool must_wait(std::size_t position) const;
   void drop_waiting_before(std::size_t stop);
   void start(Entry& entry, Instant now);
+  void start_object(Entry& entry, Instant now);
   void finish(Entry& entry, const Outcome& outcome);
+  void finish_object(Entry& entry, const GroupResult& result);
+  void log_failure(const Request& request, const Outcome& outcome) const;
   void refuse(Entry& entry, ModbusException exception);
   void flush(Instant now);
+  [[nodiscard]] AxisNumber written_axis(const Entry& entry) const;
+  [[nodiscard]] Pdu answer(const Entry& entry, Instant now) const;
   [[nodiscard]] Pdu answer(const Request& request, const UnitView& view, Instant now) const;
   [[nodiscard]] Onlooker onlooker(Instant now) const;
   void send(std::uint16_t transaction, std::uint8_t unit, const Pdu& reply);

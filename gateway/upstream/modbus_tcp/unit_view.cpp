@@ -39,4 +39,9 @@ std::optional<UnitView::BitPlace> UnitView::place_bit(std::uint32_t address, con
   return BitPlace{image.find(place->number), place->offset};
 }
 
+const AxisImage* UnitView::axis_of_node(std::uint16_t node, const ProcessImage& image) const {
+  if (only_axis_ == 0) return image.find(node);
+  return node == 0 || node == only_axis_ ? image.find(only_axis_) : nullptr;
+}
+
 }  // namespace axisgate::modbus_tcp

@@ -33,6 +33,10 @@ class UnitView {
   /// Coils and discrete inputs exist in the blocks of axes only.
   [[nodiscard]] std::optional<BitPlace> place_bit(std::uint32_t address, const ProcessImage& image) const;
 
+  /// The axis that function 43/13 names by its node number; nullptr: there is none here. In a view of one axis, node 0
+  /// is that axis too.
+  [[nodiscard]] const AxisImage* axis_of_node(std::uint16_t node, const ProcessImage& image) const;
+
  private:
   explicit UnitView(AxisNumber only_axis) : only_axis_(only_axis) {}
   AxisNumber only_axis_;  ///< 0: the flat map

@@ -12,10 +12,15 @@ bool did_nothing(Errc code) {
          command_result(code) != CommandResult::outcome_unknown;
 }
 
-/// For register 88: the drive's code, or the exception that says why there is none.
-std::uint32_t object_detail(const Outcome& outcome) {
-  if (outcome.code == Errc::ok) return 0;
-  return outcome.detail != 0 ? outcome.detail : static_cast<std::uint32_t>(modbus_exception(outcome.code));
+/// CiA 301: "length of service parameter does not match". The object is longer than registers 84 and 85.
+constexpr std::uint32_t kAbortLength = 0x06070010;
+
+/// For register 88: the drive's own code (an abort code on CANopen), else one for it, else the exception that says why
+/// there is none.
+std::uint32_t object_detail(const GroupResult& result) {
+  if (result.outcome.code == Errc::ok) return 0;
+  if (result.outcome.detail != 0) return result.outcome.detail;
+  return result.abort_code != 0 ? result.abort_code : static_cast<std::uint32_t>(modbus_exception(result.outcome.code));
 }
 
 }  // namespace
@@ -110,14 +115,17 @@ void WriteRun::settle_object(const GroupResult& result) {
   if (axis == nullptr) return;
   Mailbox& box = axis->mailbox;
   const bool done = result.outcome.code == Errc::ok;
-  box.status = done ? ObjectStatus::done : ObjectStatus::failed;
-  box.detail = object_detail(result.outcome);
-  if (done && plan_.object->object && !plan_.object->object->write) box.data = result.object_data;
+  const bool too_long = done && (result.object_size > 4 || result.object_bytes != nullptr);
+  box.status = done && !too_long ? ObjectStatus::done : ObjectStatus::failed;
+  box.detail = too_long ? kAbortLength : object_detail(result);
+  if (box.status == ObjectStatus::done && plan_.object->object && !plan_.object->object->write) {
+    box.data = result.object_data;
+  }
 }
 
 /// The mailbox was promised an end when the request was taken; a failure before its turn is that end.
 Outcome WriteRun::end(const Outcome& outcome) {
-  if (plan_.object) settle_object({outcome, 0, 0});
+  if (plan_.object) settle_object({outcome});
   return outcome;
 }
 

@@ -133,6 +133,28 @@ TEST(ModbusServer, RequestsBehindASlowWriteAreStartedOnArrivalUpToTheBound) {
   for (std::uint16_t i = 0; i < 6; ++i) EXPECT_EQ(client.receive(12), write_request(i, kTargetTorqueOfAxis1, i));
 }
 
+TEST(ModbusServer, ServesAnObjectInPartsWhenItsDriveHasSentIt) {
+  Served served;
+  served.port.answers_at_once = false;
+  served.start();
+  TestClient client(served);
+  // 1008h:0 of axis 1, from its begin and from behind what one reply holds.
+  client.send({0, 1, 0, 0, 0, 13, 0xFF, 0x2B, 0x0D, 0, 0, 1, 0x10, 0x08, 0, 0, 0, 0, 0});
+  client.send({0, 2, 0, 0, 0, 13, 0xFF, 0x2B, 0x0D, 0, 0, 1, 0x10, 0x08, 0, 0, 0xF1, 0, 0});
+  ASSERT_TRUE(served.await([&] { return served.port.submitted.size() == 1; }));
+  served.settle();
+  EXPECT_EQ(client.received_so_far(), 0U);
+
+  GroupResult result;
+  result.object_bytes = std::make_shared<const std::vector<Byte>>(243, Byte{'x'});
+  served.port.submitted[0].on_result(result);
+  std::vector<Byte> first{0, 1, 0, 0, 0, 254, 0xFF, 0x2B, 0x0D, 0x80, 0, 1, 0x10, 0x08, 0, 0, 0, 0, 0xF1};
+  first.resize(first.size() + 241, 'x');
+  EXPECT_EQ(client.receive(first.size()), first);
+  EXPECT_EQ(client.receive(21),
+            (std::vector<Byte>{0, 2, 0, 0, 0, 15, 0xFF, 0x2B, 0x0D, 0, 0, 1, 0x10, 0x08, 0, 0, 0xF1, 0, 2, 'x', 'x'}));
+}
+
 TEST(ModbusServer, AResultThatComesAfterItsClientLeftReachesNobody) {
   Served served;
   served.port.answers_at_once = false;

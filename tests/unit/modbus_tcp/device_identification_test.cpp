@@ -92,9 +92,5 @@ TEST(IdentificationStreams, ContinueWhereOnePduIsFull) {
   EXPECT_EQ(seen, objects.size());
 }
 
-TEST_F(Identification, GeneralReferenceIsOfAnotherVersion) {
-  EXPECT_EQ(plc.ask("2B 0D 00 00 01 10 08 00 00 00 00 00"), "AB 01");
-}
-
 }  // namespace
 }  // namespace axisgate::modbus_tcp::test

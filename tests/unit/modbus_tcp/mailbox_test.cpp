@@ -57,6 +57,22 @@ TEST_F(MailboxOfObjects, FailsWithTheExceptionWhereTheDriveGaveNoCode) {
   EXPECT_EQ(plc.read(186, 4), "00 03 00 00 00 00 00 0B");
 }
 
+TEST_F(MailboxOfObjects, FailsWithTheAbortCodeWhereTheDriveHasNoCodeOfItsOwn) {
+  EXPECT_TRUE(is_done(plc.write_block(180, "00 01 60 64 00 00 00 04")));
+  GroupResult refused{{Errc::refused_by_drive, 0}};
+  refused.abort_code = 0x08000000;
+  desk.port.finish_with(refused);
+  EXPECT_EQ(plc.read(186, 4), "00 03 00 00 08 00 00 00");
+}
+
+TEST_F(MailboxOfObjects, HasNoRoomForAnObjectOfMoreThanFourBytes) {
+  EXPECT_TRUE(is_done(plc.write_block(180, "00 01 10 08 00 00 00 04 00 00 00 07")));
+  GroupResult text;
+  text.object_bytes = std::make_shared<const std::vector<Byte>>(9, Byte{'x'});
+  desk.port.finish_with(text);
+  EXPECT_EQ(plc.read(184, 6), "00 00 00 07 00 03 00 00 06 07 00 10") << "length of service parameter too high";
+}
+
 TEST_F(MailboxOfObjects, IsToldAtOnceWhatIsKnownAtOnce) {
   desk.port.at_once = {{{Errc::offline, 0}, 0, 0}};
   EXPECT_EQ(plc.write_block(180, "00 01 60 64 00 00 00 04"), "90 0A");

@@ -136,7 +136,9 @@ TEST(Pdu, ChecksDiagnosticsAndIdentification) {
       {"2B 0E 05 00", illegal_data_value},
       {"2B 0E 01", illegal_data_value},
       {"2B 0E 01 00 00", illegal_data_value},
-      {"2B 0D 00 00 01 10 08 00 00 00 00 00", illegal_function},
+      {"2B 0D 00 00 01 10 08 00 00 00 00 00", none},
+      {"2B 0D 00 00 01 10 08 00 00 00 00", illegal_data_value},
+      {"2B 0D", illegal_data_value},
       {"2B 0F", illegal_function},
       {"2B", illegal_data_value},
   };

@@ -57,6 +57,13 @@ TEST(Roles, TheMailboxReadsForEveryoneAndWritesForTheEngineer) {
   EXPECT_EQ(who_may_write(181, "60 64"), "voe");
 }
 
+TEST(Roles, Function4313ReadsForEveryoneAndWritesForTheEngineer) {
+  EXPECT_EQ(who_may("2B 0D 00 00 01 60 64 00 00 00 00 00"), "voe");
+  EXPECT_EQ(who_may("2B 0D 01 00 01 60 64 00 00 00 00 02 01 02"), "e");
+  EXPECT_EQ(who_may("2B 0D 81 00 01 60 64 00 00 00 00 02 01 02"), "e") << "a part of a write";
+  EXPECT_EQ(who_may("2B 0D 01 00 63 60 64 00 00 00 00 02 01 02"), "e") << "whatever the axis";
+}
+
 TEST(Roles, WhoeverMayNotIsToldSoWhateverTheAddress) {
   for (const int address : {100, 143, 157, 186, 300, 0, 60010, 65535}) {
     EXPECT_EQ(who_may("06" + word(address) + "00 01"), "oe") << address;

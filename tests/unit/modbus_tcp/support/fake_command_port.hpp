@@ -44,9 +44,12 @@ class FakeCommandPort final : public CommandPort {
 
   /// The oldest waiting group ends.
   void finish(const Outcome& outcome = {}, std::uint32_t data = 0, std::uint8_t size = 0) {
+    finish_with({outcome, data, size});
+  }
+  void finish_with(const GroupResult& result) {
     const GroupCallback callback = std::move(waiting.front());
     waiting.pop_front();
-    callback({outcome, data, size});
+    callback(result);
   }
   /// Takes the record of what was submitted.
   [[nodiscard]] std::vector<Submitted> taken() { return std::exchange(submitted, {}); }

@@ -1,0 +1,225 @@
+// Function 43/13 with objects that do not fit a PDU: read in parts from one fetch, written in parts as one download.
+#include <gtest/gtest.h>
+
+#include "tests/unit/modbus_tcp/support/desk.hpp"
+
+namespace axisgate::modbus_tcp::test {
+namespace {
+
+std::vector<Byte> long_content(std::size_t size) {
+  std::vector<Byte> bytes(size);
+  for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<Byte>(i * 7 + i / 256);
+  return bytes;
+}
+
+class LongObjects : public ::testing::Test {
+ protected:
+  static std::string read_at(std::size_t start, std::size_t count = 0, const std::string& object = "10 08 00") {
+    return "2B 0D 00 00 01" + object + word(static_cast<std::int64_t>(start)) + word(static_cast<std::int64_t>(count));
+  }
+  static std::string write_at(const std::string& control, std::size_t start, const std::vector<Byte>& data,
+                              const std::string& object = "20 30 00") {
+    return "2B 0D" + control + "00 01" + object + word(static_cast<std::int64_t>(start)) +
+           word(static_cast<std::int64_t>(data.size())) + hex_text(data);
+  }
+  static GroupResult holds(const std::vector<Byte>& content) {
+    GroupResult result;
+    result.object_bytes = std::make_shared<const std::vector<Byte>>(content);
+    return result;
+  }
+  std::string fetch(const std::vector<Byte>& content, std::size_t count = 0) {
+    desk.port.at_once = {holds(content)};
+    return plc.ask(read_at(0, count));
+  }
+  /// As a client would: on and on while the extend flag is there.
+  std::vector<Byte> read_all(const std::vector<Byte>& content, std::size_t step) {
+    std::vector<Byte> out;
+    std::string reply = fetch(content, step);
+    for (int parts = 0; parts < 5000; ++parts) {
+      const auto pdu = bytes(reply);
+      EXPECT_LE(pdu.size(), kMaxPdu);
+      if (pdu.size() < 12 || pdu[0] != 0x2B) break;
+      EXPECT_EQ(load_be16(pdu, 10), pdu.size() - 12);
+      out.insert(out.end(), pdu.begin() + 12, pdu.end());
+      if ((pdu[2] & 0x80) == 0) return out;
+      reply = plc.ask(read_at(out.size(), step));
+    }
+    ADD_FAILURE() << "no end: " << reply;
+    return out;
+  }
+  const ObjectRequest& last() { return desk.port.submitted.back().group.object.value(); }
+  Desk desk;
+  Line plc{desk};
+};
+
+TEST_F(LongObjects, AreReadInPartsWithOneFetch) {
+  for (const std::size_t size : {241U, 242U, 300U, 482U, 483U, 4096U}) {
+    for (const std::size_t step : {0U, 1U, 100U, 241U, 1000U}) {
+      SCOPED_TRACE(std::to_string(size) + " in steps of " + std::to_string(step));
+      static_cast<void>(desk.port.taken());
+      const auto content = long_content(size);
+      EXPECT_EQ(read_all(content, step), content);
+      EXPECT_EQ(desk.port.submitted.size(), 1U);
+    }
+  }
+}
+
+TEST_F(LongObjects, TellByTheExtendFlagThatMoreFollows) {
+  const auto whole = long_content(241);
+  EXPECT_EQ(fetch(whole).substr(0, 8), "2B 0D 00") << "just fits";
+  const auto longer = long_content(300);
+  EXPECT_EQ(fetch(longer), "2B 0D 80 00 01 10 08 00 00 00 00 F1 " + hex_text(Bytes(longer).first(241)));
+  EXPECT_EQ(plc.ask(read_at(241)), "2B 0D 00 00 01 10 08 00 00 F1 00 3B " + hex_text(Bytes(longer).subspan(241)));
+  EXPECT_EQ(plc.ask(read_at(299)), "2B 0D 00 00 01 10 08 00 01 2B 00 01 " + hex_text(Bytes(longer).subspan(299)))
+      << "any part, again";
+  EXPECT_EQ(plc.ask(read_at(10, 2)), "2B 0D 80 00 01 10 08 00 00 0A 00 02 " + hex_text(Bytes(longer).subspan(10, 2)));
+}
+
+TEST_F(LongObjects, OptionsInTheHeaderTakeTheirRoomFromTheData) {
+  desk.port.at_once = {holds(long_content(300))};
+  const auto pdu = bytes(plc.ask("2B 0D 26 00 07 00 50 01 10 08 00 00 00 00 00"));
+  ASSERT_EQ(pdu.size(), kMaxPdu);
+  EXPECT_EQ(pdu[2], 0xA6);
+  EXPECT_EQ(load_be16(pdu, 13), 238);
+}
+
+TEST_F(LongObjects, ShortOnesMayBeReadInPartsToo) {
+  desk.port.at_once = {{{}, 0x44332211, 4}};
+  EXPECT_EQ(plc.ask(read_at(0, 2)), "2B 0D 80 00 01 10 08 00 00 00 00 02 11 22");
+  EXPECT_EQ(plc.ask(read_at(2, 2)), "2B 0D 00 00 01 10 08 00 00 02 00 02 33 44");
+}
+
+TEST_F(LongObjects, AHigherStartWithoutAFetchIs0x03) {
+  EXPECT_EQ(plc.ask(read_at(1)), "AB 03");
+  static_cast<void>(fetch(long_content(300)));
+  EXPECT_EQ(plc.ask(read_at(300)), "AB 03") << "behind the end";
+  EXPECT_EQ(plc.ask(read_at(65535)), "AB 03");
+  EXPECT_EQ(plc.ask(read_at(241, 0, "10 08 01")), "AB 03") << "another object";
+  EXPECT_EQ(plc.ask("2B 0D 00 00 02 10 08 00 00 F1 00 00"), "AB 03") << "another axis";
+  EXPECT_EQ(desk.port.submitted.size(), 1U);
+  Line panel(desk, Role::viewer, kPanel);
+  EXPECT_EQ(panel.ask(read_at(241)), "AB 03") << "another client";
+}
+
+TEST_F(LongObjects, AreKeptFor5s) {
+  static_cast<void>(fetch(long_content(300)));
+  desk.runtime.advance_by(4999ms);
+  EXPECT_TRUE(is_done(plc.ask(read_at(241))));
+  desk.runtime.advance_by(1ms);
+  EXPECT_EQ(plc.ask(read_at(241)), "AB 03");
+}
+
+TEST_F(LongObjects, AreForgottenWhenAFetchFailsOrTheyAreWritten) {
+  static_cast<void>(fetch(long_content(300)));
+  desk.port.at_once = {{{Errc::timed_out, 0}}};
+  EXPECT_EQ(plc.ask(read_at(0)), "AB 0B");
+  EXPECT_EQ(plc.ask(read_at(241)), "AB 03") << "it may have changed since";
+  static_cast<void>(fetch(long_content(300)));
+  EXPECT_TRUE(is_done(plc.ask(write_at("01", 0, {1}, "10 08 00"))));
+  EXPECT_EQ(plc.ask(read_at(241)), "AB 03");
+}
+
+TEST_F(LongObjects, MayBeAskedForInOneGo) {
+  desk.port.slow = true;
+  const auto first = long_content(300);
+  const auto second = std::vector<Byte>(300, 0xEE);
+  plc.send(read_at(0));
+  plc.send(read_at(241));
+  plc.send(read_at(0));
+  plc.send(read_at(241));
+  ASSERT_EQ(desk.port.waiting.size(), 2U);
+  std::swap(desk.port.waiting[0], desk.port.waiting[1]);
+  desk.port.finish_with(holds(second));
+  desk.port.finish_with(holds(first));
+  EXPECT_EQ(plc.reply(), "2B 0D 80 00 01 10 08 00 00 00 00 F1 " + hex_text(Bytes(first).first(241)));
+  EXPECT_EQ(plc.reply(), "2B 0D 00 00 01 10 08 00 00 F1 00 3B " + hex_text(Bytes(first).subspan(241)))
+      << "of the fetch before it, though a newer one has ended";
+  EXPECT_EQ(plc.reply(), "2B 0D 80 00 01 10 08 00 00 00 00 F1 " + hex_text(Bytes(second).first(241)));
+  EXPECT_EQ(plc.reply(), "2B 0D 00 00 01 10 08 00 00 F1 00 3B " + hex_text(Bytes(second).subspan(241)));
+}
+
+TEST_F(LongObjects, AreWrittenInPartsAndDownloadedAtTheLast) {
+  const auto content = long_content(500);
+  const auto part = [&](std::size_t from, std::size_t count) {
+    return std::vector<Byte>(content.begin() + static_cast<std::ptrdiff_t>(from),
+                             content.begin() + static_cast<std::ptrdiff_t>(from + count));
+  };
+  EXPECT_EQ(plc.ask(write_at("81", 0, part(0, 241))), "2B 0D 81 00 01 20 30 00 00 00 00 00");
+  EXPECT_EQ(plc.ask(write_at("81", 241, part(241, 241))), "2B 0D 81 00 01 20 30 00 00 F1 00 00");
+  EXPECT_TRUE(desk.port.submitted.empty());
+  EXPECT_EQ(plc.ask(write_at("01", 482, part(482, 18))), "2B 0D 01 00 01 20 30 00 01 E2 00 00");
+  ASSERT_EQ(desk.port.submitted.size(), 1U);
+  EXPECT_EQ(last().size, 0);
+  ASSERT_NE(last().bytes, nullptr);
+  EXPECT_EQ(*last().bytes, content);
+}
+
+TEST_F(LongObjects, OfFourBytesInTwoPartsAreANumber) {
+  EXPECT_TRUE(is_done(plc.ask(write_at("81", 0, {0x10, 0x27}))));
+  EXPECT_TRUE(is_done(plc.ask(write_at("01", 2, {0, 0}))));
+  EXPECT_EQ(last().size, 4);
+  EXPECT_EQ(last().data, 10000U);
+}
+
+TEST_F(LongObjects, OfUpTo4KiBAreWritten) {
+  const auto content = long_content(4096);
+  std::size_t at = 0;
+  for (; at + 240 < content.size(); at += 240) {
+    const auto from = content.begin() + static_cast<std::ptrdiff_t>(at);
+    ASSERT_TRUE(is_done(plc.ask(write_at("81", at, {from, from + 240}))));
+  }
+  const std::vector<Byte> rest(content.begin() + static_cast<std::ptrdiff_t>(at), content.end());
+  EXPECT_TRUE(is_done(plc.ask(write_at("81", at, rest)))) << "full";
+  EXPECT_EQ(plc.ask(write_at("01", 4096, {1})), "AB 03");
+  EXPECT_TRUE(desk.port.submitted.empty());
+  for (at = 0; at + 240 < content.size(); at += 240) {
+    const auto from = content.begin() + static_cast<std::ptrdiff_t>(at);
+    ASSERT_TRUE(is_done(plc.ask(write_at("81", at, {from, from + 240}))));
+  }
+  EXPECT_TRUE(is_done(plc.ask(write_at("01", at, rest))));
+  EXPECT_EQ(*last().bytes, content);
+}
+
+TEST_F(LongObjects, PartsThatDoNotFitTogetherAre0x03AndAllIsDropped) {
+  const auto begin = [&] { EXPECT_TRUE(is_done(plc.ask(write_at("81", 0, {1, 2})))); };
+  const auto is_dropped = [&] { EXPECT_EQ(plc.ask(write_at("01", 2, {3})), "AB 03"); };
+  EXPECT_EQ(plc.ask(write_at("81", 2, {3})), "AB 03") << "no beginning";
+  begin();
+  EXPECT_EQ(plc.ask(write_at("81", 3, {3})), "AB 03") << "a gap";
+  is_dropped();
+  begin();
+  EXPECT_EQ(plc.ask(write_at("01", 1, {3})), "AB 03") << "an overlap";
+  is_dropped();
+  begin();
+  EXPECT_EQ(plc.ask(write_at("01", 2, {3}, "20 30 01")), "AB 03") << "another object";
+  is_dropped();
+  begin();
+  desk.runtime.advance_by(5s);
+  is_dropped();
+  EXPECT_TRUE(desk.port.submitted.empty());
+}
+
+TEST_F(LongObjects, PartsOfTwoClientsNeverMeet) {
+  Line other(desk, Role::engineer, kPanel);
+  EXPECT_TRUE(is_done(plc.ask(write_at("81", 0, {1, 2}))));
+  EXPECT_EQ(other.ask(write_at("01", 2, {9})), "AB 03");
+  EXPECT_TRUE(is_done(plc.ask(write_at("01", 2, {3}))));
+  EXPECT_EQ(hex_text(*last().bytes), "01 02 03");
+}
+
+TEST_F(LongObjects, PartsMayBeSentInOneGo) {
+  desk.port.slow = true;
+  plc.send(write_at("81", 0, {1, 2}));
+  plc.send(write_at("81", 2, {3, 4}));
+  plc.send(write_at("01", 4, {5}));
+  ASSERT_EQ(desk.port.submitted.size(), 1U);
+  EXPECT_EQ(hex_text(*last().bytes), "01 02 03 04 05");
+  EXPECT_TRUE(is_done(plc.reply()));
+  EXPECT_TRUE(is_done(plc.reply()));
+  EXPECT_EQ(plc.reply(), "") << "the last is answered by the drive";
+  desk.port.finish();
+  EXPECT_TRUE(is_done(plc.reply()));
+}
+
+}  // namespace
+}  // namespace axisgate::modbus_tcp::test
