@@ -12,7 +12,7 @@
 #include "gateway/app/config_loader.hpp"
 #include "gateway/app/faults_told.hpp"
 #include "gateway/app/gateway.hpp"
-#include "gateway/app/serial_wires.hpp"
+#include "gateway/app/device_wires.hpp"
 #include "gateway/app/stderr_log.hpp"
 
 namespace axisgate::app {
@@ -44,7 +44,7 @@ class Workbench {
     Config alone;
     alone.file = config.file;
     alone.buses = {config.buses[bus]};
-    gateway_ = std::make_unique<Gateway>(alone, Models{models[bus]}, runtime_, log_, serial_wires(io_, runtime_, log_));
+    gateway_ = std::make_unique<Gateway>(alone, Models{models[bus]}, runtime_, log_, device_wires(io_, runtime_, log_));
     gateway_->start();
   }
   [[nodiscard]] Gateway& gateway() { return *gateway_; }

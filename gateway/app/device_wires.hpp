@@ -10,6 +10,6 @@
 namespace axisgate::app {
 
 /// Everything passed by reference must outlive the wires that are made.
-[[nodiscard]] MakeWire serial_wires(boost::asio::io_context& io, Runtime& runtime, const Log& log);
+[[nodiscard]] MakeWire device_wires(boost::asio::io_context& io, Runtime& runtime, const Log& log);
 
 }  // namespace axisgate::app

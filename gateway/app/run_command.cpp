@@ -15,7 +15,7 @@
 #include "gateway/app/faults_told.hpp"
 #include "gateway/app/gateway.hpp"
 #include "gateway/app/loop_watch.hpp"
-#include "gateway/app/serial_wires.hpp"
+#include "gateway/app/device_wires.hpp"
 #include "gateway/app/stderr_log.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
 #include "gateway/upstream/modbus_tcp/descriptors.hpp"
@@ -45,7 +45,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not
   const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(descriptor_needs(loaded.config));
   modbus_tcp::ClientRegistry clients;
-  Gateway gateway(loaded.config, std::move(loaded.models), runtime, log, serial_wires(io, runtime, log));
+  Gateway gateway(loaded.config, std::move(loaded.models), runtime, log, device_wires(io, runtime, log));
   modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log);
   try {
     server.start(descriptors);

@@ -61,8 +61,11 @@ AxisFacts AxisCore::facts() const {
   facts.statusword_exchange = status.exchange;
   facts.target_reached = (word & statusword::kTargetReached) != 0;
   facts.mode = mode_in_force();
-  facts.reference = is_virtual() ? machine.homing_attained() : holds(*this, model.homed);
-  facts.homing_failed = is_virtual() ? machine.homing_failed() : holds(*this, model.homing_failed);
+  facts.acknowledges = model.cia402.setpoint_acknowledge;
+  facts.reference_tells = !model.homed_mode || facts.mode == *model.homed_mode;
+  facts.reference = is_virtual() ? machine.homing_attained() : facts.reference_tells && holds(*this, model.homed);
+  facts.homing_failed =
+      is_virtual() ? machine.homing_failed() : facts.reference_tells && holds(*this, model.homing_failed);
   facts.motion_failed = machine.motion_failed();
   if (model.moving) {
     facts.moving = holds(*this, model.moving);

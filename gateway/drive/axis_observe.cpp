@@ -17,8 +17,8 @@ void Axis::observe(Instant now) {
   if (core_.link == LinkState::online && core_.model.homed && core_.store[core_.model.homed->object].held) {
     if (facts.reference && !homing) core_.homed = true;
     // A drive that was silent and has lost its reference since has restarted, too quickly to go offline.
-    if (reference_doubted_ && !facts.reference) core_.homed = false;
-    reference_doubted_ = false;
+    if (reference_doubted_ && facts.reference_tells && !facts.reference) core_.homed = false;
+    reference_doubted_ = reference_doubted_ && !facts.reference_tells;
   }
   bool clamped = false;
   for (const Binding& binding : core_.model.bindings)

@@ -107,6 +107,41 @@ std::optional<Rational> value_of(const DriveConstant& constant,
   return std::nullopt;
 }
 
+namespace {
+
+/// What it writes, once every constant it waits for is known.
+std::optional<std::int64_t> raw_of(const FactoryWrite& write, const DriveModel& model,
+                                   const std::function<std::optional<std::int64_t>(ObjectId)>& number_of) {
+  try {
+    Rational scale = write.recipe.fixed;
+    for (const auto& [names, divides] : {std::pair(&write.recipe.mul, false), std::pair(&write.recipe.div, true)}) {
+      for (const std::size_t name : *names) {
+        const std::optional<Rational> factor = value_of(model.constants[name], number_of);
+        if (!factor || factor->numerator() <= 0) return std::nullopt;
+        scale = divides ? scale / *factor : scale * *factor;
+      }
+    }
+    const std::optional<std::int64_t> raw = (write.amount * scale).scale(1);
+    return raw && write.recipe.raw.holds(*raw) ? raw : std::nullopt;
+  } catch (const std::overflow_error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::vector<ObjectWrite> setup_writes(const DriveModel& model,
+                                      const std::function<std::optional<std::int64_t>(ObjectId)>& number_of) {
+  std::vector<ObjectWrite> out = model.setup;
+  for (const FactoryWrite& write : model.factory_writes) {
+    const std::optional<std::int64_t> held = number_of(write.object);
+    if (!held || std::find(write.instead_of.begin(), write.instead_of.end(), *held) == write.instead_of.end()) continue;
+    const std::optional<std::int64_t> raw = raw_of(write, model, number_of);
+    if (raw && *raw != *held) out.push_back({write.object, *raw, write.why});
+  }
+  return out;
+}
+
 ObjectId DriveModel::find(bus::ObjectAddress address) const {
   const auto at = std::find_if(objects.begin(), objects.end(), [&](const ObjectDef& candidate) {
     return !candidate.made && candidate.address == address;

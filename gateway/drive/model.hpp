@@ -40,7 +40,7 @@ struct ObjectDef {
   bool trigger = false;  ///< the write itself starts something: never skipped as unchanged, never repeated
   /// Nobody has printed its width: read with Exchange::size 0 it is as wide as the drive answers, `size` at most.
   bool any_width = false;
-  bool made = false;     ///< not in the drive: statusword, controlword and mode of a virtual axis (virtual_axis.hpp)
+  bool made = false;  ///< not in the drive: statusword, controlword and mode of a virtual axis (virtual_axis.hpp)
   Nvm nvm = Nvm::no;
   /// The low `size` bytes as the number they stand for.
   [[nodiscard]] std::int64_t number(std::uint32_t raw) const;
@@ -245,6 +245,7 @@ struct AxisModel {
   /// Velocity and torque set-points that must hold 0 before torque comes on, those without a known unit included: 0 is
   /// 0 in any unit (Kinco's current set-points, where no rated current was configured).
   std::vector<ObjectId> zero_before_enable;
+  std::optional<int> homed_mode{};  ///< `homed` and `homing_failed` mean that in this mode alone; none: in all
   std::optional<Condition> homed;
   std::optional<Condition> homing_failed;
   std::optional<Condition> moving;  ///< absent: velocity_actual above standstill_velocity
@@ -290,6 +291,7 @@ struct TpdoFacts {
   std::vector<ObjectId> map;                ///< 8 bytes at most; what the drive refuses to map is polled
   std::uint8_t type = 255;                  ///< transmission type, sub 2
   std::optional<std::uint16_t> inhibit{};   ///< sub 3, as this drive counts; none: left alone
+  Duration inhibit_time{};                  ///< what `inhibit` comes to; 0: nothing keeps it from coming at each change
   std::optional<std::uint16_t> event_ms{};  ///< sub 5; none: the drive is not said to have one
 };
 

@@ -1,5 +1,6 @@
 #include "gateway/drive/motion.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 namespace axisgate::drive {
@@ -8,6 +9,9 @@ namespace {
 // A reference bit may still stand from the homing before, and no sheet says when it falls: homing counts as attained
 // when the bit is set and the axis stands, this long after the start at the earliest.
 constexpr Duration kHomingSettle = std::chrono::milliseconds(500);
+// How long a drive that does not acknowledge a set-point may take to show that it moves. A move to where the axis
+// stands already shows nothing: it counts as done after this.
+constexpr Duration kStartShows = std::chrono::milliseconds(500);
 // A Kinco JD samples its velocity each 200 ms: for so long after a change it may still show what was before.
 constexpr Duration kVelocityLag = std::chrono::milliseconds(300);
 
@@ -74,6 +78,7 @@ void Motion::start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t
   homing_until_ = kNever;
   raw_run_ = false;
   stopping_ = false;
+  awaits_fall_ = kind == MotionKind::discrete && !acknowledges_;
 }
 
 void Motion::mode_changed() {
@@ -101,6 +106,8 @@ void Motion::complete(Instant now) {
 }
 
 void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
+  seen_ = facts.at;
+  acknowledges_ = facts.acknowledges;
   if (!facts.reachable || (!facts.moving && facts.at >= settled_from_)) stopping_ = false;
   // Targets written while it is disabled or faulted are kept for the start that follows: only the change ends things.
   const bool newly_faulted = facts.faulted() && !was_faulted_;
@@ -115,8 +122,10 @@ void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
     return;
   }
   const bool seen_after_start = facts.statusword_exchange > started_by_ && !target_reached_masked_;
+  if (seen_after_start && (!facts.target_reached || (!facts.moving && facts.at - started_ >= kStartShows)))
+    awaits_fall_ = false;
   if (kind_ == MotionKind::discrete && seen_after_start) {
-    if (facts.target_reached)
+    if (facts.target_reached && !awaits_fall_)
       complete(facts.at);
     else if (facts.motion_failed)
       end(MotionState::failed);
@@ -134,6 +143,20 @@ void Motion::observe_homing(const AxisFacts& facts, Duration timeout) {
     end(MotionState::failed);
     homing_timed_out_ = true;
   }
+}
+
+// Values that come by TPDO come on change: what time alone decides must not wait for one.
+Instant Motion::deadline() const {
+  Instant next = kNever;
+  const auto at = [&](Instant instant) {
+    if (instant > seen_) next = std::min(next, instant);
+  };
+  at(settled_from_);
+  if (awaits_fall_ && kind_ == MotionKind::discrete) at(started_ + kStartShows);
+  if (kind_ != MotionKind::homing) return next;
+  at(started_ + kHomingSettle);
+  at(homing_until_);
+  return next;
 }
 
 bool Motion::take_homing_timeout() {

@@ -23,7 +23,9 @@ struct AxisFacts {
   int mode = 0;  ///< mode in force, unified number
   bool moving = false;
   bool target_reached = false;
-  bool reference = false;  ///< the drive says that it is homed
+  bool acknowledges = true;     ///< bit 12 tells in mode 1 that a set-point was taken
+  bool reference_tells = true;  ///< what says that it is homed means that in the mode in force
+  bool reference = false;       ///< the drive says that it is homed
   bool homing_failed = false;
   bool motion_failed = false;             ///< a move has ended elsewhere than at its target
   std::uint64_t statusword_exchange = 0;  ///< the exchange that gave the newest statusword
@@ -69,7 +71,9 @@ class Motion {
   /// A motion command was accepted: target_reached reads 0 from now until unmask().
   void mask_target_reached() { target_reached_masked_ = true; }
   void unmask_target_reached() { target_reached_masked_ = false; }
-  [[nodiscard]] bool target_reached_masked() const { return target_reached_masked_; }
+  [[nodiscard]] bool target_reached_masked() const {
+    return target_reached_masked_ || (awaits_fall_ && kind_ == MotionKind::discrete);
+  }
 
   /// The drive has acknowledged a start in this exchange; a motion under way is aborted by it.
   void start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t exchange);
@@ -82,7 +86,7 @@ class Motion {
   /// Homing has run longer than its timeout: the axis must be halted (once).
   [[nodiscard]] bool take_homing_timeout();
   /// When observe() must be called even without samples.
-  [[nodiscard]] Instant deadline() const { return kind_ == MotionKind::homing ? homing_until_ : kNever; }
+  [[nodiscard]] Instant deadline() const;
 
   [[nodiscard]] MotionKind running() const { return kind_; }
   [[nodiscard]] MotionState state() const { return state_; }
@@ -120,6 +124,10 @@ class Motion {
       kLongAgo;  ///< the sampled velocity tells the truth of the newest start, stop or end from then on
   std::uint64_t started_by_ = 0;  ///< exchange: only statuswords sampled after it tell of this motion
   Instant homing_until_ = kNever;
+  bool acknowledges_ = true;  ///< the drive says that it took a set-point, as far as seen last
+  /// It does not: bit 10 may still tell of the move before, until it was seen to fall or the axis stands all the same.
+  bool awaits_fall_ = false;
+  Instant seen_ = kLongAgo;  ///< the newest instant of observe()
   bool was_faulted_ = false;
   bool was_reachable_ = false;
   bool was_enabled_ = false;

@@ -75,6 +75,7 @@ struct Object {
   bool readable = true;
   bool writable = false;
   bool trigger = false;
+  bool any_width = false;  ///< canopen: read as wide as the drive answers
   Nvm nvm = Nvm::no;
   std::string unit;
   std::optional<Range> range;  ///< raw
@@ -141,7 +142,8 @@ struct CommandSpec {
 struct WriteSpec {
   std::string object;
   std::vector<ValueSpec> values;
-  std::vector<std::string> on;  ///< protocols; empty: all
+  std::vector<std::int64_t> instead_of;  ///< setup: only where the object holds one of these; empty: always
+  std::vector<std::string> on;           ///< protocols; empty: all
   std::string why;
   std::string pointer;
 };
@@ -169,13 +171,46 @@ struct FenceSpec {
   std::vector<std::uint8_t> counts;  ///< modbus-rtu: registers
 };
 
+/// How the drive itself notices a dead gateway.
+struct LossSpec {
+  enum class By : std::uint8_t { nothing, heartbeat_consumer, life_guarding, command_watchdog };
+  By by = By::nothing;
+  std::string object;  ///< what must be written so that it does; empty: nothing
+  std::int64_t value = 0;
+  Duration after{};
+  std::string text;
+};
+
+struct CanopenSpec {
+  struct Tpdo {
+    std::uint8_t number = 1;
+    std::vector<std::string> map;  ///< full names
+    std::uint8_t type = 255;
+    std::optional<std::uint16_t> inhibit;  ///< as the drive counts
+    Duration inhibit_time{};
+    std::optional<std::uint16_t> event_ms;
+  };
+  Duration heartbeat{};
+  Duration guard_time{};
+  std::uint8_t life_factor = 3;
+  std::string guard_time_object, life_factor_object;  ///< 100Ch and 100Dh; empty: not written
+  Duration sync{};
+  Duration boot{};
+  bool sdo_block = false;
+  Duration confirm{};
+  std::vector<Tpdo> tpdos;
+  std::vector<std::uint8_t> unused_tpdos;
+};
+
 struct ProtocolSpec {
   std::vector<FenceSpec> fence;
   Duration worst_reply{};
   Duration timeout{};
-  bool stops_by_itself = false;
+  LossSpec loss;
   std::vector<std::string> requests;  ///< names of frames, keya-* only
   RtuFacts rtu;                       ///< modbus-rtu only
+  CanopenSpec canopen;                ///< canopen only
+  [[nodiscard]] bool stops_by_itself() const { return loss.by != LossSpec::By::nothing; }
 };
 
 struct StateSpec {
@@ -197,6 +232,7 @@ struct HomingSpec {
   std::map<std::int16_t, std::int64_t> methods;  ///< CiA 402 method -> what the drive calls it
   std::map<std::int16_t, Need> needs;
   std::optional<ConditionSpec> homed, failed, homed_at;
+  std::optional<std::int16_t> in_mode;  ///< homed and failed mean that in this mode alone
 };
 
 struct Profile {

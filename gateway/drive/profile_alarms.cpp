@@ -88,15 +88,39 @@ WriteSpec read_write(Reading& reading, const json& node, const std::string& poin
   return out;
 }
 
+namespace {
+
+/// "instead_of": then the amount may wait for the drive, which is read before anything is written.
+void read_instead_of(Reading& reading, const json& node, WriteSpec& out) {
+  const json* factory = member(node, "instead_of");
+  if (factory == nullptr || !factory->is_array()) return;
+  const std::string pointer = pointer_to(out.pointer, "instead_of");
+  for (const json& number : *factory)
+    if (const auto raw = whole(number)) out.instead_of.push_back(*raw);
+  if (out.values.size() > 1) reading.fault(pointer, "needs one value for all axes");
+  reading.each_meaning(out.object, [&](const Object& object) {
+    if (!object.readable)
+      reading.fault(pointer, "object \"" + object.name + "\" cannot be read, so nobody knows what it holds");
+    for (const std::int64_t raw : out.instead_of)
+      if (!object.numbers().holds(raw))
+        reading.fault(pointer, std::to_string(raw) + " does not fit object \"" + object.name + "\": it takes " +
+                                   range_text(object.numbers()));
+  });
+}
+
+}  // namespace
+
 void read_setup(Reading& reading) {
   const json* section = member(reading.document, "setup");
   if (section == nullptr || !section->is_array()) return;
   for (std::size_t i = 0; i < section->size(); ++i) {
     const std::string pointer = pointer_to("/setup", i);
     WriteSpec out = read_write(reading, (*section)[i], pointer);
+    read_instead_of(reading, (*section)[i], out);
     reading.each_meaning(out.object, [&](const Object& object) {
       if (object.trigger)
         reading.fault(pointer, "object \"" + object.name + "\" is a trigger: setup must never start anything");
+      if (!out.instead_of.empty()) return;
       for (const ValueSpec& value : out.values) reading.value_known(value, object, pointer_to(pointer, "value"));
     });
     reading.profile.setup.push_back(std::move(out));

@@ -57,6 +57,8 @@ struct ResolveInput {
   std::string protocol;  ///< the adapter of its bus: "kinco-serial"
   std::uint8_t node = 1;
   std::map<std::string, Rational> constants;  ///< overrides
+  /// canopen: 1018h sub 1 to 4 as they must be; none: whatever it is.
+  std::array<std::optional<std::uint32_t>, 4> identity{};
   std::array<Duration, 3> poll{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
                                std::chrono::milliseconds(1000)};
   std::vector<ResolveAxis> axes;  ///< at most as many as the drive has

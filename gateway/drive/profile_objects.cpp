@@ -120,6 +120,7 @@ void read_object(Reading& reading, const std::string& name, const json& node) {
   out.type = type_named(text_in(node, "type")).value_or(DataType{});
   read_access(node, out);
   out.trigger = flag_in(node, "trigger", false);
+  out.any_width = flag_in(node, "any_width", false);
   const std::string nvm = text_in(node, "nvm");
   out.nvm = nvm.empty() ? reading.profile.nvm : nvm_named(nvm);
   out.unit = text_in(node, "unit");

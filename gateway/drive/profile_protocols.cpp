@@ -1,5 +1,6 @@
 // Section "protocols", "keepalive", and what of them only makes sense once objects are known.
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -97,37 +98,31 @@ std::vector<FenceSpec> fence_in(const json& node) {
   return out;
 }
 
-void check_mapping(Reading& reading, const json& node, const std::string& pointer) {
-  const json* pdos = member(node, "tpdo");
-  if (pdos == nullptr || !pdos->is_array()) return;
-  std::set<std::int64_t> numbers;
-  for (std::size_t i = 0; i < pdos->size(); ++i) {
-    const std::string at = pointer_to(pointer_to(pointer, "tpdo"), i);
-    if (!numbers.insert(whole_in((*pdos)[i], "n", 0)).second) reading.fault(at, "this TPDO is given twice");
-    std::size_t bytes = 0;
-    for (const std::string& name : names_in((*pdos)[i], "map")) {
-      const auto same = [&](const Object& object) { return object.name == name; };
-      const auto object = std::find_if(reading.profile.objects.begin(), reading.profile.objects.end(), same);
-      if (object == reading.profile.objects.end()) {
-        reading.fault(pointer_to(at, "map"), "unknown object \"" + name + "\": not under /objects");
-        continue;
-      }
-      bytes += object->type.size;
-      if (!object->places.contains("canopen"))
-        reading.fault(pointer_to(at, "map"), "object \"" + name + "\" has no address on canopen");
-    }
-    if (bytes > 8) reading.fault(pointer_to(at, "map"), "maps " + std::to_string(bytes) + " bytes; a PDO holds 8");
-  }
+LossSpec loss_in(const json& node) {
+  static constexpr std::array<std::pair<std::string_view, LossSpec::By>, 3> kWays{{
+      {"heartbeat_consumer", LossSpec::By::heartbeat_consumer},
+      {"life_guarding", LossSpec::By::life_guarding},
+      {"command_watchdog", LossSpec::By::command_watchdog},
+  }};
+  LossSpec out;
+  const json* loss = member(node, "loss");
+  if (loss == nullptr || loss->is_null()) return out;
+  const std::string by = text_in(*loss, "by");
+  for (const auto& [name, way] : kWays)
+    if (name == by) out.by = way;
+  out.object = text_in(*loss, "object");
+  out.value = whole_in(*loss, "value", 0);
+  out.after = milliseconds(whole_in(*loss, "after_ms", 0));
+  out.text = text_in(*loss, "text");
+  return out;
 }
 
 /// What must be written to have the drive stop by itself.
-void check_loss(Reading& reading, const std::string& protocol, const json& node, const std::string& pointer) {
-  const json* loss = member(node, "loss");
-  if (loss == nullptr || member(*loss, "object") == nullptr) return;
-  const std::string name = text_in(*loss, "object");
+void check_loss(Reading& reading, const std::string& protocol, const LossSpec& loss, const std::string& pointer) {
+  if (loss.object.empty()) return;
   const std::string at = pointer_to(pointer_to(pointer, "loss"), "object");
-  if (!reading.names_object(name, at)) return;
-  reading.each_meaning(name, [&](const Object& object) {
+  if (!reading.names_object(loss.object, at)) return;
+  reading.each_meaning(loss.object, [&](const Object& object) {
     if (!object.places.contains(protocol))
       reading.fault(at, "object \"" + object.name + "\" has no address on " + protocol);
     if (!object.writable) reading.fault(at, "object \"" + object.name + "\" is read-only");
@@ -221,12 +216,12 @@ void read_protocols(Reading& reading) {
     ProtocolSpec out;
     out.timeout = milliseconds(whole_in(node, "timeout_ms", kDefaultTimeoutMs));
     out.worst_reply = milliseconds(whole_in(node, "worst_reply_ms", 0));
-    const json* loss = member(node, "loss");
-    out.stops_by_itself = loss != nullptr && !loss->is_null();
+    out.loss = loss_in(node);
     out.fence = fence_in(node);
     const std::string pointer = pointer_to("/protocols", name);
     read_requests(reading, node, pointer, out);
     if (name == "modbus-rtu") read_rtu(reading, node, pointer, out);
+    if (name == "canopen") read_canopen(reading, node, pointer, out.canopen);
     if (out.worst_reply < out.timeout)
       reading.fault(pointer_to(pointer, "worst_reply_ms"),
                     "must be at least timeout_ms: it is how long a lost reply may still come");
@@ -236,13 +231,10 @@ void read_protocols(Reading& reading) {
 
 void check_protocols(Reading& reading) {
   check_keepalive(reading);
-  const json* section = member(reading.document, "protocols");
   for (const auto& [name, protocol] : reading.profile.protocols) {
     const std::string pointer = pointer_to("/protocols", name);
-    if (section != nullptr && member(*section, name) != nullptr) {
-      check_mapping(reading, *member(*section, name), pointer);
-      check_loss(reading, name, *member(*section, name), pointer);
-    }
+    check_loss(reading, name, protocol.loss, pointer);
+    if (name == "canopen") check_canopen(reading, protocol, pointer);
     check_fence(reading, name, protocol, pointer);
     if (name == "modbus-rtu") check_registers(reading, protocol, pointer);
   }

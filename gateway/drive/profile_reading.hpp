@@ -87,6 +87,9 @@ void read_commands(Reading& reading);
 void read_setup(Reading& reading);
 void read_checks(Reading& reading);
 void read_alarms(Reading& reading);
+/// Of section "protocols": what belongs to canopen alone.
+void read_canopen(Reading& reading, const nlohmann::json& node, const std::string& pointer, CanopenSpec& out);
+void check_canopen(Reading& reading, const ProtocolSpec& protocol, const std::string& pointer);
 /// After all: what a section can only be judged by together with others.
 void check_protocols(Reading& reading);
 void read_constant_rules(Reading& reading);

@@ -9,7 +9,7 @@ namespace axisgate::drive {
 namespace {
 
 /// The protocols whose adapters this version has.
-constexpr std::array<std::string_view, 2> kAvailable{"kinco-serial", "modbus-rtu"};
+constexpr std::array<std::string_view, 3> kAvailable{"canopen", "kinco-serial", "modbus-rtu"};
 
 std::string listed(const std::vector<std::string>& names) {
   std::string out;
@@ -76,6 +76,26 @@ std::optional<ObjectWrite> Resolving::write(const WriteSpec& spec, bus::AxisSlot
   const std::optional<std::int64_t> value = raw(spec.values, spec.object, slot);
   if (!value) return std::nullopt;
   return ObjectWrite{object, *value, spec.why};
+}
+
+std::optional<FactoryWrite> Resolving::factory_write(const WriteSpec& spec, bus::AxisSlot slot) {
+  const Object* object = profile.find(spec.object, slot);
+  const ObjectId written = id(spec.object, slot);
+  if (object == nullptr || written == kNoObject) return std::nullopt;
+  FactoryWrite out{written, spec.instead_of, {}, {}, spec.why};
+  if (const auto* literal = std::get_if<std::int64_t>(&spec.values.at(0))) {
+    out.amount = Rational(*literal);
+  } else {
+    const Unit& unit = profile.units.find(object->unit)->second;
+    const Rational per_rev(1);  // units per revolution cancel out here: any number will do
+    const auto registers = in_registers(std::get<Amount>(spec.values.at(0)), constants, per_rev);
+    const std::optional<ScaleRecipe> scale = recipe(unit);
+    if (!registers || !scale) return std::nullopt;
+    out.amount = *registers * base_per_register(unit.base, per_rev);
+    out.recipe = *scale;
+  }
+  out.recipe.raw = object->numbers();
+  return out;
 }
 
 std::optional<DriveConstant::Operand> Resolving::operand(const Factor& factor) const {
@@ -184,6 +204,7 @@ void resolve_objects(Resolving& r) {
     def.readable = object.readable;
     def.writable = object.writable;
     def.trigger = object.trigger;
+    def.any_width = object.any_width && r.input.protocol == "canopen";
     def.nvm = object.nvm;
     r.ids.emplace(object.name, static_cast<ObjectId>(r.model.objects.size()));
     r.model.objects.push_back(std::move(def));

@@ -23,16 +23,26 @@ void resolve_checks(Resolving& r) {
   }
 }
 
+template <class Make, class Write>
+void add_for_each_axis(const Resolving& r, Make make, std::vector<Write>& out) {
+  std::vector<ObjectId> seen;
+  for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
+    const std::optional<Write> write = make(static_cast<bus::AxisSlot>(i));
+    if (!write || std::find(seen.begin(), seen.end(), write->object) != seen.end()) continue;
+    seen.push_back(write->object);
+    out.push_back(*write);
+  }
+}
+
 void resolve_setup(Resolving& r) {
   for (const WriteSpec& spec : r.profile.setup) {
     if (!spec.on.empty() && std::find(spec.on.begin(), spec.on.end(), r.input.protocol) == spec.on.end()) continue;
-    std::vector<ObjectId> seen;
-    for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
-      const std::optional<ObjectWrite> write = r.write(spec, static_cast<bus::AxisSlot>(i));
-      if (!write || std::find(seen.begin(), seen.end(), write->object) != seen.end()) continue;
-      seen.push_back(write->object);
-      r.model.setup.push_back(*write);
-    }
+    if (spec.instead_of.empty())
+      add_for_each_axis(
+          r, [&](bus::AxisSlot slot) { return r.write(spec, slot); }, r.model.setup);
+    else
+      add_for_each_axis(
+          r, [&](bus::AxisSlot slot) { return r.factory_write(spec, slot); }, r.model.factory_writes);
   }
 }
 
@@ -56,7 +66,8 @@ void resolve_drive(Resolving& r) {
   r.model.protocol = r.input.protocol;
   r.model.node = r.input.node;
   r.model.poll_period = r.input.poll;
-  r.model.stops_by_itself = protocol.stops_by_itself;
+  r.model.stops_by_itself = protocol.stops_by_itself();
+  r.model.loss_text = protocol.loss.text;
   r.model.timeout = protocol.timeout;
   r.model.rtu = protocol.rtu;
   r.model.nvm = r.profile.nvm;
@@ -65,6 +76,7 @@ void resolve_drive(Resolving& r) {
     if (r.id(r.profile.fault_words[row.word], 0) != kNoObject)
       r.model.alarms.push_back({row.word, row.bit.value_or(0), row.value, row.code, row.text, row.remedy});
   resolve_setup(r);
+  if (is_canopen(r.model)) resolve_canopen(r, protocol);
   resolve_checks(r);
 }
 

@@ -119,6 +119,7 @@ void resolve_homing(Resolving& r, bus::AxisSlot slot) {
       if (const ObjectId id = r.id(name, slot); id != kNoObject) out.any_of.push_back(id);
     if (!out.any_of.empty()) axis.homing_needs.push_back(std::move(out));
   }
+  if (spec.in_mode) axis.homed_mode = *spec.in_mode;
   axis.homed = condition(r, spec.homed, slot);
   axis.homing_failed = condition(r, spec.failed, slot);
   const std::optional<std::int16_t> configured = r.input.axes[slot].homing_method;

@@ -33,6 +33,7 @@ class Resolving {
   [[nodiscard]] std::optional<std::int64_t> raw(const std::vector<ValueSpec>& values, std::string_view object,
                                                 bus::AxisSlot slot) const;
   [[nodiscard]] std::optional<ObjectWrite> write(const WriteSpec& spec, bus::AxisSlot slot) const;
+  [[nodiscard]] std::optional<FactoryWrite> factory_write(const WriteSpec& spec, bus::AxisSlot slot);
   /// What a unit makes of a number, before the axis's own factors: known now, or once constants of the drive are.
   [[nodiscard]] std::optional<ScaleRecipe> recipe(const Unit& unit);
 
@@ -54,5 +55,7 @@ void resolve_quantities(Resolving& resolving, bus::AxisSlot slot);
 void resolve_state(Resolving& resolving, bus::AxisSlot slot);
 void resolve_commands(Resolving& resolving, bus::AxisSlot slot);
 void resolve_drive(Resolving& resolving);
+/// After the setup list, which it adds to.
+void resolve_canopen(Resolving& resolving, const ProtocolSpec& protocol);
 
 }  // namespace axisgate::drive

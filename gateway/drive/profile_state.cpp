@@ -189,6 +189,11 @@ void read_homing(Reading& reading) {
     for (const auto& [key, node] : needs->items()) read_need(reading, key, node);
   out.homed = condition_in(reading, *section, "homed", "/homing");
   out.failed = condition_in(reading, *section, "failed", "/homing");
+  if (const json* mode = member(*section, "in_mode")) {
+    out.in_mode = static_cast<std::int16_t>(whole(*mode).value_or(0));
+    if (!reading.profile.modes.contains(*out.in_mode))
+      reading.fault("/homing/in_mode", "is no mode of this drive: /modes does not list it");
+  }
   if (reading.profile.state.is_virtual)
     for (const char* key : {"homed", "failed"})
       if (member(*section, key) != nullptr)
