@@ -66,7 +66,7 @@ void Drive::on_started() {
   node_state_ = bus::NodeState::pre_operational;
   mute_ = 0;
   if (state_ == LinkState::link_down) return;
-  if (brought_up()) tell_all(EventKind::boot, 0, "the drive has restarted");
+  if (brought_up() || state_ == LinkState::offline) tell_all(EventKind::boot, 0, "the drive has restarted");
   setup_order_ = 0;
   bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
   begin_bring_up(true);

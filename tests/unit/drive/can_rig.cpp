@@ -45,6 +45,13 @@ CanRig::CanRig(GatewayStage::Line line) : stage({std::move(line)}) {}
 
 void CanRig::online() { ASSERT_TRUE(stage.come_online()); }
 
+bool CanRig::becomes_operational(std::size_t position) {
+  return stage.run_until([&] {
+    const bool operational = stage.can_node(0, position).state() == simulated::NmtState::operational;
+    return operational && axis(static_cast<AxisNumber>(position + 1)).link_state == LinkState::online;
+  });
+}
+
 void CanRig::enable(AxisNumber number) {
   ASSERT_EQ(stage.command(number, Command::enable).outcome.code, Errc::ok);
   ASSERT_TRUE(stage.axis(number).has(AxisInput::enabled));

@@ -36,6 +36,8 @@ class CanRig {
   [[nodiscard]] simulated::CanLine& line() { return stage.can_link(0).line(); }
   [[nodiscard]] simulated::CanopenNode& node(std::size_t position = 0) { return stage.can_node(0, position); }
   void online();
+  /// The drive at this position has become operational, which it does by itself after it was told to.
+  [[nodiscard]] bool becomes_operational(std::size_t position = 0);
   void enable(AxisNumber axis = 1);
   [[nodiscard]] bool settles(const std::function<bool()>& done) { return stage.run_until(done); }
 
