@@ -34,7 +34,18 @@ struct CanopenSettings {
   std::vector<CanopenNode> nodes;
 };
 
-/// `runtime` and `log` must outlive the wire.
+/// What the wire says of an exchange, beside wire.hpp's rules:
+/// - An NMT command is sent at once and ends ok in the next turn of the loop.
+/// - A value comes with the width that the drive sent, whatever was asked for: the profile's type judges it.
+/// - Part::whole of an object that is longer than four bytes, or has three: refused, detail 0x06070010.
+/// - An object over kMaxObjectBytes: refused, detail 0x05040005, and not `for_now`.
+/// - Wrong CRC, a length other than the server said, blocks that never arrive: bad_reply; the detail is the abort sent.
+/// - Part::next where no such chain is open (something else was done with the node): refused for now, 0x08000022.
+/// - A node that has started anew answers nothing any more: `started` is told, the exchange is left to the bus, and its
+///   process data are dropped until they are mapped again.
+/// A node whose server has no block transfer after all, or wants longer blocks, is served in segments. Of our own
+/// heartbeat only the very first comes behind a boot-up: after a loss of the link we have not started anew.
+/// `runtime` and `log` must outlive the wire. Each node may be named once.
 [[nodiscard]] std::unique_ptr<bus::Wire> make_canopen_wire(CanopenSettings settings, std::unique_ptr<can::CanLink> link,
                                                            Runtime& runtime, const Log& log);
 

@@ -15,21 +15,34 @@ namespace axisgate::app {
 /// What a drive is taken to need for its answer, beside the time on the wire, where its profile states no longer time.
 /// The drives' own limit is the bus's timeout.
 inline constexpr Duration kAssumedAnswer = std::chrono::milliseconds(5);
+/// The same for an SDO server.
+inline constexpr Duration kAssumedSdoAnswer = std::chrono::milliseconds(1);
 [[nodiscard]] Duration answer_of(const drive::DriveModel& model);
 /// Above this share of the line the polls leave commands little room; suggested periods stay below it.
 inline constexpr int kComfortablePermille = 800;
+/// What nodes send by themselves goes before every request on CAN: it may take this share of the line.
+inline constexpr int kUnaskedPermille = 400;
+/// And reading what comes by TPDO all the same, this one.
+inline constexpr int kConfirmPermille = 300;
 
 struct BusTiming {
   Duration on_wire;  ///< of one exchange, without the drive's own time; modbus-rtu: of a write of 32 bits
   Duration min_gap;
   Duration settle;
   Duration timeout;
-  std::array<Duration, 3> poll;  ///< periods of the classes fast, normal, slow
-  std::uint32_t rtu_baud = 0;    ///< modbus-rtu, where each exchange has a length of its own; else 0
-  int parity_bits = 0;           ///< of modbus-rtu: 0 or 1
+  std::array<Duration, 3> poll;   ///< periods of the classes fast, normal, slow
+  std::uint32_t rtu_baud = 0;     ///< modbus-rtu, where each exchange has a length of its own; else 0
+  int parity_bits = 0;            ///< of modbus-rtu: 0 or 1
+  std::uint32_t can_bitrate = 0;  ///< canopen; else 0
 };
 
 [[nodiscard]] BusTiming timing_of(const BusConfig& bus);
+/// A CAN frame of 11-bit identifier with so many data bytes, stuffed as badly as can be, and the space after it
+/// (ISO 11898-1).
+[[nodiscard]] constexpr Duration can_frame_time(std::uint32_t bitrate, int data_bytes) {
+  const int bits = 47 + 8 * data_bytes + (33 + 8 * data_bytes) / 4;
+  return Duration(std::chrono::seconds(1)) * bits / bitrate;
+}
 /// Of one exchange, without the drive's own time.
 [[nodiscard]] Duration wire_time_of(const BusTiming& timing, const bus::Exchange& exchange);
 
@@ -41,8 +54,11 @@ struct BusBudget {
     Duration answered{};  ///< and with the time that the drives need
   };
   std::array<Polled, 3> classes;
+  Polled confirmed;       ///< canopen: comes by TPDO, and is read where it was silent for so long
   int load_on_wire = 0;   ///< 0.1 %, drives that answer at once
   int load_answered = 0;  ///< 0.1 %, drives that answer after answer_of()
+  int load_unmapped = 0;  ///< canopen: load_answered where the drives map nothing; else load_answered
+  int load_unasked = 0;   ///< canopen: 0.1 %, TPDOs as often as they may come, heartbeats, guarding and SYNC
   Duration exchange{};    ///< the longest request, with the slowest answer_of()
   Duration cycle{};       ///< in which each fast value is read once; longer than its period where the bus is over 100 %
   Duration command_wait{};       ///< the exchange on the wire, and one poll whose turn it is
@@ -50,7 +66,8 @@ struct BusBudget {
   Duration command_wait_mute{};  ///< the same while a drive is mute
   Duration stop_wait_mute{};
 
-  [[nodiscard]] bool overloaded() const { return load_answered > 1000; }
+  [[nodiscard]] int load_confirmed() const;  ///< of load_answered, what `confirmed` takes
+  [[nodiscard]] bool overloaded() const { return load_answered > 1000 || load_on_wire + load_unasked > 1000; }
 };
 
 [[nodiscard]] BusBudget plan_bus(const BusTiming& timing, const std::vector<drive::DriveModel>& drives);

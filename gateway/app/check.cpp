@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "gateway/app/bus_budget.hpp"
+#include "gateway/app/check_can.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -65,15 +66,21 @@ void add_load(std::string& out, const BusBudget& budget, const std::vector<drive
 
 bool add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::DriveModel>& drives) {
   const BusBudget budget = plan_bus(timing_of(bus), drives);
-  out += fmt::format("\nBus {}: {} on {}, {} baud{}\n", bus.name, bus.adapter, bus.device, bus.baud,
+  const bool can = bus.adapter == "canopen";
+  const std::string speed = can ? bitrate_text(bus) : fmt::format("{} baud", bus.baud);
+  out += fmt::format("\nBus {}: {} on {}, {}{}\n", bus.name, bus.adapter, bus.device, speed,
                      bus.cascade ? ", drives in a chain" : "");
   std::vector<std::string> names;
   names.reserve(drives.size());
   for (const auto& model : drives) names.push_back(fmt::format("{} at node {}", model.title, model.node));
   add_line(out, "drives", fmt::format("{}", fmt::join(names, ", ")));
   add_line(out, "polls", polls_text(budget));
+  if (can)
+    for (const auto& [label, line] : can_lines(bus, drives, budget)) add_line(out, label, line);
   add_load(out, budget, drives);
-  add_line(out, "cycle", fmt::format("fast values are read each {:.0f} ms", in_ms(budget.cycle)));
+  add_line(out, "cycle",
+           fmt::format("fast values are {} each {:.0f} ms", can ? "polled, where no TPDO brings them," : "read",
+                       in_ms(budget.cycle)));
   add_line(out, "command waits",
            fmt::format("at most {:.1f} ms; beside a mute drive at most {:.1f} ms", in_ms(budget.command_wait),
                        in_ms(budget.command_wait_mute)));
@@ -118,6 +125,20 @@ std::string units_text(const AxisConfig& config) {
                      config.inverted ? ", inverted" : "", kRegisterReach / units.to_double());
 }
 
+std::string loss_text(const drive::DriveModel& drive) {
+  if (!drive.stops_by_itself)
+    return fmt::format("THE DRIVE DOES NOT STOP BY ITSELF on {}: it goes on with what it was told last",
+                       drive.protocol);
+  if (drive.loss_objects.empty()) return "the drive notices and stops by itself";
+  std::vector<std::string> written;
+  for (const drive::ObjectId id : drive.loss_objects) {
+    const bus::ObjectAddress address = drive.object(id).address;
+    written.push_back(fmt::format("{:04X}h:{:02X}", address.index, address.sub));
+  }
+  return fmt::format("the drive is told to notice ({}), which is verified at bring-up{}{}", fmt::join(written, ", "),
+                     drive.loss_text.empty() ? "" : ": ", drive.loss_text);
+}
+
 void add_axis(std::string& out, const AxisConfig& config, const drive::AxisModel& axis,
               const drive::DriveModel& drive) {
   out += fmt::format("\nAxis {} \"{}\": {}, registers {} to {}\n", config.number, config.name, drive.title,
@@ -135,11 +156,7 @@ void add_axis(std::string& out, const AxisConfig& config, const drive::AxisModel
   if (config.inverted && axis.command(Command::home)) {
     add_line(out, "note", "homing methods are not translated for the inverted direction: they mean the drive's own");
   }
-  add_line(out, "gateway dies",
-           drive.stops_by_itself
-               ? "the drive notices and stops by itself"
-               : fmt::format("THE DRIVE DOES NOT STOP BY ITSELF on {}: it goes on with what it was told last",
-                             drive.protocol));
+  add_line(out, "gateway dies", loss_text(drive));
   if (axis.virtual_axis && !drive.stops_by_itself) {
     add_line(out, "client leaves",
              "quick stop when the connection of the client that commanded the motion ends; not where \"client\" is "

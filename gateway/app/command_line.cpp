@@ -26,7 +26,6 @@ struct Parsed {
   MapOptions map;
   TopOptions top;
   ProfileCheckOptions profile;
-  std::string eds;
   CommissionOptions commission;
   int exit_code = 0;
 };
@@ -105,12 +104,12 @@ void add_profile(CLI::App& app, Parsed& parsed) {
   group->require_subcommand(1);
   CLI::App* command = group->add_subcommand("check", "Validate a profile and say what it gives on each protocol");
   command->add_option("FILE", parsed.profile.file, "profile (JSON)")->required();
-  command->add_option("--eds", parsed.eds, "compare with an EDS file")->type_name("FILE");
-  command->footer("Example: axisgate profile check schemas/drives/kinco-jd.json");
-  command->callback([&parsed] {
-    if (!parsed.eds.empty()) throw CLI::ValidationError("--eds", "not available in this version: leave it out");
-    parsed.exit_code = run(parsed.profile);
-  });
+  command->add_option("--eds", parsed.profile.eds, "compare its CANopen objects with the maker's EDS file")
+      ->type_name("FILE");
+  command->footer(
+      "Exit code 1: mistakes, or something in which profile and EDS cannot both be right.\n"
+      "Example: axisgate profile check schemas/drives/kinco-jd.json");
+  command->callback([&parsed] { parsed.exit_code = run(parsed.profile); });
 }
 
 void add_commission(CLI::App& app, Parsed& parsed) {

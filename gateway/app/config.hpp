@@ -44,6 +44,7 @@ struct DriveConfig {
   std::string profile;  ///< a name in schemas/drives, or a path
   std::uint8_t node = 1;
   std::map<std::string, Rational> constants;
+  std::array<std::optional<std::uint32_t>, 4> identity{};  ///< canopen: vendor, product, revision, serial (1018h)
   std::vector<AxisConfig> axes;
   std::string pointer;
 };
@@ -51,12 +52,14 @@ struct DriveConfig {
 struct BusConfig {
   std::string name;
   std::string adapter;
-  std::string device;
+  std::string device;          ///< canopen: an interface, or slcan:PATH (adapters/can/can_device.hpp)
   std::uint32_t baud = 38400;  ///< modbus-rtu: 19200 by default
   std::string parity = "none";
-  std::string rs485 = "auto";  ///< auto: direction control where the port offers it; off
-  bool cascade = false;        ///< Kinco 6510:0B = 1: every request comes back before its reply
-  Duration timeout{};          ///< modbus-rtu, where none is given: what its drives need (settle_rtu_buses())
+  std::string rs485 = "auto";      ///< auto: direction control where the port offers it; off
+  bool cascade = false;            ///< Kinco 6510:0B = 1: every request comes back before its reply
+  std::uint32_t bitrate = 500000;  ///< canopen; an interface is set by whoever brings it up: what it is taken for then
+  bool bitrate_given = false;
+  Duration timeout{};  ///< where none is given: what its drives need (settle_rtu_buses(), settle_can_buses())
   Duration min_gap{};
   Duration settle{};
   std::array<Duration, 3> poll{std::chrono::milliseconds(20), std::chrono::milliseconds(100),

@@ -9,7 +9,7 @@ namespace axisgate::app {
 namespace {
 
 /// Adapters that the schema knows and this version has not.
-constexpr std::array<std::string_view, 4> kMissingAdapters{"canopen", "keya-can", "keya-rs232", "keya-rs485"};
+constexpr std::array<std::string_view, 3> kMissingAdapters{"keya-can", "keya-rs232", "keya-rs485"};
 
 struct IdleKey {
   std::string_view key;
@@ -44,10 +44,10 @@ void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults) {
   for (const ConfigNode& bus : root.items("buses")) {
     const auto adapter = bus.string("adapter").value_or("");
     if (std::find(kMissingAdapters.begin(), kMissingAdapters.end(), adapter) != kMissingAdapters.end()) {
-      faults.add(
-          bus.pointer("adapter"),
-          fmt::format("{} is not available in this version, which has kinco-serial and modbus-rtu: remove this bus",
-                      adapter));
+      faults.add(bus.pointer("adapter"),
+                 fmt::format("{} is not available in this version, which has canopen, kinco-serial and modbus-rtu: "
+                             "remove this bus",
+                             adapter));
     }
   }
 }

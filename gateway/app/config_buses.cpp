@@ -14,6 +14,7 @@ using std::chrono::milliseconds;
 
 constexpr std::string_view kKincoSerial = "kinco-serial";
 constexpr std::string_view kModbusRtu = "modbus-rtu";
+constexpr std::string_view kCanopen = "canopen";
 /// As the drives leave their factories (JD, MD, iD286pro).
 constexpr std::uint32_t kRtuBaud = 19200;
 /// What a serial port of this system can be set to.
@@ -103,7 +104,10 @@ BusConfig read_bus(const ConfigNode& node, ConfigFaults& faults) {
   bus.adapter = node.string("adapter").value_or("");
   bus.device = node.string("device").value_or("");
   const bool rtu = bus.adapter == kModbusRtu;
+  const bool can = bus.adapter == kCanopen;
   bus.baud = static_cast<std::uint32_t>(node.integer("baud").value_or(rtu ? kRtuBaud : bus.baud));
+  bus.bitrate = static_cast<std::uint32_t>(node.integer("bitrate").value_or(bus.bitrate));
+  bus.bitrate_given = node.has("bitrate");
   bus.parity = node.string("parity").value_or(bus.parity);
   bus.rs485 = node.string("rs485").value_or(bus.rs485);
   bus.cascade = node.flag("cascade", false);
@@ -111,10 +115,11 @@ BusConfig read_bus(const ConfigNode& node, ConfigFaults& faults) {
   const bool kinco = bus.adapter == kKincoSerial;
   const auto drives = node.items("drives");
   if (kinco) bus.poll = default_poll(drives.size());
-  bus.timeout = node.milliseconds("timeout_ms", rtu ? Duration{} : kKincoTimeout);
+  bus.timeout = node.milliseconds("timeout_ms", rtu || can ? Duration{} : kKincoTimeout);
   bus.min_gap = node.milliseconds("min_gap_ms", rtu ? modbus_rtu::gap_time(std::max(bus.baud, 1U)) : Duration{});
-  bus.settle = node.milliseconds("settle_ms", kKincoSettle);
-  bus.poll_given = !rtu || node.child("poll").has_value();
+  // Two talkers cannot spoil each other's frames on CAN.
+  bus.settle = node.milliseconds("settle_ms", can ? Duration{} : kKincoSettle);
+  bus.poll_given = !(rtu || can) || node.child("poll").has_value();
   read_poll(node, bus, faults);
   if (kinco || rtu) check_serial_line(node, bus, faults);
   if (kinco) {
@@ -122,6 +127,7 @@ BusConfig read_bus(const ConfigNode& node, ConfigFaults& faults) {
     check_timeout(node, bus, faults);
   }
   if (rtu) check_rtu_line(node, bus, faults);
+  if (can) check_can_bus(node, bus, faults);
   for (const ConfigNode& drive : drives) bus.drives.push_back(read_drive(drive, bus, faults));
   return bus;
 }

@@ -16,7 +16,20 @@ void read_constants(const ConfigNode& node, DriveConfig& drive, ConfigFaults& fa
   }
 }
 
+void check_can_node(const ConfigNode& node, const DriveConfig& drive, ConfigFaults& faults) {
+  if (drive.node < drive::kOwnNode) return;
+  if (drive.node == drive::kOwnNode) {
+    faults.add(node.pointer("node"),
+               "127 is the gateway's own node-ID, in its heartbeat: give the drive one of 1 to 126");
+  } else {
+    faults.add(
+        node.pointer("node"),
+        fmt::format("{} is no CANopen node-ID: they go from 1 to 127, and 127 is the gateway's own", drive.node));
+  }
+}
+
 void check_node(const ConfigNode& node, const DriveConfig& drive, const BusConfig& bus, ConfigFaults& faults) {
+  if (bus.adapter == "canopen" && !faults.within(node.pointer("node"))) return check_can_node(node, drive, faults);
   if (bus.adapter != "kinco-serial" || drive.node <= kinco::kLastStation || faults.within(node.pointer("node"))) return;
   if (drive.node == kinco::kLastStation + 1) {
     faults.add(node.pointer("node"),
@@ -28,6 +41,15 @@ void check_node(const ConfigNode& node, const DriveConfig& drive, const BusConfi
   }
 }
 
+std::array<std::optional<std::uint32_t>, 4> read_identity(const ConfigNode& node) {
+  constexpr std::array<std::string_view, 4> kNumbers{"vendor", "product", "revision", "serial"};
+  std::array<std::optional<std::uint32_t>, 4> out{};
+  const auto identity = node.child("identity");
+  for (std::size_t i = 0; identity && i < kNumbers.size(); ++i)
+    if (const auto number = identity->integer(kNumbers[i])) out[i] = static_cast<std::uint32_t>(*number);
+  return out;
+}
+
 }  // namespace
 
 DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
@@ -37,6 +59,7 @@ DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFault
   drive.node = static_cast<std::uint8_t>(node.integer("node").value_or(0));
   check_node(node, drive, bus, faults);
   read_constants(node, drive, faults);
+  drive.identity = read_identity(node);
   // Accepting it unchecked would promise a safety that is not there.
   if (node.has("identity") && (bus.adapter == "kinco-serial" || bus.adapter == "modbus-rtu")) {
     faults.add(node.pointer("identity"),

@@ -60,7 +60,10 @@ LoadResult load_config(const std::string& file, const std::vector<std::string>& 
     warn_without_effect(root, faults);
     warn_about_unit_ids(loaded.config, faults);
     loaded.models = load_models(loaded.config, profile_folders, faults);
-    if (faults.faults().empty()) settle_rtu_buses(loaded.config, loaded.models, faults);
+    if (faults.faults().empty()) {
+      settle_rtu_buses(loaded.config, loaded.models, faults);
+      settle_can_buses(loaded.config, loaded.models, faults);
+    }
   }
   if (!faults.faults().empty()) return faults.faults();
   loaded.warnings = faults.warnings();

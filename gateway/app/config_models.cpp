@@ -17,6 +17,7 @@ drive::ResolveInput input_of(const BusConfig& bus, const DriveConfig& config) {
   input.protocol = bus.adapter;
   input.node = config.node;
   input.constants = config.constants;
+  input.identity = config.identity;
   input.poll = bus.poll;
   for (const AxisConfig& axis : config.axes) {
     drive::ResolveAxis resolved;

@@ -35,4 +35,10 @@ void warn_without_effect(const ConfigNode& root, ConfigFaults& faults);
 /// modbus-rtu: timeouts and poll periods that nobody has given follow from the drives on the line.
 void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
 
+/// What a canopen bus may not have, and what its device must be.
+void check_can_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
+/// canopen: the same for timeouts and periods; and inhibit and confirmation times that leave the line to requests,
+/// however many drives share it.
+void settle_can_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
+
 }  // namespace axisgate::app

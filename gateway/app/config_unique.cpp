@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "adapters/can/can_device.hpp"
 #include "gateway/app/config_sections.hpp"
 
 namespace axisgate::app {
@@ -79,7 +80,9 @@ void check_unique(const Config& config, ConfigFaults& faults) {
       faults.add(bus.pointer + "/name",
                  fmt::format("\"{}\" is the name of {} too: give each bus a name of its own", bus.name, *first));
     }
-    if (const auto* first = bus.device.empty() ? nullptr : devices.second_use(bus.device, bus.pointer)) {
+    // A serial CAN adapter is a serial port too.
+    const std::string device = can::parse_can_device(bus.device).path;
+    if (const auto* first = device.empty() ? nullptr : devices.second_use(device, bus.pointer)) {
       faults.add(
           bus.pointer + "/device",
           fmt::format("{} is the device of {} already: put the drives of one line into one bus", bus.device, *first));

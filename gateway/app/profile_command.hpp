@@ -1,5 +1,5 @@
-// `axisgate profile check FILE`: validates a drive profile and says what it gives on each protocol.
-// Promises every mistake at once, each with its file and place.
+// `axisgate profile check FILE [--eds FILE]`: validates a drive profile, says what it gives on each protocol, and holds
+// it against the maker's EDS. Promises every mistake at once, each with its file and place.
 // Never asks a drive.
 #pragma once
 
@@ -9,6 +9,7 @@ namespace axisgate::app {
 
 struct ProfileCheckOptions {
   std::string file;
+  std::string eds;  ///< empty: none
 };
 
 [[nodiscard]] int run(const ProfileCheckOptions& options);

@@ -14,6 +14,7 @@ BringUp::BringUp(const DriveModel& model) : model_(model), identity_(model), nod
     for (const ObjectId id : axis.state_sources) add(id);  // the state comes before everything
   for (const ObjectWrite& setup : model.setup)
     if (model.object(setup.object).readable) add(setup.object);
+  for (const FactoryWrite& setup : model.factory_writes) add(setup.object);
   // What changes fastest is read last: the drive goes online with values that are still good.
   std::vector<PollItem> items = poll_items(model);
   std::stable_sort(items.begin(), items.end(),
@@ -29,6 +30,7 @@ void BringUp::begin() {
   setup_written_ = read_back_ = adopted_ = false;
   confirm_after_.reset();
   unheld_.clear();
+  setup_.reset();
   identity_.begin();
   node_.begin();
 }
@@ -64,8 +66,12 @@ std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
 }
 
 std::optional<BringUp::Next> BringUp::next_setup(const ObjectStore& store) {
-  while (setup_at_ < model_.setup.size()) {
-    const ObjectWrite& setup = model_.setup[setup_at_];
+  // Judged once: what is written here must not make its own reason go away.
+  if (!setup_)
+    setup_ = setup_writes(
+        model_, [&](ObjectId id) { return store[id].known ? std::optional(store[id].number) : std::nullopt; });
+  while (setup_at_ < setup_->size()) {
+    const ObjectWrite& setup = (*setup_)[setup_at_];
     if (read_back_) return Next{setup.object, false, 0};
     const bool holds = store[setup.object].known && store[setup.object].number == setup.raw;
     if (holds || setup_written_) {
@@ -88,7 +94,7 @@ void BringUp::answered(const bus::ExchangeResult& result) {
 
 void BringUp::written() {
   setup_written_ = true;
-  read_back_ = setup_at_ < model_.setup.size() && model_.object(model_.setup[setup_at_].object).readable;
+  read_back_ = setup_ && setup_at_ < setup_->size() && model_.object((*setup_)[setup_at_].object).readable;
 }
 
 void BringUp::write_refused() {

@@ -39,7 +39,9 @@ class BringUp {
   [[nodiscard]] bool adopted() const { return adopted_; }
   /// Setup values that the drive does not hold although they were written: they are named in an event.
   [[nodiscard]] const std::vector<ObjectId>& unheld() const { return unheld_; }
-  [[nodiscard]] bool has_setup() const { return !model_.setup.empty() || is_node(); }
+  [[nodiscard]] bool has_setup() const {
+    return !model_.setup.empty() || !model_.factory_writes.empty() || is_node();
+  }
   /// How the drive differs from the configured one; empty: it does not.
   [[nodiscard]] const std::string& mismatch() const { return identity_.mismatch(); }
   /// What a CANopen node sends by itself now, and what it would not.
@@ -56,6 +58,7 @@ class BringUp {
   std::vector<ObjectId> confirmed_;  ///< class fast, the statuswords among them: read once more at the end
   std::size_t read_at_ = 0;
   std::optional<std::uint64_t> confirm_after_;  ///< exchange: the state is read once more before the first setup write
+  std::optional<std::vector<ObjectWrite>> setup_;  ///< as it is due by what was read; none: not judged yet
   std::size_t setup_at_ = 0;
   bool setup_written_ = false;
   bool read_back_ = false;

@@ -7,7 +7,8 @@
 namespace axisgate::drive {
 
 bus::Exchange Drive::read(ObjectId object) const {
-  return {model_.node, bus::Access::read, model_.object(object).address, model_.object(object).size, 0};
+  const ObjectDef& def = model_.object(object);
+  return {model_.node, bus::Access::read, def.address, def.any_width ? std::uint8_t{0} : def.size, 0};
 }
 
 bus::Exchange Drive::read(const FenceRead& fence) const {
@@ -72,6 +73,11 @@ void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResul
     // registers as they come.
     if (field.size == object.size) {
       store_.read(id, object.number(field.raw), on_wire_.sent_at);
+    } else if (object.any_width && field.size < object.size) {
+      ObjectDef narrow;
+      narrow.size = field.size;
+      narrow.is_signed = object.is_signed;
+      store_.read(id, narrow.number(field.raw), on_wire_.sent_at);
     } else if (on_wire_.fence) {
       continue;
     } else if (!store_[id].refused) {

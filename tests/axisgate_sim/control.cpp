@@ -12,7 +12,31 @@ constexpr std::string_view help =
     "[N]|RATE]|off (Modbus RTU); restart [next [N]|RATE|off]; clear; state; position; restarts; input NUMBER on|off; "
     "jam on|off; get|writes OBJECT; set OBJECT VALUE (INDEX.SUB, or the register of an id286pro). A Kinco: fault "
     "2601|2602 BITS; clear 2601|2602 BITS; stores; transitions. An id286pro: fault CODE [hardware]; clear CODE; "
-    "enable on|off; eeprom; starts. LINE: unplug; plug; reply-delay MS; exchanges. lines; help";
+    "enable on|off; eeprom; starts. On CAN: mute lose duplicate wrong-station wrong-length emergencies "
+    "on|off|next [N]|RATE; babble [0xID] ...; exception ABORTCODE ...; restart before|after [next [N]]; nmt; "
+    "emergency CODE; connect on|off; twin on|off; an ld2: fault CODE; clear CODE; stores; transitions. LINE: unplug; "
+    "plug; reply-delay MS; exchanges; on CAN bus-off on|off; no-ack; overlaps. lines; help";
+
+// The number that a fault may come with.
+void set_number(DriveFaults& faults, DriveFault fault, std::int64_t number) {
+  switch (fault) {
+    case DriveFault::late:
+      faults.late_by = std::chrono::milliseconds(number);
+      break;
+    case DriveFault::exception:
+      faults.exception_code = static_cast<std::uint8_t>(number);
+      faults.abort_code = static_cast<std::uint32_t>(number);
+      break;
+    case DriveFault::babble:
+      faults.babble_id = static_cast<std::uint32_t>(number);
+      break;
+    case DriveFault::emergencies:
+      faults.emergency_code = static_cast<std::uint16_t>(number);
+      break;
+    default:
+      refuse_word("'" + std::string(name_of(fault)) + "' takes no number");
+  }
+}
 
 }  // namespace
 
@@ -65,7 +89,7 @@ std::string Control::carry_out(const ControlWords& words) {
   if (words[0] == "lines") {
     std::string text;
     for (const auto& [name, port] : simulator_.lines()) {
-      text += " " + name + ":" + port.spec.describe() + (port.pty ? "" : "(unplugged)");
+      text += " " + name + ":" + port.spec.describe() + (port.port ? "" : "(unplugged)");
     }
     return text;
   }
@@ -78,12 +102,19 @@ std::string Control::on_line(const ControlWords& words) {
   if (words[0] == "unplug") {
     simulator_.unplug(port);
   } else if (words[0] == "plug") {
-    if (port.pty) refuse_word("line '" + words[1] + "' is plugged in already");
+    if (port.port) refuse_word("line '" + words[1] + "' is plugged in already");
     simulator_.plug(port);
   } else if (words[0] == "reply-delay" && words.size() > 2) {
     port.line->set_reply_delay(std::chrono::milliseconds(number_in(words[2])));
   } else if (words[0] == "exchanges") {
     return " " + std::to_string(port.line->requests_heard());
+  } else if (port.can != nullptr && words[0] == "overlaps") {
+    return " " + std::to_string(port.can->bus().overlapping_requests());
+  } else if (port.can != nullptr && words[0] == "no-ack") {
+    port.can->miss_acknowledge(simulator_.now());
+  } else if (port.can != nullptr && words[0] == "bus-off") {
+    need_words(words, 3, "bus-off LINE on|off");
+    port.can->set_bus_off(on_or_off(words[2]), simulator_.now());
   } else {
     refuse_word("'" + words[0] + "' is no command for a line; `help` lists them");
   }
@@ -99,12 +130,28 @@ std::string Control::switch_fault(const ControlWords& words, const Target& targe
   }
   const auto fault = drive_fault_named(words[0]);
   if (!fault) refuse_word("'" + words[0] + "' is no command for a drive; `help` lists them");
-  if (!target.port.line->has(*fault)) refuse_word("'" + words[0] + "' is for drives on Modbus RTU alone");
-  const bool late = *fault == DriveFault::late;
-  const bool has_number = (late || *fault == DriveFault::exception) && words.size() > 2 && is_whole_number(words[2]);
-  if (has_number && late) faults.late_by = std::chrono::milliseconds(number_in(words[2]));
-  if (has_number && !late) faults.exception_code = static_cast<std::uint8_t>(number_in(words[2]));
-  set_fault_switch(faults, *fault, words, has_number ? 3 : 2);
+  const bool can = target.port.can != nullptr;
+  if (!target.port.line->has(*fault)) {
+    const bool bus = *fault == DriveFault::emergencies;
+    refuse_word("'" + words[0] +
+                (can   ? "' cannot happen on CAN"
+                 : bus ? "' is for drives on CAN alone"
+                       : "' is for drives on Modbus RTU alone"));
+  }
+  const bool counted = *fault == DriveFault::late || *fault == DriveFault::exception;
+  const bool hex = can && words.size() > 2 && words[2].starts_with("0x");
+  const bool has_number = words.size() > 2 && (hex || (counted && is_whole_number(words[2])));
+  if (has_number) set_number(faults, *fault, number_in(words[2]));
+  std::size_t at = has_number ? 3 : 2;
+  if (can && *fault == DriveFault::restart && words.size() > 2 && (words[2] == "before" || words[2] == "after")) {
+    faults.restart_acts = words[2] == "after";
+    at = 3;
+    if (words.size() == at) {
+      faults.next(DriveFault::restart, 1);
+      return "";
+    }
+  }
+  set_fault_switch(faults, *fault, words, at);
   return "";
 }
 
@@ -119,11 +166,14 @@ std::string Control::on_drive(const ControlWords& words) {
     target.port.line->restart(target.position, simulator_.now());
     return "";
   }
-  const PortLine& port = target.port;
-  KincoDrive* kinco = port.rtu != nullptr ? port.rtu->kinco(target.position) : &port.serial->drive(target.position);
-  const auto answer =
-      kinco != nullptr ? ask_kinco(*kinco, words) : ask_id286pro(*port.rtu->id286pro(target.position), words);
+  const auto answer = ask_drive(target.port, target.position, words);
   return answer ? *answer : switch_fault(words, target);
+}
+
+std::optional<std::string> Control::ask_drive(PortLine& port, std::size_t position, const ControlWords& words) {
+  if (port.can != nullptr) return ask_can(simulator_, port, position, words);
+  KincoDrive* kinco = port.rtu != nullptr ? port.rtu->kinco(position) : &port.serial->drive(position);
+  return kinco != nullptr ? ask_kinco(*kinco, words) : ask_id286pro(*port.rtu->id286pro(position), words);
 }
 
 }  // namespace axisgate::simulated

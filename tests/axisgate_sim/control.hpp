@@ -3,6 +3,7 @@
 // Never touches a socket.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,6 +31,7 @@ class Control {
   std::string carry_out(const ControlWords& words);
   std::string on_line(const ControlWords& words);
   std::string on_drive(const ControlWords& words);
+  std::optional<std::string> ask_drive(PortLine& port, std::size_t position, const ControlWords& words);
   std::string switch_fault(const ControlWords& words, const Target& target);
   PortLine& port_named(const std::string& name);
   Target target_named(const std::string& text);
@@ -40,5 +42,10 @@ class Control {
 // What a drive of its kind alone can do. Nothing: it is no such command.
 std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& words);
 std::optional<std::string> ask_id286pro(Id286pro& drive, const ControlWords& words);
+std::optional<std::string> ask_can(Simulator& simulator, PortLine& port, std::size_t position,
+                                   const ControlWords& words);
+
+// The newest of a record: " 12ms:#3:operation_enabled ..."
+std::string transitions_text(const std::deque<Transition>& log);
 
 }  // namespace axisgate::simulated

@@ -8,15 +8,6 @@ namespace {
 
 constexpr std::size_t shown = 8;  // of a long record, the newest
 
-std::string transitions(const KincoDrive& drive) {
-  std::ostringstream text;
-  const auto& log = drive.transitions();
-  for (std::size_t i = log.size() > shown ? log.size() - shown : 0; i < log.size(); ++i) {
-    text << ' ' << log[i].at / one_millisecond << "ms:#" << log[i].tag << ':' << name_of(log[i].to);
-  }
-  return text.str();
-}
-
 std::string starts(const Id286pro& drive) {
   std::ostringstream text;
   const auto& log = drive.starts();
@@ -64,7 +55,7 @@ std::optional<std::string> tell(const KincoDrive& drive, const ControlWords& wor
   if (command == "position") return " " + std::to_string(drive.position());
   if (command == "stores") return " " + std::to_string(drive.stores());
   if (command == "restarts") return " " + std::to_string(drive.restarts());
-  if (command == "transitions") return transitions(drive);
+  if (command == "transitions") return transitions_text(drive.transitions());
   if (command == "get") {
     need_words(words, 3, "get LINE/STATION INDEX.SUB");
     const auto value = drive.peek(object_in(words[2]));
@@ -172,6 +163,14 @@ std::optional<std::string> change(Id286pro& drive, const ControlWords& words) {
 }
 
 }  // namespace
+
+std::string transitions_text(const std::deque<Transition>& log) {
+  std::ostringstream text;
+  for (std::size_t i = log.size() > shown ? log.size() - shown : 0; i < log.size(); ++i) {
+    text << ' ' << log[i].at / one_millisecond << "ms:#" << log[i].tag << ':' << name_of(log[i].to);
+  }
+  return text.str();
+}
 
 std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& words) {
   const auto told = tell(drive, words);

@@ -1,61 +1,22 @@
 #include "tests/axisgate_sim/line_spec.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <limits>
-#include <optional>
-#include <stdexcept>
+
+#include "tests/axisgate_sim/spec_words.hpp"
 
 namespace axisgate::simulated {
 namespace {
 
-[[noreturn]] void refuse(std::string_view what, std::string_view wrong, std::string_view right) {
-  throw std::invalid_argument(std::string(what) + " '" + std::string(wrong) + "': " + std::string(right));
-}
+constexpr std::size_t longest_interface = 15;
 
-std::optional<std::int64_t> number(std::string_view text) {
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-std::vector<std::string_view> split(std::string_view text, char at) {
-  std::vector<std::string_view> parts;
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = text.find(at, begin);
-    parts.push_back(text.substr(begin, end - begin));
-    if (end == std::string_view::npos) return parts;
-    begin = end + 1;
-  }
-}
-
-std::pair<std::int64_t, std::int64_t> range(std::string_view word, std::string_view text) {
-  const std::size_t dots = text.find("..");
-  if (dots != std::string_view::npos) {
-    const auto from = number(text.substr(0, dots));
-    const auto to = number(text.substr(dots + 2));
-    if (from && to && *from < *to) return {*from, *to};
-  }
-  refuse("places", word, "write counts as FROM..TO, for example +home=10000..12000");
-}
-
-// The words that every kind of drive takes.
-bool modify_mechanics(Mechanics& mechanics, std::string_view word) {
-  if (word.starts_with("home=")) {
-    const auto [from, to] = range(word, word.substr(5));
-    mechanics.home_from = from;
-    mechanics.home_to = to;
-    return true;
-  }
-  if (word.starts_with("limits=")) {
-    const auto [from, to] = range(word, word.substr(7));
-    mechanics.negative_limit = from;
-    mechanics.positive_limit = to;
-    return true;
-  }
-  return false;
-}
+struct Mark {
+  std::string_view word;
+  LineKind kind;
+};
+constexpr std::array<Mark, 3> marks{
+    {{":rtu", LineKind::rtu}, {":can", LineKind::can}, {":lawicel", LineKind::lawicel}}};
 
 void modify(DriveOptions& drive, std::string_view word) {
   if (word == "fresh") {
@@ -63,7 +24,7 @@ void modify(DriveOptions& drive, std::string_view word) {
   } else if (word == "cascade") {
     drive.cascade = true;
   } else if (!modify_mechanics(drive.mechanics, word)) {
-    refuse("drive option", word, "use fresh, cascade, home=FROM..TO or limits=FROM..TO");
+    refuse_spec("drive option", word, "use fresh, cascade, home=FROM..TO or limits=FROM..TO");
   }
 }
 
@@ -73,7 +34,7 @@ void modify(KincoRtuDrive& drive, std::string_view word) {
   } else if (word == "errors=83") {
     drive.rtu.read_error_function = 0x83;
   } else if (!modify_mechanics(drive.drive.mechanics, word)) {
-    refuse("drive option", word, "use fresh, home=FROM..TO, limits=FROM..TO or errors=83");
+    refuse_spec("drive option", word, "use fresh, home=FROM..TO, limits=FROM..TO or errors=83");
   }
 }
 
@@ -84,45 +45,50 @@ void modify(Id286proOptions& drive, std::string_view word) {
   }
   if (modify_mechanics(drive.mechanics, word)) return;
   const std::size_t equals = std::min(word.find('='), word.size() - 1);
-  const std::int64_t row = number(word.substr(0, equals)).value_or(-1);
+  const std::int64_t row = whole_number(word.substr(0, equals)).value_or(-1);
   const std::int64_t outside = std::numeric_limits<std::int64_t>::min();
-  const std::int64_t value = number(word.substr(equals + 1)).value_or(outside);
+  const std::int64_t value = whole_number(word.substr(equals + 1)).value_or(outside);
   const auto known = std::ranges::find_if(id286pro_rows(), [&](const Id286proRow& it) {
     return it.number == row && it.saved != Saved::read_only && value >= it.minimum && value <= it.maximum;
   });
   if (known == id286pro_rows().end()) {
-    refuse("drive option", word,
-           "use fresh, home=FROM..TO, limits=FROM..TO, or a stored register and its value, for example 400=11");
+    refuse_spec("drive option", word,
+                "use fresh, home=FROM..TO, limits=FROM..TO, or a stored register and its value, for example 400=11");
   }
   drive.stored[known->number] = value;
 }
 
-struct Typed {
-  std::string_view type;
-  std::uint8_t station;
-  std::vector<std::string_view> words;
-};
-
-Typed typed(std::string_view text, const std::vector<std::string_view>& types, std::string_view names,
-            std::int64_t highest) {
-  auto words = split(text, '+');
-  const std::size_t at = words.front().find('@');
-  const std::string_view type = words.front().substr(0, at);
-  if (std::ranges::count(types, type) == 0) {
-    refuse("drive", text, "write TYPE@STATION with type " + std::string(names) + ", for example jd@1");
+void modify(KincoCanDrive& drive, std::string_view word) {
+  if (word == "fresh") {
+    drive.drive.factory_fresh = true;
+  } else if (word == "block") {
+    drive.can.block = true;
+  } else if (word == "short") {
+    drive.can.short_frames = true;
+  } else if (!modify_mechanics(drive.drive.mechanics, word)) {
+    refuse_spec("drive option", word, "use fresh, block, short, home=FROM..TO or limits=FROM..TO");
   }
-  const auto station = at == std::string_view::npos ? std::nullopt : number(words.front().substr(at + 1));
-  if (!station || *station < 1 || *station > highest) {
-    refuse("drive", text, "the station is a number from 1 to " + std::to_string(highest));
-  }
-  words.erase(words.begin());
-  return {type, static_cast<std::uint8_t>(*station), std::move(words)};
 }
 
-DriveOptions parse_kinco(const Typed& it, DriveOptions drive) {
-  drive.type = it.type == "jd" ? KincoType::jd : KincoType::md;
-  drive.station = it.station;
-  return drive;
+void modify(LeadshineOptions& drive, std::string_view word) {
+  if (word == "block") {
+    drive.block = true;
+    return;
+  }
+  if (word == "ack") {
+    drive.acknowledges_setpoints = true;
+    return;
+  }
+  if (modify_mechanics(drive.mechanics, word)) return;
+  const std::size_t equals = std::min(word.find('='), word.size() - 1);
+  const auto key = object_named(word.substr(0, equals));
+  const auto value = whole_number(word.substr(equals + 1));
+  if (!key || !value || !LeadshineDrive(LeadshineOptions{}).peek(*key)) {
+    refuse_spec("drive option", word,
+                "use block, ack, home=FROM..TO, limits=FROM..TO, or a stored object in hex and its value, for example "
+                "2008.00=10000");
+  }
+  drive.stored[*key] = *value;
 }
 
 DriveOptions parse_drive(std::string_view text, const DriveOptions& common) {
@@ -148,12 +114,28 @@ RtuDriveOptions parse_rtu_drive(std::string_view text, const DriveOptions& commo
   return drive;
 }
 
+CanDriveOptions parse_can_drive(std::string_view text, const DriveOptions& common) {
+  const Typed it = typed(text, {"jd", "md", "ld2"}, "jd, md or ld2", 127);
+  if (it.type != "ld2") {
+    KincoCanDrive drive{parse_kinco(it, common), {}};
+    for (const std::string_view word : it.words) modify(drive, word);
+    return drive;
+  }
+  LeadshineOptions drive;
+  drive.node = it.station;
+  drive.boot_time = common.boot_time;
+  drive.store_time = common.store_time;
+  for (const std::string_view word : it.words) modify(drive, word);
+  return drive;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> LineSpec::stations() const {
   std::vector<std::uint8_t> found;
   for (const DriveOptions& drive : drives) found.push_back(drive.station);
   for (const RtuDriveOptions& drive : rtu_drives) found.push_back(unit_of(drive));
+  for (const CanDriveOptions& drive : can_drives) found.push_back(node_of(drive));
   return found;
 }
 
@@ -164,32 +146,42 @@ std::string LineSpec::describe() const {
     append(std::string(model_of(drive.type).name) + '@' + std::to_string(drive.station));
   }
   for (const RtuDriveOptions& drive : rtu_drives) append(simulated::describe(drive));
-  return (rtu ? "rtu:" : "") + text;
+  for (const CanDriveOptions& drive : can_drives) append(simulated::describe(drive));
+  const auto mark = std::ranges::find(marks, kind, &Mark::kind);
+  return (mark == marks.end() ? "" : std::string(mark->word.substr(1)) + ":") + text;
 }
 
 LineSpec parse_line_spec(std::string_view text, const DriveOptions& common) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos || colon == 0 || colon + 1 == text.size()) {
-    refuse("line", text,
-           "write PATH:DRIVES or PATH:rtu:DRIVES, for example /tmp/lift:jd@1, /tmp/table:md@1,jd@2 or "
-           "/tmp/axes:rtu:id286pro@1,jd@2");
+    refuse_spec(
+        "line", text,
+        "write PATH:DRIVES, PATH:rtu:DRIVES, IFACE:can:DRIVES or PATH:lawicel:DRIVES, for example /tmp/lift:jd@1, "
+        "/tmp/table:md@1,jd@2, /tmp/axes:rtu:id286pro@1,jd@2 or vcan0:can:ld2@1");
   }
   LineSpec spec;
-  constexpr std::string_view rtu_mark = ":rtu";
   spec.path = text.substr(0, colon);
-  spec.rtu = spec.path.ends_with(rtu_mark);
-  if (spec.rtu) spec.path.resize(spec.path.size() - rtu_mark.size());
+  for (const Mark& mark : marks) {
+    if (spec.kind != LineKind::kinco || !spec.path.ends_with(mark.word)) continue;
+    spec.kind = mark.kind;
+    spec.path.resize(spec.path.size() - mark.word.size());
+  }
   spec.name = spec.path.substr(spec.path.rfind('/') + 1);
-  if (spec.name.empty()) refuse("line", text, "the path ends in '/': name the link itself");
+  if (spec.name.empty()) refuse_spec("line", text, "the path ends in '/': name the link itself");
+  if (spec.kind == LineKind::can && (spec.name != spec.path || spec.path.size() > longest_interface)) {
+    refuse_spec("line", text, "a CAN interface has a name of at most 15 characters and no '/', for example vcan0");
+  }
   for (const std::string_view drive : split(text.substr(colon + 1), ',')) {
-    if (spec.rtu) {
+    if (spec.is_can()) {
+      spec.can_drives.push_back(parse_can_drive(drive, common));
+    } else if (spec.kind == LineKind::rtu) {
       spec.rtu_drives.push_back(parse_rtu_drive(drive, common));
     } else {
       spec.drives.push_back(parse_drive(drive, common));
     }
     const auto stations = spec.stations();
     if (std::ranges::count(stations, stations.back()) > 1)
-      refuse("drive", drive, "this station is already on the line");
+      refuse_spec("drive", drive, "this station is already on the line");
   }
   return spec;
 }

@@ -1,4 +1,4 @@
-// axisgate-sim: simulated Kinco and iD286pro drives on pseudo-terminals, for demos, tests and benchmarks.
+// axisgate-sim: simulated drives on pseudo-terminals and CAN interfaces, for demos, tests and benchmarks.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <optional>
@@ -30,12 +30,18 @@ void describe_options(CLI::App& app, Options& options) {
   app.footer(
       "Example: axisgate-sim --line /tmp/lift:jd@1 --line /tmp/table:md@1,jd@2 --cascade --control /tmp/sim.sock\n"
       "Modbus RTU:  axisgate-sim --line /tmp/axes:rtu:id286pro@1,jd@2,md@3\n"
+      "CANopen:     axisgate-sim --line vcan0:can:ld2@1,jd@2,md@3, or --line /tmp/adapter:lawicel:ld2@1 for a serial\n"
+      "             CAN adapter (Lawicel) on a pty\n"
       "A drive may carry +fresh, +cascade, +home=FROM..TO and +limits=FROM..TO (counts of the motor): jd@1+fresh.\n"
       "On Modbus RTU a Kinco may carry +errors=83, an id286pro any stored register: id286pro@1+400=11+home=0..500.\n"
+      "On CANopen a drive may carry +block (SDO block transfer), a Kinco +short (replies shorter than 8 bytes), an "
+      "ld2\n"
+      "+ack (statusword bit 12 in profile position) and any stored object: ld2@1+2008.00=10000+6085.00=500000.\n"
       "The control socket takes text lines: echo 'mute lift/1 on' | socat - UNIX:/tmp/sim.sock; 'help' lists them.");
   app.add_option("--line", options.lines,
                  "PATH:TYPE@STATION[,TYPE@STATION...], type jd or md; PATH:rtu:TYPE@UNIT[,...] for Modbus RTU, type "
-                 "jd, md or id286pro; one pty each, linked at PATH")
+                 "jd, md or id286pro; one pty each, linked at PATH. IFACE:can:TYPE@NODE[,...] for CANopen on a "
+                 "SocketCAN interface, PATH:lawicel:TYPE@NODE[,...] behind a serial CAN adapter, type jd, md or ld2")
       ->required();
   app.add_flag("--cascade", options.cascade,
                "All drives have 6510:0B = 1 and return the host's frames, as several on one RS232 line always do");
@@ -43,7 +49,7 @@ void describe_options(CLI::App& app, Options& options) {
   app.add_flag("--factory-fresh", options.factory_fresh,
                "Drives as delivered: DIN1 and DIN3 block the bus, limits unwired; an id286pro waits for pulses");
   app.add_option("--reply-delay-ms", options.reply_delay_ms,
-                 "Time a drive takes to answer; else 0, and 20 for an id286pro")
+                 "Time a drive takes to answer; else 0, 20 for an id286pro, and 1 on CAN")
       ->check(CLI::Range(0.0, 60000.0));
   app.add_option("--boot-ms", options.boot_ms, "Time a restarted drive is silent")->check(CLI::Range(0.0, 600000.0));
   app.add_option("--store-ms", options.store_ms, "Time a store to the EEPROM takes")->check(CLI::Range(0.0, 600000.0));
@@ -69,6 +75,8 @@ void build(Simulator& simulator, Control& control, const Options& options) {
   timings.serial.baud = timings.rtu.baud = options.baud;
   timings.serial.reply_delay = milliseconds_of(options.reply_delay_ms.value_or(0));
   if (options.reply_delay_ms) timings.rtu.reply_delay = milliseconds_of(*options.reply_delay_ms);
+  if (options.reply_delay_ms) timings.can.reply_delay = milliseconds_of(*options.reply_delay_ms);
+  timings.can.bit_rate = 0;  // a real interface takes its own time, and an adapter is told its rate
   if (options.baud == 0) timings.rtu.frame_gap = milliseconds_of(options.frame_gap_ms);
   std::uint64_t seed = options.seed;
   for (const std::string& text : options.lines) {
@@ -85,7 +93,8 @@ void build(Simulator& simulator, Control& control, const Options& options) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Simulated Kinco JD, MD and iD286pro drives on pseudo-terminals, as their makers' manuals describe them."};
+      "Simulated Kinco JD, MD, iD286pro and Leadshine LD2-CAN drives on pseudo-terminals and CAN interfaces, as their "
+      "makers' manuals describe them."};
   Options options;
   describe_options(app, options);
   CLI11_PARSE(app, argc, argv);

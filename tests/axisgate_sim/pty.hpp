@@ -4,30 +4,23 @@
 // nobody takes are lost, as on a wire.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "tests/axisgate_sim/descriptor.hpp"
+#include "tests/axisgate_sim/port.hpp"
 
 namespace axisgate::simulated {
 
-class Pty {
+class Pty final : public Port {
  public:
   // Throws std::runtime_error that names the path and what to change.
   explicit Pty(const std::string& link);
-  ~Pty();
-  Pty(const Pty&) = delete;
-  Pty& operator=(const Pty&) = delete;
+  ~Pty() override;
 
-  const std::string& slave_name() const { return slave_name_; }
-  int readable() const { return master_.get(); }
-  int closings() const { return watch_.get(); }  // readable when a user of the port closed it
-
-  std::vector<std::uint8_t> read();
-  void write(std::span<const std::uint8_t> bytes);
-  void user_closed();  // call when closings() is readable
+  const std::string& far_end() const override { return slave_name_; }
+  int readable() const override { return master_.get(); }
+  int closings() const override { return watch_.get(); }
+  void user_closed() override;
+  std::vector<std::uint8_t> read() override;
+  void write(std::span<const std::uint8_t> bytes) override;
 
  private:
   std::string link_;

@@ -23,9 +23,9 @@ void serve_ports(Simulator& simulator, const std::vector<pollfd>& watched) {
   for (const pollfd& ready : watched) {
     if (ready.revents == 0) continue;
     for (auto& [name, port] : simulator.lines()) {
-      if (port.pty && ready.fd == port.pty->closings()) port.pty->user_closed();
-      if (!port.pty || ready.fd != port.pty->readable()) continue;
-      const auto bytes = port.pty->read();
+      if (port.port && ready.fd == port.port->closings()) port.port->user_closed();
+      if (!port.port || ready.fd != port.port->readable()) continue;
+      const auto bytes = port.port->read();
       if (!bytes.empty()) port.line->from_host(bytes, simulator.now());
     }
   }
@@ -51,9 +51,9 @@ void run(Simulator& simulator, ControlSocket* control, const Descriptor& end_sig
     watched.clear();
     watched.push_back({end_signals.get(), POLLIN, 0});
     for (const auto& [name, port] : simulator.lines()) {
-      if (!port.pty) continue;
-      watched.push_back({port.pty->readable(), POLLIN, 0});
-      watched.push_back({port.pty->closings(), POLLIN, 0});
+      if (!port.port) continue;
+      watched.push_back({port.port->readable(), POLLIN, 0});
+      if (port.port->closings() >= 0) watched.push_back({port.port->closings(), POLLIN, 0});
     }
     if (control != nullptr) control->add_to(watched);
     const timespec wait = until(next, simulator.now());

@@ -4,6 +4,11 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "tests/axisgate_sim/can_socket.hpp"
+#include "tests/axisgate_sim/pty.hpp"
+#include "tests/simulated/lawicel_line.hpp"
+#include "tests/simulated/socket_can_line.hpp"
+
 namespace axisgate::simulated {
 
 Time Simulator::now() const { return std::chrono::steady_clock::now() - begin_; }
@@ -15,9 +20,19 @@ void Simulator::add(const LineSpec& spec, const LineTimings& timings, std::uint6
   PortLine& port = lines_[spec.name];
   port.spec = spec;
   const auto to_port = [&port](const ToHost& arrived) {
-    if (port.pty) port.pty->write(arrived.bytes);
+    if (port.port) port.port->write(arrived.bytes);
   };
-  if (spec.rtu) {
+  if (spec.is_can()) {
+    std::unique_ptr<CanPortLine> line;
+    if (spec.kind == LineKind::can) {
+      line = std::make_unique<SocketCanLine>(timings.can, Random(seed), to_port);
+    } else {
+      line = std::make_unique<LawicelLine>(timings.can, LawicelOptions{}, Random(seed), to_port);
+    }
+    for (const CanDriveOptions& drive : spec.can_drives) line->bus().add(drive);
+    port.can = line.get();
+    port.line = std::move(line);
+  } else if (spec.kind == LineKind::rtu) {
     auto line = std::make_unique<RtuLine>(timings.rtu, Random(seed), to_port);
     for (const RtuDriveOptions& drive : spec.rtu_drives) line->add(drive);
     port.rtu = line.get();
@@ -32,14 +47,27 @@ void Simulator::add(const LineSpec& spec, const LineTimings& timings, std::uint6
 }
 
 void Simulator::plug(PortLine& port) {
-  port.pty = std::make_unique<Pty>(port.spec.path);
-  std::cout << "ready " << port.spec.path << " -> " << port.pty->slave_name() << ' ' << port.spec.describe()
-            << std::endl;
+  if (port.spec.kind == LineKind::can) {
+    port.port = std::make_unique<CanSocket>(port.spec.path);
+  } else {
+    port.port = std::make_unique<Pty>(port.spec.path);
+  }
+  std::cout << "ready " << port.spec.path << " -> " << port.port->far_end() << ' ' << port.spec.describe() << std::endl;
 }
 
 void Simulator::unplug(PortLine& port) {
   port.line->cut();
-  port.pty.reset();
+  port.port.reset();
+}
+
+void Simulator::set_twin(PortLine& port, std::size_t position, bool there) {
+  CanLine& bus = port.can->bus();
+  const auto found = port.twins.find(position);
+  if (found != port.twins.end()) {
+    bus.connect(found->second, there);
+  } else if (there) {
+    port.twins[position] = bus.add_twin(position);
+  }
 }
 
 PortLine* Simulator::find(const std::string& name) {

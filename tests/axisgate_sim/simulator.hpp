@@ -1,4 +1,4 @@
-// The running simulator: its lines with their ptys, and the time that has passed since it began.
+// The running simulator: its lines with their ports, and the time that has passed since it began.
 // Promises that a line keeps its drives and their faults while it is unplugged; only the port is gone.
 // Never blocks and never waits: the poll loop does.
 #pragma once
@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "tests/axisgate_sim/line_spec.hpp"
-#include "tests/axisgate_sim/pty.hpp"
+#include "tests/axisgate_sim/port.hpp"
+#include "tests/simulated/can_port_line.hpp"
 #include "tests/simulated/rtu_line.hpp"
 #include "tests/simulated/serial_line.hpp"
 
@@ -21,12 +22,15 @@ struct PortLine {
   std::unique_ptr<DriveLine> line;
   SerialLine* serial = nullptr;  // the same line, as what it is
   RtuLine* rtu = nullptr;
-  std::unique_ptr<Pty> pty;  // none while unplugged
+  CanPortLine* can = nullptr;
+  std::map<std::size_t, std::size_t> twins{};  // where the second drive with the number of the first stands
+  std::unique_ptr<Port> port;                  // none while unplugged
 };
 
 struct LineTimings {
   LineOptions serial;
   RtuLineOptions rtu;
+  CanLineOptions can;
 };
 
 class Simulator {
@@ -36,6 +40,8 @@ class Simulator {
   // Throws std::invalid_argument or std::runtime_error.
   void add(const LineSpec& spec, const LineTimings& timings, std::uint64_t seed);
   void plug(PortLine& line);  // prints the ready line
+  // A second drive under the number of this one, or none any more.
+  void set_twin(PortLine& line, std::size_t position, bool there);
   void unplug(PortLine& line);
   PortLine* find(const std::string& name);
   std::map<std::string, PortLine>& lines() { return lines_; }

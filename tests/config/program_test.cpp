@@ -114,9 +114,6 @@ TEST_F(Program, WrongCommandLinesEndWithTwoAndNameTheWord) {
   ended = run("map x.json --format xml");
   EXPECT_EQ(ended.code, 2);
   EXPECT_THAT(ended.err, HasSubstr("--format"));
-  ended = run("profile check x.json --eds y.eds");
-  EXPECT_EQ(ended.code, 2);
-  EXPECT_THAT(ended.err, HasSubstr("--eds: not available in this version"));
 }
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
@@ -136,6 +133,36 @@ TEST_F(Program, TheShippedProfilesAreFoundAndRight) {
   }
   const Ended ended = run("check " AXISGATE_SOURCE_DIR "/deploy/demo.json");
   EXPECT_EQ(ended.code, 0) << ended.err;
+}
+
+TEST_F(Program, ComparesAProfileWithTheMakersEds) {
+  const std::string profile = AXISGATE_SOURCE_DIR "/schemas/drives/kinco-md.json";
+  const fs::path eds = AXISGATE_SOURCE_DIR "/tests/profiles/eds/kinco-md.eds";
+  Ended ended = run("profile check " + profile + " --eds " + eds.string());
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("Made for tests MD80, vendor 0x300, product 0x4d44, revision 0x10002"));
+  EXPECT_THAT(ended.out, HasSubstr("nothing in it contradicts the profile"));
+  EXPECT_EQ(ended.err, "");
+
+  const fs::path other = folder_ / "other.eds";
+  std::string text = content(eds);
+  text.replace(text.find("[6041]"), 6, "[6049]");
+  std::ofstream(other) << text;
+  ended = run("profile check " + profile + " --eds " + other.string());
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_EQ(ended.err,
+            profile + ": /objects/statusword/at/canopen: " + other.string() + " [6041]: the EDS has no such object\n");
+
+  std::ofstream(other) << "no EDS at all\n";
+  ended = run("profile check " + profile + " --eds " + other.string());
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err, HasSubstr("other.eds: line 1: \"no EDS at all\" is neither [section] nor key=value"));
+  ended = run("profile check " + profile + " --eds " + (folder_ / "none.eds").string());
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err, HasSubstr("none.eds: cannot be read: No such file or directory"));
+  ended = run("profile check " AXISGATE_SOURCE_DIR "/schemas/drives/id286pro.json --eds " + eds.string());
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err, HasSubstr("/protocols: has no canopen"));
 }
 
 TEST_F(Program, FindsItsProfilesWhereItIsInstalled) {

@@ -60,6 +60,11 @@ void check_register(const Object& object, const json& row) {
   EXPECT_EQ(place->second.derived, row["modbus_origin"] != "printed");
 }
 
+/// Communication objects of which the JD's manual prints the index alone: sub-index and width are CiA 301's.
+bool only_named(const bus::ObjectAddress& address) {
+  return address == bus::ObjectAddress{0x1016, 1} || address == bus::ObjectAddress{0x1017, 0};
+}
+
 void check_profile(const std::string& drive, std::size_t at_least) {
   const LoadedProfile loaded = load_profile(shipped(drive));
   const auto rows = rows_of(drive);
@@ -69,6 +74,7 @@ void check_profile(const std::string& drive, std::size_t at_least) {
     const auto can = object.places.find("canopen");
     ASSERT_NE(can, object.places.end()) << object.name;
     const auto row = rows.find(can->second.address);
+    if (row == rows.end() && drive == "kinco-jd" && only_named(can->second.address)) continue;
     ASSERT_NE(row, rows.end()) << object.name << " is at an address that the manual does not have";
     check_row(object, row->second);
     if (serial == object.places.end()) continue;  // a CANopen communication object

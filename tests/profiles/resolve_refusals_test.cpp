@@ -47,10 +47,6 @@ TEST(Refusals, AConstantOutsideItsRangeIsRefused) {
 }
 
 TEST(Refusals, ProtocolsWithoutAnAdapterAreRefusedByName) {
-  ResolveInput input = kinco_axis();
-  input.protocol = "canopen";
-  EXPECT_THAT(refused(shipped("kinco-md"), input),
-              ElementsAre(says("", "protocol \"canopen\" is not available in this version of axisgate")));
   for (const std::string protocol : {"keya-can", "keya-rs232", "keya-rs485"})
     EXPECT_THAT(refused(valid_file("keya-kydas4860-2e"), one_axis(protocol)),
                 Contains(says("", "protocol \"" + protocol + "\" is not available")));

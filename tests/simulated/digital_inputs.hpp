@@ -30,6 +30,8 @@ class DigitalInputs {
   explicit DigitalInputs(int count) : count_(count) {}
 
   void set_pin(int input, bool high);
+  // For a drive whose functions stand elsewhere; several may be set in one word.
+  void assign(int input, std::uint16_t functions) { functions_.at(static_cast<std::size_t>(input - 1)) = functions; }
   // Takes over what the dictionary says of polarity, simulation and functions; call after each write.
   void configure(const ObjectDictionary& objects);
   // Moves the switches of the mechanics that are wired to inputs with the fitting function.

@@ -31,10 +31,12 @@ enum class DriveFault : std::uint8_t {
   half,          // the reply breaks off
   wrong_length,  // a register more or less than was asked for, with a right CRC
   glued,         // the reply and, without a gap, a copy of the drive's reply before it
-  exception,     // the drive does not act and refuses with `exception_code`
+  exception,     // the drive does not act and refuses with `exception_code`; on CAN with `abort_code`
+  // CAN alone:
+  emergencies,  // an EMCY with `emergency_code` every `babble_period`, unasked
 };
 
-inline constexpr std::size_t drive_fault_count = 15;
+inline constexpr std::size_t drive_fault_count = 16;
 
 std::string_view name_of(DriveFault fault);
 std::optional<DriveFault> drive_fault_named(std::string_view name);
@@ -46,6 +48,10 @@ class DriveFaults {
   Time babble_period = std::chrono::milliseconds(10);
   std::uint64_t longest_noise = 12;  // bytes
   std::uint8_t exception_code = 4;
+  std::uint32_t abort_code = 0x08000000;
+  std::uint32_t babble_id = 0;  // CAN: whose frames; 0: those of the drive's own error control
+  std::uint16_t emergency_code = 0x8110;
+  std::optional<bool> restart_acts;  // is the request carried out before the restart? none: by chance
 
   void set_rate(DriveFault fault, double probability) { switches_[number(fault)].rate = probability; }
   void next(DriveFault fault, std::uint64_t times = 1) { switches_[number(fault)].next = times; }

@@ -41,6 +41,7 @@ class KincoDrive {
   void restart(Time now);                                 // power off and on: RAM lost, silent for the boot time
   void inject_fault(int error_word, std::uint16_t bits);  // 1: 2601, 2: 2602; the cause stays until cleared
   void clear_fault_cause(int error_word, std::uint16_t bits);
+  void trip(std::uint16_t word_1, std::uint16_t word_2) { raise_fault(word_1, word_2); }  // a fault whose cause is over
   void set_input(int input, bool high) { inputs_.set_pin(input, high); }
   void jam(bool jammed) { axis_.jam(jammed); }  // the motor stands while the demand goes on
   // As the panel or another port would write it: same effects, not counted. Measured values that nothing computes
@@ -51,6 +52,7 @@ class KincoDrive {
   const KincoModel& model() const { return model_; }
   const DriveOptions& options() const { return options_; }
   Cia402State state() const { return state_; }
+  std::uint16_t error_word(int number) const { return number == 1 ? error_1_ : error_2_; }  // 2601, 2602
   std::optional<std::int64_t> peek(ObjectKey key) const;
   std::uint64_t writes(ObjectKey key) const { return objects_.writes(key); }  // accepted over the bus
   std::uint64_t stores() const { return stores_; }                            // EEPROM writes done

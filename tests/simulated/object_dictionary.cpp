@@ -18,6 +18,11 @@ const ObjectEntry* ObjectDictionary::find(ObjectKey key) const {
   return found == cells_.end() ? nullptr : found->second.entry;
 }
 
+bool ObjectDictionary::has_index(std::uint16_t index) const {
+  const auto at = cells_.lower_bound({index, 0});
+  return at != cells_.end() && at->first.index == index;
+}
+
 ObjectDictionary::Cell& ObjectDictionary::cell(ObjectKey key) {
   const auto found = cells_.find(key);
   if (found == cells_.end()) throw std::out_of_range("the simulated drive has no such object");

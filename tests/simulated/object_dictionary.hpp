@@ -32,6 +32,7 @@ class ObjectDictionary {
   ObjectDictionary(std::span<const ObjectEntry> motion, std::span<const ObjectEntry> setup, OutOfRange out_of_range);
 
   const ObjectEntry* find(ObjectKey key) const;
+  bool has_index(std::uint16_t index) const;  // with any sub-index
   std::int64_t get(ObjectKey key) const;
   // As the drive itself writes: no check, no count.
   void set(ObjectKey key, std::int64_t value);

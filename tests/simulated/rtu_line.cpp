@@ -150,7 +150,8 @@ void RtuLine::request_arrives(std::size_t position, const RtuFrame& request, Tim
     return;
   }
   if (slot.faults.strikes(DriveFault::restart, random_)) {
-    if (random_.chance(0.5)) (void)slot.slave->answer(request.pdu, exchange.tag, at);
+    const bool acts = slot.faults.restart_acts ? *slot.faults.restart_acts : random_.chance(0.5);
+    if (acts) (void)slot.slave->answer(request.pdu, exchange.tag, at);
     restart(position, at);
     journal_.record(std::move(exchange));
     return;

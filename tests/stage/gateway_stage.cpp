@@ -2,8 +2,10 @@
 
 #include <stdexcept>
 
+#include "adapters/canopen/canopen_wire.hpp"
 #include "adapters/kinco/kinco_wire.hpp"
 #include "adapters/modbus_rtu/rtu_wire.hpp"
+#include "gateway/app/can_wires.hpp"
 #include "gateway/app/config_sections.hpp"
 
 namespace axisgate::test {
@@ -16,6 +18,7 @@ struct Entry {
   std::uint8_t node = 1;
   drive::ResolveAxis axis;
   std::map<std::string, Rational> constants;
+  std::array<std::optional<std::uint32_t>, 4> identity{};
 };
 
 drive::DriveModel resolved(Entry entry, const std::optional<std::array<Duration, 3>>& poll) {
@@ -26,6 +29,7 @@ drive::DriveModel resolved(Entry entry, const std::optional<std::array<Duration,
   input.protocol = entry.protocol;
   input.node = entry.node;
   input.constants = std::move(entry.constants);
+  input.identity = entry.identity;
   if (poll) input.poll = *poll;
   input.axes = {entry.axis};
   auto model = drive::resolve(loaded, input);
@@ -40,14 +44,21 @@ void name_kinco(Entry& entry, simulated::KincoType type) {
 }
 
 Entry entry_of(const StageDrive& staged) {
-  Entry entry{{}, "kinco-serial", staged.options.station, staged.axis, staged.constants};
+  Entry entry{{}, "kinco-serial", staged.options.station, staged.axis, staged.constants, {}};
   name_kinco(entry, staged.options.type);
   return entry;
 }
 
 Entry entry_of(const RtuStageDrive& staged) {
-  Entry entry{"id286pro", "modbus-rtu", unit_of(staged.options), staged.axis, staged.constants};
+  Entry entry{"id286pro", "modbus-rtu", unit_of(staged.options), staged.axis, staged.constants, {}};
   const auto* kinco = std::get_if<simulated::KincoRtuDrive>(&staged.options);
+  if (kinco != nullptr) name_kinco(entry, kinco->drive.type);
+  return entry;
+}
+
+Entry entry_of(const CanStageDrive& staged) {
+  Entry entry{"leadshine-ld2-can", "canopen", node_of(staged.options), staged.axis, staged.constants, staged.identity};
+  const auto* kinco = std::get_if<simulated::KincoCanDrive>(&staged.options);
   if (kinco != nullptr) name_kinco(entry, kinco->drive.type);
   return entry;
 }
@@ -67,15 +78,21 @@ drive::ResolveAxis axis_named(AxisNumber number) {
   return axis;
 }
 
+std::string adapter_of(const GatewayStage::Line& line) {
+  if (!line.can_drives.empty()) return "canopen";
+  return line.rtu_drives.empty() ? "kinco-serial" : "modbus-rtu";
+}
+
 app::BusConfig bus_of(const GatewayStage::Line& line) {
   app::BusConfig bus;
   bus.name = line.name;
-  const bool rtu = !line.rtu_drives.empty();
-  const bool several = line.drives.size() + line.rtu_drives.size() > 1;
-  bus.adapter = rtu ? "modbus-rtu" : "kinco-serial";
+  bus.adapter = adapter_of(line);
+  const bool rtu = bus.adapter == "modbus-rtu";
   bus.timeout = line.timeout.value_or(rtu ? Duration{} : std::chrono::milliseconds(100));
-  bus.settle = several ? std::chrono::milliseconds(20) : Duration{};
-  bus.drives.resize(rtu ? line.rtu_drives.size() : line.drives.size());
+  bus.settle = line.drives.size() + line.rtu_drives.size() > 1 ? std::chrono::milliseconds(20) : Duration{};
+  const std::size_t serial = rtu ? line.rtu_drives.size() : line.drives.size();
+  bus.drives.resize(bus.adapter == "canopen" ? line.can_drives.size() : serial);
+  if (bus.adapter == "canopen" && line.poll) bus.poll = *line.poll;
   if (rtu) {
     constexpr std::uint32_t kUsualBaud = 19200;
     bus.baud = line.rtu_options.baud != 0 ? line.rtu_options.baud : kUsualBaud;
@@ -84,6 +101,19 @@ app::BusConfig bus_of(const GatewayStage::Line& line) {
     if (line.poll) bus.poll = *line.poll;
   }
   return bus;
+}
+
+/// A line's far end with its drives on it.
+template <class Link, class Drives, class Options>
+std::unique_ptr<Link> link_with(ManualRuntime& runtime, const Drives& drives, const Options& options,
+                                const GatewayStage::Line& line, std::uint64_t seed,
+                                std::vector<drive::DriveModel>& models) {
+  auto link = std::make_unique<Link>(runtime, options, seed);
+  for (const auto& staged : drives) {
+    link->line().add(staged.options);
+    models.push_back(resolved(entry_of(staged), line.poll));
+  }
+  return link;
 }
 
 }  // namespace
@@ -107,6 +137,15 @@ GatewayStage::Line rtu_line_of(std::vector<simulated::RtuDriveOptions> drives, A
   return line;
 }
 
+GatewayStage::Line can_line_of(std::vector<simulated::CanDriveOptions> drives, AxisNumber first) {
+  GatewayStage::Line line;
+  line.name = "can" + std::to_string(first);
+  for (simulated::CanDriveOptions& options : drives) {
+    line.can_drives.push_back({std::move(options), axis_named(first++), {}, {}});
+  }
+  return line;
+}
+
 GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
     : log_([this](LogLevel level, std::string_view source, std::string_view message) {
         log_lines_.push_back(std::string(axisgate::text(level)) + " " + std::string(source) + ": " +
@@ -116,27 +155,26 @@ GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
   app::Models models;
   std::map<std::string, std::unique_ptr<SimLink>> kinco;
   std::map<std::string, std::unique_ptr<RtuLinkSim>> rtu;
+  std::map<std::string, std::unique_ptr<CanLinkSim>> can;
   for (const Line& line : lines) {
     app::BusConfig bus = bus_of(line);
-    models.emplace_back();
-    if (line.rtu_drives.empty()) {
-      auto link = std::make_unique<SimLink>(runtime_, line.options, seed++);
-      for (const StageDrive& staged : line.drives) {
-        link->line().add(staged.options);
-        models.back().push_back(resolved(entry_of(staged), line.poll));
-      }
-      links_.push_back({link.get(), nullptr});
-      kinco.emplace(line.name, std::move(link));
-    } else {
-      auto link = std::make_unique<RtuLinkSim>(runtime_, line.rtu_options, seed++);
-      for (const RtuStageDrive& staged : line.rtu_drives) {
-        link->line().add(staged.options);
-        models.back().push_back(resolved(entry_of(staged), line.poll));
-      }
-      links_.push_back({nullptr, link.get()});
+    auto& of_line = models.emplace_back();
+    LinkOfLine ends;
+    if (bus.adapter == "canopen") {
+      auto link = link_with<CanLinkSim>(runtime_, line.can_drives, line.can_options, line, seed++, of_line);
+      ends.can = link.get();
+      can.emplace(line.name, std::move(link));
+    } else if (bus.adapter == "modbus-rtu") {
+      auto link = link_with<RtuLinkSim>(runtime_, line.rtu_drives, line.rtu_options, line, seed++, of_line);
+      ends.rtu = link.get();
       rtu.emplace(line.name, std::move(link));
+    } else {
+      auto link = link_with<SimLink>(runtime_, line.drives, line.options, line, seed++, of_line);
+      ends.kinco = link.get();
+      kinco.emplace(line.name, std::move(link));
     }
-    for (std::size_t d = 0; d < bus.drives.size(); ++d) bus.drives[d].node = models.back()[d].node;
+    links_.push_back(ends);
+    for (std::size_t d = 0; d < bus.drives.size(); ++d) bus.drives[d].node = of_line[d].node;
     config.buses.push_back(std::move(bus));
   }
   app::ConfigFaults faults("stage");
@@ -147,6 +185,10 @@ GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
     if (bus.adapter == "kinco-serial") {
       return std::make_unique<kinco::KincoWire>(bus.name, std::move(kinco.at(bus.name)), runtime_, log_);
     }
+    if (bus.adapter == "canopen") {
+      return canopen::make_canopen_wire(app::canopen_settings(bus, drives), std::move(can.at(bus.name)), runtime_,
+                                        log_);
+    }
     return std::make_unique<modbus_rtu::RtuWire>(bus.name, nodes_of(drives), modbus_rtu::LineSpeed{bus.baud, 0},
                                                  std::move(rtu.at(bus.name)), runtime_, log_);
   };
@@ -156,14 +198,32 @@ GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
 
 simulated::KincoDrive& GatewayStage::drive(std::size_t line, std::size_t position) {
   const LinkOfLine& link = links_.at(line);
+  simulated::KincoDrive* found = nullptr;
   if (link.kinco != nullptr) {
     link.kinco->advance_drives();
     return link.kinco->line().drive(position);
   }
-  link.rtu->advance_drives();
-  simulated::KincoDrive* found = link.rtu->line().kinco(position);
+  if (link.rtu != nullptr) {
+    link.rtu->advance_drives();
+    found = link.rtu->line().kinco(position);
+  } else {
+    link.can->advance_drives();
+    found = link.can->line().kinco(position);
+  }
   if (found == nullptr) throw std::invalid_argument("the drive there is no Kinco");
   return *found;
+}
+
+simulated::LeadshineDrive& GatewayStage::leadshine(std::size_t line, std::size_t position) {
+  can_link(line).advance_drives();
+  simulated::LeadshineDrive* found = can_link(line).line().leadshine(position);
+  if (found == nullptr) throw std::invalid_argument("the drive there is no Leadshine");
+  return *found;
+}
+
+simulated::CanopenNode& GatewayStage::can_node(std::size_t line, std::size_t position) {
+  can_link(line).advance_drives();
+  return can_link(line).line().node(position);
 }
 
 simulated::Id286pro& GatewayStage::id286pro(std::size_t line, std::size_t position) {

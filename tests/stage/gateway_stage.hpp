@@ -1,4 +1,4 @@
-// The shipped gateway core on a stage: manual time, simulated lines of either kind, shipped profiles; a client speaks
+// The shipped gateway core on a stage: manual time, simulated lines of every kind, shipped profiles; a client speaks
 // to the command port. Promises that nothing happens but by the clock that the test moves. Never opens a device or a
 // socket.
 #pragma once
@@ -10,6 +10,7 @@
 
 #include "gateway/app/gateway.hpp"
 #include "gateway/drive/profile_loader.hpp"
+#include "tests/stage/can_link_sim.hpp"
 #include "tests/stage/rtu_link_sim.hpp"
 #include "tests/stage/sim_link.hpp"
 
@@ -29,6 +30,15 @@ struct RtuStageDrive {
   std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
 };
 
+/// The same on a CAN bus.
+struct CanStageDrive {
+  simulated::CanDriveOptions options{};
+  drive::ResolveAxis axis{};
+  std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
+  /// 1018h as the configuration would have it: vendor, product, revision, serial.
+  std::array<std::optional<std::uint32_t>, 4> identity{};
+};
+
 class GatewayStage {
  public:
   struct Line {
@@ -39,6 +49,9 @@ class GatewayStage {
     /// Any here makes it a Modbus RTU line, and `drives` and `options` do not count.
     std::vector<RtuStageDrive> rtu_drives{};
     simulated::RtuLineOptions rtu_options{};
+    /// Any here makes it a CAN bus.
+    std::vector<CanStageDrive> can_drives{};
+    simulated::CanLineOptions can_options{};
     std::optional<Duration> timeout{};  ///< none: 100 ms, and on Modbus RTU what the product takes for these drives
   };
   explicit GatewayStage(std::vector<Line> lines, std::uint64_t seed = 1);
@@ -47,9 +60,12 @@ class GatewayStage {
   [[nodiscard]] ManualRuntime& runtime() { return runtime_; }
   [[nodiscard]] SimLink& link(std::size_t line) { return *links_.at(line).kinco; }
   [[nodiscard]] RtuLinkSim& rtu_link(std::size_t line) { return *links_.at(line).rtu; }
+  [[nodiscard]] CanLinkSim& can_link(std::size_t line) { return *links_.at(line).can; }
   /// Brought up to now. The drive there must be of this kind, on whichever line.
   [[nodiscard]] simulated::KincoDrive& drive(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::Id286pro& id286pro(std::size_t line, std::size_t position = 0);
+  [[nodiscard]] simulated::LeadshineDrive& leadshine(std::size_t line, std::size_t position = 0);
+  [[nodiscard]] simulated::CanopenNode& can_node(std::size_t line, std::size_t position = 0);
   [[nodiscard]] const AxisImage& axis(AxisNumber number) { return *gateway_->image().find(number); }
   [[nodiscard]] std::vector<std::string>& log() { return log_lines_; }
 
@@ -76,10 +92,11 @@ class GatewayStage {
   ManualRuntime runtime_;
   std::vector<std::string> log_lines_;
   Log log_;
-  /// One of both.
+  /// One of them.
   struct LinkOfLine {
     SimLink* kinco = nullptr;
     RtuLinkSim* rtu = nullptr;
+    CanLinkSim* can = nullptr;
   };
   std::vector<LinkOfLine> links_;
   std::unique_ptr<app::Gateway> gateway_;
@@ -89,5 +106,7 @@ class GatewayStage {
 [[nodiscard]] GatewayStage::Line line_of(simulated::KincoType type, AxisNumber axis);
 /// Commissioned drives on one Modbus RTU line, with axes from `first` on.
 [[nodiscard]] GatewayStage::Line rtu_line_of(std::vector<simulated::RtuDriveOptions> drives, AxisNumber first);
+/// Commissioned drives on one CAN bus, with axes from `first` on.
+[[nodiscard]] GatewayStage::Line can_line_of(std::vector<simulated::CanDriveOptions> drives, AxisNumber first);
 
 }  // namespace axisgate::test

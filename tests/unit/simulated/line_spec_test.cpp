@@ -19,7 +19,7 @@ TEST(LineSpec, NamesThePathTheLineAndItsDrives) {
   EXPECT_TRUE(spec.drives[1].factory_fresh);
   EXPECT_EQ(spec.drives[1].mechanics.home_from, -10);
   EXPECT_EQ(spec.drives[1].mechanics.home_to, 20);
-  EXPECT_FALSE(spec.rtu);
+  EXPECT_EQ(spec.kind, LineKind::kinco);
   EXPECT_EQ(spec.describe(), "md@1,jd@2");
 }
 
@@ -30,7 +30,7 @@ TEST(LineSpec, NamesAModbusRtuLineAndItsDrives) {
       parse_line_spec("/tmp/axes:rtu:id286pro@1+400=11+319=-5000+home=5..9,jd@2+errors=83,md@3+fresh", common);
   EXPECT_EQ(spec.path, "/tmp/axes");
   EXPECT_EQ(spec.name, "axes");
-  EXPECT_TRUE(spec.rtu);
+  EXPECT_EQ(spec.kind, LineKind::rtu);
   EXPECT_TRUE(spec.drives.empty());
   ASSERT_EQ(spec.rtu_drives.size(), 3U);
   const auto& stepper = std::get<Id286proOptions>(spec.rtu_drives[0]);
@@ -46,6 +46,26 @@ TEST(LineSpec, NamesAModbusRtuLineAndItsDrives) {
   EXPECT_THAT(spec.stations(), testing::ElementsAre(1, 2, 3));
   EXPECT_FALSE(
       std::get<Id286proOptions>(parse_line_spec("/x:rtu:id286pro@254+fresh", {}).rtu_drives[0]).internal_pulses);
+}
+
+TEST(LineSpec, NamesACanInterfaceOrAnAdapterAndTheirDrives) {
+  const LineSpec spec = parse_line_spec("vcan0:can:ld2@1+2008.00=5000+ack,jd@2+short,md@127+block+limits=-9..9", {});
+  EXPECT_EQ(spec.path, "vcan0");
+  EXPECT_EQ(spec.name, "vcan0");
+  EXPECT_EQ(spec.kind, LineKind::can);
+  ASSERT_EQ(spec.can_drives.size(), 3U);
+  const auto& ld2 = std::get<LeadshineOptions>(spec.can_drives[0]);
+  EXPECT_THAT(ld2.stored, testing::ElementsAre(testing::Pair(ObjectKey{0x2008, 0}, 5000)));
+  EXPECT_TRUE(ld2.acknowledges_setpoints);
+  EXPECT_TRUE(std::get<KincoCanDrive>(spec.can_drives[1]).can.short_frames);
+  EXPECT_TRUE(std::get<KincoCanDrive>(spec.can_drives[2]).can.block);
+  EXPECT_EQ(std::get<KincoCanDrive>(spec.can_drives[2]).drive.mechanics.positive_limit, 9);
+  EXPECT_EQ(spec.describe(), "can:ld2@1,jd@2,md@127");
+  const LineSpec serial = parse_line_spec("/tmp/adapter:lawicel:ld2@9", {});
+  EXPECT_EQ(serial.path, "/tmp/adapter");
+  EXPECT_EQ(serial.name, "adapter");
+  EXPECT_EQ(serial.kind, LineKind::lawicel);
+  EXPECT_EQ(serial.describe(), "lawicel:ld2@9");
 }
 
 TEST(LineSpec, SaysWhatToChange) {
@@ -74,6 +94,13 @@ TEST(LineSpec, SaysWhatToChange) {
   EXPECT_THAT(message("/tmp/x:rtu:id286pro@1+107=1"), HasSubstr("a stored register"));
   EXPECT_THAT(message("/tmp/x:rtu:id286pro@1+400=31"), HasSubstr("a stored register"));
   EXPECT_THAT(message("/tmp/x:rtu:id286pro@1+"), HasSubstr("a stored register"));
+  EXPECT_THAT(message("can0:can:id286pro@1"), HasSubstr("type jd, md or ld2"));
+  EXPECT_THAT(message("can0:can:ld2@1,md@1"), HasSubstr("already on the line"));
+  EXPECT_THAT(message("can0:can:ld2@1+9999.00=1"), HasSubstr("a stored object"));
+  EXPECT_THAT(message("can0:can:ld2@1+2008=1"), HasSubstr("a stored object"));
+  EXPECT_THAT(message("can0:can:jd@1+ack"), HasSubstr("use fresh, block, short"));
+  EXPECT_THAT(message("/dev/can0:can:jd@1"), HasSubstr("at most 15 characters"));
+  EXPECT_THAT(message("a-very-long-name:can:jd@1"), HasSubstr("at most 15 characters"));
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+// Tells when a network interface appears, goes, or is taken up or down: rtnetlink's notices.
+// Promises at least one call for each change that the system tells, and one when it says that notices were lost.
+// Never asks for the state, and never changes it.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace axisgate::can {
+
+struct InterfaceNotice {
+  bool known = false;    ///< false: notices were lost, and the rest means nothing
+  bool up = false;       ///< by the administrator
+  bool running = false;  ///< the driver says that it works: false while bus-off
+};
+
+class InterfaceWatch {
+ public:
+  /// `on_notice` runs on the context's thread, not after the watch is destroyed.
+  InterfaceWatch(boost::asio::io_context& context, std::string interface,
+                 std::function<void(const InterfaceNotice&)> on_notice);
+  InterfaceWatch(const InterfaceWatch&) = delete;
+  InterfaceWatch& operator=(const InterfaceWatch&) = delete;
+  ~InterfaceWatch();
+
+ private:
+  void wait();
+  /// False: the watch was destroyed by what it called.
+  bool drain();
+
+  std::string interface_;
+  std::function<void(const InterfaceNotice&)> on_notice_;
+  boost::asio::posix::stream_descriptor netlink_;
+  std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
+};
+
+}  // namespace axisgate::can

@@ -1,0 +1,14 @@
+// A CANopen frame in words, for the decode log: "SDO read 6041:00 of node 3".
+// Promises one short line for any frame. Which service a frame is of is told by its COB-ID alone.
+// Never decides anything.
+#pragma once
+
+#include <string>
+
+#include "adapters/can/can_frame.hpp"
+
+namespace axisgate::canopen {
+
+[[nodiscard]] std::string describe(const can::CanFrame& frame);
+
+}  // namespace axisgate::canopen

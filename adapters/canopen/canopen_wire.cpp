@@ -1,0 +1,296 @@
+#include "adapters/canopen/canopen_wire.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <optional>
+#include <utility>
+
+#include "adapters/canopen/canopen_text.hpp"
+#include "adapters/canopen/heartbeat_plan.hpp"
+#include "adapters/canopen/sdo_client.hpp"
+#include "adapters/canopen/unasked.hpp"
+
+namespace axisgate::canopen {
+
+namespace {
+
+/// A timer that comes so late has been kept waiting by the loop; so have frames that may say that all is well.
+constexpr Duration kStalled = std::chrono::milliseconds(20);
+
+class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
+ public:
+  CanopenWire(CanopenSettings settings, std::unique_ptr<can::CanLink> link, Runtime& runtime, const Log& log);
+
+  void start(bus::WireEvents& events) override;
+  void send(const bus::Exchange& exchange) override;
+  void abandon() override;
+  void map_process_data(std::uint8_t node, std::uint8_t number, const bus::ProcessMap& objects) override;
+  [[nodiscard]] bool call(std::uint8_t node) override;
+  [[nodiscard]] const bus::Statistics& statistics() const override;
+  void set_decode(bool on) override { decode_ = on; }
+
+ private:
+  struct Node {
+    std::uint8_t number = 0;
+    Unasked unasked;
+  };
+
+  void on_link_up() override;
+  void on_link_down(std::string_view why) override;
+  void on_frame(const can::CanFrame& frame, Instant received) override;
+
+  void on_timer();
+  void arm();
+  void send_command(const bus::Exchange& exchange);
+  void send_step(std::uint8_t node, const SdoStep& step);
+  void transmit(const can::CanFrame& frame, bool urgent = false);
+  void transmit(std::uint8_t node, const SdoFrames& frames);
+  void on_reply_frame(Node& node, Bytes bytes, Instant now);
+  void tell(Node& node, const Unasked::News& news);
+  void watch_nodes(Instant now);
+  [[nodiscard]] Node* find(std::uint8_t number);
+  void log_frame(std::string_view direction, const can::CanFrame& frame, std::string_view remark = "") const;
+
+  CanopenSettings settings_;
+  std::string log_source_;
+  Runtime& runtime_;
+  const Log& log_;
+  bus::WireEvents* events_ = nullptr;
+  std::vector<Node> nodes_;
+  SdoClient sdo_;
+  HeartbeatPlan heartbeat_;
+  PeriodPlan sync_;
+  /// What ends without an answer ends with the next turn of the loop, never inside send().
+  std::optional<bus::ExchangeResult> owed_;
+  Instant watch_again_ = kLongAgo;
+  bool decode_ = false;
+  bool up_ = false;
+  bool ever_up_ = false;
+  mutable bus::Statistics statistics_;
+  // Last, so that they go first: neither may call into a wire that is half gone.
+  std::unique_ptr<Timer> timer_;
+  std::unique_ptr<can::CanLink> link_;
+};
+
+CanopenWire::CanopenWire(CanopenSettings settings, std::unique_ptr<can::CanLink> link, Runtime& runtime, const Log& log)
+    : settings_(std::move(settings)),
+      log_source_("bus " + settings_.name),
+      runtime_(runtime),
+      log_(log),
+      sdo_(settings_.timeout),
+      heartbeat_(settings_.own_heartbeat),
+      sync_(settings_.sync),
+      timer_(runtime.make_timer([this] { on_timer(); })),
+      link_(std::move(link)) {
+  assert(link_ != nullptr);
+  nodes_.reserve(settings_.nodes.size());
+  for (const CanopenNode& node : settings_.nodes) {
+    assert(node.node >= kFirstNode && node.node <= kLastNode && find(node.node) == nullptr);
+    nodes_.push_back({.number = node.node,
+                      .unasked = Unasked({.node = node.node,
+                                          .heartbeat = node.heartbeat,
+                                          .guard_time = node.guard_time,
+                                          .life_factor = node.life_factor})});
+    if (node.sdo_block) sdo_.offer_block(node.node);
+  }
+}
+
+CanopenWire::Node* CanopenWire::find(std::uint8_t number) {
+  const auto found = std::ranges::find(nodes_, number, &Node::number);
+  return found == nodes_.end() ? nullptr : &*found;
+}
+
+void CanopenWire::start(bus::WireEvents& events) {
+  events_ = &events;
+  std::vector<std::uint8_t> numbers;
+  for (const Node& node : nodes_) numbers.push_back(node.number);
+  link_->start(*this, filters_for(numbers));
+}
+
+const bus::Statistics& CanopenWire::statistics() const {
+  const can::CanTrouble& trouble = link_->trouble();
+  statistics_.dropped_bytes = trouble.lost_in + trouble.bad_bytes;
+  return statistics_;
+}
+
+// --- What we send ---------------------------------------------------------------------------------------------------
+
+void CanopenWire::send(const bus::Exchange& exchange) {
+  assert(up_ && !owed_ && !sdo_.outstanding_node() && exchange.node <= kLastNode);
+  if (exchange.access == bus::Access::command) return send_command(exchange);
+  assert(exchange.node >= kFirstNode);
+  // A new heartbeat period is a new rhythm, not a second device.
+  constexpr std::uint16_t kProducerHeartbeatTime = 0x1017;
+  if (exchange.access == bus::Access::write && exchange.object.index == kProducerHeartbeatTime) {
+    if (Node* node = find(exchange.node)) node->unasked.on_changed_by_us();
+  }
+  send_step(exchange.node, sdo_.begin(exchange));
+}
+
+void CanopenWire::send_step(std::uint8_t node, const SdoStep& step) {
+  transmit(node, step.frames);
+  if (!step.over) return;
+  owed_ = step.over;
+  arm();
+}
+
+void CanopenWire::send_command(const bus::Exchange& exchange) {
+  const auto command = nmt_command(exchange.raw);
+  assert(command);
+  for (Node& node : nodes_) {
+    if (exchange.node != 0 && exchange.node != node.number) continue;
+    transmit(node.number, sdo_.interrupt(node.number));
+    node.unasked.on_changed_by_us();
+  }
+  transmit(nmt_frame(*command, exchange.node), true);
+  owed_ = bus::ExchangeResult{};
+  arm();
+}
+
+void CanopenWire::abandon() {
+  owed_.reset();
+  const auto node = sdo_.outstanding_node();
+  if (!node) return;
+  const SdoFrames frames = sdo_.abandon();
+  if (up_) transmit(*node, frames);
+}
+
+void CanopenWire::map_process_data(std::uint8_t node, std::uint8_t number, const bus::ProcessMap& objects) {
+  assert(number >= 1 && number <= kTpdos);
+  if (Node* found = find(node)) found->unasked.map(number, objects);
+}
+
+bool CanopenWire::call(std::uint8_t node) {
+  Node* found = find(node);
+  if (up_ && found != nullptr) {
+    found->unasked.call();
+    transmit(guard_frame(node));
+  }
+  return true;
+}
+
+void CanopenWire::transmit(std::uint8_t node, const SdoFrames& frames) {
+  for (const SdoFrame& frame : frames) transmit(can::data_frame(sdo_request_id(node), frame));
+}
+
+void CanopenWire::transmit(const can::CanFrame& frame, bool urgent) {
+  if (decode_) log_frame("->", frame);
+  link_->send(frame, urgent);
+}
+
+// --- What we hear ---------------------------------------------------------------------------------------------------
+
+void CanopenWire::on_link_up() {
+  const Instant now = runtime_.now();
+  up_ = true;
+  sdo_.reset();
+  for (Node& node : nodes_) node.unasked.link_up(now);
+  heartbeat_.link_up(now);
+  sync_.begin(now);
+  if (std::exchange(ever_up_, true)) ++statistics_.reconnects;
+  timer_->expires_at(now);  // our first heartbeat goes out before anything else is due
+  events_->on_wire_up();
+}
+
+void CanopenWire::on_link_down(std::string_view why) {
+  if (!std::exchange(up_, false)) return;
+  sdo_.reset();
+  owed_.reset();
+  for (Node& node : nodes_) node.unasked.link_down();
+  timer_->expires_at(kNever);
+  events_->on_wire_down(why);
+}
+
+void CanopenWire::on_frame(const can::CanFrame& frame, Instant received) {
+  const auto id = frame.extended || frame.remote ? std::nullopt : cob_id(frame.id);
+  Node* node = up_ && id ? find(id->node) : nullptr;
+  // Another master's guarding, a node nobody configured: not ours to judge.
+  if (node == nullptr) return;
+  const Instant now = std::min(received, runtime_.now());
+  if (id->service == Service::sdo_reply) {
+    log_frame("<-", frame);
+    on_reply_frame(*node, frame.bytes(), now);
+    return;
+  }
+  const Unasked::News news = node->unasked.on_frame(*id, frame.bytes(), now);
+  log_frame("<-", frame, news.bad ? "  (bad)" : "");
+  if (news.restarted()) sdo_.restarted(node->number);
+  if (id->service != Service::tpdo) arm();
+  tell(*node, news);
+}
+
+void CanopenWire::on_reply_frame(Node& node, Bytes bytes, Instant now) {
+  const SdoClient::Heard heard = sdo_.take(node.number, bytes, now);
+  switch (heard.what) {
+    case SdoClient::Heard::What::bad:
+      ++statistics_.bad_frames;
+      tell(node, node.unasked.on_stray_reply(false, now));
+      return;
+    case SdoClient::Heard::What::late:
+    case SdoClient::Heard::What::twin:
+      ++statistics_.late_replies;
+      tell(node, node.unasked.on_stray_reply(heard.what == SdoClient::Heard::What::twin, now));
+      return;
+    case SdoClient::Heard::What::mine:
+      transmit(node.number, heard.step.frames);
+      // Last: the bus may send its next request from inside this call.
+      if (heard.step.over) events_->on_reply(*heard.step.over);
+      return;
+  }
+}
+
+/// Last in whatever calls it: the bus may send from inside.
+void CanopenWire::tell(Node& node, const Unasked::News& news) {
+  if (news.bad) ++statistics_.bad_frames;
+  if (news.guard) transmit(guard_frame(node.number));
+  for (const bus::Notice& notice : news.notices) events_->on_notice(notice);
+}
+
+void CanopenWire::on_timer() {
+  if (!up_) return;
+  const Instant now = runtime_.now();
+  for (const can::CanFrame& frame : heartbeat_.due(now, settings_.own_node)) transmit(frame);
+  if (sync_.due(now)) transmit(can::data_frame(kSyncId, {}));
+  watch_nodes(now);
+  const auto owed = std::exchange(owed_, std::nullopt);
+  arm();
+  if (owed) events_->on_reply(*owed);
+}
+
+/// What the loop kept waiting gets one more turn to come in, before anybody is said to be gone.
+void CanopenWire::watch_nodes(Instant now) {
+  for (Node& node : nodes_) {
+    const Instant due = node.unasked.next_deadline();
+    if (due > now || !up_) continue;
+    if (now - due > kStalled && watch_again_ < due) {
+      watch_again_ = now;
+      return;
+    }
+    tell(node, node.unasked.on_deadline(now));
+  }
+}
+
+void CanopenWire::arm() {
+  if (!up_) return;
+  Instant next = owed_ ? runtime_.now() : std::min(heartbeat_.next_deadline(), sync_.next_deadline());
+  for (const Node& node : nodes_) next = std::min(next, node.unasked.next_deadline());
+  timer_->expires_at(next);
+}
+
+void CanopenWire::log_frame(std::string_view direction, const can::CanFrame& frame, std::string_view remark) const {
+  if (!decode_) return;
+  const std::string content = frame.remote ? "remote" : hex_text(frame.bytes());
+  log_.write(LogLevel::info, log_source_,
+             fmt::format("{} {:03X} {}  {}{}", direction, frame.id, content, describe(frame), remark));
+}
+
+}  // namespace
+
+std::unique_ptr<bus::Wire> make_canopen_wire(CanopenSettings settings, std::unique_ptr<can::CanLink> link,
+                                             Runtime& runtime, const Log& log) {
+  return std::make_unique<CanopenWire>(std::move(settings), std::move(link), runtime, log);
+}
+
+}  // namespace axisgate::canopen

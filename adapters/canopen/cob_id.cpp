@@ -1,0 +1,50 @@
+#include "adapters/canopen/cob_id.hpp"
+
+#include <cassert>
+
+namespace axisgate::canopen {
+
+std::optional<CobId> cob_id(std::uint32_t id) {
+  if (id == kNmtId) return CobId{Service::nmt, 0, 0};
+  if (id == kSyncId) return CobId{Service::sync, 0, 0};
+  const auto node = static_cast<std::uint8_t>(id & 0x7F);
+  if (id > can::kMaxStandardId || node < kFirstNode) return std::nullopt;
+  const std::uint32_t function = id >> 7;
+  switch (function) {
+    case 0x1:
+      return CobId{Service::emergency, node, 0};
+    case 0x3:
+    case 0x5:
+    case 0x7:
+    case 0x9:
+      return CobId{Service::tpdo, node, static_cast<std::uint8_t>((function - 1) / 2)};
+    case 0x4:
+    case 0x6:
+    case 0x8:
+    case 0xA:
+      return CobId{Service::rpdo, node, static_cast<std::uint8_t>((function - 2) / 2)};
+    case 0xB:
+      return CobId{Service::sdo_reply, node, 0};
+    case 0xC:
+      return CobId{Service::sdo_request, node, 0};
+    case 0xE:
+      return CobId{Service::error_control, node, 0};
+    default:
+      return std::nullopt;
+  }
+}
+
+std::vector<can::CanFilter> filters_for(const std::vector<std::uint8_t>& nodes) {
+  std::vector<can::CanFilter> filters;
+  const auto pass = [&](std::uint32_t id) { filters.push_back({.id = id, .mask = can::kMaxStandardId}); };
+  for (const std::uint8_t node : nodes) {
+    pass(emergency_id(node));
+    for (std::uint8_t number = 1; number <= kTpdos; ++number) pass(tpdo_id(number, node));
+    pass(sdo_reply_id(node));
+    pass(error_control_id(node));
+  }
+  assert(filters.size() <= can::kMaxFilters);
+  return filters;
+}
+
+}  // namespace axisgate::canopen

@@ -1,0 +1,46 @@
+#include "adapters/canopen/emergency.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace axisgate::canopen {
+
+std::optional<bus::Notice> decode_emergency(std::uint8_t node, Bytes bytes) {
+  if (bytes.size() < 2) return std::nullopt;
+  bus::Notice notice{.kind = bus::Notice::Kind::emergency, .node = node};
+  notice.code = load_le16(bytes, 0);
+  if (bytes.size() > 2) {
+    notice.error_register = bytes[2];
+    std::copy(bytes.begin() + 3, bytes.end(), notice.vendor.begin());
+  }
+  return notice;
+}
+
+std::optional<bus::Notice> EmergencyLimit::pass(bus::Notice emergency, Instant now) {
+  if (now >= window_end_) {
+    told_ = 0;
+    window_end_ = now + kWindow;
+  }
+  const bool reset = emergency.code == 0;
+  if (!reset && told_ >= kMaxEmergencies) {
+    held_ = emergency;
+    ++held_count_;
+    return std::nullopt;
+  }
+  ++told_;
+  // What was held back came before this one.
+  emergency.repeats = std::exchange(held_count_, 0);
+  held_.reset();
+  return emergency;
+}
+
+std::optional<bus::Notice> EmergencyLimit::take_held(Instant now) {
+  if (!held_ || now < window_end_) return std::nullopt;
+  bus::Notice last = *std::exchange(held_, std::nullopt);
+  last.repeats = std::exchange(held_count_, 0) - 1;
+  told_ = 1;
+  window_end_ = now + kWindow;
+  return last;
+}
+
+}  // namespace axisgate::canopen

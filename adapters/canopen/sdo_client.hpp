@@ -1,0 +1,72 @@
+// The SDO client of one bus: one exchange outstanding, and for each node at most one open transfer.
+// Promises that a reply ends only the exchange that asked for it; that a transfer which something else interrupts, or
+// which is given up, is aborted at its server; that a second reply to a finished request is told (faults.md row 9).
+// Never sends: it says what to send. Never looks at a clock.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <variant>
+
+#include "adapters/canopen/cob_id.hpp"
+#include "adapters/canopen/sdo_download.hpp"
+#include "adapters/canopen/sdo_upload.hpp"
+
+namespace axisgate::canopen {
+
+class SdoClient {
+ public:
+  /// A second reply that comes within two of `timeout` is another device's.
+  explicit SdoClient(Duration timeout) : twin_window_(2 * timeout) {}
+  /// The node's server offers block transfer.
+  void offer_block(std::uint8_t node) { servers_.at(node).block = true; }
+
+  /// To send to exchange.node; `over` where there is nothing to wait for: Part::next, and no such transfer is open.
+  /// Only while nothing is outstanding.
+  [[nodiscard]] SdoStep begin(const bus::Exchange& exchange);
+
+  struct Heard {
+    enum class What : std::uint8_t {
+      mine,  ///< `step` says how it goes on
+      late,  ///< a reply to nothing that is waited for
+      twin,  ///< a second reply to a request that is finished
+      bad,   ///< no reply
+    };
+    What what = What::bad;
+    SdoStep step{};
+  };
+  [[nodiscard]] Heard take(std::uint8_t node, Bytes bytes, Instant now);
+
+  /// The exchange outstanding timed out; its transfer is over. To send to its node.
+  [[nodiscard]] SdoFrames abandon();
+  /// The open transfer of a node ends because something else is done with the node. To send to it.
+  [[nodiscard]] SdoFrames interrupt(std::uint8_t node);
+  /// The node has started anew: it knows of no transfer, and will not answer what was asked.
+  void restarted(std::uint8_t node);
+  /// The link is lost.
+  void reset();
+
+  [[nodiscard]] std::optional<std::uint8_t> outstanding_node() const { return outstanding_; }
+
+ private:
+  using Transfer = std::variant<SdoUpload, SdoDownload>;
+  struct Finished {
+    SdoReply reply;
+    Instant at;
+  };
+  struct Server {
+    bool block = false;
+    std::optional<Transfer> transfer{};
+    std::optional<Finished> finished{};
+    std::uint8_t owed = 0;  ///< replies to requests that were given up
+  };
+
+  [[nodiscard]] static bus::ObjectAddress object_of(const Transfer& transfer);
+  [[nodiscard]] Heard not_mine(Server& server, bool waited_for, Bytes bytes, Instant now) const;
+
+  Duration twin_window_;
+  std::array<Server, kLastNode + 1> servers_;
+  std::optional<std::uint8_t> outstanding_;
+};
+
+}  // namespace axisgate::canopen

@@ -1,0 +1,119 @@
+#include "adapters/canopen/unasked.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "adapters/canopen/process_data.hpp"
+
+namespace axisgate::canopen {
+
+using Kind = bus::Notice::Kind;
+
+Unasked::Unasked(const NodeWatch::Settings& settings)
+    : node_(settings.node),
+      watch_(settings),
+      twins_(settings.heartbeat),
+      process_data_{BabbleWatch(kMaxProcessDataPerSecond), BabbleWatch(kMaxProcessDataPerSecond),
+                    BabbleWatch(kMaxProcessDataPerSecond), BabbleWatch(kMaxProcessDataPerSecond)} {}
+
+bool Unasked::News::restarted() const {
+  return std::any_of(notices.begin(), notices.end(), [](const bus::Notice& n) { return n.kind == Kind::started; });
+}
+
+void Unasked::link_up(Instant now) {
+  watch_.link_up(now);
+  twins_.forget();
+}
+
+void Unasked::link_down() {
+  watch_.link_down();
+  twins_.forget();
+  emergencies_ = {};
+}
+
+Unasked::News Unasked::on_frame(const CobId& id, Bytes bytes, Instant now) {
+  News news;
+  switch (id.service) {
+    case Service::error_control:
+      if (passes(error_control_, error_control_id(node_), now, news)) on_error_control(bytes, now, news);
+      break;
+    case Service::emergency:
+      if (passes(emergency_, emergency_id(node_), now, news)) on_emergency(bytes, now, news);
+      break;
+    case Service::tpdo:
+      if (passes(process_data_.at(id.number - 1U), tpdo_id(id.number, node_), now, news)) {
+        on_process_data(id.number, bytes, news);
+      }
+      break;
+    default:
+      break;  // of another master: no fault of ours, and nothing the node said
+  }
+  return news;
+}
+
+Unasked::News Unasked::on_stray_reply(bool twin, Instant now) {
+  News news;
+  if (passes(stray_replies_, sdo_reply_id(node_), now, news) && twin) tell_twin(now, news);
+  news.bad = false;  // whoever found it stray has counted it
+  return news;
+}
+
+bool Unasked::passes(BabbleWatch& watch, std::uint32_t id, Instant now, News& news) {
+  const BabbleWatch::Verdict verdict = watch.on_frame(now);
+  if (verdict.tell) {
+    news.notices.push_back({.kind = Kind::babbling, .node = node_, .code = static_cast<std::uint16_t>(id)});
+  }
+  news.bad = !verdict.pass;
+  return verdict.pass;
+}
+
+void Unasked::on_error_control(Bytes bytes, Instant now, News& news) {
+  const auto heard = decode_error_control(bytes);
+  const auto told = heard ? watch_.on_error_control(*heard, now) : std::nullopt;
+  news.bad = !told;
+  if (!told) return;
+  news.notices.insert(news.notices.end(), told->begin(), told->end());
+  if (heard->boot_up) {
+    maps_ = {};  // what its process data carry now is not what it was told
+    twins_.on_boot_up(now);
+  } else if (twins_.on_heartbeat(heard->state, now)) {
+    tell_twin(now, news);
+  }
+}
+
+void Unasked::on_emergency(Bytes bytes, Instant now, News& news) {
+  const auto emergency = decode_emergency(node_, bytes);
+  news.bad = !emergency;
+  if (!emergency) return;
+  if (const auto told = emergencies_.pass(*emergency, now)) news.notices.push_back(*told);
+}
+
+void Unasked::on_process_data(std::uint8_t number, Bytes bytes, News& news) {
+  const bus::ProcessMap& map = maps_.at(number - 1U);
+  if (map.empty()) return;
+  const auto fields = decode_process_data(map, bytes);
+  news.bad = !fields;
+  if (fields) news.notices.push_back({.kind = Kind::values, .node = node_, .fields = *fields});
+}
+
+void Unasked::tell_twin(Instant now, News& news) {
+  if (now < tell_twin_at_) return;
+  tell_twin_at_ = now + kTellTwinAgain;
+  news.notices.push_back({.kind = Kind::twin, .node = node_});
+}
+
+Unasked::News Unasked::on_deadline(Instant now) {
+  News news;
+  if (const auto held = emergencies_.take_held(now)) news.notices.push_back(*held);
+  const NodeWatch::Due due = watch_.on_deadline(now);
+  news.guard = due.guard;
+  if (due.gone) {
+    twins_.forget();
+    news.notices.push_back({.kind = Kind::gone, .node = node_});
+  }
+  return news;
+}
+
+Instant Unasked::next_deadline() const { return std::min(watch_.next_deadline(), emergencies_.next_deadline()); }
+
+}  // namespace axisgate::canopen

@@ -1,0 +1,65 @@
+// What one node says unasked: boot-up, heartbeat, guarding answers, EMCY, process data. Frames and instants go in,
+// notices come out. Promises notices in the order of the frames, and bounds on all of them (emergency.hpp,
+// babble_watch.hpp). Never sends, and never looks at a clock.
+#pragma once
+
+#include <array>
+#include <boost/container/static_vector.hpp>
+
+#include "adapters/canopen/babble_watch.hpp"
+#include "adapters/canopen/cob_id.hpp"
+#include "adapters/canopen/emergency.hpp"
+#include "adapters/canopen/node_watch.hpp"
+#include "adapters/canopen/twin_watch.hpp"
+
+namespace axisgate::canopen {
+
+class Unasked {
+ public:
+  /// A twin is told so often at most.
+  static constexpr Duration kTellTwinAgain = std::chrono::seconds(10);
+
+  explicit Unasked(const NodeWatch::Settings& settings);
+
+  struct News {
+    boost::container::static_vector<bus::Notice, 3> notices;
+    bool bad = false;    ///< the frame is not what its id says, or one too many
+    bool guard = false;  ///< a guarding frame is to be sent
+    [[nodiscard]] bool restarted() const;
+  };
+  void link_up(Instant now);
+  void link_down();
+  /// Not of Service::sdo_reply: whether one was asked for is known elsewhere.
+  [[nodiscard]] News on_frame(const CobId& id, Bytes bytes, Instant now);
+  /// An SDO reply that nobody waits for, or no reply at all; `twin`: it is a second one.
+  [[nodiscard]] News on_stray_reply(bool twin, Instant now);
+  [[nodiscard]] News on_deadline(Instant now);
+  [[nodiscard]] Instant next_deadline() const;
+
+  /// `number` 1 to kTpdos. Until the node starts anew.
+  void map(std::uint8_t number, const bus::ProcessMap& objects) { maps_.at(number - 1U) = objects; }
+  /// A guarding frame must be sent.
+  void call() { watch_.call(); }
+  /// We change its state or its heartbeat.
+  void on_changed_by_us() { twins_.forget(); }
+
+ private:
+  void on_error_control(Bytes bytes, Instant now, News& news);
+  void on_emergency(Bytes bytes, Instant now, News& news);
+  void on_process_data(std::uint8_t number, Bytes bytes, News& news);
+  void tell_twin(Instant now, News& news);
+  [[nodiscard]] bool passes(BabbleWatch& watch, std::uint32_t id, Instant now, News& news);
+
+  std::uint8_t node_;
+  NodeWatch watch_;
+  TwinWatch twins_;
+  Instant tell_twin_at_ = kLongAgo;
+  EmergencyLimit emergencies_;
+  std::array<bus::ProcessMap, kTpdos> maps_{};
+  BabbleWatch error_control_{kMaxSignsPerSecond};
+  BabbleWatch emergency_{kMaxSignsPerSecond};
+  BabbleWatch stray_replies_{kMaxUnaskedRepliesPerSecond};
+  std::array<BabbleWatch, kTpdos> process_data_;
+};
+
+}  // namespace axisgate::canopen

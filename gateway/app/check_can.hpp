@@ -1,0 +1,22 @@
+// What `axisgate check` says of a canopen bus beyond its plan: how the interface is brought up, what comes by TPDO and
+// what by SDO. Promises to name what is only tried (mapping) and what takes its place where a drive refuses.
+// Never looks whether the interface exists.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gateway/app/bus_budget.hpp"
+
+namespace axisgate::app {
+
+/// Label and line, in their order.
+using ReportLines = std::vector<std::pair<std::string, std::string>>;
+
+/// "500000 bit/s"
+[[nodiscard]] std::string bitrate_text(const BusConfig& bus);
+[[nodiscard]] ReportLines can_lines(const BusConfig& bus, const std::vector<drive::DriveModel>& drives,
+                                    const BusBudget& budget);
+
+}  // namespace axisgate::app

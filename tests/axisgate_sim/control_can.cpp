@@ -1,0 +1,95 @@
+// The control commands of drives on CAN: the node's own, and those of a Leadshine.
+#include "tests/axisgate_sim/control.hpp"
+
+namespace axisgate::simulated {
+namespace {
+
+std::string in_decimal_and_hex(CanView bytes) {
+  const std::uint32_t raw = little_endian(bytes);
+  std::int64_t value = raw;
+  if (bytes.size() == 4) value = static_cast<std::int32_t>(raw);
+  if (bytes.size() == 2) value = static_cast<std::int16_t>(raw);
+  if (bytes.size() == 1) value = static_cast<std::int8_t>(raw);
+  return " " + std::to_string(value) + " " + in_hex(raw);
+}
+
+std::optional<std::string> ask_leadshine(LeadshineDrive& drive, const ControlWords& words) {
+  const std::string& command = words[0];
+  if (command == "state") return " " + std::string(drive.booting() ? "booting" : name_of(drive.state()));
+  if (command == "position") return " " + std::to_string(drive.position());
+  if (command == "stores") return " " + std::to_string(drive.stores());
+  if (command == "restarts") return " " + std::to_string(drive.restarts());
+  if (command == "transitions") return transitions_text(drive.transitions());
+  if (command == "writes") {
+    need_words(words, 3, "writes LINE/NODE INDEX.SUB");
+    return " " + std::to_string(drive.writes(object_in(words[2])));
+  }
+  if (command == "fault") {
+    need_words(words, 3, "fault LINE/NODE CODE, the value of 603F");
+    drive.inject_fault(static_cast<std::uint16_t>(number_in(words[2])));
+    return "";
+  }
+  if (command == "clear") {
+    need_words(words, 3, "clear LINE/NODE, or clear LINE/NODE CODE");
+    drive.clear_fault_cause();
+    return "";
+  }
+  if (command == "input") {
+    need_words(words, 4, "input LINE/NODE NUMBER on|off");
+    const std::int64_t input = number_in(words[2]);
+    if (input < 1 || input > LeadshineDrive::input_count) refuse_word("this drive has no input " + words[2]);
+    drive.set_input(static_cast<int>(input), on_or_off(words[3]));
+    return "";
+  }
+  if (command == "jam") {
+    need_words(words, 3, "jam LINE/NODE on|off");
+    drive.jam(on_or_off(words[2]));
+    return "";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> ask_node(CanopenNode& node, const ControlWords& words, Time now) {
+  const std::string& command = words[0];
+  if (command == "nmt") return " " + std::string(name_of(node.state()));
+  if (command == "get") {
+    need_words(words, 3, "get LINE/NODE INDEX.SUB");
+    const auto found = node.peek(object_in(words[2]), now);
+    if (!found) refuse_word("this drive has no object " + words[2]);
+    if (found->size() > 4) return " " + std::string(found->begin(), found->end());
+    return in_decimal_and_hex(*found);
+  }
+  if (command == "set") {
+    need_words(words, 4, "set LINE/NODE INDEX.SUB VALUE");
+    const std::uint32_t refused = node.poke(object_in(words[2]), number_in(words[3]), now);
+    if (refused != 0) refuse_word("the drive refuses " + words[2] + " with " + in_hex(refused));
+    return "";
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> ask_can(Simulator& simulator, PortLine& port, std::size_t position,
+                                   const ControlWords& words) {
+  CanLine& bus = port.can->bus();
+  const Time now = simulator.now();
+  const std::string& command = words[0];
+  if (command == "emergency") {
+    need_words(words, 3, "emergency LINE/NODE CODE");
+    bus.send_emergency(position, static_cast<std::uint16_t>(number_in(words[2])), now);
+    return "";
+  }
+  if (command == "connect" || command == "twin") {
+    need_words(words, 3, "connect|twin LINE/NODE on|off");
+    const bool on = on_or_off(words[2]);
+    if (command == "connect") bus.connect(position, on);
+    if (command == "twin") simulator.set_twin(port, position, on);
+    return "";
+  }
+  if (auto told = ask_node(bus.node(position), words, now)) return told;
+  if (KincoDrive* kinco = bus.kinco(position)) return ask_kinco(*kinco, words);
+  return ask_leadshine(*bus.leadshine(position), words);
+}
+
+}  // namespace axisgate::simulated

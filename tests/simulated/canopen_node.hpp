@@ -1,0 +1,120 @@
+// One node on a CANopen bus (CiA 301 slave): NMT states, heartbeat, guarding, SDO, PDO, EMCY around a drive.
+// Promises that nothing but NMT and error control works while it is stopped, and nothing at all while it boots; that a
+// reply is given to a request alone. Never reads a clock and never knows a bus: CanLine does.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "tests/simulated/can_pdos.hpp"
+#include "tests/simulated/sdo_server.hpp"
+
+namespace axisgate::simulated {
+
+enum class NmtState : std::uint8_t { initialising = 0, stopped = 4, operational = 5, pre_operational = 127 };
+
+std::string_view name_of(NmtState state);
+
+// What one type of drive has of CiA 301, and what it holds as delivered.
+struct CommunicationFacts {
+  SdoFacts sdo{};
+  PdoFacts pdo{};
+  bool guarding_objects = false;  // 100Ch, 100Dh, 100Eh and the reaction 6007h (MD 4.5); else guarding is answered only
+  bool answers_guarding_with_heartbeat = true;  // CiA 301 wants one of both; no sheet says what happens
+  int consumers = 1;                            // entries of 1016h; 0: there is none
+  bool leaves_operational_on_loss = true;       // CiA 301 1029h as delivered; no sheet mentions it
+  bool sends_emergencies = true;                // of alarms; the sheets leave it open
+  std::uint16_t heartbeat = 0;                  // 1017h as stored
+  std::uint32_t device_type = 0x00020192;       // 1000h: CiA 402, servo
+  std::array<std::uint32_t, 4> identity{};      // 1018h: vendor, product, revision, serial
+  std::string name{};                           // 1008h
+  std::string hardware{};                       // 1009h
+  std::string software{};                       // 100Ah
+  std::map<ObjectKey, std::string> texts{};     // more objects that hold a text; may be written
+};
+
+class CanopenNode final : private ObjectAccess {
+ public:
+  static constexpr std::size_t longest_history = 8;  // entries of 1003h
+
+  CanopenNode(CommunicationFacts facts, std::uint8_t node, std::unique_ptr<CanDevice> device);
+
+  struct Output {
+    std::uint64_t tag;  // of the frame it answers; 0: it sends by itself
+    bool answer;        // of an SDO request or a guarding one: takes the drive's time
+    BusFrame frame;
+  };
+
+  // What the bus does to it; what it sends then is in take_output().
+  void hear(const BusFrame& frame, std::uint64_t tag, Time now);
+  void advance(Time now);
+  std::vector<Output> take_output() { return std::exchange(output_, {}); }
+  std::optional<Time> next_event() const;
+
+  // What a world does to it.
+  void restart(Time now);
+  void announce_emergency(std::uint16_t code, Time now);  // as if it had happened
+  // As another port would write it; an abort code or 0.
+  std::uint32_t poke(ObjectKey key, std::int64_t value, Time now);
+
+  // What a world looks at.
+  std::uint8_t node() const { return node_; }
+  NmtState state() const { return state_; }
+  CanDevice& device() { return *device_; }
+  CommunicationFacts& facts() { return facts_; }
+  SdoServer& server() { return server_; }
+  std::optional<CanBytes> peek(ObjectKey key, Time now);
+  bool is_request(const BusFrame& frame) const;  // SDO or guarding, to this node
+  std::string describe() const { return device_->describe(); }
+
+ private:
+  struct Cell {
+    std::uint32_t value;
+    std::uint8_t width;
+    bool writable;
+  };
+  using Cells = std::map<ObjectKey, Cell>;
+  struct Consumer {
+    std::optional<Time> deadline;  // once a heartbeat was heard
+  };
+
+  ObjectReply read(ObjectKey key, Time now) override;
+  std::uint32_t write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) override;
+  std::uint32_t write_cell(Cell& cell, ObjectKey key, CanView bytes, Time now);
+  std::uint32_t cell(ObjectKey key) const;
+  void make_cells();
+  bool own_index(std::uint16_t index) const;
+
+  void enter(NmtState state, Time now);
+  void begin_communication(Time now);
+  void take_command(std::uint8_t command, Time now);
+  void take_heartbeat(const BusFrame& frame, Time now);
+  void answer_guarding(std::uint64_t tag, Time now);
+  void watch(Time now);
+  void lose_master(MasterLoss how, Time now);
+  void watch_device(Time now);
+  Time guarded_for() const;
+  void send(BusFrame frame, std::uint64_t tag = 0, bool answer = false);
+  void send_pdos(const std::vector<BusFrame>& frames, std::uint64_t tag);
+
+  CommunicationFacts facts_;
+  std::uint8_t node_;
+  std::unique_ptr<CanDevice> device_;
+  SdoServer server_;
+  CanPdos pdos_;
+  Cells cells_;
+  Cells stored_;
+  NmtState state_ = NmtState::pre_operational;
+  bool toggle_ = false;
+  Time next_heartbeat_{};
+  std::optional<Time> guard_deadline_;
+  std::vector<Consumer> consumers_;
+  std::uint16_t error_ = 0;
+  std::vector<std::uint32_t> history_;  // newest first
+  std::uint64_t stores_ = 0;
+  std::vector<Output> output_;
+  Time now_{};
+};
+
+}  // namespace axisgate::simulated

@@ -1,0 +1,217 @@
+// The scan against nodes written down here: who is found, in which order, what is read of them, and what fits.
+#include "gateway/app/scan_plan.hpp"
+
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "gateway/drive/profile_loader.hpp"
+
+namespace axisgate::app {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+drive::Profile profile(const std::string& name) {
+  return drive::load_profile(AXISGATE_SOURCE_DIR "/schemas/drives/" + name + ".json").profile;
+}
+
+/// A node that has these objects.
+struct Node {
+  std::map<bus::ObjectAddress, bus::ReplyField> objects;
+  std::string name;
+  int answers_left = 100000;  ///< then it falls silent
+
+  void add(bus::ObjectAddress address, std::uint8_t size, std::uint32_t raw = 0) {
+    objects[address] = {address, size, raw};
+  }
+  void add(const drive::Profile& like) {
+    for (const drive::Object& object : like.objects)
+      if (const auto at = object.places.find("canopen"); at != object.places.end() && object.readable)
+        add(at->second.address, at->second.type.value_or(object.type).size);
+  }
+};
+
+class Scan : public ::testing::Test {
+ protected:
+  bus::ExchangeResult answer(const bus::Exchange& exchange) {
+    const auto node = nodes_.find(exchange.node);
+    bus::ExchangeResult out;
+    if (node == nodes_.end() || node->second.answers_left-- <= 0) {
+      out.code = Errc::timed_out;
+    } else if (exchange.object == bus::ObjectAddress{0x1008, 0} && !node->second.name.empty()) {
+      out.more = exchange.part == bus::Part::first;
+      const std::string& name = node->second.name;
+      if (!out.more) out.bytes = std::make_shared<std::vector<std::uint8_t>>(name.begin(), name.end());
+    } else if (const auto object = node->second.objects.find(exchange.object); object != node->second.objects.end()) {
+      out.fields.push_back(object->second);
+    } else {
+      out.code = Errc::refused_by_drive;
+      out.detail = 0x06020000;
+    }
+    return out;
+  }
+  void run(ScanPlan& plan) {
+    constexpr int kMost = 200000;
+    for (int i = 0; i < kMost; ++i) {
+      const auto exchange = plan.next();
+      if (!exchange) return;
+      EXPECT_EQ(exchange->access, bus::Access::read) << "a scan never writes";
+      asked_.push_back(exchange->node);
+      plan.on_result(answer(*exchange));
+    }
+    FAIL() << "the scan does not end";
+  }
+  static bus::Notice sign_of_life(std::uint8_t node, bus::NodeState state) {
+    bus::Notice notice;
+    notice.node = node;
+    notice.state = state;
+    return notice;
+  }
+
+  std::map<std::uint8_t, Node> nodes_;
+  std::vector<std::uint8_t> asked_;
+  const std::vector<drive::Profile> shipped_{profile("kinco-jd"), profile("kinco-md"), profile("leadshine-ld2-can"),
+                                             profile("id286pro")};
+};
+
+TEST_F(Scan, OfAnEmptyBusAsksEachNodeOnce) {
+  ScanPlan plan(shipped_);
+  EXPECT_TRUE(plan.knocking());
+  run(plan);
+  EXPECT_THAT(asked_, SizeIs(127));
+  EXPECT_EQ(plan.nodes_asked(), 127);
+  EXPECT_THAT(plan.found(), IsEmpty());
+}
+
+TEST_F(Scan, FindsWhoSaysWhatItIs) {
+  Node& node = nodes_[5];
+  node.name = "LD2-CAN7015";
+  node.add({0x1000, 0}, 4, 0x00020192);
+  for (std::uint8_t sub = 1; sub <= 4; ++sub) node.add({0x1018, sub}, 4, sub * 100U);
+  ScanPlan plan(shipped_);
+  run(plan);
+  ASSERT_THAT(plan.found(), SizeIs(1));
+  const FoundNode found = plan.found()[0];
+  EXPECT_EQ(found.node, 5);
+  EXPECT_EQ(found.device_type, 0x00020192U);
+  EXPECT_THAT(found.identity, ElementsAre(100U, 200U, 300U, 400U));
+  EXPECT_EQ(found.name, "LD2-CAN7015");
+  EXPECT_THAT(found.fits, IsEmpty()) << "it has none of the objects";
+  EXPECT_THAT(text(found),
+              HasSubstr("\"identity\": {\"vendor\": 100, \"product\": 200, \"revision\": 300, \"serial\": 400}"));
+}
+
+TEST_F(Scan, ANodeThatRefusesEverythingIsThereAllTheSame) {
+  nodes_[9] = {};
+  ScanPlan plan(shipped_);
+  run(plan);
+  ASSERT_THAT(plan.found(), SizeIs(1));
+  EXPECT_EQ(plan.found()[0].device_type, std::nullopt);
+  EXPECT_THAT(text(plan.found()[0]), HasSubstr("(no name), no heartbeat"));
+  EXPECT_THAT(text(plan.found()[0]), Not(HasSubstr("identity")));
+}
+
+TEST_F(Scan, EachShippedProfileFitsItsOwnDriveBest) {
+  for (const std::string name : {"kinco-jd", "kinco-md", "leadshine-ld2-can"}) {
+    nodes_.clear();
+    nodes_[1].add(profile(name));
+    ScanPlan plan(shipped_);
+    run(plan);
+    ASSERT_THAT(plan.found(), SizeIs(1));
+    const std::vector<ScanFit> fits = plan.found()[0].fits;
+    ASSERT_FALSE(fits.empty()) << name;
+    EXPECT_EQ(fits[0].profile, name);
+    EXPECT_EQ(fits[0].has, fits[0].of);
+    if (fits.size() > 1) {
+      EXPECT_LT(fits[1].has, fits[1].of) << fits[1].profile << " must not look as good";
+    }
+  }
+}
+
+TEST_F(Scan, AnObjectOfAnotherWidthSpeaksAgainstAProfile) {
+  Node& node = nodes_[1];
+  node.add(profile("kinco-jd"));
+  node.add({0x6041, 0}, 4);
+  ScanPlan plan(shipped_);
+  run(plan);
+  const ScanFit fit = plan.found().at(0).fits.at(0);
+  EXPECT_EQ(fit.has, fit.of - 1);
+}
+
+TEST_F(Scan, AWidthThatNobodyPrintedMayBeAny) {
+  Node& node = nodes_[1];
+  node.add(profile("leadshine-ld2-can"));
+  node.add({0x2008, 0}, 2);
+  ScanPlan plan(shipped_);
+  run(plan);
+  const ScanFit fit = plan.found().at(0).fits.at(0);
+  EXPECT_EQ(fit.has, fit.of);
+}
+
+TEST_F(Scan, WhoIsHeardIsAskedFirst) {
+  nodes_[100] = {};
+  nodes_[3] = {};
+  ScanPlan plan(shipped_);
+  plan.heard(sign_of_life(100, bus::NodeState::operational));
+  run(plan);
+  EXPECT_EQ(asked_[0], 1) << "the one that was being asked";
+  EXPECT_EQ(asked_[1], 100);
+  ASSERT_THAT(plan.found(), SizeIs(2));
+  EXPECT_EQ(plan.found()[0].node, 3) << "told in their order";
+  EXPECT_EQ(plan.found()[1].state, bus::NodeState::operational);
+  EXPECT_THAT(text(plan.found()[1]), HasSubstr("node 100 (no name), operational"));
+}
+
+TEST_F(Scan, ANodeThatFallsSilentIsLeft) {
+  for (int answers = 1; answers < 40; ++answers) {
+    nodes_.clear();
+    nodes_[1].add(profile("kinco-jd"));
+    nodes_[1].name = "JD";
+    nodes_[1].answers_left = answers;
+    nodes_[2].name = "alive";
+    asked_.clear();
+    ScanPlan plan(shipped_);
+    run(plan);
+    ASSERT_THAT(plan.found(), SizeIs(2)) << answers;
+    EXPECT_TRUE(plan.found()[0].fell_silent);
+    EXPECT_EQ(std::count(asked_.begin(), asked_.end(), 1), answers + ScanPlan::kSilences);
+    EXPECT_EQ(plan.found()[1].name, "alive");
+    EXPECT_FALSE(plan.found()[1].fell_silent);
+  }
+}
+
+TEST_F(Scan, ANameThatNeverEndsEndsAtItsBound) {
+  nodes_[1] = {};
+  ScanPlan plan({});
+  std::size_t parts = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const auto exchange = plan.next();
+    if (!exchange) break;
+    bus::ExchangeResult result = answer(*exchange);
+    if (exchange->node == 1 && exchange->object == bus::ObjectAddress{0x1008, 0}) {
+      ++parts;
+      result = {};
+      result.more = true;
+    }
+    plan.on_result(result);
+  }
+  EXPECT_EQ(plan.next(), std::nullopt);
+  EXPECT_EQ(parts, ScanPlan::kMaxNameParts + 1);
+}
+
+TEST_F(Scan, NamesAreShownWithoutWhatCannotBePrinted) {
+  nodes_[1].name = "A\x1B[31m" + std::string(200, 'x');
+  ScanPlan plan({});
+  run(plan);
+  const std::string name = plan.found().at(0).name;
+  EXPECT_THAT(name, HasSubstr("A[31mxxx"));
+  EXPECT_LE(name.size(), 64U);
+}
+
+}  // namespace
+}  // namespace axisgate::app

@@ -1,0 +1,149 @@
+// Objects of CANopen drives by FC 43/13 and mailbox: long ones, refused ones, and what a stop does to one under way.
+#include <gmock/gmock.h>
+
+#include "tests/unit/drive/can_rig.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+
+constexpr simulated::ObjectKey kText{0x2F00, 0};
+
+std::string text_of(const GroupResult& result) {
+  return result.object_bytes ? std::string(result.object_bytes->begin(), result.object_bytes->end()) : std::string();
+}
+
+Group reading(std::uint16_t index, std::uint8_t sub = 0, std::uint8_t size = 0) {
+  Group group;
+  group.client = 7;
+  group.role = Role::engineer;
+  group.object = ObjectRequest{.index = index, .subindex = sub, .size = size};
+  return group;
+}
+
+Group writing(std::uint16_t index, const std::string& text) {
+  Group group = reading(index);
+  group.object->write = true;
+  group.object->bytes = std::make_shared<const std::vector<Byte>>(text.begin(), text.end());
+  return group;
+}
+
+/// A drive with a long text in it.
+struct CanObjects : testing::Test {
+  explicit CanObjects(bool block = false) : rig(line_with(block)) {
+    rig.node().facts().texts[kText] = long_text;
+    rig.online();
+  }
+  static GatewayStage::Line line_with(bool block) {
+    simulated::LeadshineOptions options;
+    options.block = block;
+    return can_line_of({options}, 1);
+  }
+  const std::string long_text = [] {
+    std::string text;
+    for (int i = 0; text.size() < 500; ++i) text += std::to_string(i) + ",";
+    return text;
+  }();
+  CanRig rig;
+};
+
+TEST_F(CanObjects, ANameLongerThanFourBytesIsReadWhole) {
+  const GroupResult result = rig.stage.ask(1, reading(0x1008));
+  EXPECT_EQ(result.outcome.code, Errc::ok);
+  EXPECT_EQ(text_of(result), "LD2-CAN7010");
+  EXPECT_EQ(result.object_size, 0);
+}
+
+TEST_F(CanObjects, AShortOneIsANumberWhateverItsSize) {
+  const GroupResult mode = rig.stage.ask(1, reading(0x6061));
+  EXPECT_EQ(mode.outcome.code, Errc::ok);
+  EXPECT_EQ(mode.object_size, 1);
+  const GroupResult vendor = rig.stage.ask(1, reading(0x1018, 1));
+  EXPECT_EQ(vendor.object_size, 4);
+  EXPECT_EQ(vendor.object_data, 0x4321U);
+}
+
+TEST_F(CanObjects, ALongTextIsWrittenAndReadBack) {
+  const std::string other(300, 'x');
+  EXPECT_EQ(rig.stage.ask(1, writing(kText.index, other)).outcome.code, Errc::ok);
+  EXPECT_EQ(text_of(rig.stage.ask(1, reading(kText.index))), other);
+}
+
+TEST_F(CanObjects, TheMailboxCannotCarryALongOneAndSaysSo) {
+  const GroupResult result = rig.stage.ask(1, reading(kText.index, 0, 4));
+  EXPECT_NE(result.outcome.code, Errc::ok);
+  EXPECT_EQ(text_of(rig.stage.ask(1, reading(kText.index))), long_text) << "and the next request is served";
+}
+
+TEST_F(CanObjects, WhatTheDriveDoesNotHaveIsToldWithItsAbortCode) {
+  const GroupResult result = rig.stage.ask(1, reading(0x5FFF));
+  EXPECT_EQ(result.outcome.code, Errc::refused_by_drive);
+  EXPECT_EQ(result.abort_code, 0x06020000U);
+}
+
+TEST_F(CanObjects, TooLongAnObjectIsRefusedAndTheDriveIsTold) {
+  rig.node().facts().texts[kText] = std::string(kMaxObjectBytes + 1, 'y');
+  const GroupResult result = rig.stage.ask(1, reading(kText.index));
+  EXPECT_NE(result.outcome.code, Errc::ok);
+  EXPECT_EQ(text_of(rig.stage.ask(1, reading(0x1008))), "LD2-CAN7010");
+}
+
+TEST_F(CanObjects, AStopEndsALongReadUnderWayAndIsNotDelayedByIt) {
+  rig.enable();
+  ASSERT_EQ(rig.stage.write(1, Quantity::target_velocity, 300'000).outcome.code, Errc::ok);
+  ASSERT_EQ(rig.stage.command(1, Command::run_velocity).outcome.code, Errc::ok);
+  const auto read = rig.stage.begin(1, reading(kText.index));
+  rig.stage.run(20ms);
+  ASSERT_FALSE(*read) << "it takes seventy exchanges";
+  rig.mark();
+  EXPECT_EQ(rig.stage.command(1, Command::quick_stop).outcome.code, Errc::ok);
+  ASSERT_TRUE(*read);
+  EXPECT_EQ((*read)->outcome.code, Errc::busy);
+  const auto& sent = rig.stage.can_link(0).sent;
+  const auto abort =
+      std::ranges::find_if(sent, [](const auto& s) { return s.frame.id == 0x601 && s.frame.data[0] == 0x80; });
+  ASSERT_NE(abort, sent.end());
+  EXPECT_EQ(load_le(abort->frame.data, 4, 4), 0x08000022U);
+  EXPECT_EQ(text_of(rig.stage.ask(1, reading(kText.index))), long_text) << "and it can be had again";
+}
+
+TEST_F(CanObjects, ASecondReaderWaitsForTheFirst) {
+  const auto first = rig.stage.begin(1, reading(kText.index));
+  Group other = reading(kText.index);
+  other.client = 8;
+  const auto second = rig.stage.begin(1, other);
+  ASSERT_TRUE(rig.settles([&] { return *first && *second; }));
+  EXPECT_EQ(text_of(**first), long_text);
+  EXPECT_EQ(text_of(**second), long_text);
+}
+
+TEST_F(CanObjects, ALongReadThatIsLostHalfwayEndsUnknownAndTheDriveIsToldSo) {
+  const auto read = rig.stage.begin(1, reading(kText.index));
+  rig.stage.run(20ms);
+  rig.line().faults(0).next(simulated::DriveFault::lose, 1);
+  ASSERT_TRUE(rig.settles([&] { return read->has_value(); }));
+  EXPECT_EQ((*read)->outcome.code, Errc::timed_out);
+  ASSERT_TRUE(rig.stage.come_online());
+  EXPECT_EQ(text_of(rig.stage.ask(1, reading(kText.index))), long_text);
+}
+
+TEST(CanObjectsBetween, ALongReadOfOneDriveLeavesTheWireToTheOther) {
+  CanRig rig({CanType::leadshine, CanType::md});
+  rig.node(0).facts().texts[kText] = std::string(4000, 'z');
+  rig.online();
+  const auto read = rig.stage.begin(1, reading(kText.index));
+  rig.stage.run(50ms);
+  ASSERT_FALSE(*read);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(rig.stage.write(2, Quantity::profile_velocity, 100'000 + i).outcome.code, Errc::ok);
+    EXPECT_FALSE(*read) << "long before the other's object is through";
+  }
+  ASSERT_TRUE(rig.settles([&] { return read->has_value(); }));
+  EXPECT_EQ((*read)->outcome.code, Errc::ok);
+  EXPECT_EQ(text_of(**read).size(), 4000U);
+}
+
+}  // namespace
+}  // namespace axisgate::test
