@@ -83,6 +83,15 @@ struct ExchangeResult {
   friend bool operator==(const ExchangeResult&, const ExchangeResult&) = default;
 };
 
+/// CiA 301 section 7.2.8.3.1: what Access::command may carry.
+enum class NmtCommand : std::uint8_t {
+  start = 0x01,
+  stop = 0x02,
+  enter_pre_operational = 0x80,
+  reset_node = 0x81,
+  reset_communication = 0x82,
+};
+
 /// CiA 301 NMT states, as far as somebody outside can see them.
 enum class NodeState : std::uint8_t { unknown, stopped, pre_operational, operational };
 

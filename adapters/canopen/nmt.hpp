@@ -11,13 +11,7 @@
 
 namespace axisgate::canopen {
 
-enum class NmtCommand : std::uint8_t {
-  start = 0x01,
-  stop = 0x02,
-  enter_pre_operational = 0x80,
-  reset_node = 0x81,
-  reset_communication = 0x82,
-};
+using bus::NmtCommand;
 
 /// No value: no command.
 [[nodiscard]] std::optional<NmtCommand> nmt_command(std::uint32_t code);

@@ -11,6 +11,7 @@
 #include "gateway/app/profile_command.hpp"
 #include "gateway/app/profile_folders.hpp"
 #include "gateway/app/run_command.hpp"
+#include "gateway/app/scan_command.hpp"
 #include "gateway/app/top_command.hpp"
 
 namespace axisgate::app {
@@ -27,6 +28,8 @@ struct Parsed {
   TopOptions top;
   ProfileCheckOptions profile;
   CommissionOptions commission;
+  ScanOptions scan;
+  std::string scan_nodes;
   int exit_code = 0;
 };
 
@@ -126,6 +129,42 @@ void add_commission(CLI::App& app, Parsed& parsed) {
   command->callback([&parsed] { run_with_folders(parsed, parsed.commission); });
 }
 
+std::string scan_range_mistake(const std::string& text) {
+  return parse_scan_range(text) ? "" : "'" + text + "' is no node-ID and no range of them: 1 to 127, such as 5 or 1-10";
+}
+
+void add_scan(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = app.add_subcommand("scan", "Ask a CANopen bus which nodes are there and what they are");
+  command->add_option("DEVICE", parsed.scan.device, "CAN interface (can0), or slcan:PATH for a serial CAN adapter")
+      ->required();
+  command
+      ->add_option("--bitrate", parsed.scan.bitrate,
+                   "bits per second, as set in the drives; a serial adapter is opened with it")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
+      ->type_name("DIR");
+  command->add_option("--timeout-ms", parsed.scan.timeout_ms, "how long each answer is waited for")
+      ->check(CLI::Range(2, 10000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--nodes", parsed.scan_nodes, "node-IDs to ask")
+      ->check(CLI::Validator(scan_range_mistake, ""))
+      ->type_name("A-B")
+      ->default_str("1-127");
+  command->footer(
+      "It reads by SDO, and writes, starts and resets nothing. Exit code 1: nobody answered, or the bus cannot be "
+      "used.\n"
+      "A gateway that runs on the same bus is another SDO client: the drives answer both under one number, so stop it\n"
+      "first. A serial adapter opened with a wrong bit rate disturbs a bus that is in use.\n"
+      "Makers do not print their identity numbers: a profile fits as far as the node has the profile's objects.\n"
+      "Example: axisgate scan can0");
+  command->callback([&parsed] {
+    if (const auto range = parse_scan_range(parsed.scan_nodes)) parsed.scan.nodes = *range;
+    run_with_folders(parsed, parsed.scan);
+  });
+}
+
 /// CLI11 says of an unknown word only that a command is missing.
 bool knows_command(const CLI::App& app, int argc, const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return true;
@@ -149,6 +188,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_top(app, parsed);
   add_profile(app, parsed);
   add_commission(app, parsed);
+  add_scan(app, parsed);
   if (!knows_command(app, argc, argv)) return kWrongCommandLine;
   try {
     app.parse(argc, argv);

@@ -1,9 +1,7 @@
 #include "gateway/app/scan_plan.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
+#include <charconv>
 
 namespace axisgate::app {
 namespace {
@@ -36,9 +34,24 @@ std::string characters(const bus::ExchangeResult& result) {
   return out;
 }
 
+std::optional<std::uint8_t> node_of(std::string_view digits) {
+  std::uint8_t node = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), node);
+  const bool whole = error == std::errc() && end == digits.data() + digits.size();
+  return whole && node >= 1 && node <= ScanPlan::kLastNode ? std::optional(node) : std::nullopt;
+}
+
 }  // namespace
 
-ScanPlan::ScanPlan(const std::vector<drive::Profile>& profiles) {
+std::optional<ScanRange> parse_scan_range(std::string_view text) {
+  const std::size_t dash = text.find('-');
+  const auto first = node_of(text.substr(0, dash));
+  const auto last = dash == std::string_view::npos ? first : node_of(text.substr(dash + 1));
+  if (!first || !last || *first > *last) return std::nullopt;
+  return ScanRange{*first, *last};
+}
+
+ScanPlan::ScanPlan(const std::vector<drive::Profile>& profiles, ScanRange range) : range_(range) {
   for (const drive::Profile& profile : profiles) {
     if (!profile.protocols.contains("canopen")) continue;
     profiles_.push_back(profile);
@@ -55,12 +68,15 @@ ScanPlan::ScanPlan(const std::vector<drive::Profile>& profiles) {
 void ScanPlan::heard(const bus::Notice& notice) {
   using Kind = bus::Notice::Kind;
   if (notice.node == 0 || notice.node > kLastNode) return;
-  if (notice.kind == Kind::present || notice.kind == Kind::started) {
-    heard_[notice.node] = notice.state;
-    if (current_.node == notice.node) current_.state = notice.state;
-    for (FoundNode& node : found_)
-      if (node.node == notice.node) node.state = notice.state;
-  }
+  const bool alive = notice.kind == Kind::present || notice.kind == Kind::started;
+  if (alive) heard_[notice.node] = notice.state;
+  const auto take = [&](FoundNode& node) {
+    if (node.node != notice.node) return;
+    if (alive) node.state = notice.state;
+    if (notice.kind == Kind::twin) node.twin = true;
+  };
+  take(current_);
+  for (FoundNode& node : found_) take(node);
 }
 
 std::optional<bus::Exchange> ScanPlan::next() const {
@@ -144,7 +160,7 @@ void ScanPlan::knock_on_next() {
   if (current_.node != 0) done_[current_.node] = true;
   current_ = {};
   for (const bool only_heard : {true, false}) {
-    for (std::uint8_t node = 1; node <= kLastNode; ++node) {
+    for (std::uint8_t node = range_.first; node <= range_.last; ++node) {
       if (done_[node] || (only_heard && !heard_[node])) continue;
       current_.node = node;
       current_.state = heard_[node].value_or(bus::NodeState::unknown);
@@ -181,25 +197,6 @@ std::vector<FoundNode> ScanPlan::found() const {
   std::vector<FoundNode> out = found_;
   std::sort(out.begin(), out.end(), [](const FoundNode& a, const FoundNode& b) { return a.node < b.node; });
   return out;
-}
-
-std::string text(const FoundNode& node) {
-  constexpr std::array<std::string_view, 4> kNumbers{"vendor", "product", "revision", "serial"};
-  constexpr std::array<std::string_view, 4> kStates{"no heartbeat", "stopped", "pre-operational", "operational"};
-  std::vector<std::string> identity;
-  for (std::size_t i = 0; i < kNumbers.size(); ++i)
-    if (node.identity[i]) identity.push_back(fmt::format("\"{}\": {}", kNumbers[i], *node.identity[i]));
-  std::vector<std::string> fits;
-  for (const ScanFit& fit : node.fits)
-    fits.push_back(fmt::format("{} ({} of {} objects)", fit.profile, fit.has, fit.of));
-  std::string out = fmt::format("node {:<4}{}, {}", node.node, node.name.empty() ? "(no name)" : node.name,
-                                kStates[static_cast<std::size_t>(node.state)]);
-  if (node.device_type) out += fmt::format(", device type {:#010x}", *node.device_type);
-  out += fmt::format("\n         profile: {}",
-                     fits.empty() ? "none that is shipped fits" : fmt::format("{}", fmt::join(fits, ", ")));
-  if (!identity.empty()) out += fmt::format("\n         \"identity\": {{{}}}", fmt::join(identity, ", "));
-  if (node.fell_silent) out += "\n         it fell silent while it was asked: the rest is not known";
-  return out + "\n";
 }
 
 }  // namespace axisgate::app

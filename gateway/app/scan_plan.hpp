@@ -8,6 +8,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adapters/bus/exchange.hpp"
@@ -30,8 +31,19 @@ struct FoundNode {
   std::array<std::optional<std::uint32_t>, 4> identity{};  ///< 1018h: vendor, product, revision, serial
   std::string name;                                        ///< 1008h, printable; empty: it has none
   bool fell_silent = false;                                ///< what follows its last answer is not known
+  bool twin = false;                                       ///< two answers came to one request
   std::vector<ScanFit> fits;  ///< the best first; those that have less than half are left out
 };
+
+/// The node-IDs that are asked, both ends included.
+struct ScanRange {
+  std::uint8_t first = 1;
+  std::uint8_t last = 127;
+  [[nodiscard]] int count() const { return last - first + 1; }
+  friend bool operator==(const ScanRange&, const ScanRange&) = default;
+};
+/// "5" or "1-10", of 1 to 127; no value: neither.
+[[nodiscard]] std::optional<ScanRange> parse_scan_range(std::string_view text);
 
 class ScanPlan {
  public:
@@ -41,7 +53,7 @@ class ScanPlan {
   static constexpr std::size_t kMaxNameParts = 64;  ///< exchanges for one device name
 
   /// Profiles without canopen are left out; none of the others may have faults.
-  explicit ScanPlan(const std::vector<drive::Profile>& profiles);
+  explicit ScanPlan(const std::vector<drive::Profile>& profiles, ScanRange range = {});
 
   /// A node that was heard is asked before all that were not.
   void heard(const bus::Notice& notice);
@@ -49,9 +61,10 @@ class ScanPlan {
   [[nodiscard]] std::optional<bus::Exchange> next() const;
   /// Of the exchange that next() gave. timed_out: nobody answered.
   void on_result(const bus::ExchangeResult& result);
-  /// Nobody is known to be there yet: the answer need not be waited for as long as that of a node that is.
+  /// Nobody is known to be there yet.
   [[nodiscard]] bool knocking() const { return step_ == Step::knock; }
   [[nodiscard]] int nodes_asked() const { return asked_; }
+  [[nodiscard]] const ScanRange& range() const { return range_; }
   /// In the order of their numbers.
   [[nodiscard]] std::vector<FoundNode> found() const;
 
@@ -68,6 +81,7 @@ class ScanPlan {
   [[nodiscard]] std::vector<ScanFit> fits() const;
 
   std::vector<drive::Profile> profiles_;
+  ScanRange range_;
   std::vector<Tried> tried_;
   std::vector<FoundNode> found_;
   std::array<bool, kLastNode + 1> done_{};
@@ -78,8 +92,5 @@ class ScanPlan {
   int silences_ = 0;
   int asked_ = 0;
 };
-
-/// One line for each node, and what to write into a configuration for it.
-[[nodiscard]] std::string text(const FoundNode& node);
 
 }  // namespace axisgate::app

@@ -122,11 +122,13 @@ std::optional<bus::Exchange> Drive::probe() {
     probe_due_ = now() + backoff_.next();
     return nmt(model_.node, NmtCommand::enter_pre_operational);
   }
-  if (is_canopen(model_) && asked_ && !heard_ && bus_.call(model_.node)) {
+  if (is_canopen(model_) && asked_ && !heard_ && calls_ < kCallsPerQuestion && bus_.call(model_.node)) {
+    ++calls_;
     probe_due_ = now() + backoff_.next();
     return std::nullopt;
   }
   asked_ = true;
+  calls_ = 0;
   return plain_read();
 }
 

@@ -20,6 +20,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
  public:
   /// A mute drive is offline after this many timeouts in a row.
   static constexpr int kMuteTimeouts = 3;
+  static constexpr int kCallsPerQuestion = 4;
 
   /// `images`: one per axis of the model, in its order. Everything referred to outlives the drive.
   Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
@@ -128,10 +129,12 @@ class Drive final : public bus::BusDrive, private AxisHost {
   std::uint64_t doubts_seen_ = 0;
   Instant probe_due_ = kNever;
   bool adopted_ = false;
-  /// CANopen: the node has given a sign of life since it was last gone. One that has not is not asked by SDO but once
-  /// after the link came up, to find what was there before us: then it is called (design 7, point 3).
+  /// CANopen: the node has given a sign of life since it was last gone. One that has not is asked by SDO once after the
+  /// link came up, to find what was there before us; then it is called (design 7, point 3), and asked again after so
+  /// many calls alone: a node may know neither guarding nor heartbeat.
   bool heard_ = false;
   bool asked_ = false;
+  int calls_ = 0;  ///< unanswered, since it was asked last
   bus::NodeState node_state_ = bus::NodeState::unknown;  ///< as it told last
   Instant started_at_ = kLongAgo;  ///< when it was told to become operational
   std::vector<bool> mapped_;       ///< objects that come by TPDO

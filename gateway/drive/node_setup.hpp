@@ -14,14 +14,7 @@
 
 namespace axisgate::drive {
 
-/// CiA 301 section 7.2.8.3.1: NMT command specifiers.
-enum class NmtCommand : std::uint8_t {
-  start = 0x01,
-  stop = 0x02,
-  enter_pre_operational = 0x80,
-  reset_node = 0x81,
-  reset_communication = 0x82,
-};
+using bus::NmtCommand;
 [[nodiscard]] bus::Exchange nmt(std::uint8_t node, NmtCommand command);
 
 /// The 1018h numbers that are configured, read and compared.

@@ -13,7 +13,9 @@ namespace axisgate::app {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct Ended {
   int code = -1;
@@ -116,8 +118,51 @@ TEST_F(Program, WrongCommandLinesEndWithTwoAndNameTheWord) {
   EXPECT_THAT(ended.err, HasSubstr("--format"));
 }
 
+TEST_F(Program, ScanSaysWhatIsWrongWithItsWords) {
+  struct Case {
+    std::string arguments;
+    std::string told;
+  };
+  for (const Case& it : {
+           Case{"", "DEVICE"},
+           Case{"slcan:", "slcan: must be followed by the path of a serial port"},
+           Case{"/dev/ttyACM0", "a serial CAN adapter is given as slcan:PATH"},
+           Case{"can0 --bitrate 5000", "5000 bit/s is no bit rate of CAN"},
+           Case{"slcan:/dev/ttyACM0 --bitrate 300000", "serial CAN adapters offer 10000, 20000"},
+           Case{"can0 --nodes 0-5", "'0-5' is no node-ID and no range of them"},
+           Case{"can0 --nodes 9-5", "--nodes"},
+           Case{"can0 --timeout-ms 1", "--timeout-ms"},
+       }) {
+    const Ended ended = run("scan " + it.arguments);
+    EXPECT_EQ(ended.code, 2) << it.arguments;
+    EXPECT_THAT(ended.err, HasSubstr(it.told)) << it.arguments;
+    EXPECT_EQ(ended.out, "") << it.arguments;
+  }
+}
+
+TEST_F(Program, ScanOfWhatIsNotThereEndsWithTheReason) {
+  Ended ended = run("scan slcan:" + (folder_ / "no-adapter").string());
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_EQ(ended.err, (folder_ / "no-adapter").string() +
+                           ": No such file or directory\nIs the adapter plugged in, and may you open it (group "
+                           "dialout)? ls -l /dev/serial/by-id lists those that are there.\n");
+  EXPECT_EQ(ended.out, "");
+  // With a kernel that has CAN, and with one that has not.
+  ended = run("scan nosuchcan9");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err, AnyOf(HasSubstr("nosuchcan9 does not exist: is the adapter plugged in"),
+                               HasSubstr("nosuchcan9: this kernel has no CAN")));
+  EXPECT_THAT(ended.err, Not(HasSubstr("trying again")));
+  EXPECT_EQ(ended.out, "");
+}
+
+TEST_F(Program, ScanHelpWarnsOfAGatewayOnTheSameBus) {
+  const Ended ended = run("scan --help");
+  EXPECT_THAT(ended.out, HasSubstr("A gateway that runs on the same bus is another SDO client"));
+}
+
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
-  for (const char* command : {"", "run ", "check ", "map ", "top ", "profile check ", "commission "}) {
+  for (const char* command : {"", "run ", "check ", "map ", "top ", "profile check ", "commission ", "scan "}) {
     const Ended ended = run(std::string(command) + "--help");
     EXPECT_EQ(ended.code, 0) << command;
     EXPECT_THAT(ended.out, HasSubstr(std::string("Example: axisgate ") + command)) << command;

@@ -73,7 +73,7 @@ DriveWatch::DriveWatch(const app::Gateway& gateway, SimLink& link, std::size_t p
 
 void DriveWatch::check() {
   check_values();
-  watch_.check_enables(link_.line().drive(position_),
+  watch_.check_enables(link_.line().drive(position_).transitions(),
                        [&](simulated::Time at) { return link_.time_of(runtime_.now()) - at; });
   watch_.check_validity();
 }
@@ -124,14 +124,27 @@ bool AxisWatch::enable_was_asked(Instant at) const {
                      [&](const Asked::Enable& e) { return e.axis == axis_ && e.at <= at && at - e.at <= kLongestWay; });
 }
 
-void AxisWatch::check_enables(const simulated::KincoDrive& drive, const std::function<Duration(simulated::Time)>& age) {
-  for (const simulated::Transition& t : drive.transitions()) {
+void AxisWatch::check_enables(const std::deque<simulated::Transition>& transitions,
+                              const std::function<Duration(simulated::Time)>& age) {
+  for (const simulated::Transition& t : transitions) {
     const Instant at = runtime_.now() - age(t.at);
     if (at <= enables_seen_until_ || t.to != simulated::Cia402State::operation_enabled) continue;
     if (!enable_was_asked(at) || t.tag == 0)
       violated_("I10: axis " + std::to_string(axis_) + " was enabled although nobody asked");
   }
   enables_seen_until_ = runtime_.now();
+}
+
+Duration AxisWatch::stale_after(const drive::Binding& binding) const {
+  const drive::AxisModel& axis = gateway_.drive_of(axis_)->model().axes.front();
+  Duration period = gateway_.drive_of(axis_)->model().poll_period[static_cast<std::size_t>(binding.poll)];
+  const auto look = [&](drive::ObjectId object) {
+    if (object != drive::kNoObject) period = std::max(period, period_(object));
+  };
+  look(binding.object);
+  for (const drive::BitField& field : binding.bits) look(field.object);
+  if (binding.quantity == Quantity::error_code) std::for_each(axis.fault_words.begin(), axis.fault_words.end(), look);
+  return std::max<Duration>(std::chrono::milliseconds(300), 3 * period);
 }
 
 void AxisWatch::check_validity() const {
@@ -142,10 +155,7 @@ void AxisWatch::check_validity() const {
     if (!sample.valid) continue;
     if (!image.reachable()) violated_("I6: a valid value of a drive that is not there");
     if (binding.poll == drive::PollClass::once) continue;
-    const Duration period = drive.model().poll_period[static_cast<std::size_t>(binding.poll)];
-    const Duration limit =
-        std::max<Duration>(std::chrono::milliseconds(300), 3 * period) + std::chrono::milliseconds(2);
-    if (runtime_.now() - sample.at > limit)
+    if (runtime_.now() - sample.at > stale_after(binding) + std::chrono::milliseconds(2))
       violated_("I6: axis " + std::to_string(axis_) + " " + std::string(row(binding.quantity).name) +
                 " is stale but valid");
   }

@@ -3,6 +3,7 @@
 // Never changes anything it looks at.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <string>
 #include <vector>
@@ -48,15 +49,20 @@ class AxisWatch {
   /// I6: nothing valid is stale, nor valid of a drive that is not there.
   void check_validity() const;
   /// I10 of a drive that has a state machine: `age` tells how long ago it was enabled.
-  void check_enables(const simulated::KincoDrive& drive, const std::function<Duration(simulated::Time)>& age);
+  void check_enables(const std::deque<simulated::Transition>& transitions,
+                     const std::function<Duration(simulated::Time)>& age);
+  /// How often an object is confirmed, where that may be less often than its poll class is read.
+  void set_period(std::function<Duration(drive::ObjectId)> period) { period_ = std::move(period); }
   [[nodiscard]] bool enable_was_asked(Instant at) const;
 
  private:
   const app::Gateway& gateway_;
   AxisNumber axis_;
   const Asked& asked_;
+  [[nodiscard]] Duration stale_after(const drive::Binding& binding) const;
   Runtime& runtime_;
   std::function<void(std::string)> violated_;
+  std::function<Duration(drive::ObjectId)> period_ = [](drive::ObjectId) { return Duration{}; };
   Instant enables_seen_until_;
 };
 

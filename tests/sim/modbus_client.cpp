@@ -182,11 +182,17 @@ void ModbusClient::ask_rarely(const ClientAxis& axis) {
       }
       [[fallthrough]];
     default: {
+      if (axis.has_name && random_.chance(1, 2)) return read_name(axis.number);
       // The object mailbox: an object of the drive, or one that does not exist.
       const std::uint16_t object = random_.chance(1, 2) ? axis.an_object : std::uint16_t{0x5FFF};
       return write(axis.number, 80, {1, object, 0, 2});
     }
   }
+}
+
+// By 43/13: in several exchanges, which whatever is more urgent may break off.
+void ModbusClient::read_name(AxisNumber axis) {
+  send({0x2B, 0x0D, 0x00, 0x00, static_cast<Byte>(axis), 0x10, 0x08, 0x00, 0x00, 0x00, 0x00, 0x00});
 }
 
 // Each word alone, as a servo's programmer writes them. What it may lead to depends on the mode: all of it is asked

@@ -43,6 +43,7 @@ struct ClientAxis {
   std::vector<std::uint16_t> homing_methods{35};
   std::uint16_t an_object = 0x6041;  ///< that the drive has, of two bytes
   bool wears = false;                ///< homing method and position limits are kept in memory that wears out
+  bool has_name = false;             ///< a name of more than four bytes can be read from it (1008h)
 };
 
 class ModbusClient {
@@ -67,6 +68,7 @@ class ModbusClient {
   void ask_something();
   void ask_rarely(const ClientAxis& axis);
   void raw_controlword(AxisNumber axis);
+  void read_name(AxisNumber axis);
   void command(AxisNumber axis, std::uint16_t number);
   void receive();
   void take_reply(Bytes adu);

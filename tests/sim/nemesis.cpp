@@ -9,17 +9,63 @@ namespace {
 template <class Link>
 Victim cable(Link& link, Runtime& runtime) {
   Victim out;
-  out.line = &link.line();
+  out.drives = link.line().size();
+  out.faults = [&link](std::size_t drive) -> simulated::DriveFaults& { return link.line().faults(drive); };
+  out.has = [&link](DriveFault fault) { return link.line().has(fault); };
   out.unplug = [&link] { link.unplug(); };
   out.plug = [&link] { link.plug(); };
   out.plugged = [&link] { return link.plugged(); };
-  out.now = [&link, &runtime] { return link.time_of(runtime.now()); };
+  out.restart = [&link, &runtime](std::size_t drive) { link.line().restart(drive, link.time_of(runtime.now())); };
   return out;
 }
 
 void fault(simulated::KincoDrive& drive) {
   drive.inject_fault(1, 0x0020);  // bus voltage too high
   drive.clear_fault_cause(1, 0x0020);
+}
+
+/// Storms come as often as this, so that a slow bus is loaded and not choked for good.
+constexpr std::uint64_t kShortestBabble = 2, kBabbles = 20;  // ms
+
+void calm_can(CanLinkSim& link) {
+  for (std::size_t d = 0; d < link.line().size(); ++d) {
+    link.line().connect(d, true);
+    link.line().faults(d).set_rate(DriveFault::babble, 0);
+    link.line().faults(d).set_rate(DriveFault::emergencies, 0);
+  }
+}
+
+/// Whose frames a node gone mad sends: those of its own error control, EMCY or SDO server, or of nobody.
+std::uint32_t babble_id(std::uint8_t node, Random& random) {
+  namespace cob = simulated::cob;
+  constexpr std::uint32_t kNobodys = 0x7E4;
+  const std::array<std::uint32_t, 4> ids{cob::error_control + node, cob::emergency + node, cob::sdo_reply + node,
+                                         kNobodys};
+  return ids[static_cast<std::size_t>(random.below(ids.size()))];
+}
+
+void suffer(CanLinkSim& link, std::size_t drive, Random& random) {
+  simulated::DriveFaults& faults = link.line().faults(drive);
+  faults.babble_period = std::chrono::milliseconds(kShortestBabble + random.below(kBabbles));
+  switch (random.below(8)) {
+    case 0:
+    case 1:
+      return link.line().connect(drive, random.chance(1, 3));
+    case 2:
+      return link.bus_off();
+    case 3:
+      return faults.next(DriveFault::restart);
+    case 4:
+      return faults.next(DriveFault::mute, 1 + random.below(20));
+    case 5:
+      faults.emergency_code = static_cast<std::uint16_t>(0x8100 + random.below(0x100));
+      return faults.set_rate(DriveFault::emergencies, random.chance(1, 2) ? 1.0 : 0.1);
+    case 6:
+      faults.babble_id = babble_id(link.line().node(drive).node(), random);
+      return faults.set_rate(DriveFault::babble, random.chance(1, 2) ? 1.0 : 0.1);
+    default:
+      return calm_can(link);
+  }
 }
 
 }  // namespace
@@ -40,6 +86,18 @@ Victim victim(RtuLinkSim& link, Runtime& runtime) {
   return out;
 }
 
+Victim victim(CanLinkSim& link, Runtime& runtime) {
+  Victim out = cable(link, runtime);
+  out.faulted = [&link](std::size_t drive) {
+    if (simulated::KincoDrive* kinco = link.line().kinco(drive)) return fault(*kinco);
+    link.line().leadshine(drive)->inject_fault(0x3211);  // supply too high
+    link.line().leadshine(drive)->clear_fault_cause();
+  };
+  out.own_deed = [&link](std::size_t drive, Random& random) { suffer(link, drive, random); };
+  out.calm = [&link] { calm_can(link); };
+  return out;
+}
+
 Nemesis::Nemesis(std::vector<Victim> victims, Runtime& runtime, std::uint64_t seed)
     : victims_(std::move(victims)),
       runtime_(runtime),
@@ -50,11 +108,11 @@ Nemesis::Nemesis(std::vector<Victim> victims, Runtime& runtime, std::uint64_t se
 
 void Nemesis::draw_rates() {
   for (const Victim& victim : victims_)
-    for (std::size_t d = 0; d < victim.line->size(); ++d) draw_rates(*victim.line, victim.line->faults(d));
+    for (std::size_t d = 0; d < victim.drives; ++d) draw_rates(victim, victim.faults(d));
 }
 
 // Each seed draws which faults there are at all, and how often they strike: between one in 25 and one in 1000 replies.
-void Nemesis::draw_rates(const simulated::DriveLine& line, simulated::DriveFaults& faults) {
+void Nemesis::draw_rates(const Victim& victim, simulated::DriveFaults& faults) {
   const auto maybe = [&](DriveFault fault) {
     if (random_.chance(1, 2)) faults.set_rate(fault, 1.0 / static_cast<double>(25 + random_.below(975)));
   };
@@ -63,12 +121,21 @@ void Nemesis::draw_rates(const simulated::DriveLine& line, simulated::DriveFault
   maybe(DriveFault::late);
   maybe(DriveFault::lose);
   maybe(DriveFault::mute);
+  maybe(DriveFault::wrong_station);
+  if (victim.has(DriveFault::emergencies)) {
+    maybe(DriveFault::duplicate);
+    maybe(DriveFault::wrong_length);
+    // For now, and for good: the codes of a busy drive, of local control, and of none that says more.
+    constexpr std::array<std::uint32_t, 3> kAborts{0x08000022, 0x08000021, 0x08000000};
+    faults.abort_code = kAborts[static_cast<std::size_t>(random_.below(kAborts.size()))];
+    maybe(DriveFault::exception);
+    return;
+  }
   maybe(DriveFault::noise_before);
   maybe(DriveFault::noise_after);
   maybe(DriveFault::corrupt);
   maybe(DriveFault::split);
-  maybe(DriveFault::wrong_station);
-  if (!line.has(DriveFault::half)) return;
+  if (!victim.has(DriveFault::half)) return;
   maybe(DriveFault::half);
   // The length is all that tells a late reply from the fence's: a drive may break one of both rules.
   if (!faults.armed(DriveFault::late)) maybe(DriveFault::wrong_length);
@@ -79,12 +146,19 @@ void Nemesis::draw_rates(const simulated::DriveLine& line, simulated::DriveFault
   maybe(DriveFault::exception);
 }
 
+void Nemesis::mend_all() {
+  for (Victim& victim : victims_) {
+    victim.plug();
+    victim.calm();
+  }
+}
+
 void Nemesis::act() {
   next_deed_ = runtime_.now() + std::chrono::milliseconds(500 + random_.below(6000));
   if (retired_) return;
   Victim& victim = victims_[static_cast<std::size_t>(random_.below(victims_.size()))];
-  const auto drive = static_cast<std::size_t>(random_.below(victim.line->size()));
-  switch (random_.below(4)) {
+  const auto drive = static_cast<std::size_t>(random_.below(victim.drives));
+  switch (random_.below(victim.own_deed ? 8 : 4)) {
     case 0:
       if (victim.plugged())
         victim.unplug();
@@ -92,23 +166,25 @@ void Nemesis::act() {
         victim.plug();
       break;
     case 1:
-      victim.line->restart(drive, victim.now());
+      victim.restart(drive);
       break;
     case 2:
       victim.faulted(drive);
       break;
+    case 3:
+      mend_all();
+      break;
     default:
-      for (Victim& v : victims_) v.plug();
+      victim.own_deed(drive, random_);
       break;
   }
 }
 
 void Nemesis::retire() {
   retired_ = true;
-  for (Victim& victim : victims_) {
-    victim.plug();
-    for (std::size_t d = 0; d < victim.line->size(); ++d) victim.line->faults(d).clear();
-  }
+  mend_all();
+  for (Victim& victim : victims_)
+    for (std::size_t d = 0; d < victim.drives; ++d) victim.faults(d).clear();
 }
 
 }  // namespace axisgate::test

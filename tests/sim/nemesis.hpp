@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gateway/core/random.hpp"
+#include "tests/stage/can_link_sim.hpp"
 #include "tests/stage/rtu_link_sim.hpp"
 #include "tests/stage/sim_link.hpp"
 
@@ -14,14 +15,20 @@ namespace axisgate::test {
 
 /// One line as the nemesis sees it, whatever is spoken on it.
 struct Victim {
-  simulated::DriveLine* line = nullptr;
+  std::size_t drives = 0;
+  std::function<simulated::DriveFaults&(std::size_t)> faults;
+  std::function<bool(simulated::DriveFault)> has;
   std::function<void()> unplug, plug;
   std::function<bool()> plugged;
-  std::function<simulated::Time()> now;
+  std::function<void(std::size_t)> restart;
   std::function<void(std::size_t)> faulted;  ///< this drive has a fault whose cause is gone already
+  /// What only this kind of line can suffer, and its end; none: there is nothing.
+  std::function<void(std::size_t, Random&)> own_deed;
+  std::function<void()> calm = [] {};
 };
 [[nodiscard]] Victim victim(SimLink& link, Runtime& runtime);
 [[nodiscard]] Victim victim(RtuLinkSim& link, Runtime& runtime);
+[[nodiscard]] Victim victim(CanLinkSim& link, Runtime& runtime);
 
 class Nemesis {
  public:
@@ -34,7 +41,8 @@ class Nemesis {
 
  private:
   void draw_rates();
-  void draw_rates(const simulated::DriveLine& line, simulated::DriveFaults& faults);
+  void draw_rates(const Victim& victim, simulated::DriveFaults& faults);
+  void mend_all();
   std::vector<Victim> victims_;
   Runtime& runtime_;
   Random random_;

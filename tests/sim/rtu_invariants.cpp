@@ -88,7 +88,7 @@ void RtuDriveWatch::check() {
   check_values();
   watch_.check_validity();
   if (const simulated::KincoDrive* kinco = link_.line().kinco(position_))
-    watch_.check_enables(*kinco, [&](simulated::Time at) { return link_.time_of(runtime_.now()) - at; });
+    watch_.check_enables(kinco->transitions(), [&](simulated::Time at) { return link_.time_of(runtime_.now()) - at; });
   if (const simulated::Id286pro* stepper = link_.line().id286pro(position_)) check_stepper(*stepper);
 }
 

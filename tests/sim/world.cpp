@@ -62,12 +62,58 @@ GatewayStage::Line rtu_line(Random& random, AxisNumber first) {
   return line;
 }
 
-/// Kinco's own protocol, Modbus RTU, or both.
+/// Points that the Leadshine's manual leaves open.
+simulated::LeadshineOptions leadshine(std::uint8_t node, Random& random) {
+  simulated::LeadshineOptions options;
+  options.node = node;
+  options.acknowledges_setpoints = random.chance(1, 2);
+  options.ready_flag = random.chance(1, 2);
+  options.needs_halt_edge = random.chance(1, 2);
+  options.mode = random.chance(1, 2) ? 8 : 0;
+  options.sends_emergencies = random.chance(1, 2);
+  options.leaves_operational_on_loss = random.chance(1, 2);
+  options.event_timer = random.chance(1, 2);
+  if (random.chance(1, 4)) options.unmappable = {{0x606C, 0}, {0x6077, 0}};
+  return options;
+}
+
+simulated::KincoCanDrive can_servo(simulated::KincoType type, std::uint8_t node, Random& random) {
+  simulated::KincoCanDrive drive;
+  drive.drive.type = type;
+  drive.drive.station = node;
+  drive.can.echoes_written = random.chance(1, 2);
+  drive.can.short_frames = random.chance(1, 2);
+  drive.can.stops_without_master = random.chance(1, 2);
+  if (random.chance(1, 4)) drive.can.unmappable = {{0x606C, 0}, {0x6078, 0}};
+  return drive;
+}
+
+/// A Leadshine, a JD and an MD on one bus.
+GatewayStage::Line can_line(Random& random, AxisNumber first) {
+  GatewayStage::Line line = can_line_of({leadshine(1, random), can_servo(simulated::KincoType::jd, 2, random),
+                                         can_servo(simulated::KincoType::md, 3, random)},
+                                        first);
+  constexpr std::array<std::uint32_t, 3> kBitRates{125'000, 500'000, 1'000'000};
+  line.can_options.bit_rate = kBitRates[static_cast<std::size_t>(random.below(kBitRates.size()))];
+  line.can_options.reply_delay = std::chrono::microseconds(100 + random.below(5000));
+  return line;
+}
+
+/// Kinco's own protocol, Modbus RTU, CANopen, or several of them.
 std::vector<GatewayStage::Line> layout(Random& random) {
-  const std::uint64_t kind = random.below(3);
+  constexpr std::uint64_t kSerial = 1, kRtu = 2, kCan = 4, kMixtures = 7;
+  const std::uint64_t kinds = 1 + random.below(kMixtures);
   std::vector<GatewayStage::Line> lines;
-  if (kind != 1) lines = kinco_lines(random);
-  if (kind != 0) lines.push_back(rtu_line(random, kind == 1 ? 1 : 3));
+  AxisNumber next = 1;
+  if ((kinds & kSerial) != 0) {
+    lines = kinco_lines(random);
+    next = 3;
+  }
+  if ((kinds & kRtu) != 0) {
+    lines.push_back(rtu_line(random, next));
+    next = static_cast<AxisNumber>(next + 3);
+  }
+  if ((kinds & kCan) != 0) lines.push_back(can_line(random, next));
   return lines;
 }
 
@@ -76,10 +122,12 @@ std::vector<GatewayStage::Line> layout(Random& random) {
 World::World(std::uint64_t seed)
     : random_(seed), lines_(layout(random_)), stage_(lines_, seed), began_(stage_.runtime().now()) {
   for (std::size_t l = 0; l < lines_.size(); ++l) {
-    if (lines_[l].rtu_drives.empty())
-      watch_kinco(l);
-    else
+    if (!lines_[l].can_drives.empty())
+      watch_can(l);
+    else if (!lines_[l].rtu_drives.empty())
       watch_rtu(l);
+    else
+      watch_kinco(l);
   }
   nemesis_ = std::make_unique<Nemesis>(victims_, stage_.runtime(), random_.next());
   add_clients();
@@ -114,6 +162,22 @@ void World::watch_rtu(std::size_t line) {
   victims_.push_back(victim(link, stage_.runtime()));
 }
 
+void World::watch_can(std::size_t line) {
+  const auto report = [this](const std::string& what) { violated(what); };
+  CanLinkSim& link = stage_.can_link(line);
+  const Duration timeout = stage_.gateway().bus(line).settings().timeout;
+  can_cables_.push_back(std::make_unique<CanCableWatch>(link, stage_.runtime(), timeout, report));
+  for (std::size_t d = 0; d < link.line().size(); ++d) {
+    axes_.push_back({.number = lines_[line].can_drives[d].axis.number, .has_name = true});
+    can_drives_.push_back(std::make_unique<CanDriveWatch>(stage_.gateway(), link, d, axes_.back().number, asked_,
+                                                          stage_.runtime(), report));
+    can_cables_.back()->also_tell([watch = can_drives_.back().get()](bool towards_drive, const can::CanFrame& frame) {
+      watch->on_frame(towards_drive, frame);
+    });
+  }
+  victims_.push_back(victim(link, stage_.runtime()));
+}
+
 void World::add_clients() {
   const modbus_tcp::SessionContext context{settings_, stage_.gateway().image(), stage_.gateway(), registry_,
                                            quiet_,    &stage_.runtime()};
@@ -139,8 +203,13 @@ void World::step(Instant until) {
   if (nemesis_->next_deed() <= now) nemesis_->act();
   for (const auto& client : clients_)
     if (client->next_action() <= now) client->act();
+  check();
+}
+
+void World::check() {
   for (const auto& drive : drives_) drive->check();
   for (const auto& drive : rtu_drives_) drive->check();
+  for (const auto& drive : can_drives_) drive->check();
   for (std::size_t b = 0; b < stage_.gateway().bus_count(); ++b)
     if (stage_.gateway().bus(b).queue_depth() > bus::kMaxOrdersPerBus + 32) violated("I7: the queue is over its bound");
 }
@@ -156,6 +225,7 @@ std::uint64_t World::starts() const {
   for (const auto& cable : cables_) starts += cable->starts();
   for (const auto& cable : rtu_cables_) starts += cable->starts();
   for (const auto& drive : rtu_drives_) starts += drive->starts();
+  for (const auto& cable : can_cables_) starts += cable->starts();
   return starts;
 }
 
@@ -189,8 +259,19 @@ std::uint64_t World::hash() const {
   std::uint64_t hash = 0;
   for (const auto& cable : cables_) hash = hash * 31 + cable->hash();
   for (const auto& cable : rtu_cables_) hash = hash * 31 + cable->hash();
+  for (const auto& cable : can_cables_) hash = hash * 31 + cable->hash();
   for (const auto& client : clients_) hash = hash * 31 + client->hash();
   return hash;
+}
+
+std::string World::seen_on_can() const {
+  std::pair<std::uint64_t, std::uint64_t> seen;
+  for (const auto& drive : can_drives_) {
+    seen.first += drive->looked_at().first;
+    seen.second += drive->looked_at().second;
+  }
+  if (can_drives_.empty()) return "";
+  return ", on CAN " + std::to_string(seen.first) + " values by SDO and " + std::to_string(seen.second) + " by TPDO";
 }
 
 std::string World::summary() {
@@ -204,7 +285,7 @@ std::string World::summary() {
   }
   return std::to_string(s.requests) + " exchanges, " + std::to_string(s.timeouts) + " timeouts, " +
          std::to_string(s.late_replies) + " late replies, " + std::to_string(s.bad_frames) + " bad frames, " +
-         std::to_string(asked_.requests) + " client requests";
+         std::to_string(asked_.requests) + " client requests" + seen_on_can();
 }
 
 }  // namespace axisgate::test

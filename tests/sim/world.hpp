@@ -1,9 +1,10 @@
-// The simulated world of one seed: the shipped core with two Kinco drives on their own protocol, or three drives of all
-// kinds on a Modbus RTU line, or both; three Modbus clients and the faults of the seed. Promises that equal seeds give
-// equal hashes, and a transcript of the last moments before the first violation. Never uses real time, sockets or
-// devices.
+// The simulated world of one seed: the shipped core with two Kinco drives on their own protocol, three drives of all
+// kinds on a Modbus RTU line, three on a CAN bus, or several of these; three Modbus clients and the faults of the seed.
+// Promises that equal seeds give equal hashes, and to keep the first violations with the time of each.
+// Never uses real time, sockets or devices.
 #pragma once
 
+#include "tests/sim/can_invariants.hpp"
 #include "tests/sim/invariants.hpp"
 #include "tests/sim/nemesis.hpp"
 #include "tests/sim/rtu_invariants.hpp"
@@ -29,9 +30,12 @@ class World {
  private:
   void watch_kinco(std::size_t line);
   void watch_rtu(std::size_t line);
+  void watch_can(std::size_t line);
+  void check();
   void add_clients();
   void step(Instant until);
   [[nodiscard]] std::uint64_t starts() const;
+  [[nodiscard]] std::string seen_on_can() const;
   void violated(const std::string& what);
 
   Random random_;
@@ -47,6 +51,8 @@ class World {
   std::vector<std::unique_ptr<DriveWatch>> drives_;
   std::vector<std::unique_ptr<RtuCableWatch>> rtu_cables_;
   std::vector<std::unique_ptr<RtuDriveWatch>> rtu_drives_;
+  std::vector<std::unique_ptr<CanCableWatch>> can_cables_;
+  std::vector<std::unique_ptr<CanDriveWatch>> can_drives_;
   std::vector<Victim> victims_;
   std::vector<ClientAxis> axes_;
   std::unique_ptr<Nemesis> nemesis_;

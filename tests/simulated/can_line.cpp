@@ -5,25 +5,10 @@
 namespace axisgate::simulated {
 namespace {
 
-constexpr int highest_node = 127;
-constexpr std::uint8_t abort_command = 0x80;
-
-CanBytes recorded(const BusFrame& frame) {
-  CanBytes bytes = little_endian(frame.id, 2);
-  const CanView data = bytes_of(frame);
-  bytes.insert(bytes.end(), data.begin(), data.end());
-  return bytes;
-}
-
 // Lower wins: identifier, then data before remote, then who was first.
 bool wins(const BusFrame& one, const BusFrame& other) {
   if (one.id != other.id) return one.id < other.id;
   return !one.remote && other.remote;
-}
-
-bool is_sdo_request(const BusFrame& frame) {
-  return !frame.remote && frame.id > cob::sdo_request && frame.id < cob::error_control && frame.size > 0 &&
-         frame.data[0] != abort_command;
 }
 
 }  // namespace
@@ -57,7 +42,7 @@ CanLine::CanLine(const CanLineOptions& options, Random random, CanToHostSink sin
 
 CanopenNode& CanLine::add(const CanDriveOptions& options) {
   const int number = node_of(options);
-  if (number < 1 || number > highest_node) {
+  if (number < 1 || number > highest_can_node) {
     throw std::invalid_argument("node " + std::to_string(number) + " is outside 1 to 127");
   }
   Slot slot{options, make_can_node(options), {}, true, {}, {}};
@@ -228,97 +213,6 @@ void CanLine::hear(std::size_t position, const BusFrame& frame, std::uint64_t ta
   }
   slot.node->hear(frame, tag, at);
   take_output(position, at, nullptr);
-}
-
-void CanLine::note_overlap(const BusFrame& frame, Time at) {
-  if (!is_sdo_request(frame)) return;
-  if (owed_until_ > at) ++overlapping_;
-}
-
-void CanLine::request_arrives(std::size_t position, const BusFrame& frame, std::uint64_t tag, Time at) {
-  Slot& slot = slots_[position];
-  take_output(position, at, nullptr);
-  note_overlap(frame, at);
-  CanExchange exchange{tag, at, slot.node->node(), recorded(frame), {}, {}};
-  const bool answerable = frame.remote || is_sdo_request(frame);
-  if (answerable && slot.faults.strikes(DriveFault::mute, random_)) {
-    journal_.record(std::move(exchange));
-    return;
-  }
-  if (answerable && slot.faults.strikes(DriveFault::restart, random_)) {
-    const bool acts = slot.faults.restart_acts ? *slot.faults.restart_acts : random_.chance(0.5);
-    if (acts) slot.node->hear(frame, tag, at);
-    journal_.record(std::move(exchange));
-    restart(position, at);
-    return;
-  }
-  const bool talks = slot.node->state() != NmtState::stopped && slot.node->state() != NmtState::initialising;
-  if (is_sdo_request(frame) && talks && slot.faults.strikes(DriveFault::exception, random_)) {
-    const CanBytes refused = slot.node->server().refusal(bytes_of(frame), slot.faults.abort_code);
-    slot.node->server().reset();
-    answer(position, {tag, true, bus_frame(cob::sdo_reply + slot.node->node(), refused)}, at, &exchange);
-  } else {
-    slot.node->hear(frame, tag, at);
-    take_output(position, at, &exchange);
-  }
-  journal_.record(std::move(exchange));
-}
-
-void CanLine::take_output(std::size_t position, Time at, CanExchange* exchange) {
-  for (const CanopenNode::Output& output : slots_[position].node->take_output()) {
-    if (!slots_[position].connected) continue;
-    if (output.answer) {
-      answer(position, output, at, exchange);
-    } else {
-      wait(at, position, output.tag, output.frame);
-    }
-  }
-}
-
-void CanLine::answer(std::size_t position, const CanopenNode::Output& output, Time at, CanExchange* exchange) {
-  Slot& slot = slots_[position];
-  BusFrame frame = output.frame;
-  const Time ready = std::max(at + options_.reply_delay, slot.free_at);
-  const bool lost = slot.faults.strikes(DriveFault::lose, random_);
-  const Time late = slot.faults.strikes(DriveFault::late, random_) ? slot.faults.late_by : Time{};
-  if (slot.faults.strikes(DriveFault::wrong_station, random_)) {
-    const std::uint32_t own = slot.node->node();
-    frame.id = frame.id - own + own % highest_node + 1;
-  }
-  if (slot.faults.strikes(DriveFault::wrong_length, random_) && frame.size > 0) {
-    frame.size = static_cast<std::uint8_t>(random_.below(frame.size));
-    std::fill(frame.data.begin() + frame.size, frame.data.end(), std::uint8_t{0});
-  }
-  slot.free_at = ready + late;
-  if (lost) return;
-  if (late == Time{}) owed_until_ = std::max(owed_until_, ready);
-  if (exchange != nullptr) {
-    if (exchange->sent.empty()) exchange->reply_ready = ready + late;
-    const CanBytes bytes = recorded(frame);
-    exchange->sent.insert(exchange->sent.end(), bytes.begin(), bytes.end());
-  }
-  wait(ready + late, position, output.tag, frame);
-  if (slot.faults.strikes(DriveFault::duplicate, random_)) wait(ready + late, position, output.tag, frame);
-}
-
-void CanLine::babble(Time now) {
-  for (std::size_t position = 0; position < slots_.size(); ++position) {
-    Slot& slot = slots_[position];
-    const bool storm = slot.faults.armed(DriveFault::emergencies);
-    if ((!storm && !slot.faults.armed(DriveFault::babble)) || slot.next_babble > now) continue;
-    slot.next_babble = now + std::max(slot.faults.babble_period, Time(std::chrono::microseconds(100)));
-    if (!slot.connected) continue;
-    if (storm && slot.faults.strikes(DriveFault::emergencies, random_)) {
-      slot.node->announce_emergency(slot.faults.emergency_code, now);
-      take_output(position, now, nullptr);
-    }
-    if (!slot.faults.strikes(DriveFault::babble, random_)) continue;
-    const std::uint32_t id =
-        slot.faults.babble_id != 0 ? slot.faults.babble_id : cob::error_control + slot.node->node();
-    CanBytes bytes(1 + random_.below(longest_can_frame));
-    for (std::uint8_t& byte : bytes) byte = random_.byte();
-    wait(now, position, 0, bus_frame(id, bytes));
-  }
 }
 
 }  // namespace axisgate::simulated

@@ -19,6 +19,8 @@ struct CanLineOptions {
   std::size_t journal_capacity = 1000;
 };
 
+inline constexpr int highest_can_node = 127;
+
 using CanDriveOptions = std::variant<KincoCanDrive, LeadshineOptions>;
 
 std::string describe(const CanDriveOptions& options);  // "jd@1", "ld2@3"

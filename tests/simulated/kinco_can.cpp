@@ -25,6 +25,8 @@ CommunicationFacts communication_of(const KincoCanDrive& options) {
   facts.pdo.event_timer = md;
   facts.pdo.inhibit_unit = md ? one_millisecond : std::chrono::microseconds(100);
   facts.guarding_objects = md;
+  facts.leaves_operational_on_loss = options.can.leaves_operational_on_loss;
+  facts.sends_emergencies = options.can.sends_emergencies;
   facts.identity = {options.can.vendor, options.can.product, options.can.revision, options.can.serial};
   facts.name = md ? "MD60" : "JD620";
   facts.hardware = "1.0";
@@ -73,7 +75,7 @@ void KincoCan::lose_master(MasterLoss how, Time now) {
 std::uint16_t KincoCan::error_code() const {
   if (drive_.state() != Cia402State::fault && drive_.state() != Cia402State::fault_reaction_active) return 0;
   for (std::size_t bit = 1; bit < codes_of_word_1.size(); ++bit) {
-    if ((drive_.error_word(1) >> bit & 1U) != 0) return codes_of_word_1.at(bit);
+    if ((drive_.error_word(1) >> bit & 1) != 0) return codes_of_word_1.at(bit);
   }
   return unknown_alarm;
 }

@@ -19,8 +19,10 @@ struct KincoCanOptions {
   bool first_word_needed = true;      // JD 2.3; the MD's manual does not print it
   bool stops_without_master = true;   // what 1016h does is not said
   std::uint16_t loss_alarm = 0x1000;  // bits of 2602h of a master that is gone: not said either
-  std::set<ObjectKey> unmappable{};   // the attribute M is printed for few objects
-  std::uint32_t vendor = 0x300;       // "manufacturer station number" in the PC tool (JD 2.3)
+  bool leaves_operational_on_loss = true;
+  bool sends_emergencies = true;     // of drive alarms
+  std::set<ObjectKey> unmappable{};  // the attribute M is printed for few objects
+  std::uint32_t vendor = 0x300;      // "manufacturer station number" in the PC tool (JD 2.3)
   std::uint32_t product = 1;
   std::uint32_t revision = 1;
   std::uint32_t serial = 1;

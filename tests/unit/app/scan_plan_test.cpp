@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <map>
+#include <set>
 
+#include "gateway/app/scan_table.hpp"
 #include "gateway/drive/profile_loader.hpp"
 
 namespace axisgate::app {
@@ -102,8 +104,10 @@ TEST_F(Scan, FindsWhoSaysWhatItIs) {
   EXPECT_THAT(found.identity, ElementsAre(100U, 200U, 300U, 400U));
   EXPECT_EQ(found.name, "LD2-CAN7015");
   EXPECT_THAT(found.fits, IsEmpty()) << "it has none of the objects";
-  EXPECT_THAT(text(found),
-              HasSubstr("\"identity\": {\"vendor\": 100, \"product\": 200, \"revision\": 300, \"serial\": 400}"));
+  EXPECT_EQ(scan_table({found}),
+            "node  name         vendor      product     revision    serial      heartbeat  profile\n"
+            "   5  LD2-CAN7015  0x00000064  0x000000c8  0x0000012c  0x00000190  -          none fits\n\n"
+            "node 5: device type (1000h) 0x00020192: CiA 402\n");
 }
 
 TEST_F(Scan, ANodeThatRefusesEverythingIsThereAllTheSame) {
@@ -112,8 +116,9 @@ TEST_F(Scan, ANodeThatRefusesEverythingIsThereAllTheSame) {
   run(plan);
   ASSERT_THAT(plan.found(), SizeIs(1));
   EXPECT_EQ(plan.found()[0].device_type, std::nullopt);
-  EXPECT_THAT(text(plan.found()[0]), HasSubstr("(no name), no heartbeat"));
-  EXPECT_THAT(text(plan.found()[0]), Not(HasSubstr("identity")));
+  EXPECT_EQ(scan_table(plan.found()),
+            "node  name  vendor  product  revision  serial  heartbeat  profile\n"
+            "   9  -     -       -        -         -       -          none fits\n");
 }
 
 TEST_F(Scan, EachShippedProfileFitsItsOwnDriveBest) {
@@ -164,7 +169,7 @@ TEST_F(Scan, WhoIsHeardIsAskedFirst) {
   ASSERT_THAT(plan.found(), SizeIs(2));
   EXPECT_EQ(plan.found()[0].node, 3) << "told in their order";
   EXPECT_EQ(plan.found()[1].state, bus::NodeState::operational);
-  EXPECT_THAT(text(plan.found()[1]), HasSubstr("node 100 (no name), operational"));
+  EXPECT_THAT(scan_table(plan.found()), HasSubstr("operational"));
 }
 
 TEST_F(Scan, ANodeThatFallsSilentIsLeft) {
@@ -179,6 +184,7 @@ TEST_F(Scan, ANodeThatFallsSilentIsLeft) {
     run(plan);
     ASSERT_THAT(plan.found(), SizeIs(2)) << answers;
     EXPECT_TRUE(plan.found()[0].fell_silent);
+    EXPECT_THAT(scan_table(plan.found()), HasSubstr("node 1: it fell silent"));
     EXPECT_EQ(std::count(asked_.begin(), asked_.end(), 1), answers + ScanPlan::kSilences);
     EXPECT_EQ(plan.found()[1].name, "alive");
     EXPECT_FALSE(plan.found()[1].fell_silent);
@@ -202,6 +208,64 @@ TEST_F(Scan, ANameThatNeverEndsEndsAtItsBound) {
   }
   EXPECT_EQ(plan.next(), std::nullopt);
   EXPECT_EQ(parts, ScanPlan::kMaxNameParts + 1);
+}
+
+TEST_F(Scan, AsksTheNodesOfItsRangeAlone) {
+  for (std::uint8_t node = 1; node <= 10; ++node) nodes_[node] = {};
+  ScanPlan plan(shipped_, {4, 6});
+  plan.heard(sign_of_life(9, bus::NodeState::operational));
+  run(plan);
+  EXPECT_EQ(plan.nodes_asked(), 3);
+  EXPECT_THAT(std::set<std::uint8_t>(asked_.begin(), asked_.end()), ElementsAre(4, 5, 6));
+}
+
+TEST_F(Scan, TellsOfATwinAtAnyTime) {
+  nodes_[1] = {};
+  nodes_[2] = {};
+  ScanPlan plan(shipped_);
+  run(plan);
+  bus::Notice notice = sign_of_life(2, bus::NodeState::unknown);
+  notice.kind = bus::Notice::Kind::twin;
+  plan.heard(notice);
+  EXPECT_FALSE(plan.found().at(0).twin);
+  EXPECT_TRUE(plan.found().at(1).twin);
+  EXPECT_THAT(scan_table(plan.found()), HasSubstr("node 2: two answers came to one request"));
+}
+
+TEST_F(Scan, ShowsHowAConfigurationMayBegin) {
+  for (const std::uint8_t number : {std::uint8_t{3}, std::uint8_t{14}}) {
+    Node& node = nodes_[number];
+    node.add(profile(number == 3 ? "leadshine-ld2-can" : "kinco-md"));
+    for (std::uint8_t sub = 1; sub <= 4; ++sub) node.add({0x1018, sub}, 4, number * 100U + sub);
+  }
+  nodes_[7] = {};  // nothing fits: nothing is proposed
+  ScanPlan plan(shipped_);
+  run(plan);
+  const std::string table = scan_table(plan.found());
+  EXPECT_THAT(
+      table,
+      HasSubstr("\n  {\"profile\": \"leadshine-ld2-can\", \"node\": 3, \"identity\": {\"vendor\": 301, \"product\": "
+                "302}, \"axes\": [{\"axis\": 3}]},\n"
+                "  {\"profile\": \"kinco-md\", \"node\": 14, \"identity\": {\"vendor\": 1401, \"product\": 1402}, "
+                "\"axes\": [{\"axis\": 14}]}\n"));
+  EXPECT_THAT(table, Not(HasSubstr("fits best"))) << "where all of a profile is there, no other is worth a word";
+}
+
+TEST_F(Scan, NamesTheProfilesThatFitLessWhereNoneFitsWholly) {
+  Node& node = nodes_[1];
+  node.add(profile("kinco-md"));
+  node.add({0x6041, 0}, 4);
+  ScanPlan plan(shipped_);
+  run(plan);
+  EXPECT_THAT(scan_table(plan.found()), HasSubstr("node 1: kinco-md fits best; less: kinco-jd ("));
+}
+
+TEST(ScanRange, IsOneNodeOrTwoEnds) {
+  EXPECT_EQ(parse_scan_range("5"), (ScanRange{5, 5}));
+  EXPECT_EQ(parse_scan_range("1-127"), ScanRange{});
+  EXPECT_EQ(ScanRange{}.count(), 127);
+  for (const char* wrong : {"", "-", "0", "0-5", "1-128", "5-4", "1-", "-5", "1-2-3", "a", "1 - 5", "256"})
+    EXPECT_EQ(parse_scan_range(wrong), std::nullopt) << wrong;
 }
 
 TEST_F(Scan, NamesAreShownWithoutWhatCannotBePrinted) {

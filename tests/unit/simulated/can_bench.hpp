@@ -81,7 +81,7 @@ class CanBench {
   std::optional<std::uint32_t> read(std::uint16_t index, std::uint8_t sub = 0, std::uint8_t node = 1) {
     const auto reply = sdo(request(0x40, index, sub, 0), node);
     if (!reply || ((*reply)[0] & 0xE3) != 0x43) return std::nullopt;
-    const std::size_t size = 4U - ((*reply)[0] >> 2 & 3U);
+    const auto size = static_cast<std::size_t>(4 - ((*reply)[0] >> 2 & 3));
     return little_endian(CanView(*reply).subspan(4, size));
   }
   std::int32_t number(std::uint16_t index, std::uint8_t sub = 0) {

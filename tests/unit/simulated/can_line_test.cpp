@@ -71,6 +71,11 @@ TEST(CanLine, ARequestWhileAReplyIsOwedIsCounted) {
   bench.send(bus_frame(cob::sdo_request + 2, from_hex("40 41 60 00 00 00 00 00")));
   bench.pass(milliseconds(5));
   EXPECT_EQ(bench.line().overlapping_requests(), 1U);
+  bench.send(bus_remote_frame(cob::error_control + 2));  // guarding is no SDO
+  bench.pass(microseconds(200));
+  bench.send(read_status);
+  bench.pass(milliseconds(5));
+  EXPECT_EQ(bench.line().overlapping_requests(), 1U);
 }
 
 class CanFaults : public testing::Test {

@@ -101,5 +101,46 @@ TEST_P(CanStage, ADriveComesOnlineEnablesAndStops) {
 INSTANTIATE_TEST_SUITE_P(Drives, CanStage, testing::Values("ld2", "jd", "md"),
                          [](const auto& type) { return std::string(type.param); });
 
+std::vector<simulated::CanDriveOptions> one_of_each() {
+  simulated::KincoCanDrive jd;
+  jd.drive.station = 2;
+  simulated::KincoCanDrive md;
+  md.drive.station = 3;
+  md.drive.type = KincoType::md;
+  return {ld2(1), jd, md};
+}
+
+TEST(CanStageOfAll, AllThreeKindsMoveOnOneBusAndOneRequestIsOutstandingAtMost) {
+  GatewayStage stage({can_line_of(one_of_each(), 1)});
+  ASSERT_TRUE(stage.come_online()) << testing::PrintToString(stage.log());
+  for (AxisNumber axis = 1; axis <= 3; ++axis) {
+    SCOPED_TRACE(axis);
+    ASSERT_EQ(stage.command(axis, Command::enable).outcome.code, Errc::ok);
+    ASSERT_EQ(stage.write(axis, Quantity::profile_velocity, 60'000).outcome.code, Errc::ok);
+    ASSERT_EQ(stage.write(axis, Quantity::target_position, 5000).outcome.code, Errc::ok);
+    ASSERT_EQ(stage.command(axis, Command::move_absolute).outcome.code, Errc::ok);
+  }
+  EXPECT_TRUE(stage.run_until([&] {
+    return stage.leadshine(0, 0).position() == 5000 && stage.drive(0, 1).position() == 5000 &&
+           stage.drive(0, 2).position() == 32768;
+  }));
+  EXPECT_EQ(stage.can_link(0).line().overlapping_requests(), 0U);
+  EXPECT_THROW((void)stage.drive(0, 0), std::invalid_argument);
+  EXPECT_THROW((void)stage.leadshine(0, 1), std::invalid_argument);
+}
+
+TEST(CanStageOfAll, ALinkThatGoesAndARestartedDriveComeBack) {
+  GatewayStage stage({can_line_of(one_of_each(), 1)});
+  ASSERT_TRUE(stage.come_online());
+  stage.can_link(0).bus_off();
+  EXPECT_TRUE(stage.run_until([&] { return stage.axis(3).link_state == LinkState::link_down; }));
+  stage.can_link(0).bus_on();
+  EXPECT_TRUE(stage.come_online());
+  stage.can_link(0).line().restart(0, stage.can_link(0).time_of(stage.runtime().now()));
+  EXPECT_TRUE(stage.run_until([&] { return stage.axis(1).link_state != LinkState::online; }));
+  EXPECT_EQ(stage.axis(2).link_state, LinkState::online);
+  EXPECT_TRUE(stage.come_online());
+}
+
 }  // namespace
 }  // namespace axisgate::test

@@ -1,0 +1,26 @@
+// `axisgate scan DEVICE`: which nodes answer on a CANopen bus, who they say they are, and which profile fits them.
+// Promises to end: with what was found, or with the reason for which the bus cannot be used and what to do about it.
+// Never sends anything but SDO reads: nothing is written, started, stopped or reset.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gateway/app/scan_plan.hpp"
+
+namespace axisgate::app {
+
+struct ScanOptions {
+  std::string device;  ///< "can0" or "slcan:PATH"
+  std::uint32_t bitrate = 500'000;
+  std::uint32_t timeout_ms = 100;  ///< for each answer
+  ScanRange nodes;
+  std::vector<std::string> profile_folders;
+};
+
+/// Exit status: 0 where a node was found; 1 where nobody answered, the bus cannot be used or was lost meanwhile; 2 for
+/// a device or a bit rate that is none.
+[[nodiscard]] int run(const ScanOptions& options);
+
+}  // namespace axisgate::app
