@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 constexpr int kWrongCommandLine = 2;
 /// A bus that cannot be spoken on by then is not waited for.
 constexpr Duration kUpLimit = std::chrono::seconds(3);
-/// With these words a link tells that it could not be opened. Without them the scan would end all the same, at kUpLimit.
+/// With these words a link tells that it could not be opened. Without them the scan would end all the same, at
+/// kUpLimit.
 constexpr std::string_view kGoesOnTrying = "; trying again";
 
 /// The scan of one bus, from its opening to its end.

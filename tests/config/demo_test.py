@@ -73,7 +73,7 @@ class Demo(unittest.TestCase):
 
     def wait_for_table(self, terminal):
         screen = []
-        return until("a table", lambda: (text := self.read(terminal, screen)) and "axes online 3 of 3" in text and text)
+        return until("a table", lambda: (text := self.read(terminal, screen)) and "axes online 5 of 5" in text and text)
 
     def ended(self, pid, terminal=None):
         def look():
@@ -92,9 +92,10 @@ class Demo(unittest.TestCase):
         ended = subprocess.run(self.command("--seconds", "5"), env=self.environment, stdin=subprocess.DEVNULL, capture_output=True,
                                text=True, timeout=LONGEST, check=False)
         self.assertEqual(ended.returncode, 0, ended.stderr + ended.stdout)
-        self.assertGreaterEqual(ended.stdout.count("axes online 3 of 3"), 3)
-        positions = set(re.findall(r"^ +1 .*?profile position +(-?\d+)", ended.stdout, re.M))
-        self.assertGreaterEqual(len(positions), 2, "axis 1 does not move:\n" + ended.stdout)
+        self.assertGreaterEqual(ended.stdout.count("axes online 5 of 5"), 3)
+        for axis in (1, 4):
+            positions = set(re.findall(rf"^ +{axis} .*?profile position +(-?\d+)", ended.stdout, re.M))
+            self.assertGreaterEqual(len(positions), 2, f"axis {axis} does not move:\n" + ended.stdout)
         self.assert_nothing_left()
 
     def test_what_it_prints_can_be_typed(self):

@@ -11,7 +11,7 @@ ON_VCAN = "--vcan" in sys.argv
 if ON_VCAN:
     sys.argv.remove("--vcan")
 
-from modbus import COMPLETED, ONLINE  # noqa: E402
+from modbus import BUSY, COMPLETED, DISABLED, ONLINE, Refused  # noqa: E402
 from processes import until  # noqa: E402
 from stage import DRIVES, Simulator, Story, drive, main  # noqa: E402,F401
 
@@ -102,6 +102,19 @@ class CanStory(Story):
         number = axis.command("move_absolute")
         axis.until(motion_state=COMPLETED, motion_id=number)
         until("it is there", lambda: abs(axis.get("position_actual") - self.targets[axis.number]) <= 20)
+
+    def reset(self, axis):
+        """Until it is accepted: a drive that was set up anew meanwhile takes none (busy)."""
+        def accepted():
+            try:
+                axis.command("fault_reset")
+                return True
+            except Refused as refused:
+                self.assertEqual(refused.code, BUSY)
+                return False
+
+        until("the reset is accepted", accepted)
+        axis.until(axis_state=DISABLED, error_code=0)
 
     def assert_goes_on(self, *axes):
         for axis in axes:

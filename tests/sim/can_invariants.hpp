@@ -63,6 +63,7 @@ class CanDriveWatch {
   };
   void take_process_data(std::size_t tpdo, const can::CanFrame& frame);
   void check_values();
+  std::string dump() const;
   void check_command(const can::CanFrame& frame);
   void check_presence();
   [[nodiscard]] bool came_by_tpdo(const drive::ObjectDef& object, const drive::ObjectState& state) const;

@@ -1,0 +1,125 @@
+"""Heartbeats, both ways: the gateway dies or hangs while motors run, and a drive falls silent."""
+import signal
+
+from can_stage import FAR, RPM, CanStory, main
+from modbus import CONTINUOUS, ERROR_STOP, FAILED, NO_PATH, OFFLINE, ONLINE
+from processes import until
+
+HEARTBEAT_LOST = 0x8130
+
+
+class MotorsRun(CanStory):
+    def setUp(self):
+        super().setUp()
+        self.begin()
+        for axis in self.axes:
+            self.prepare(axis)
+            axis.command("enable")
+            axis.set(target_velocity=300 * RPM)
+            axis.command("run_velocity")
+            axis.until(axis_state=CONTINUOUS)
+            until("it runs", lambda: axis.get("velocity_actual") > 200 * RPM)
+
+    def position(self, number):
+        return int(self.ask("position DRIVE", number))
+
+    def all_stop_by_themselves(self):
+        for axis in self.axes:
+            until("it notices", lambda: self.ask("state DRIVE", axis.number) == "fault")
+        for axis in self.axes:
+            positions = []
+
+            def stands():
+                positions.append(self.position(axis.number))
+                return len(positions) > 5 and len(set(positions[-5:])) == 1
+
+            until("it stands", stands)
+
+    def assert_nothing_starts(self):
+        """Whoever comes back finds stopped motors, is told why, and no motor turns until it is asked to anew."""
+        where = [self.position(axis.number) for axis in self.axes]
+        for axis in self.axes:
+            axis.until(link_state=ONLINE, axis_state=ERROR_STOP)
+            self.assertNotIn("enabled", axis.inputs())
+            self.assertIn("fault", axis.inputs())
+        self.axes[0].until(error_code=HEARTBEAT_LOST)
+        for axis in self.axes:
+            self.reset(axis)
+            axis.command("enable")
+            until("no speed", lambda: abs(axis.get("velocity_actual")) <= RPM)
+        for axis, before in zip(self.axes, where):
+            self.assertAlmostEqual(self.position(axis.number), before, delta=100)
+            self.targets[axis.number] = axis.get("position_actual")
+            self.move(axis)
+
+    def test_the_gateway_is_killed(self):
+        self.gateway.send(signal.SIGKILL)
+        self.assertEqual(self.gateway.ended(), -signal.SIGKILL)
+        self.all_stop_by_themselves()
+        self.run_gateway()
+        self.client = self.connect()
+        self.until_online()
+        self.look_around()
+        self.assert_nothing_starts()
+
+    def test_the_gateway_hangs_for_a_while(self):
+        self.gateway.send(signal.SIGSTOP)
+        self.addCleanup(self.gateway.send, signal.SIGCONT)
+        self.all_stop_by_themselves()
+        self.gateway.send(signal.SIGCONT)
+        for axis in self.axes:
+            axis.until(motion_state=FAILED)
+        self.assert_nothing_starts()
+
+    def test_the_gateway_is_ended_in_good_order(self):
+        self.assertEqual(self.gateway.terminate(), 0)
+        self.all_stop_by_themselves()
+
+
+class DriveFallsSilent(CanStory):
+    def setUp(self):
+        super().setUp()
+        self.begin()
+        for axis in self.axes:
+            self.prepare(axis)
+
+    def test_its_heartbeat_stays_away(self):
+        for axis in self.axes:
+            with self.subTest(axis=axis.number):
+                others = [other for other in self.axes if other is not axis]
+                self.ask("connect DRIVE off", axis.number)
+                self.gateway.wait_for(f"axis {axis.number}: no sign of life|axis {axis.number}: link .* offline")
+                axis.until(link_state=OFFLINE)
+                with self.refused(NO_PATH):
+                    axis.command("enable")
+                self.assert_goes_on(*others)
+                self.ask("connect DRIVE on", axis.number)
+                axis.until(link_state=ONLINE)
+                self.reset(axis)
+                for other in others:
+                    other.command("disable")
+
+    def test_it_lives_and_answers_nothing(self):
+        for axis in self.axes:
+            with self.subTest(axis=axis.number):
+                others = [other for other in self.axes if other is not axis]
+                self.ask("mute DRIVE on", axis.number)
+                with self.refused(0x0B, NO_PATH):
+                    while True:
+                        axis.set(profile_velocity=600 * RPM + axis.get("sequence"))
+                axis.until(link_state=OFFLINE)
+                with self.refused(NO_PATH):
+                    axis.command("enable")
+                self.assert_goes_on(*others)
+                self.ask("clear DRIVE", axis.number)
+                axis.until(link_state=ONLINE)
+                self.assertNotIn("enabled", axis.inputs())
+                if "fault" in axis.inputs():
+                    self.reset(axis)
+                self.move(axis)
+                for each in self.axes:
+                    each.command("disable")
+
+
+if __name__ == "__main__":
+    main()
