@@ -12,10 +12,10 @@
 #include "adapters/asio/asio_runtime.hpp"
 #include "gateway/app/config_loader.hpp"
 #include "gateway/app/descriptor_needs.hpp"
+#include "gateway/app/device_wires.hpp"
 #include "gateway/app/faults_told.hpp"
 #include "gateway/app/gateway.hpp"
 #include "gateway/app/loop_watch.hpp"
-#include "gateway/app/device_wires.hpp"
 #include "gateway/app/stderr_log.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
 #include "gateway/upstream/modbus_tcp/descriptors.hpp"
@@ -59,7 +59,11 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code& error, int signal) {
     if (error) return;
-    log.write(LogLevel::info, "gateway", fmt::format("signal {}: ending; the drives keep what they do", signal));
+    log.write(
+        LogLevel::info, "gateway",
+        fmt::format(
+            "signal {}: ending; the drives keep what they do, and those that watch for a dead gateway will miss it",
+            signal));
     gateway.stop();
     server.stop();
     io.stop();

@@ -115,8 +115,11 @@ void Drive::judge_loss_reaction() {
 
 // Full bring-up at the first disabled state after an adoption.
 void Drive::leave_adoption() {
-  const bool enabled =
-      std::any_of(axes_.begin(), axes_.end(), [](const auto& a) { return a->core().facts().enabled(); });
+  // A drive that stands in quick stop active holds its motor: it is as far from disabled as one that runs.
+  const bool enabled = std::any_of(axes_.begin(), axes_.end(), [](const auto& a) {
+    const AxisFacts facts = a->core().facts();
+    return facts.enabled() || facts.state == State402::quick_stop_active;
+  });
   if (!adopted_ || enabled) return;
   adopted_ = false;
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, false);

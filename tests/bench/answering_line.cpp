@@ -1,5 +1,6 @@
 #include "tests/bench/answering_line.hpp"
 
+#include "tests/bench/answering_can.hpp"
 #include "tests/simulated/frame_receiver.hpp"
 #include "tests/simulated/kinco_drive.hpp"
 #include "tests/simulated/kinco_rtu.hpp"
@@ -96,6 +97,7 @@ class RtuLine final : public AnsweringLine {
 }  // namespace
 
 std::unique_ptr<AnsweringLine> make_answering_line(LineProtocol protocol, int drives, Time now) {
+  if (is_can(protocol)) return make_answering_can(protocol, drives, now);
   if (protocol == LineProtocol::modbus_rtu) return std::make_unique<RtuLine>(drives, now);
   return std::make_unique<KincoLine>(drives, now);
 }

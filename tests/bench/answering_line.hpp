@@ -26,6 +26,10 @@ class AnsweringLine {
   virtual ~AnsweringLine() = default;
   /// Of the last whole request among the bytes; `mute`: the station that hears and answers nothing, 0 for none.
   virtual std::optional<Answer> hear(std::span<const std::uint8_t> bytes, std::uint8_t mute, simulated::Time now) = 0;
+  /// What is sent at once, whatever answer waits: an adapter's acknowledgements, what a node says by itself.
+  virtual std::vector<std::uint8_t> unasked(simulated::Time /*now*/) { return {}; }
+  /// The motor of the first drive has turned so far, at once: told by process data, where there are any.
+  [[nodiscard]] virtual std::vector<std::uint8_t> turned(int /*turns*/) { return {}; }
 };
 
 /// Stations 1 to `drives`.

@@ -10,7 +10,7 @@
 
 #include "tests/bench/axis_traffic.hpp"
 #include "tests/bench/bare_libmodbus.hpp"
-#include "tests/bench/bare_loop.hpp"
+#include "tests/bench/bare_of.hpp"
 #include "tests/bench/busy_clients.hpp"
 #include "tests/bench/figures.hpp"
 #include "tests/bench/gateway_process.hpp"
@@ -60,9 +60,7 @@ struct Rates {
 double bare_rate(const DriveProcess& drives, std::chrono::microseconds silence, std::chrono::milliseconds lasting) {
   stay_on_processor(0);
   const auto began = SteadyClock::now();
-  const bool rtu = drives.shape().protocol == LineProtocol::modbus_rtu;
-  const auto exchanges = static_cast<double>(
-      (rtu ? bare_rtu_exchanges(drives.device(), silence, lasting) : bare_exchanges(drives.device(), lasting)).size());
+  const auto exchanges = static_cast<double>(bare_exchanges_of(drives, silence, lasting).size());
   const auto took = SteadyClock::now() - began;
   stay_on_processor(1);
   return exchanges / std::chrono::duration<double>(took).count();
@@ -108,6 +106,7 @@ void measure_loads(const BenchOptions& options, LineProtocol protocol, std::chro
   if (protocol == LineProtocol::modbus_rtu)
     fmt::print("answers after {} ms; libmodbus in a loop without silence between frames: {:.1f} exchanges/s\n",
                reply_after.count(), bare_rate(drives, {}, options.lasting(std::chrono::milliseconds(2000))));
+  if (is_can(protocol)) fmt::print("answers after {} ms:\n", reply_after.count());
   for (const Load& load : loads(protocol)) {
     Rates rates;
     for (int round = 0; round < options.times(5); ++round) measure(load, options, drives, rates);
@@ -123,12 +122,13 @@ void measure_loads(const BenchOptions& options, LineProtocol protocol, std::chro
 void delayed_drive(const BenchOptions& options, LineProtocol protocol) {
   constexpr std::chrono::milliseconds kAtOnce{0}, kDelayed{5};
   const bool rtu = protocol == LineProtocol::modbus_rtu;
+  const bool at_once_too = rtu || is_can(protocol);
   fmt::print(
       "P2, a drive that answers {}, exchanges per second (goal: 95 % of the bare loop), polled as by default\n"
       "{:<50} {:>9} {:>9} {:>9} {:>8} {:>14}\n",
-      rtu ? "at once and after 5 ms" : "after 5 ms", "load", "gateway", "at drive", rtu ? "bare+1.75" : "bare", "share",
+      at_once_too ? "at once and after 5 ms" : "after 5 ms", "load", "gateway", "at drive", rtu ? "bare+1.75" : "bare", "share",
       "of the rounds");
-  if (rtu) measure_loads(options, protocol, kAtOnce);
+  if (at_once_too) measure_loads(options, protocol, kAtOnce);
   measure_loads(options, protocol, kDelayed);
 }
 

@@ -12,6 +12,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "tests/axisgate_sim/can_socket.hpp"
 #include "tests/axisgate_sim/pty.hpp"
 #include "tests/bench/answering_line.hpp"
 #include "tests/bench/server_process.hpp"
@@ -23,26 +24,35 @@ using simulated::Time;
 
 Time steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
+std::unique_ptr<simulated::Port> opened(const std::string& device, LineProtocol protocol) {
+  if (protocol == LineProtocol::vcan) return std::make_unique<simulated::CanSocket>(device);
+  return std::make_unique<simulated::Pty>(device);
+}
+
 struct Line {
-  std::unique_ptr<simulated::Pty> port;
+  std::unique_ptr<simulated::Port> port;
   std::unique_ptr<AnsweringLine> drives;
   std::optional<Answer> answer;  // waits for its time
 };
 
 class Responder {
  public:
-  Responder(std::vector<Line> lines, Time reply_after, ExchangeTap& tap)
-      : lines_(std::move(lines)), reply_after_(reply_after), tap_(tap) {}
+  Responder(std::vector<Line> lines, const DriveLines& shape, ExchangeTap& tap)
+      : lines_(std::move(lines)), reply_after_(shape.reply_after), turn_every_(shape.turn_every), tap_(tap) {}
 
   [[noreturn]] void serve() {
     std::vector<pollfd> watched;
     for (const Line& line : lines_) watched.push_back({line.port->readable(), POLLIN, 0});
     for (;;) {
-      const timespec wait = until_next_reply();
+      const timespec wait = until_next_deed();
       static_cast<void>(::ppoll(watched.data(), watched.size(), &wait, nullptr));
+      if (turn_every_ > Time{} && steady_now() >= next_turn_) turn();
       for (std::size_t i = 0; i < lines_.size(); ++i) {
         if (watched[i].revents != 0) hear(lines_[i], i);
-        if (lines_[i].answer && steady_now() >= due(lines_[i])) answer(lines_[i]);
+        if (lines_[i].answer && steady_now() >= due(lines_[i]))
+          answer(lines_[i]);
+        else
+          send(lines_[i], lines_[i].drives->unasked(steady_now()));
       }
     }
   }
@@ -50,11 +60,12 @@ class Responder {
  private:
   [[nodiscard]] Time due(const Line& line) const { return Time(line.answer->exchange.asked_at) + reply_after_; }
 
-  [[nodiscard]] timespec until_next_reply() const {
+  [[nodiscard]] timespec until_next_deed() const {
     Time wait = std::chrono::milliseconds(100);
     const Time now = steady_now();
     for (const Line& line : lines_)
       if (line.answer) wait = std::min(wait, std::max(due(line) - now, Time{}));
+    if (turn_every_ > Time{}) wait = std::min(wait, std::max(next_turn_ - now, Time{}));
     return {wait / std::chrono::seconds(1), (wait % std::chrono::seconds(1)).count()};
   }
 
@@ -68,22 +79,44 @@ class Responder {
     line.answer->exchange.line = static_cast<std::uint8_t>(number);
   }
 
+  void turn() {
+    constexpr int kMostTurns = 20'000;  // what the position's register can show
+    turns_ = turns_ % kMostTurns + 1;
+    next_turn_ = steady_now() + turn_every_;
+    for (Line& line : lines_) {
+      const auto bytes = line.drives->turned(turns_);
+      if (bytes.empty()) continue;
+      const std::int64_t at = steady_now().count();
+      tap_.record({.asked_at = at, .answered_at = at, .object = static_cast<std::uint16_t>(turns_)});
+      send(line, bytes);
+    }
+  }
+
+  static void send(const Line& line, const std::vector<std::uint8_t>& bytes) {
+    if (!bytes.empty()) line.port->write(bytes);
+  }
+
   void answer(Line& line) {
+    auto bytes = line.drives->unasked(steady_now());
+    bytes.insert(bytes.end(), line.answer->bytes.begin(), line.answer->bytes.end());
     line.answer->exchange.answered_at = steady_now().count();
     tap_.record(line.answer->exchange);
-    line.port->write(line.answer->bytes);
+    send(line, bytes);
     line.answer.reset();
   }
 
   std::vector<Line> lines_;
   Time reply_after_;
+  Time turn_every_;
+  Time next_turn_{};
+  int turns_ = 0;
   ExchangeTap& tap_;
 };
 
 }  // namespace
 
 DriveProcess::DriveProcess(const DriveLines& shape, const std::string& folder) : shape_(shape) {
-  for (int i = 0; i < shape.lines; ++i) devices_.push_back(folder + "/line" + std::to_string(i));
+  for (int i = 0; i < shape.lines; ++i) devices_.push_back((shape.protocol == LineProtocol::vcan ? "vcan" : folder + "/line") + std::to_string(i));
   int ready[2];
   if (::pipe(ready) != 0) throw std::runtime_error("no pipe");
   std::fflush(nullptr);
@@ -96,10 +129,10 @@ DriveProcess::DriveProcess(const DriveLines& shape, const std::string& folder) :
     try {
       std::vector<Line> lines;
       for (const std::string& device : devices_)
-        lines.push_back({std::make_unique<simulated::Pty>(device),
+        lines.push_back({opened(device, shape.protocol),
                          make_answering_line(shape.protocol, shape.drives_per_line, steady_now()), std::nullopt});
       static_cast<void>(!::write(ready[1], "", 1));
-      Responder(std::move(lines), shape.reply_after, *tap_.operator->()).serve();
+      Responder(std::move(lines), shape, *tap_.operator->()).serve();
     } catch (const std::exception& error) {
       std::fprintf(stderr, "drives: %s\n", error.what());
     }
@@ -115,7 +148,8 @@ DriveProcess::DriveProcess(const DriveLines& shape, const std::string& folder) :
 DriveProcess::~DriveProcess() {
   ::kill(process_, SIGKILL);
   ::waitpid(process_, nullptr, 0);
-  for (const std::string& device : devices_) static_cast<void>(::unlink(device.c_str()));
+  for (const std::string& device : devices_)
+    if (device.find('/') != std::string::npos) static_cast<void>(::unlink(device.c_str()));
 }
 
 }  // namespace axisgate::bench

@@ -36,7 +36,15 @@ std::uint16_t free_port() {
   return ntohs(here.sin_port);
 }
 
-std::string configuration(std::uint16_t port, const DriveProcess& drives, const PollPeriods& periods) {
+/// What a bus of this protocol must be told beside its name and adapter.
+std::string device_keys(LineProtocol protocol, const std::string& device) {
+  if (is_can(protocol))
+    return fmt::format(R"("device": "{}{}", "bitrate": {})", protocol == LineProtocol::slcan ? "slcan:" : "", device,
+                       kBitRate);
+  return fmt::format(R"("device": "{}", "rs485": "off", "baud": {})", device, baud_of(protocol));
+}
+
+std::string buses_of(const DriveProcess& drives, const PollPeriods& periods) {
   const LineProtocol protocol = drives.shape().protocol;
   std::string buses;
   int axis = 0;
@@ -47,12 +55,13 @@ std::string configuration(std::uint16_t port, const DriveProcess& drives, const 
           R"({}{{"profile": "kinco-jd", "node": {}, "constants": {{"peak_current_a": 27.5}}, "axes": [{{"axis": {}}}]}})",
           station == 1 ? "" : ", ", station, ++axis);
     }
-    buses += fmt::format(R"({}{{"name": "line{}", "adapter": "{}", "device": "{}", "rs485": "off", "baud": {},)"
+    buses += fmt::format(R"({}{{"name": "line{}", "adapter": "{}", {},)"
                          R"( "poll": {{"fast": {}, "normal": {}, "slow": {}}}, "drives": [{}]}})",
-                         line == 0 ? "" : ",\n", line, adapter_of(protocol), drives.device(line), baud_of(protocol),
-                         periods.fast, periods.normal, periods.slow, entries);
+                         line == 0 ? "" : ",\n", line, adapter_of(protocol),
+                         device_keys(protocol, drives.device(line)), periods.fast, periods.normal, periods.slow,
+                         entries);
   }
-  return fmt::format("{{\"modbus_tcp\": [{{\"listen\": \"127.0.0.1:{}\"}}],\n\"buses\": [{}]}}\n", port, buses);
+  return buses;
 }
 
 std::string text_of(const std::string& file) {
@@ -64,10 +73,16 @@ std::string text_of(const std::string& file) {
 
 GatewayProcess::GatewayProcess(const std::string& program, const std::string& folder, const DriveProcess& drives,
                                const PollPeriods& periods, unsigned processor)
-    : axes_(drives.shape().lines * drives.shape().drives_per_line), port_(free_port()) {
+    : GatewayProcess(program, folder, buses_of(drives, periods),
+                     drives.shape().lines * drives.shape().drives_per_line, processor) {}
+
+GatewayProcess::GatewayProcess(const std::string& program, const std::string& folder, const std::string& buses,
+                               int axes, unsigned processor)
+    : axes_(axes), port_(free_port()) {
   const std::string config = folder + "/gateway.json";
   const std::string log = folder + "/gateway.log";
-  std::ofstream(config) << configuration(port_, drives, periods);
+  std::ofstream(config) << fmt::format(
+      "{{\"modbus_tcp\": [{{\"listen\": \"127.0.0.1:{}\"}}],\n\"buses\": [{}]}}\n", port_, buses);
   begin(program, config, log, processor);
   try {
     await_axes();

@@ -7,7 +7,7 @@
 
 #include "tests/bench/axis_traffic.hpp"
 #include "tests/bench/bare_libmodbus.hpp"
-#include "tests/bench/bare_loop.hpp"
+#include "tests/bench/bare_of.hpp"
 #include "tests/bench/figures.hpp"
 #include "tests/bench/gateway_process.hpp"
 #include "tests/bench/server_process.hpp"
@@ -50,8 +50,7 @@ void measure_bare(const DriveProcess& drives, std::chrono::milliseconds lasting,
   stay_on_processor(kHostProcessor);
   const std::uint64_t before = drives.tap().recorded();
   const bool rtu = drives.shape().protocol == LineProtocol::modbus_rtu;
-  const Samples exchanges =
-      rtu ? bare_rtu_exchanges(drives.device(), kFrameSilence, lasting) : bare_exchanges(drives.device(), lasting);
+  const Samples exchanges = bare_exchanges_of(drives, kFrameSilence, lasting);
   add_turnarounds(drives.tap().since(before), false, to.bare_turn);
   if (rtu) {
     const Samples hasty = bare_rtu_exchanges(drives.device(), {}, lasting / 4);

@@ -1,5 +1,6 @@
 // axisgate-bench: the figures of the design's section 8, each as a ratio to a bare loop of the same run.
 #include <fmt/format.h>
+#include <net/if.h>
 #include <unistd.h>
 
 #include <array>
@@ -10,10 +11,13 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/bench/babbling_bus.hpp"
 #include "tests/bench/bench_options.hpp"
+#include "tests/bench/change_latency.hpp"
 #include "tests/bench/delayed_drive.hpp"
 #include "tests/bench/figures.hpp"
 #include "tests/bench/footprint.hpp"
+#include "tests/bench/idle_can.hpp"
 #include "tests/bench/immediate_drive.hpp"
 #include "tests/bench/modbus_reads.hpp"
 #include "tests/bench/mute_neighbour.hpp"
@@ -28,6 +32,7 @@ struct Bench {
   std::string_view name;
   std::string_view what;
   void (*run)(const BenchOptions&);
+  bool needs_vcan = false;
 };
 
 template <void (*bench)(const BenchOptions&, LineProtocol), LineProtocol protocol>
@@ -36,6 +41,8 @@ void on(const BenchOptions& options) {
 }
 constexpr LineProtocol kKinco = LineProtocol::kinco_serial;
 constexpr LineProtocol kRtu = LineProtocol::modbus_rtu;
+constexpr LineProtocol kSlcan = LineProtocol::slcan;
+constexpr LineProtocol kVcan = LineProtocol::vcan;
 
 constexpr std::array kBenches{
     Bench{"immediate", "P2: time added to an exchange with a drive that answers at once", on<immediate_drive, kKinco>},
@@ -52,6 +59,15 @@ constexpr std::array kBenches{
     Bench{"rtu-mute", "P3: a live drive's writes beside a dead one, on Modbus RTU", on<mute_neighbour, kRtu>},
     Bench{"rtu-stops", "P4 on Modbus RTU", on<stop_latency, kRtu>},
     Bench{"rtu-sharing", "P6 on Modbus RTU", on<shared_polling, kRtu>},
+    Bench{"slcan-immediate", "P2 on CANopen behind a serial adapter, beside its text in a loop",
+          on<immediate_drive, kSlcan>},
+    Bench{"slcan-delayed", "P2 on CANopen behind a serial adapter, at once and after 5 ms", on<delayed_drive, kSlcan>},
+    Bench{"slcan-change", "from a TPDO to the register that shows it", on<change_latency, kSlcan>},
+    Bench{"slcan-idle", "SDO requests while drives are online and stand", idle_can},
+    Bench{"vcan-immediate", "P2 on CANopen, beside a raw CAN socket in a loop", on<immediate_drive, kVcan>, true},
+    Bench{"vcan-delayed", "P2 on CANopen, nodes that answer at once and after 5 ms", on<delayed_drive, kVcan>, true},
+    Bench{"vcan-change", "from a TPDO to the register that shows it", on<change_latency, kVcan>, true},
+    Bench{"vcan-babble", "what a babbling node costs the other bus", babbling_bus, true},
 };
 
 /// A folder for one run; gone with the object.
@@ -73,8 +89,9 @@ class RunFolder {
 };
 
 int help(int status) {
-  fmt::print("usage: axisgate-bench [--quick] [--axisgate PROGRAM] [BENCH...]\nWithout a name, all of these run:\n");
-  for (const Bench& bench : kBenches) fmt::print("  {:<14} {}\n", bench.name, bench.what);
+  fmt::print("usage: axisgate-bench [--quick] [--axisgate PROGRAM] [BENCH...]\nWithout a name, all of these run, those of vcan where\n"
+             "there is an interface vcan0 (tests/vcan/in_guest -- axisgate-bench ...):\n");
+  for (const Bench& bench : kBenches) fmt::print("  {:<16} {}\n", bench.name, bench.what);
   fmt::print("--quick shows in seconds that they work; its figures mean nothing.\n");
   return status;
 }
@@ -116,7 +133,8 @@ int main(int argc, char** argv) {
     }
   }
   if (chosen.empty())
-    for (const Bench& bench : kBenches) chosen.push_back(&bench);
+    for (const Bench& bench : kBenches)
+      if (!bench.needs_vcan || ::if_nametoindex("vcan0") != 0) chosen.push_back(&bench);
   try {
     run(chosen, options);
   } catch (const std::exception& error) {

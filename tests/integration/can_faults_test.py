@@ -32,7 +32,7 @@ class OneOfThree(CanStory):
 class Storms(OneOfThree):
     def test_a_storm_of_emergencies_is_told_in_few_words(self):
         self.ask("emergencies DRIVE 0x2310 on", 2)
-        lines = self.gateway.wait_for("axis 2: EMCY 0x2310")
+        self.gateway.wait_for("axis 2: EMCY 0x2310")
         overviews = 0
 
         def stormy():
@@ -48,7 +48,8 @@ class Storms(OneOfThree):
         self.ask("clear DRIVE", 2)
         lines = self.gateway.found("axis 2: EMCY 0x2310")
         left_out = sum(int(found[1]) for line in lines if (found := re.search(r"\((\d+) more were left out\)", line.string)))
-        self.assertGreater(left_out, 10 * len(lines), "each is told by itself")
+        self.assertGreater(left_out, 0)
+        self.assertGreater(left_out + self.client.bus(0)["bad_frames"], 10 * len(lines), "each is told by itself")
         self.assertEqual(self.told("axis [13]: EMCY"), 0)
         self.assertEqual(self.told("axis 2: floods the bus with frames 0x082"), 1)
         self.middle.until(link_state=ONLINE)
@@ -74,7 +75,7 @@ class TwoBuses(CanStory):
         for axis in self.axes:
             self.prepare(axis)
         before = self.client.bus(1)
-        for number, word in ((1, "babble DRIVE 0x181 on"), (2, "emergencies DRIVE 0x1000 on")):
+        for number, word in ((1, "babble DRIVE on"), (2, "emergencies DRIVE 0x1000 on")):
             self.ask(word, number, "loud")
         until("much noise", lambda: self.client.bus(0)["bad_frames"] >= 200)
         for _ in range(3):

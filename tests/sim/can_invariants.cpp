@@ -7,8 +7,7 @@ namespace {
 
 namespace cob = simulated::cob;
 
-constexpr std::uint16_t kControlword = 0x6040, kProfileVelocity = 0x6081, kFirstTpdo = 0x1800, kFirstTpdoMap = 0x1A00;
-constexpr std::uint8_t kEventTimer = 5;
+constexpr std::uint16_t kControlword = 0x6040, kProfileVelocity = 0x6081, kFirstTpdoMap = 0x1A00;
 constexpr Byte kWriteFour = 0x23, kWriteTwo = 0x2B, kAbort = 0x80;
 constexpr std::uint8_t kUpload = 2, kDownload = 1;  ///< command specifiers that name an object (CiA 301 7.2.4.3)
 constexpr std::size_t kSdoSize = 8;
@@ -23,7 +22,7 @@ bool between(std::uint32_t id, std::uint32_t base) { return id > base && id <= b
 bool is_sdo_request(const can::CanFrame& frame) { return !frame.remote && between(frame.id, cob::sdo_request); }
 
 bool is_boot_up(const can::CanFrame& frame) {
-  return !frame.remote && between(frame.id, cob::error_control) && frame.size == 1 && frame.data[0] == 0;
+  return !frame.remote && between(frame.id, cob::error_control) && frame.size > 0 && frame.data[0] == 0;
 }
 
 /// A recorded frame: identifier, low byte first, and data.
@@ -207,18 +206,19 @@ std::string CanDriveWatch::dump() const {
   return out;
 }
 
-// One exchange at a time is on the bus: the first request that the node heard after it was sent is the one.
+// One exchange at a time is on the bus: the first request for it that the node heard after it was sent is the one.
 bool CanDriveWatch::came_by_sdo(const drive::ObjectDef& object, const drive::ObjectState& state) const {
   const simulated::CanExchange* exchange = nullptr;
   const auto& journal = link_.line().journal().entries();
   for (auto entry = journal.rbegin(); entry != journal.rend(); ++entry) {
     if (entry->received < link_.time_of(state.sent_at)) break;
-    const bool request = entry->request.size() == kRecordedSdo && data_in(entry->request)[0] != kAbort;
-    if (request && entry->station == gateway_.drive_of(axis_)->model().node) exchange = &*entry;
+    if (entry->request.size() != kRecordedSdo || entry->station != gateway_.drive_of(axis_)->model().node) continue;
+    const Bytes request = data_in(entry->request);
+    const bool same = load_le16(request, 1) == object.address.index && request[3] == object.address.sub;
+    if (same && request[0] != kAbort) exchange = &*entry;
   }
   if (exchange == nullptr) return false;
   const Bytes request = data_in(exchange->request);
-  if (load_le16(request, 1) != object.address.index || request[3] != object.address.sub) return false;
   if (request[0] >> 5 == kDownload) {
     const auto written = carried(request);
     return written && object.number(*written) == state.number;
@@ -240,15 +240,14 @@ bool CanDriveWatch::keeps_its_word() const {
   });
 }
 
-// The node's own event timer, where it has taken one.
+// A value may also be confirmed by reads alone, where the node does not take the event timer.
 Duration CanDriveWatch::period_of(drive::ObjectId object) const {
-  const drive::CanopenFacts& facts = gateway_.drive_of(axis_)->model().canopen;
+  const drive::Drive& drive = *gateway_.drive_of(axis_);
+  const drive::CanopenFacts& facts = drive.model().canopen;
   for (const drive::TpdoFacts& tpdo : facts.tpdos) {
     if (std::find(tpdo.map.begin(), tpdo.map.end(), object) == tpdo.map.end()) continue;
-    const auto index = static_cast<std::uint16_t>(kFirstTpdo + tpdo.number - 1);
-    const auto event = link_.line().node(position_).peek({index, kEventTimer}, link_.time_of(runtime_.now()));
-    const std::uint32_t period = event ? simulated::little_endian(*event) : 0U;
-    return period != 0 ? std::chrono::milliseconds(period) : facts.confirm;
+    const Duration event = std::chrono::milliseconds(tpdo.event_ms.value_or(std::uint16_t{0}));
+    return std::min(drive.store().period(object), std::max(event, facts.confirm));
   }
   return {};
 }

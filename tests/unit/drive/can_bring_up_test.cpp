@@ -122,6 +122,27 @@ TEST_P(CanDrive, FoundEnabledItIsAdoptedAndNothingIsWrittenUntilItIsDisabled) {
   EXPECT_THAT(first.nmt(), ElementsAre("80 01", "01 01"));
 }
 
+TEST_P(CanDrive, AdoptedAndQuickStoppedItStaysOnlineWhereverTheStopEnds) {
+  CanRig rig({GetParam()});
+  rig.online();
+  rig.enable();
+  rig.stage.can_link(0).unplug();
+  rig.stage.run(10ms);
+  rig.stage.can_link(0).plug();
+  ASSERT_TRUE(rig.stage.come_online());
+  ASSERT_EQ(rig.stage.command(1, Command::quick_stop).outcome.code, Errc::ok);
+  rig.stage.run(1s);
+  int changes = 0;
+  LinkState before = rig.axis().link_state;
+  for (int i = 0; i < 500; ++i) {
+    rig.stage.run(2ms);
+    changes += rig.axis().link_state != before;
+    before = rig.axis().link_state;
+  }
+  EXPECT_EQ(changes, 0) << "it is set up once, or not at all, but not over and over";
+  ASSERT_EQ(rig.stage.command(1, Command::enable).outcome.code, Errc::ok);
+}
+
 TEST_P(CanDrive, UnpluggedItIsSeenByItsSilenceAndComesBackByItself) {
   CanRig rig({GetParam(), CanType::leadshine});
   rig.online();

@@ -1,0 +1,193 @@
+"""A CAN interface is taken down, removed and made anew, stops and starts again, or its queue is full, while the gateway runs.
+
+Run as: interface_test.py AXISGATE AXISGATE_SIM SOURCE_FOLDER --vcan [unittest's arguments]
+"""
+import os
+import socket
+import struct
+import subprocess
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "integration"))
+from can_stage import FAR, RPM, CanStory, ip, main  # noqa: E402
+from modbus import (CONTINUOUS, DISABLED, ERROR_STOP, FAILED, LINK_DOWN, NO_PATH, ONLINE, STANDSTILL)  # noqa: E402
+from processes import until  # noqa: E402
+
+BUS_OFF, RESTARTED = 0x040, 0x100
+MAX_BUS_OFFS = 5  # in a minute; then somebody must look at the bus
+
+
+class Interface(CanStory):
+    """Two buses, each on its own interface; the first has the trouble."""
+
+    drives_on = {"cell": "ld2@1,jd@2,md@3", "other": "md@1"}
+
+    def setUp(self):
+        super().setUp()
+        self.begin()
+        for axis in self.axes:
+            self.prepare(axis)
+        self.lost, self.kept = self.axes[:3], self.axes[3]
+        self.interface = self.wire("cell")
+
+    def raw_socket(self):
+        peer = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
+        self.addCleanup(peer.close)
+        peer.bind((self.interface,))
+        return peer
+
+    def assert_gone(self):
+        for axis in self.lost:
+            axis.until(link_state=LINK_DOWN)
+            block = axis.block()
+            self.assertEqual((block["valid"], block["statusword"]), (0, 0))
+            for name in ("enable", "move_absolute"):
+                with self.refused(NO_PATH):
+                    axis.command(name)
+        self.assertEqual((self.client.bus(0)["link"], self.client.bus(1)["link"]), (0, 1))
+        self.assert_goes_on(self.kept)
+        self.assertEqual(self.client.bus(1)["timeouts"], 0)
+
+    def assert_back(self):
+        for axis in self.lost:
+            axis.until(link_state=ONLINE)
+            self.assertNotIn("enabled", axis.inputs())
+            if "fault" in axis.inputs():  # it has missed the gateway
+                self.reset(axis)
+            self.targets[axis.number] = axis.get("position_actual")
+            self.move(axis)
+            axis.command("disable")
+            axis.until(axis_state=DISABLED)
+        self.assert_one_request_at_a_time("cell", "other")
+
+
+class DownAndUp(Interface):
+    def test_at_rest(self):
+        for count in range(1, 4):
+            ip("link", "set", self.interface, "down")
+            self.gateway.wait_for(f"bus cell: .*{self.interface} is down: ip link set {self.interface} up", count)
+            self.assert_gone()
+            ip("link", "set", self.interface, "up")
+            for axis in self.lost:
+                axis.until(link_state=ONLINE)
+            self.assertEqual(self.client.bus(0)["reconnects"], count)
+        self.assert_back()
+
+    def test_while_motors_run(self):
+        for axis in self.lost:
+            axis.command("enable")
+        self.lost[0].set(target_position=FAR)
+        self.lost[0].command("move_absolute")
+        for axis in self.lost[1:]:
+            axis.set(target_velocity=300 * RPM)
+            axis.command("run_velocity")
+            axis.until(axis_state=CONTINUOUS)
+        self.lost[0].until_input("moving")
+        ip("link", "set", self.interface, "down")
+        self.assert_gone()
+        for axis in self.lost:
+            until("it notices", lambda: self.ask("state DRIVE", axis.number) == "fault")
+        ip("link", "set", self.interface, "up")
+        for axis in self.lost:
+            axis.until(link_state=ONLINE, axis_state=ERROR_STOP, motion_state=FAILED)
+        self.assert_back()
+
+    def test_removed_and_made_anew(self):
+        ip("link", "del", self.interface)
+        self.gateway.wait_for(f"{self.interface} does not exist|{self.interface} is down")
+        self.assert_gone()
+        self.ask("unplug LINE")
+        ip("link", "add", "dev", self.interface, "type", "vcan")
+        ip("link", "set", self.interface, "up")
+        self.ask("plug LINE")
+        self.assert_back()
+        self.assertEqual(self.client.bus(0)["reconnects"], 1)
+
+
+class Controller(Interface):
+    """Error frames, as the driver of a real controller hands them over."""
+
+    def tell(self, classes):
+        if not hasattr(self, "controller"):
+            self.controller = self.raw_socket()
+        self.controller.send(struct.pack("=IB3x8s", socket.CAN_ERR_FLAG | classes, 8, bytes(8)))
+
+    def test_bus_off_and_restarted(self):
+        self.tell(BUS_OFF)
+        self.gateway.wait_for("bus cell: .*bus-off")
+        self.assert_gone()
+        self.tell(RESTARTED)
+        self.assert_back()
+
+    def test_off_again_and_again_it_is_given_up_until_somebody_takes_the_interface_up(self):
+        for _ in range(MAX_BUS_OFFS):
+            self.tell(BUS_OFF)
+            self.lost[0].until(link_state=LINK_DOWN)
+            self.tell(RESTARTED)
+            for axis in self.lost:
+                axis.until(link_state=ONLINE)
+        self.tell(BUS_OFF)
+        self.lost[0].until(link_state=LINK_DOWN)
+        self.tell(RESTARTED)
+        self.assert_gone()
+        ip("link", "set", self.interface, "down")
+        self.gateway.wait_for(f"{self.interface} is down")
+        ip("link", "set", self.interface, "up")
+        self.assert_back()
+
+
+class Queue(Interface):
+    """vcan never fills; a token bucket that lets nothing through is a bus on which nobody acknowledges."""
+
+    def test_a_full_queue_is_told_and_outlived(self):
+        subprocess.run(["tc", "qdisc", "add", "dev", self.interface, "root", "tbf", "rate", "8bit", "burst", "16", "limit", "32"],
+                       check=True)
+        self.gateway.wait_for("bus cell: .*(nobody acknowledges|overloaded|frames wait)")
+        self.assert_gone()
+        subprocess.run(["tc", "qdisc", "del", "dev", self.interface, "root"], check=True)
+        self.assert_back()
+
+
+class Flood(Interface):
+    def test_a_flood_of_foreign_frames_slows_nobody_down(self):
+        peer = self.raw_socket()
+        frame = struct.pack("=IB3x8s", 0x701, 1, b"\x05")
+        stranger = struct.pack("=IB3x8s", 0x3FF, 8, bytes(8))
+        before = self.client.bus(1)
+        sent = 0
+        while not self.gateway.found("axis 1: floods the bus with frames 0x701") or sent < 5000:
+            for each in (frame, stranger):
+                try:
+                    peer.send(each)
+                except OSError:
+                    pass  # the queue is full: all the better
+            sent += 1
+            if sent % 500 == 0:
+                self.assertEqual(self.client.overview(4)["link_state"], ONLINE)
+        self.assert_goes_on(self.kept)
+        self.assertEqual(self.client.bus(1)["timeouts"], before["timeouts"])
+        for axis in self.lost:
+            axis.until(link_state=ONLINE)
+        self.assert_goes_on(*self.lost)
+
+
+class NotThereYet(CanStory):
+    def test_an_interface_that_comes_after_the_gateway(self):
+        ip("link", "del", self.wire("cell"))
+        self.configure()
+        self.run_gateway()
+        self.gateway.wait_for(f"bus cell: .*{self.wire('cell')} does not exist")
+        self.client = self.connect()
+        with self.refused(NO_PATH):
+            self.axis(1).command("enable")
+        ip("link", "add", "dev", self.wire("cell"), "type", "vcan")
+        self.gateway.wait_for(f"bus cell: .*{self.wire('cell')} is down: ip link set {self.wire('cell')} up")
+        ip("link", "set", self.wire("cell"), "up")
+        self.simulate()
+        self.until_online()
+        self.axis(1).command("enable")
+        self.axis(1).until(axis_state=STANDSTILL)
+
+
+if __name__ == "__main__":
+    main()
