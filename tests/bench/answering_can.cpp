@@ -67,7 +67,7 @@ class AnsweringCan final : public AnsweringLine {
   }
 
  private:
-  static constexpr std::uint32_t kCountsPerTurn = 65536;
+  static constexpr std::uint32_t kCountsPerTurn = 10'000;
 
   void take(simulated::CanopenNode& node, const BusFrame& frame, Time now, std::optional<Answer>& answer) {
     constexpr std::uint8_t kDownload = 1;
@@ -90,10 +90,11 @@ class AnsweringCan final : public AnsweringLine {
     if (!line) return std::nullopt;
     const auto frame = lawicel_frame(*line);
     if (*line == "O" || *line == "C") open_ = *line == "O";
-    const std::string_view acknowledgement = frame ? "z\r" : line->starts_with('V') ? "V1013\r"
-                                             : line->starts_with('N')               ? "NA123\r"
-                                             : line->starts_with('F')               ? "F00\r"
-                                                                                    : "\r";
+    const std::string_view acknowledgement = frame                    ? "z\r"
+                                             : line->starts_with('V') ? "V1013\r"
+                                             : line->starts_with('N') ? "NA123\r"
+                                             : line->starts_with('F') ? "F00\r"
+                                                                      : "\r";
     unasked_.insert(unasked_.end(), acknowledgement.begin(), acknowledgement.end());
     return open_ ? frame : std::nullopt;
   }

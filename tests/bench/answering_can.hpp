@@ -8,7 +8,6 @@
 namespace axisgate::bench {
 
 /// Nodes 1 to `drives`.
-[[nodiscard]] std::unique_ptr<AnsweringLine> make_answering_can(LineProtocol protocol, int drives,
-                                                                simulated::Time now);
+[[nodiscard]] std::unique_ptr<AnsweringLine> make_answering_can(LineProtocol protocol, int drives, simulated::Time now);
 
 }  // namespace axisgate::bench

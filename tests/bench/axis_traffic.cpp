@@ -9,7 +9,7 @@ namespace {
 // profile_velocity, profile_acceleration, profile_deceleration, homing_speed_switch, _zero, homing_acceleration
 constexpr std::array<std::uint16_t, ParameterWriter::kParameters> kOffsets{48, 50, 52, 62, 64, 66};
 
-/// The same object on both protocols.
+/// The same object on all protocols; CANopen has the index and sub-index of the serial one.
 struct Readable {
   DriveObject serial;
   std::uint16_t rtu;  ///< register
@@ -37,7 +37,7 @@ std::uint16_t address_of(int axis, int offset) { return static_cast<std::uint16_
 
 DriveObject readable_object(int number, LineProtocol protocol) {
   const Readable& object = kObjects[static_cast<std::size_t>(number) % kObjects.size()];
-  if (protocol == LineProtocol::kinco_serial) return object.serial;
+  if (protocol != LineProtocol::modbus_rtu) return object.serial;
   return {object.rtu, 0, object.serial.size};
 }
 

@@ -28,7 +28,8 @@ constexpr std::chrono::microseconds kEach{250};
 /// A node on vcan1 that sends nothing but its process data, frame after frame.
 [[noreturn]] void babble(const std::function<void(std::uint16_t)>& begun) {
   simulated::CanSocket socket("vcan1");
-  const auto frame = simulated::socket_frame_of(simulated::bus_frame(simulated::cob::first_tpdo + 1, {0, 0, 0, 0, 0, 0}));
+  const auto frame =
+      simulated::socket_frame_of(simulated::bus_frame(simulated::cob::first_tpdo + 1, {0, 0, 0, 0, 0, 0}));
   begun(1);
   for (auto next = SteadyClock::now();; next += kEach) {
     std::this_thread::sleep_until(next);

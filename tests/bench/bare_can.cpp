@@ -23,7 +23,8 @@ using SteadyClock = std::chrono::steady_clock;
 using Sdo = std::array<std::uint8_t, 8>;
 
 constexpr std::uint32_t kRequest = 0x601, kReply = 0x581;
-constexpr std::array<Sdo, 2> kWrites{{{0x23, 0x81, 0x60, 0, 0xA0, 0x86, 0x01, 0}, {0x23, 0x81, 0x60, 0, 0x40, 0x0D, 0x03, 0}}};
+constexpr std::array<Sdo, 2> kWrites{
+    {{0x23, 0x81, 0x60, 0, 0xA0, 0x86, 0x01, 0}, {0x23, 0x81, 0x60, 0, 0x40, 0x0D, 0x03, 0}}};
 constexpr Sdo kRead{0x40, 0x41, 0x60, 0, 0, 0, 0, 0};
 /// A gateway that was ended in the middle of an exchange leaves a reply behind that comes later.
 constexpr std::chrono::milliseconds kLastReply{50};
@@ -54,8 +55,7 @@ class BareCan {
 
 class BareSocket final : public BareCan {
  public:
-  explicit BareSocket(const std::string& interface)
-      : BareCan(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW)) {
+  explicit BareSocket(const std::string& interface) : BareCan(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW)) {
     sockaddr_can address{};
     address.can_family = AF_CAN;
     address.can_ifindex = static_cast<int>(::if_nametoindex(interface.c_str()));

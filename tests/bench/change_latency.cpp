@@ -57,7 +57,8 @@ void change_latency(const BenchOptions& options, LineProtocol protocol) {
       latencies.push_back(static_cast<double>(found->second - turn.asked_at) / 1000);
   }
   fmt::print(
-      "From a TPDO with another position to the reply that shows it, a client that reads without a pause; microseconds\n"
+      "From a TPDO with another position to the reply that shows it, a client that reads without a pause; "
+      "microseconds\n"
       "{:<34} {:>8} {:>9} {:>9} {:>9}\n",
       "", "samples", "median", "p99", "worst");
   const auto print = [](const char* what, const std::vector<double>& samples) {

@@ -116,7 +116,8 @@ class Responder {
 }  // namespace
 
 DriveProcess::DriveProcess(const DriveLines& shape, const std::string& folder) : shape_(shape) {
-  for (int i = 0; i < shape.lines; ++i) devices_.push_back((shape.protocol == LineProtocol::vcan ? "vcan" : folder + "/line") + std::to_string(i));
+  for (int i = 0; i < shape.lines; ++i)
+    devices_.push_back((shape.protocol == LineProtocol::vcan ? "vcan" : folder + "/line") + std::to_string(i));
   int ready[2];
   if (::pipe(ready) != 0) throw std::runtime_error("no pipe");
   std::fflush(nullptr);

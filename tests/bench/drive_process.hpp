@@ -1,6 +1,6 @@
-// Simulated Kinco JD drives on pseudo-terminals or virtual CAN interfaces, in a process of their own that does as little as possible per
-// exchange. Promises the answers of tests/simulated, each after the same time, and a record of every exchange in the
-// tap. Never outlives the bench, and never echoes, breaks or delays a frame.
+// Simulated Kinco JD drives on pseudo-terminals or virtual CAN interfaces, in a process of their own that does as
+// little as possible per exchange. Promises the answers of tests/simulated, each after the same time, and a record of
+// every exchange in the tap. Never outlives the bench, and never echoes, breaks or delays a frame.
 #pragma once
 
 #include <sys/types.h>
@@ -20,8 +20,8 @@ struct DriveLines {
   std::chrono::nanoseconds reply_after{0};  ///< from the request's last byte to the reply's first
   unsigned processor = 1;
   LineProtocol protocol = LineProtocol::kinco_serial;
-  /// CANopen: so often the first drive of each line tells that its motor has made another turn; 0: never. Each is in the
-  /// tap as an exchange with the number of the turn for its object.
+  /// CANopen: so often the first drive of each line tells that its motor has made another turn; 0: never. Each is in
+  /// the tap as an exchange with the number of the turn for its object.
   std::chrono::nanoseconds turn_every{0};
 };
 

@@ -57,9 +57,8 @@ std::string buses_of(const DriveProcess& drives, const PollPeriods& periods) {
     }
     buses += fmt::format(R"({}{{"name": "line{}", "adapter": "{}", {},)"
                          R"( "poll": {{"fast": {}, "normal": {}, "slow": {}}}, "drives": [{}]}})",
-                         line == 0 ? "" : ",\n", line, adapter_of(protocol),
-                         device_keys(protocol, drives.device(line)), periods.fast, periods.normal, periods.slow,
-                         entries);
+                         line == 0 ? "" : ",\n", line, adapter_of(protocol), device_keys(protocol, drives.device(line)),
+                         periods.fast, periods.normal, periods.slow, entries);
   }
   return buses;
 }
@@ -73,16 +72,16 @@ std::string text_of(const std::string& file) {
 
 GatewayProcess::GatewayProcess(const std::string& program, const std::string& folder, const DriveProcess& drives,
                                const PollPeriods& periods, unsigned processor)
-    : GatewayProcess(program, folder, buses_of(drives, periods),
-                     drives.shape().lines * drives.shape().drives_per_line, processor) {}
+    : GatewayProcess(program, folder, buses_of(drives, periods), drives.shape().lines * drives.shape().drives_per_line,
+                     processor) {}
 
 GatewayProcess::GatewayProcess(const std::string& program, const std::string& folder, const std::string& buses,
                                int axes, unsigned processor)
     : axes_(axes), port_(free_port()) {
   const std::string config = folder + "/gateway.json";
   const std::string log = folder + "/gateway.log";
-  std::ofstream(config) << fmt::format(
-      "{{\"modbus_tcp\": [{{\"listen\": \"127.0.0.1:{}\"}}],\n\"buses\": [{}]}}\n", port_, buses);
+  std::ofstream(config) << fmt::format("{{\"modbus_tcp\": [{{\"listen\": \"127.0.0.1:{}\"}}],\n\"buses\": [{}]}}\n",
+                                       port_, buses);
   begin(program, config, log, processor);
   try {
     await_axes();

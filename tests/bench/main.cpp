@@ -89,8 +89,10 @@ class RunFolder {
 };
 
 int help(int status) {
-  fmt::print("usage: axisgate-bench [--quick] [--axisgate PROGRAM] [BENCH...]\nWithout a name, all of these run, those of vcan where\n"
-             "there is an interface vcan0 (tests/vcan/in_guest -- axisgate-bench ...):\n");
+  fmt::print(
+      "usage: axisgate-bench [--quick] [--axisgate PROGRAM] [BENCH...]\nWithout a name, all of these run, those of "
+      "vcan where\n"
+      "there is an interface vcan0 (tests/vcan/in_guest -- axisgate-bench ...):\n");
   for (const Bench& bench : kBenches) fmt::print("  {:<16} {}\n", bench.name, bench.what);
   fmt::print("--quick shows in seconds that they work; its figures mean nothing.\n");
   return status;

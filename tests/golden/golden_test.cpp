@@ -192,5 +192,31 @@ TEST(Golden, ALateReplyOnModbusRtuIsToldByItsLength) {
   compare(story, "kinco-jd-rtu.late-reply");
 }
 
+TEST(Golden, ALeadshineComesUpOnCanAndMakesAMove) {
+  Recorder story(simulated::LeadshineOptions{}, true);
+  story.run(100ms);
+  story.say("enabled, and sent 500 units forward: a twentieth of a turn");
+  story.write(54, {1});
+  story.write(42, {0, 500});
+  story.write(54, {0});
+  story.write(54, {6});
+  story.run(600ms);
+  story.read(31, 3);
+  story.write(54, {2});
+  compare(story, "leadshine-ld2-can.move");
+}
+
+TEST(Golden, AJdOnCanLosesItsPowerAndComesBack) {
+  Recorder story(simulated::KincoCanDrive{}, false);
+  story.write(54, {1});
+  story.say("its power goes and comes back: a boot-up after a second, everything set up anew, and nothing enabled");
+  story.restart();
+  story.write(54, {6});
+  story.run(3s);
+  story.read(18, 1);
+  story.read(0, 1);
+  compare(story, "kinco-jd-can.restart");
+}
+
 }  // namespace
 }  // namespace axisgate::test

@@ -20,6 +20,12 @@ GatewayStage::Line staged(const simulated::RtuDriveOptions& drive) {
   return line;
 }
 
+GatewayStage::Line staged(const simulated::CanDriveOptions& drive) {
+  GatewayStage::Line line = can_line_of({drive}, 1);
+  line.poll = {std::chrono::milliseconds(100), std::chrono::hours(1), std::chrono::hours(1)};
+  return line;
+}
+
 std::string number_text(const char* format, std::int64_t number) {
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, static_cast<long long>(number));
@@ -32,8 +38,11 @@ Recorder::Recorder(simulated::KincoType type, bool bring_up) : Recorder(staged(t
 
 Recorder::Recorder(const simulated::RtuDriveOptions& drive, bool bring_up) : Recorder(staged(drive), bring_up) {}
 
+Recorder::Recorder(const simulated::CanDriveOptions& drive, bool bring_up) : Recorder(staged(drive), bring_up) {}
+
 Recorder::Recorder(const GatewayStage::Line& staged_line, bool bring_up)
     : rtu_(!staged_line.rtu_drives.empty()),
+      can_(!staged_line.can_drives.empty()),
       stage_({staged_line}),
       began_(stage_.runtime().now()),
       recording_(bring_up) {
@@ -42,15 +51,30 @@ Recorder::Recorder(const GatewayStage::Line& staged_line, bool bring_up)
   modbus_tcp::Peer peer;
   peer.role = Role::engineer;
   session_ = std::make_unique<modbus_tcp::Session>(context, peer, stage_.runtime().now(), [] {});
-  const auto tell = [this](bool to_drive, Bytes bytes) { line(to_drive ? "bus    ->" : "bus    <-", hex_text(bytes)); };
-  if (rtu_)
-    stage_.rtu_link(0).on_traffic = tell;
-  else
-    stage_.link(0).on_traffic = tell;
+  listen();
   while (stage_.axis(1).link_state != LinkState::online) step();
   began_ = stage_.runtime().now();
   if (!recording_) show_image();  // remembers, without a word
   recording_ = true;
+}
+
+void Recorder::listen() {
+  const auto tell = [this](bool to_drive, Bytes bytes) { line(to_drive ? "bus    ->" : "bus    <-", hex_text(bytes)); };
+  if (can_) {
+    stage_.can_link(0).on_traffic = [this](bool to_drive, const can::CanFrame& frame) {
+      const std::string content = frame.remote ? "remote" : hex_text(frame.bytes());
+      line(to_drive ? "bus    ->" : "bus    <-", number_text("%03llX ", frame.id) + content);
+    };
+  } else if (rtu_) {
+    stage_.rtu_link(0).on_traffic = tell;
+  } else {
+    stage_.link(0).on_traffic = tell;
+  }
+}
+
+void Recorder::restart() {
+  CanLinkSim& link = stage_.can_link(0);
+  link.line().restart(0, link.time_of(stage_.runtime().now()));
 }
 
 void Recorder::line(const std::string& who, const std::string& what) {

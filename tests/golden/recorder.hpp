@@ -20,6 +20,8 @@ class Recorder {
   Recorder(simulated::KincoType type, bool bring_up);
   /// The same on a Modbus RTU line.
   Recorder(const simulated::RtuDriveOptions& drive, bool bring_up);
+  /// The same on a CAN bus; a frame is told by its identifier and its bytes.
+  Recorder(const simulated::CanDriveOptions& drive, bool bring_up);
 
   /// A remark of the teller, as a line of its own.
   void say(const std::string& text);
@@ -32,6 +34,8 @@ class Recorder {
   [[nodiscard]] simulated::DriveFaults& faults() {
     return rtu_ ? stage_.rtu_link(0).line().faults(0) : stage_.link(0).line().faults(0);
   }
+  /// CANopen: its power goes and comes back.
+  void restart();
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
@@ -41,8 +45,10 @@ class Recorder {
   void take_output();
   void step();
   void show_image();
+  void listen();
 
   bool rtu_;
+  bool can_;
   GatewayStage stage_;
   modbus_tcp::ListenerSettings settings_;
   modbus_tcp::ClientRegistry registry_;

@@ -87,6 +87,13 @@ class Adapter(CanStory):
         self.assert_each_moves()
 
 
+    def test_a_frame_that_nobody_acknowledged_is_no_reason_to_give_up(self):
+        for _ in range(3):
+            self.ask("no-ack LINE")
+            self.assert_goes_on(*self.axes)
+        self.assertEqual(self.client.bus(0)["link"], 1)
+
+
 class AtStart(CanStory):
     def test_an_adapter_that_appears_after_the_gateway(self):
         self.configure()

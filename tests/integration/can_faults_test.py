@@ -2,7 +2,7 @@
 import re
 
 from can_stage import RPM, TURN, CanStory, main
-from modbus import (DISABLED, ERROR_STOP, NO_ANSWER, NO_PATH, ONLINE, REFUSED, STANDSTILL, Refused)
+from modbus import (ERROR_STOP, NO_ANSWER, NO_PATH, ONLINE, REFUSED, STANDSTILL, Refused)
 from processes import until
 
 DUPLICATE_NODE = 1 << 8
@@ -161,6 +161,15 @@ class Doubt(OneOfThree):
         self.watch_until(lambda now: now["timeouts"] >= 4)
         self.healed()
         self.assert_goes_on(*self.others)
+
+    def test_replies_that_are_too_short(self):
+        self.stand_somewhere()
+        before = self.client.bus(0)
+        self.ask("wrong-length DRIVE 0.2", 2)
+        self.watch_until(lambda now: now["bad_frames"] + now["timeouts"] >= before["bad_frames"] + before["timeouts"] + 4)
+        self.healed()
+        self.assert_goes_on(*self.others)
+        self.move(self.middle)
 
     def test_lost_replies_of_writes_are_not_written_twice(self):
         for value in range(40000, 41000, 100):

@@ -122,6 +122,17 @@ class TheMotorTurns(CanStory):
                 axis.command("disable")
 
 
+class TheMotorTurnsInOtherDrives(TheMotorTurns):
+    """The same where the manuals leave room: set-points acknowledged, blocks offered, frames as short as their data."""
+
+    drives_on = {"cell": "ld2@9+ack+block,jd@126+short,md@30+short+block"}
+
+    def test_they_are_there(self):
+        for axis, node in zip(self.axes, (9, 126, 30)):
+            self.assertEqual(axis.get("link_state"), ONLINE)
+            self.assertEqual(self.ask("nmt DRIVE", node), "operational")
+            until("every value it supports", lambda: (now := axis.block())["valid"] == now["supported"])
+
 class ProcessData(CanStory):
     """Nothing is polled for a minute: what changes comes by itself."""
 

@@ -1,11 +1,12 @@
 """Heartbeats, both ways: the gateway dies or hangs while motors run, and a drive falls silent."""
 import signal
 
-from can_stage import FAR, RPM, CanStory, main
-from modbus import CONTINUOUS, ERROR_STOP, FAILED, NO_PATH, OFFLINE, ONLINE
+from can_stage import RPM, CanStory, main
+from modbus import ALARM_ADOPTED, CONTINUOUS, ERROR_STOP, FAILED, LINK_DOWN, NO_PATH, OFFLINE, ONLINE
 from processes import until
 
 HEARTBEAT_LOST = 0x8130
+ALARM_NO_COMM_WATCHDOG = 1
 
 
 class MotorsRun(CanStory):
@@ -71,6 +72,32 @@ class MotorsRun(CanStory):
             axis.until(motion_state=FAILED)
         self.assert_nothing_starts()
 
+    def test_a_gateway_that_finds_motors_running_lets_them_run(self):
+        for number, off in ((1, "1016.01"), (2, "1016.01"), (3, "6007.00")):
+            self.ask(f"set DRIVE {off} 0", number)  # as somebody's tool might: now the drive watches nobody
+        self.gateway.send(signal.SIGKILL)
+        self.gateway.ended()
+        written = [[self.ask(f"writes DRIVE {name}", number) for name in ("6040.00", "6060.00", "60FF.00")] for number in (1, 2, 3)]
+        self.run_gateway()
+        self.client = self.connect()
+        self.until_online()
+        self.look_around()
+        for axis in self.axes:
+            block = axis.until(link_state=ONLINE)
+            self.assertEqual(block["axis_alarms"] & (ALARM_ADOPTED | ALARM_NO_COMM_WATCHDOG), ALARM_ADOPTED | ALARM_NO_COMM_WATCHDOG)
+            until("it runs on", lambda: axis.get("velocity_actual") > 200 * RPM)
+        self.assertEqual([[self.ask(f"writes DRIVE {name}", number) for name in ("6040.00", "6060.00", "60FF.00")]
+                          for number in (1, 2, 3)], written, "nothing was written")
+        for axis in self.axes:
+            axis.command("quick_stop")
+            until("it stands", lambda: abs(axis.get("velocity_actual")) <= RPM)
+            axis.command("disable")
+            until("it is set up", lambda: not axis.get("axis_alarms") & (ALARM_ADOPTED | ALARM_NO_COMM_WATCHDOG))
+            axis.until(link_state=ONLINE)
+            self.targets[axis.number] = axis.get("position_actual")
+            self.prepare(axis)
+            self.move(axis)
+
     def test_the_gateway_is_ended_in_good_order(self):
         self.assertEqual(self.gateway.terminate(), 0)
         self.all_stop_by_themselves()
@@ -119,6 +146,29 @@ class DriveFallsSilent(CanStory):
                 self.move(axis)
                 for each in self.axes:
                     each.command("disable")
+
+
+class EverythingFallsSilent(CanStory):
+    def test_no_drive_answers_for_a_while(self):
+        self.begin()
+        for axis in self.axes:
+            self.prepare(axis)
+            axis.command("enable")
+        self.sim.send(signal.SIGSTOP)
+        self.addCleanup(self.sim.send, signal.SIGCONT)
+        for axis in self.axes:
+            until("it is gone", lambda: axis.get("link_state") in (OFFLINE, LINK_DOWN))
+            self.assertEqual(axis.get("valid"), 0)
+            with self.refused(NO_PATH):
+                axis.command("enable")
+        self.assertEqual(self.client.gateway()["axes_online"], 0)
+        self.sim.send(signal.SIGCONT)
+        for axis in self.axes:
+            axis.until(link_state=ONLINE)
+            until("it has missed the gateway", lambda: "fault" in axis.inputs())
+            self.reset(axis)
+            self.targets[axis.number] = axis.get("position_actual")
+            self.move(axis)
 
 
 if __name__ == "__main__":

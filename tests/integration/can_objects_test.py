@@ -3,8 +3,8 @@ import socket
 import struct
 import unittest
 
-from can_stage import ON_VCAN, TURN, CanStory, main
-from modbus import NO_ANSWER, NO_PATH, OFFLINE, ONLINE
+from can_stage import ON_VCAN, RPM, TURN, CanStory, main
+from modbus import BUSY, NO_ANSWER, NO_PATH, OFFLINE, ONLINE
 from processes import NEVER, until
 from stage import Story
 
@@ -17,10 +17,12 @@ class Objects:
 
     def general(self, node, index, sub=0, data=b"", count=0, access=READ, start=0):
         """The answer's PDU."""
+        return self.ask_raw(struct.pack(">BBBBBHBHH", 0x2B, 0x0D, access, 0, node, index, sub, start, count or len(data)) + data)
+
+    def ask_raw(self, pdu):
         if not hasattr(self, "raw"):
             self.raw = socket.create_connection(("127.0.0.1", self.ports[0]), timeout=NEVER)
             self.addCleanup(self.raw.close)
-        pdu = struct.pack(">BBBBBHBHH", 0x2B, 0x0D, access, 0, node, index, sub, start, count or len(data)) + data
         self.raw.sendall(struct.pack(">HHHB", 13, 0, len(pdu) + 1, 1) + pdu)
         number, protocol, length, unit = struct.unpack(">HHHB", self.raw.recv(7, socket.MSG_WAITALL))
         self.assertEqual((number, protocol, unit), (13, 0, 1))
@@ -101,6 +103,32 @@ class OnCan(Objects, CanStory):
         self.assert_one_request_at_a_time()
 
 
+class StopsGoFirst(Objects, CanStory):
+    """A long object is many exchanges; a stop for the same drive does not wait for its end."""
+
+    def test_a_quick_stop_ends_a_long_read(self):
+        self.begin()
+        for axis in self.axes[:2]:
+            self.prepare(axis)
+            axis.command("enable")
+            axis.set(target_velocity=300 * RPM)
+            axis.command("run_velocity")
+            until("it runs", lambda: axis.get("velocity_actual") > 200 * RPM)
+            name = self.read(axis.number, 0x1008)
+            self.ask("reply-delay LINE 80")
+            exchanges = int(self.ask("exchanges LINE"))
+            reading = self.later(self.general, axis.number, 0x1008)
+            until("it has begun", lambda: int(self.ask("exchanges LINE")) > exchanges + 1)
+            axis.command("quick_stop")
+            self.ask("reply-delay LINE 1")
+            answer = reading.result(timeout=NEVER)
+            self.assertIn(answer, (bytes([0xAB, BUSY]), answer[:10] + struct.pack(">H", len(name)) + name), answer.hex(" "))
+            until("it stands", lambda: abs(axis.get("velocity_actual")) <= RPM)
+            self.assertEqual(self.read(axis.number, 0x1008), name)
+            axis.command("disable")
+        self.assert_one_request_at_a_time()
+
+
 @unittest.skipIf(ON_VCAN, "serial lines need no CAN interface")
 class OnASerialLine(Objects, Story):
     """Kinco's own protocol: the same request, its refusals as CiA 309 has them for other protocols."""
@@ -115,6 +143,8 @@ class OnASerialLine(Objects, Story):
         self.write(1, 0x607A, 0, struct.pack("<i", 2 * TURN))
         self.assertEqual(self.sim.object("lift/1", "607A.00"), 2 * TURN)
         self.assert_aborted(self.general(1, 0x6041, 0, bytes(2), access=WRITE), GENERAL)
+        detail = self.ask_raw(struct.pack(">BHH", 3, 126, 2))  # of this very client
+        self.assertEqual(int.from_bytes(detail[2:], "big"), READ_ONLY, "the drive's own code is kept")
 
 
 if __name__ == "__main__":

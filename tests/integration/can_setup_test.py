@@ -1,6 +1,6 @@
 """Drives that are not as expected: another device under the number, one that will not map its values, one that nobody answers for."""
 from can_stage import RPM, CanStory, main
-from modbus import ABORTED, BUSY, DISABLED, ONLINE
+from modbus import ABORTED, ALARM_LOCAL_CONTROL, BUSY, DISABLED, ONLINE, REFUSED
 from processes import until
 
 IDENTITY_MISMATCH = 1 << 2
@@ -19,10 +19,9 @@ class AnotherDevice(CanStory):
         self.configure()
         self.run_gateway()
         self.client = self.connect()
+        self.until_online()
         self.look_around()
         wrong, right = self.axes[0], self.axes[1:]
-        for axis in self.axes:
-            axis.until(link_state=ONLINE)
         until("the alarm", lambda: wrong.get("axis_alarms") & IDENTITY_MISMATCH)
         self.assertEqual(self.client.gateway()["alarms"] >> 3 & 1, 1)
         self.gateway.wait_for("axis 1: not the configured drive: product is 0x1, configured 0x7")
@@ -82,6 +81,40 @@ class MappingRefused(CanStory):
         self.assert_one_request_at_a_time()
 
 
+class OtherUnits(CanStory):
+    """What a Leadshine counts in a turn is a setting of the drive, read from it."""
+
+    drives_on = {"cell": "ld2@1+2008.00=5000,ld2@2+6091.01=1+6091.02=2,ld2@3+6092.01=3600"}
+
+    def test_a_turn_is_a_turn(self):
+        self.begin()
+        for axis, counts in zip(self.axes, (5000, 20000, 3600)):
+            with self.subTest(axis=axis.number):
+                self.prepare(axis)
+                self.move(axis)
+                self.assertAlmostEqual(int(self.ask("position DRIVE", axis.number)), counts, delta=20)
+                axis.set(target_velocity=300 * RPM)
+                axis.command("run_velocity")
+                until("its speed", lambda: abs(axis.get("velocity_actual") - 300 * RPM) <= 5 * RPM)
+                self.assertAlmostEqual(int(self.ask("get DRIVE 60FF.00", axis.number).split()[0]), 5 * counts, delta=1)
+                axis.command("disable")
+
+
+class FactoryFresh(CanStory):
+    drives_on = {"cell": "jd@1+fresh,md@2+fresh"}
+
+    def test_local_control_is_told_and_not_changed(self):
+        self.begin()
+        for axis in self.axes:
+            with self.subTest(axis=axis.number):
+                until("the alarm", lambda: axis.get("axis_alarms") & ALARM_LOCAL_CONTROL)
+                self.assertNotIn("ready", axis.inputs())
+                with self.refused(REFUSED, BUSY):
+                    axis.command("enable")
+                self.assertNotIn("operation", self.ask("state DRIVE", axis.number))
+                self.assertEqual(self.ask("stores DRIVE", axis.number), "0")
+
+
 class LaterThanTheGateway(CanStory):
     def test_drives_that_are_switched_on_one_by_one(self):
         self.simulate()
@@ -90,7 +123,8 @@ class LaterThanTheGateway(CanStory):
         self.configure()
         self.run_gateway()
         self.client = self.connect()
-        self.look_around()
+        self.axes = [self.axis(number) for number in (1, 2, 3)]
+        self.targets = {}
         for axis in self.axes:
             self.assertNotEqual(axis.get("link_state"), ONLINE)
             self.assertEqual(axis.get("valid"), 0)

@@ -13,7 +13,7 @@ if ON_VCAN:
 
 from modbus import BUSY, COMPLETED, DISABLED, ONLINE, Refused  # noqa: E402
 from processes import until  # noqa: E402
-from stage import DRIVES, Simulator, Story, drive, main  # noqa: E402,F401
+from stage import DRIVES, Simulator, Story, drive, main  # noqa: E402,F401 main: for the stories
 
 DRIVES["ld2"] = ("leadshine-ld2-can", {})
 TURN = 10000
@@ -29,9 +29,8 @@ class CanStory(Story):
     """One bus with a drive of each make: axes 1, 2, 3 are nodes 1, 2, 3. `drives_on` names the buses and what hangs on them."""
 
     drives_on = {"cell": "ld2@1,jd@2,md@3"}
-    sim_options = ()
     # Long enough for a machine that is busy with something else; what a story says of silence does not hang on it.
-    timings = {"timeout_ms": 500}
+    timings = {"timeout_ms": 1000}
     patient = {"start_deadline_ms": 60000, "reply_deadline_ms": 60000}
 
     def setUp(self):
@@ -87,6 +86,7 @@ class CanStory(Story):
         self.look_around()
 
     def look_around(self):
+        """Once the axes are online."""
         self.axes = [self.axis(number) for number in range(1, self.client.gateway()["axis_count"] + 1)]
         self.targets = {axis.number: axis.get("position_actual") for axis in self.axes}
 

@@ -67,7 +67,7 @@ void CanCableWatch::to_drive(const can::CanFrame& frame) {
 }
 
 void CanCableWatch::request(const can::CanFrame& frame) {
-  if (!over()) violated_("I1: a request while another was outstanding, sent at "+ std::to_string(std::chrono::duration<double,std::milli>(sent_at_.time_since_epoch()).count()) + " " + hex_text(request_.bytes()) + " new " + std::to_string(frame.id) + " " + hex_text(frame.bytes()) + " " + std::to_string(timeout_.count()));
+  if (!over()) violated_("I1: a request while another was outstanding");
   request_ = frame;
   sent_at_ = runtime_.now();
   const std::uint16_t index = load_le16(frame.data, 1);
@@ -168,6 +168,7 @@ void CanDriveWatch::take_process_data(std::size_t tpdo, const can::CanFrame& fra
 
 void CanDriveWatch::check_values() {
   const drive::Drive& drive = *gateway_.drive_of(axis_);
+  look_for_doubles();
   for (std::size_t id = 0; id < seen_.size(); ++id) {
     const drive::ObjectState& state = drive.store()[static_cast<drive::ObjectId>(id)];
     const std::pair<std::uint64_t, Instant> now_seen{state.exchange, state.sent_at};
@@ -178,8 +179,8 @@ void CanDriveWatch::check_values() {
       ++by_tpdo_;
     } else if (came_by_sdo(object, state)) {
       ++by_sdo_;
-    } else if (!object.trigger && keeps_its_word() && object.name != "target_position") {
-      violated("I2: " + object.name + " holds " + std::to_string(state.number) + ", which was not sent for it" + "; sent_at " + std::to_string(std::chrono::duration<double,std::milli>(state.sent_at.time_since_epoch()).count()) + dump());
+    } else if (!object.trigger && keeps_its_word() && !said_twice(state)) {
+      violated("I2: " + object.name + " holds " + std::to_string(state.number) + ", which was not sent for it");
     }
   }
   received_.clear();
@@ -190,20 +191,6 @@ bool CanDriveWatch::came_by_tpdo(const drive::ObjectDef& object, const drive::Ob
     return value.at == state.sent_at && value.index == object.address.index && value.sub == object.address.sub &&
            object.number(value.raw) == state.number;
   });
-}
-
-std::string CanDriveWatch::dump() const {
-  std::string out = " now " + std::to_string(std::chrono::duration<double,std::milli>(runtime_.now().time_since_epoch()).count()) + "\n";
-  std::size_t n = 0;
-  for (auto e = link_.line().journal().entries().rbegin(); e != link_.line().journal().entries().rend() && n < 8; ++e, ++n)
-    out += "     " + std::to_string(e->station) + " at " + std::to_string(double(e->received.count())/1e6) + " " + hex_text(e->request) + " -> " + hex_text(e->sent) + " ready " + std::to_string(double(e->reply_ready.count())/1e6) + "\n";
-  auto& sent = link_.sent;
-  for (std::size_t i = sent.size() < 12 ? 0 : sent.size() - 12; i < sent.size(); ++i)
-    out += "     sent " + std::to_string(std::chrono::duration<double,std::milli>(sent[i].at.time_since_epoch()).count()) + " " + std::to_string(sent[i].frame.id) + " " + hex_text(sent[i].frame.bytes()) + "\n";
-  auto& rec = link_.received;
-  for (std::size_t i = rec.size() < 12 ? 0 : rec.size() - 12; i < rec.size(); ++i)
-    out += "     got  " + std::to_string(std::chrono::duration<double,std::milli>(rec[i].at.time_since_epoch()).count()) + " " + std::to_string(rec[i].frame.id) + " " + hex_text(rec[i].frame.bytes()) + "\n";
-  return out;
 }
 
 // One exchange at a time is on the bus: the first request for it that the node heard after it was sent is the one.
@@ -227,6 +214,22 @@ bool CanDriveWatch::came_by_sdo(const drive::ObjectDef& object, const drive::Obj
   const Bytes reply = data_in(exchange->sent);
   const auto read = reply[0] >> 5 == kUpload ? carried(reply) : std::nullopt;
   return read && object.number(*read) == state.number;
+}
+
+// A reply that comes twice may be taken for that to the next request for the same object: nothing in it tells. A drive
+// that answers once to each request, in order, is what the promise is given for.
+void CanDriveWatch::look_for_doubles() {
+  const std::uint32_t id = cob::sdo_reply + gateway_.drive_of(axis_)->model().node;
+  for (; looked_through_ < link_.received.size(); ++looked_through_) {
+    const CanLinkSim::Received& heard = link_.received[looked_through_];
+    if (heard.frame.id != id || heard.tag == 0) continue;
+    if (heard.tag == newest_reply_) doubled_at_ = heard.at;
+    newest_reply_ = heard.tag;
+  }
+}
+
+bool CanDriveWatch::said_twice(const drive::ObjectState& state) const {
+  return state.sent_at <= doubled_at_ && doubled_at_ - state.sent_at <= gateway_.drive_of(axis_)->model().timeout;
 }
 
 // "Within worst_reply_ms" is part of the promise: a drive that is later than the timeout and the silence together may

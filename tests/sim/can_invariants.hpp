@@ -37,7 +37,7 @@ class CanCableWatch {
   std::function<void(std::string)> violated_;
   std::vector<OnCanFrame> tell_;
   can::CanFrame request_;
-  Instant sent_at_ = kLongAgo;  ///< kLongAgo: nothing is outstanding
+  Instant sent_at_ = kLongAgo;                                                 ///< kLongAgo: nothing is outstanding
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> profile_velocities_;  ///< per node and value
   std::uint64_t starts_ = 0;
   std::uint64_t hash_ = 0xCBF29CE484222325U;
@@ -63,12 +63,13 @@ class CanDriveWatch {
   };
   void take_process_data(std::size_t tpdo, const can::CanFrame& frame);
   void check_values();
-  std::string dump() const;
   void check_command(const can::CanFrame& frame);
   void check_presence();
   [[nodiscard]] bool came_by_tpdo(const drive::ObjectDef& object, const drive::ObjectState& state) const;
   [[nodiscard]] bool came_by_sdo(const drive::ObjectDef& object, const drive::ObjectState& state) const;
   [[nodiscard]] bool keeps_its_word() const;
+  void look_for_doubles();
+  [[nodiscard]] bool said_twice(const drive::ObjectState& state) const;
   [[nodiscard]] Duration period_of(drive::ObjectId object) const;
   [[nodiscard]] const std::deque<simulated::Transition>& transitions() const;
   [[nodiscard]] bool enabled() const;
@@ -86,6 +87,9 @@ class CanDriveWatch {
   std::vector<Value> received_;                          ///< process data since the last look
   Instant started_at_ = kLongAgo;
   Instant heard_at_ = kLongAgo;
+  std::size_t looked_through_ = 0;  ///< of the frames that the gateway was given
+  std::uint64_t newest_reply_ = 0;  ///< tag of its request
+  Instant doubled_at_ = kLongAgo;   ///< when a reply came that had come before
   std::uint64_t by_sdo_ = 0, by_tpdo_ = 0;
 };
 

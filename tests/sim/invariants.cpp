@@ -157,7 +157,7 @@ void AxisWatch::check_validity() const {
     if (binding.poll == drive::PollClass::once) continue;
     if (runtime_.now() - sample.at > stale_after(binding) + std::chrono::milliseconds(2))
       violated_("I6: axis " + std::to_string(axis_) + " " + std::string(row(binding.quantity).name) +
-                " is stale but valid" + " age " + std::to_string((runtime_.now() - sample.at).count()/1000000) + " limit " + std::to_string(stale_after(binding).count()/1000000) + " store period " + std::to_string(drive.store().period(binding.object).count()/1000000) + " link " + std::string(text(image.link_state)) + drive.model().profile);
+                " is stale but valid");
   }
 }
 

@@ -26,7 +26,6 @@ class World {
   [[nodiscard]] std::uint64_t hash() const;
   [[nodiscard]] const Asked& asked() const { return asked_; }
   [[nodiscard]] std::string summary();
-  GatewayStage& dbg() { return stage_; }
 
  private:
   void watch_kinco(std::size_t line);

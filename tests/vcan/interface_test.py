@@ -3,17 +3,19 @@
 Run as: interface_test.py AXISGATE AXISGATE_SIM SOURCE_FOLDER --vcan [unittest's arguments]
 """
 import os
+import random
 import socket
 import struct
 import subprocess
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "integration"))
-from can_stage import FAR, RPM, CanStory, ip, main  # noqa: E402
+from can_stage import FAR, RPM, TURN, CanStory, ip, main  # noqa: E402
 from modbus import (CONTINUOUS, DISABLED, ERROR_STOP, FAILED, LINK_DOWN, NO_PATH, ONLINE, STANDSTILL)  # noqa: E402
 from processes import until  # noqa: E402
 
 BUS_OFF, RESTARTED = 0x040, 0x100
+DUPLICATE_NODE = 1 << 8
 MAX_BUS_OFFS = 5  # in a minute; then somebody must look at the bus
 
 
@@ -169,6 +171,69 @@ class Flood(Interface):
         for axis in self.lost:
             axis.until(link_state=ONLINE)
         self.assert_goes_on(*self.lost)
+
+
+class AnotherMaster(Interface):
+    """Somebody else speaks on the bus: a maker's tool, a second master, a device gone mad."""
+
+    def send(self, cob_id, data, flags=0):
+        if not hasattr(self, "peer"):
+            self.peer = self.raw_socket()
+        self.peer.send(struct.pack("=IB3x8s", cob_id | flags, len(data), data))
+
+    def test_a_node_that_is_stopped_is_taken_back(self):
+        for axis in self.lost:
+            self.send(0x000, bytes([0x02, axis.number]))
+            self.gateway.wait_for(f"axis {axis.number}: the node has become stopped, by no command of ours")
+            until("it runs its process data", lambda: self.ask("nmt DRIVE", axis.number) == "operational")
+        self.assert_back()
+
+    def test_a_node_that_is_reset_while_it_moves(self):
+        for axis in self.lost:
+            axis.command("enable")
+            axis.set(target_position=FAR)
+            axis.command("move_absolute")
+            axis.until_input("moving")
+            self.send(0x000, bytes([0x81, axis.number]))
+            self.gateway.wait_for(f"axis {axis.number}: the drive has restarted")
+            axis.until(link_state=ONLINE, axis_state=DISABLED, motion_state=FAILED)
+            self.prepare(axis)
+        self.assert_back()
+
+    def test_another_reader_of_objects_takes_nothing_from_us(self):
+        for axis in self.lost:
+            self.targets[axis.number] = axis.number * 3 * TURN
+            self.move(axis)
+        before = {axis.number: axis.block()["position_actual"] for axis in self.lost}
+        for turn in range(200):
+            number = 1 + turn % 3
+            self.send(0x600 + number, bytes.fromhex("4018100100000000"))  # 1018:01, which the gateway does not read now
+            block = self.lost[number - 1].block()
+            if block["valid"] & 4:
+                self.assertAlmostEqual(block["position_actual"], before[number], delta=20)
+        for axis in self.lost:
+            axis.until(link_state=ONLINE)
+            self.assertEqual(axis.get("axis_alarms") & DUPLICATE_NODE, 0, "a second master is no twin")
+        self.assert_goes_on(*self.lost)
+
+    def test_random_frames_stop_nobody(self):
+        chance = random.Random(7)
+        services = [0x080, 0x180, 0x280, 0x380, 0x480, 0x580, 0x700]  # what a drive may send
+        for turn in range(2000):
+            flags = chance.choice([0, 0, 0, socket.CAN_EFF_FLAG, socket.CAN_RTR_FLAG])
+            cob_id = chance.getrandbits(29) if flags == socket.CAN_EFF_FLAG else chance.choice(services) + chance.randrange(1, 5)
+            try:
+                self.send(cob_id, chance.randbytes(chance.randrange(9)), flags)
+            except OSError:
+                pass  # the queue is full
+            if turn % 100 == 0:
+                self.assertEqual(self.client.overview(4)["link_state"], ONLINE)
+        for axis in self.lost:
+            self.assertNotIn("operation", self.ask("state DRIVE", axis.number))
+        self.assert_goes_on(self.kept)
+        for axis in self.lost:
+            until("it can be used", lambda: "ready" in axis.inputs() or "fault" in axis.inputs())
+        self.assert_back()
 
 
 class NotThereYet(CanStory):
