@@ -38,7 +38,7 @@ can::CanFrame nmt_frame(NmtCommand command, std::uint8_t node) {
 can::CanFrame guard_frame(std::uint8_t node) { return can::remote_frame(error_control_id(node), 1); }
 
 std::optional<ErrorControl> decode_error_control(Bytes bytes) {
-  if (bytes.empty()) return std::nullopt;
+  if (bytes.size() != 1) return std::nullopt;  // a node that babbles under its id has not started anew
   if (bytes[0] == kBootUp) return ErrorControl{.boot_up = true, .state = bus::NodeState::pre_operational};
   ErrorControl heard{.toggle = (bytes[0] & kToggle) != 0};
   switch (const Byte state = bytes[0] & 0x7F; state) {

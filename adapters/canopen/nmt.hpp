@@ -26,7 +26,7 @@ struct ErrorControl {
   bus::NodeState state = bus::NodeState::unknown;
   friend bool operator==(const ErrorControl&, const ErrorControl&) = default;
 };
-/// No value: no byte, or no state that CiA 301 has.
+/// No value: not exactly one byte, or no state that CiA 301 has.
 [[nodiscard]] std::optional<ErrorControl> decode_error_control(Bytes bytes);
 
 /// Ours.

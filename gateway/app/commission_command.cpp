@@ -10,9 +10,9 @@
 #include "adapters/asio/asio_runtime.hpp"
 #include "gateway/app/commission_plan.hpp"
 #include "gateway/app/config_loader.hpp"
+#include "gateway/app/device_wires.hpp"
 #include "gateway/app/faults_told.hpp"
 #include "gateway/app/gateway.hpp"
-#include "gateway/app/device_wires.hpp"
 #include "gateway/app/stderr_log.hpp"
 
 namespace axisgate::app {

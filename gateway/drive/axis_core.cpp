@@ -60,6 +60,9 @@ AxisFacts AxisCore::facts() const {
   facts.state = status.known ? state_of(word) : State402::not_ready_to_switch_on;
   facts.statusword_exchange = status.exchange;
   facts.target_reached = (word & statusword::kTargetReached) != 0;
+  const ObjectId word_object = model.controlword;
+  facts.commanded = word_object == kNoObject || !store[word_object].known ||
+                    request_of(controlword()) == Request402::enable_operation;
   facts.mode = mode_in_force();
   facts.acknowledges = model.cia402.setpoint_acknowledge;
   facts.reference_tells = !model.homed_mode || facts.mode == *model.homed_mode;

@@ -39,9 +39,7 @@ class BringUp {
   [[nodiscard]] bool adopted() const { return adopted_; }
   /// Setup values that the drive does not hold although they were written: they are named in an event.
   [[nodiscard]] const std::vector<ObjectId>& unheld() const { return unheld_; }
-  [[nodiscard]] bool has_setup() const {
-    return !model_.setup.empty() || !model_.factory_writes.empty() || is_node();
-  }
+  [[nodiscard]] bool has_setup() const { return !model_.setup.empty() || !model_.factory_writes.empty() || is_node(); }
   /// How the drive differs from the configured one; empty: it does not.
   [[nodiscard]] const std::string& mismatch() const { return identity_.mismatch(); }
   /// What a CANopen node sends by itself now, and what it would not.

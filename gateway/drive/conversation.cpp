@@ -105,6 +105,11 @@ Conversation::Move Conversation::granted(Instant now) {
   }
   if (move.kind == Move::Kind::exchange) {
     begun_ = sent_of_plan_ = true;
+    // What it copies may come anew, by process data, before the write is acknowledged.
+    if (at_ < todo_.size() && todo_[at_].kind == Action::Kind::write && !verifying_) {
+      todo_[at_].number = number_of(todo_[at_]);
+      todo_[at_].copy_of = kNoObject;
+    }
     if (phase_ == Phase::preparation) preparation_sent_ = true;
   }
   return move;
@@ -177,11 +182,27 @@ Conversation::Move Conversation::advance(Instant now) {
       const bool opens = request_of(static_cast<std::uint16_t>(made.number)) == Request402::enable_operation;
       if (made.object != core_.model.controlword || !opens || !is_stop() || core_.facts().enabled())
         core_.make(made.object, made.number);
+    } else if (would_enable(action)) {
+      // It was enabled when this was planned. The same word would now take it back there, which nobody asked for.
+      if (phase_ == Phase::stop)
+        pop();
+      else
+        fail(Errc::state_unsuitable, kDetailDeviceState);
     } else {
       return exchange_for(action);
     }
   }
   return {};
+}
+
+// A word with the bits of operation enabled, for an axis that is not, by a group that does not ask for an enable.
+bool Conversation::would_enable(const Action& action) const {
+  const bool asked = group_.command == Command::enable || phase_ == Phase::controlword;
+  if (asked || action.kind != Action::Kind::write || verifying_ || action.object != core_.model.controlword)
+    return false;
+  if (request_of(static_cast<std::uint16_t>(number_of(action))) != Request402::enable_operation) return false;
+  const AxisFacts facts = core_.facts();
+  return !facts.enabled() || !facts.commanded;
 }
 
 void Conversation::pop() {

@@ -75,6 +75,7 @@ class Conversation {
   [[nodiscard]] std::optional<Move> advance_settle() const;
   [[nodiscard]] Move advance_object() const;
   [[nodiscard]] bool object_is_held() const;
+  [[nodiscard]] bool would_enable(const Action& action) const;
   [[nodiscard]] bool within_nvm_budget(const bus::Exchange& exchange, Instant now);
   void reach(const Action& action, Instant now);
   [[nodiscard]] bool overtaken_by_stop(Mark mark) const;

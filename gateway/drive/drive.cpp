@@ -165,7 +165,7 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
         std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->insists(asked.order); });
     on_timeout(exchange, stop_insists);
   } else if (result.code == Errc::link_lost) {
-    fence_.lost(exchange, now());  // its reply may still come, after the line's return
+    fence_.lost(exchange, now());                        // its reply may still come, after the line's return
   } else if (exchange.access != bus::Access::command) {  // which nobody answers
     on_answer(exchange, result);
     // Nobody asked for the neighbours: whoever asked for the one asks again, in smaller company.

@@ -134,10 +134,10 @@ class Drive final : public bus::BusDrive, private AxisHost {
   /// many calls alone: a node may know neither guarding nor heartbeat.
   bool heard_ = false;
   bool asked_ = false;
-  int calls_ = 0;  ///< unanswered, since it was asked last
+  int calls_ = 0;                                        ///< unanswered, since it was asked last
   bus::NodeState node_state_ = bus::NodeState::unknown;  ///< as it told last
-  Instant started_at_ = kLongAgo;  ///< when it was told to become operational
-  std::vector<bool> mapped_;       ///< objects that come by TPDO
+  Instant started_at_ = kLongAgo;                        ///< when it was told to become operational
+  std::vector<bool> mapped_;                             ///< objects that come by TPDO
 };
 
 }  // namespace axisgate::drive

@@ -115,10 +115,10 @@ void Drive::judge_loss_reaction() {
 
 // Full bring-up at the first disabled state after an adoption.
 void Drive::leave_adoption() {
-  // A drive that stands in quick stop active holds its motor: it is as far from disabled as one that runs.
-  const bool enabled = std::any_of(axes_.begin(), axes_.end(), [](const auto& a) {
+  // A drive that stands in quick stop active holds its motor: bring-up would find it enabled, and adopt it again.
+  const bool enabled = std::any_of(axes_.begin(), axes_.end(), [this](const auto& a) {
     const AxisFacts facts = a->core().facts();
-    return facts.enabled() || facts.state == State402::quick_stop_active;
+    return facts.enabled() || (bring_up_.has_setup() && facts.state == State402::quick_stop_active);
   });
   if (!adopted_ || enabled) return;
   adopted_ = false;

@@ -21,6 +21,9 @@ struct AxisFacts {
   bool reachable = false;  ///< link_state online or suspect
   State402 state = State402::not_ready_to_switch_on;
   int mode = 0;  ///< mode in force, unified number
+  /// The controlword in effect has the bits of operation enabled: without them the axis is on its way out of it,
+  /// however long its ramp takes, and only shows it still.
+  bool commanded = true;
   bool moving = false;
   bool target_reached = false;
   bool acknowledges = true;     ///< bit 12 tells in mode 1 that a set-point was taken
@@ -65,7 +68,7 @@ class Motion {
   // --- What runs -----------------------------------------------------------------------------------------------------
 
   /// Commands 6 to 11 need an axis that is enabled, not faulted and not stop-latched.
-  [[nodiscard]] bool may_start(const AxisFacts& facts) const { return facts.enabled() && !latched_; }
+  [[nodiscard]] bool may_start(const AxisFacts& facts) const { return facts.enabled() && facts.commanded && !latched_; }
   /// Standstill, as a relative move and set_position need it.
   [[nodiscard]] bool at_rest(const AxisFacts& facts) const;
   /// A motion command was accepted: target_reached reads 0 from now until unmask().

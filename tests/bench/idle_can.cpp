@@ -7,6 +7,7 @@
 
 #include <array>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 #include <thread>
@@ -24,7 +25,9 @@ using SteadyClock = std::chrono::steady_clock;
 /// axisgate-sim with these drives behind a Lawicel adapter.
 class Simulator {
  public:
-  Simulator(const std::string& path, const std::string& drives) : process_(::fork()) {
+  Simulator(const std::string& path, const std::string& drives) {
+    std::fflush(nullptr);
+    process_ = ::fork();
     if (process_ < 0) throw std::runtime_error("no process");
     if (process_ != 0) return;
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -43,7 +46,7 @@ class Simulator {
   Simulator& operator=(const Simulator&) = delete;
 
  private:
-  pid_t process_;
+  pid_t process_ = -1;
 };
 
 struct Setting {

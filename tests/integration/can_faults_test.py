@@ -61,6 +61,7 @@ class Storms(OneOfThree):
         self.gateway.wait_for("axis 2: floods the bus with frames 0x702")
         self.assert_goes_on(*self.others)
         self.healed()
+        self.let_heartbeats_pass()
         until("it can be used", lambda: "ready" in self.middle.inputs())
         self.move(self.middle)
         self.assert_one_request_at_a_time()
@@ -87,6 +88,7 @@ class TwoBuses(CanStory):
         self.assertEqual(after["link"], 1)
         for number in (1, 2):
             self.ask("clear DRIVE", number, "loud")
+        self.let_heartbeats_pass()
         for axis in self.axes:
             axis.until(link_state=ONLINE)
         self.assert_goes_on(*self.axes[:2])

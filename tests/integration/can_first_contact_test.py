@@ -4,6 +4,7 @@ from modbus import (ABORTED, ACTIVE, AXIS, COMPLETED, CONTINUOUS, DISABLED, DISC
 from processes import until
 
 NOT_ENABLED_BITS = 0x0C  # operation enabled, fault
+POSITION_VALID = 1 << 2
 HOME_HERE = 35
 NO_TORQUE = ("switch_on_disabled", "ready_to_switch_on")  # a Kinco is told 6 once its connection is up
 
@@ -145,13 +146,21 @@ class ProcessData(CanStory):
                 axis.set(profile_velocity=300 * RPM, profile_acceleration=30000, profile_deceleration=30000)
                 axis.command("enable")
                 axis.set(target_position=5 * TURN)
-                frames = fr"<- 18{axis.number} .* TPDO 1"
-                before = len(self.gateway.found(frames))
+                read = fr"node {axis.number}: SDO value 606[34]:00"
+                before = len(self.gateway.found(read))
                 axis.command("move_absolute")
-                block = axis.until(motion_state=COMPLETED)
-                self.assertTrue(block["valid"] & 4, "position")
+                seen = set()
+
+                def has_arrived():
+                    block = axis.block()
+                    if block["valid"] & POSITION_VALID:
+                        seen.add(block["position_actual"])
+                    return block["motion_state"] == COMPLETED
+
+                until("it has arrived", has_arrived)
+                reads = len(self.gateway.found(read)) - before
+                self.assertGreater(len(seen), reads + 3, "its way was not told but read")
                 until("it is there", lambda: abs(axis.get("position_actual") - 5 * TURN) <= 20)
-                self.assertGreater(len({found[0] for found in self.gateway.found(frames)[before:]}), 5, "it did not tell of its way")
                 axis.command("disable")
                 axis.until(axis_state=DISABLED)
                 axis.until_input("enabled", False)

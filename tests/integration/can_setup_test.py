@@ -28,6 +28,8 @@ class AnotherDevice(CanStory):
         block = wrong.until(axis_state=DISABLED)
         self.assertTrue(block["valid"] >> 2 & 1, "its position is shown")
         self.assertNotIn("ready", wrong.inputs())
+        self.assertEqual(self.ask("nmt DRIVE", 1), "pre_operational", "it is not started")
+        self.assertEqual([self.ask(f"get DRIVE {name}", 1).split()[0] for name in ("1016.01", "1017.00")], ["0", "0"], "nor set up")
         before = [self.ask(f"writes DRIVE {name}", 1) for name in ("6040.00", "6060.00", "607A.00", "6083.00")]
         for refused in (lambda: wrong.command("enable"), lambda: wrong.set(profile_acceleration=12345), lambda: wrong.set(mode=3),
                         lambda: wrong.command("move_absolute")):

@@ -153,11 +153,11 @@ class Queue(Interface):
 class Flood(Interface):
     def test_a_flood_of_foreign_frames_slows_nobody_down(self):
         peer = self.raw_socket()
-        frame = struct.pack("=IB3x8s", 0x701, 1, b"\x05")
+        frame = struct.pack("=IB3x8s", 0x081, 8, bytes.fromhex("0010010000000000"))  # an EMCY of node 1
         stranger = struct.pack("=IB3x8s", 0x3FF, 8, bytes(8))
         before = self.client.bus(1)
         sent = 0
-        while not self.gateway.found("axis 1: floods the bus with frames 0x701") or sent < 5000:
+        while not self.gateway.found("axis 1: floods the bus with frames 0x081") or sent < 5000:
             for each in (frame, stranger):
                 try:
                     peer.send(each)
