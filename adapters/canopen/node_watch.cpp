@@ -49,13 +49,21 @@ std::optional<boost::container::static_vector<bus::Notice, 1>> NodeWatch::on_err
     unanswered_ = false;
     misses_ = 0;
   }
-  if (settings_.heartbeat > Duration::zero()) {
-    heartbeat_due_ = now + settings_.heartbeat * 3 / 2 + kHeartbeatGrace;
-  }
+  expect_heartbeat(now);
   const bool news = !std::exchange(present_, true) || state_ != heard.state;
   state_ = heard.state;
   if (std::exchange(called_, false) || news) told.push_back(notice(bus::Notice::Kind::present));
   return told;
+}
+
+void NodeWatch::expect_heartbeat(Instant now) {
+  if (settings_.heartbeat > Duration::zero()) heartbeat_due_ = now + settings_.heartbeat * 3 / 2 + kHeartbeatGrace;
+}
+
+void NodeWatch::on_flood(Instant now) {
+  if (heartbeat_due_ != kNever) expect_heartbeat(now);
+  unanswered_ = false;
+  misses_ = 0;
 }
 
 NodeWatch::Due NodeWatch::on_deadline(Instant now) {

@@ -31,6 +31,8 @@ class NodeWatch {
   /// No value: an answer whose toggle bit did not change, which tells nothing.
   [[nodiscard]] std::optional<boost::container::static_vector<bus::Notice, 1>> on_error_control(
       const ErrorControl& heard, Instant now);
+  /// Frames under its id are dropped, its own may be among them: it is not missed for what we did not look at.
+  void on_flood(Instant now);
   /// Its next sign of life is told, whether it is news or not. A guarding frame must be sent.
   void call() { called_ = true; }
 
@@ -43,6 +45,7 @@ class NodeWatch {
 
  private:
   [[nodiscard]] bool guarded() const { return settings_.guard_time > Duration::zero(); }
+  void expect_heartbeat(Instant now);
   [[nodiscard]] bus::Notice notice(bus::Notice::Kind kind) const;
   void forget();
 

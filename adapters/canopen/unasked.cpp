@@ -35,7 +35,11 @@ Unasked::News Unasked::on_frame(const CobId& id, Bytes bytes, Instant now) {
   News news;
   switch (id.service) {
     case Service::error_control:
-      if (passes(error_control_, error_control_id(node_), now, news)) on_error_control(bytes, now, news);
+      if (passes(error_control_, error_control_id(node_), now, news)) {
+        on_error_control(bytes, now, news);
+      } else {
+        watch_.on_flood(now);
+      }
       break;
     case Service::emergency:
       if (passes(emergency_, emergency_id(node_), now, news)) on_emergency(bytes, now, news);

@@ -284,7 +284,9 @@ void Drive::bring_up_to_date() {
     judge_checks();
     leave_adoption();
   }
-  Instant next = kNever;
+  const bool twin = now() < twin_until_;
+  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::duplicate_node, twin);
+  Instant next = twin ? twin_until_ : kNever;
   for (auto& axis : axes_) {
     axis->publish(now());
     next = std::min({next, axis->next_deadline(), stale_deadline(axis->core(), now())});

@@ -21,6 +21,9 @@ class Drive final : public bus::BusDrive, private AxisHost {
   /// A mute drive is offline after this many timeouts in a row.
   static constexpr int kMuteTimeouts = 3;
   static constexpr int kCallsPerQuestion = 4;
+  /// Alarm duplicate_node stands so long after the last sign of a twin: a second SDO client that asks for the same
+  /// object at the same time looks like one, once.
+  static constexpr Duration kTwinStands = std::chrono::seconds(60);
 
   /// `images`: one per axis of the model, in its order. Everything referred to outlives the drive.
   Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
@@ -138,6 +141,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   bus::NodeState node_state_ = bus::NodeState::unknown;  ///< as it told last
   Instant started_at_ = kLongAgo;                        ///< when it was told to become operational
   std::vector<bool> mapped_;                             ///< objects that come by TPDO
+  Instant twin_until_ = kLongAgo;                        ///< alarm duplicate_node
 };
 
 }  // namespace axisgate::drive

@@ -49,7 +49,7 @@ void Drive::on_notice(const bus::Notice& notice) {
       on_emergency(notice);
       break;
     case bus::Notice::Kind::twin:
-      for (auto& axis : axes_) axis->set_alarm(AxisAlarm::duplicate_node, true);
+      twin_until_ = now() + kTwinStands;
       tell_all(EventKind::warning, model_.node,
                fmt::format("two devices answer as node {}: give one of them another number", model_.node));
       break;

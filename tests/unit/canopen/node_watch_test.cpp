@@ -41,6 +41,16 @@ class NodeWatchTest : public testing::Test {
   bool ignored = false;
 };
 
+TEST_F(NodeWatchTest, a_node_whose_id_is_flooded_is_not_missed_for_what_was_not_looked_at) {
+  watch_with({.node = 3, .heartbeat = 500ms});
+  hear(0x05);
+  for (int i = 0; i < 20; ++i) {
+    watch.on_flood(runtime.now());
+    EXPECT_FALSE(after(100ms).gone);
+  }
+  EXPECT_TRUE(after(1s).gone) << "silence is silence again";
+}
+
 TEST_F(NodeWatchTest, the_first_heartbeat_and_every_change_of_state_are_told) {
   watch_with({.node = 3, .heartbeat = 500ms});
   EXPECT_THAT(hear(0x7F), ElementsAre(std::pair(Kind::present, NodeState::pre_operational)));

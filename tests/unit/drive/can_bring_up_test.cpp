@@ -199,6 +199,17 @@ TEST(CanEmergency, AFaultIsShownAndToldWithItsCode) {
   EXPECT_TRUE(rig.told("EMCY 0x3150"));
 }
 
+TEST(CanTwin, IsToldAndForgottenAMinuteAfterItIsGone) {
+  CanRig rig({CanType::leadshine});
+  rig.online();
+  const std::size_t twin = rig.line().add_twin(0);
+  const auto alarmed = [&] { return (rig.axis().alarms & bit(AxisAlarm::duplicate_node)) != 0; };
+  ASSERT_TRUE(rig.stage.run_until(alarmed, 30s));
+  EXPECT_TRUE(rig.told("two devices answer as node 1"));
+  rig.line().connect(twin, false);
+  EXPECT_TRUE(rig.stage.run_until([&] { return !alarmed(); }, 90s));
+}
+
 TEST(CanNmt, ANodeThatSomebodyElseTakesOutOfOperationalIsPolledAndSetUpAnew) {
   CanRig rig({CanType::leadshine});
   rig.online();

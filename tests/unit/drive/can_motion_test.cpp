@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/unit/drive/can_rig.hpp"
+#include "tests/unit/drive/rig.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -154,6 +155,23 @@ TEST_P(CanMotion, ARunAtSpeedZeroIsNoHoming) {
   ASSERT_EQ(command(Command::run_velocity), Errc::ok);
   rig.stage.run(3s);
   EXPECT_FALSE(rig.axis().has(AxisInput::homed));
+}
+
+TEST_P(CanMotion, ARunThatIsAskedForWhileADisableRampsDownEnablesNothing) {
+  write(Quantity::profile_acceleration, 50'000);
+  write(Quantity::profile_deceleration, 500);  // ten seconds
+  write(Quantity::target_velocity, 300'000);
+  ASSERT_EQ(command(Command::run_velocity), Errc::ok);
+  rig.stage.run(2s);
+  const auto disable = rig.stage.begin(1, with_command(Command::disable));
+  rig.stage.run(10ms);
+  const auto run = rig.stage.begin(1, with_command(Command::run_velocity, {{Quantity::target_velocity, 200'000}}));
+  ASSERT_TRUE(rig.settles([&] { return *disable && *run; }));
+  EXPECT_NE((*run)->outcome.code, Errc::ok);
+  ASSERT_TRUE(rig.settles([&] { return !rig.axis().has(AxisInput::enabled); }));
+  rig.stage.run(3s);
+  EXPECT_FALSE(rig.axis().has(AxisInput::enabled));
+  EXPECT_FALSE(rig.axis().has(AxisInput::moving));
 }
 
 TEST(CanFault, ItIsResetByARisingEdgeAloneAndEndsDisabled) {
