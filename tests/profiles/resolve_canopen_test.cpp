@@ -1,6 +1,7 @@
 // What a CANopen section of a profile comes to: mapping, heartbeats and guarding, what the drive must hold to stop by
 // itself, and the identity that a configuration asks for.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -37,7 +38,7 @@ DriveModel on_canopen(const std::string& profile) { return resolved(shipped(prof
 /// A drive of one TPDO, with changes.
 class CanopenProfile : public ::testing::Test {
  protected:
-  ~CanopenProfile() override { std::filesystem::remove(path_); }
+  ~CanopenProfile() override { std::filesystem::remove_all(folder_); }
   LoadedProfile load() {
     std::ofstream(path_) << profile_.dump();
     return load_profile(path_);
@@ -48,7 +49,10 @@ class CanopenProfile : public ::testing::Test {
   }
   nlohmann::json& canopen() { return profile_["protocols"]["canopen"]; }
 
-  const std::string path_ = std::filesystem::temp_directory_path() / "canopen-only.json";
+  /// Of this test alone: others run beside it. The file has the profile's own name.
+  const std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("axisgate-canopen-" + std::to_string(getpid()));
+  const std::string path_ = (std::filesystem::create_directories(folder_), folder_ / "canopen-only.json");
   nlohmann::json profile_ = [] {
     std::ifstream file(AXISGATE_SOURCE_DIR "/tests/config/invalid/profiles/canopen-only.json");
     nlohmann::json out = nlohmann::json::parse(file);
