@@ -22,7 +22,7 @@ bool between(std::uint32_t id, std::uint32_t base) { return id > base && id <= b
 bool is_sdo_request(const can::CanFrame& frame) { return !frame.remote && between(frame.id, cob::sdo_request); }
 
 bool is_boot_up(const can::CanFrame& frame) {
-  return !frame.remote && between(frame.id, cob::error_control) && frame.size > 0 && frame.data[0] == 0;
+  return !frame.remote && between(frame.id, cob::error_control) && frame.size == 1 && frame.data[0] == 0;
 }
 
 /// A recorded frame: identifier, low byte first, and data.
