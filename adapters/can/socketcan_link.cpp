@@ -6,24 +6,13 @@
 #include <cassert>
 #include <utility>
 
+#include "adapters/serial/still_open.hpp"
+
 namespace axisgate::can {
 namespace {
 
 using Error = boost::system::error_code;
-
-/// True as long as the link exists and has the same opening as when this was made.
-class StillOpen {
- public:
-  explicit StillOpen(const std::shared_ptr<std::uint64_t>& opening) : opening_(opening), mine_(*opening) {}
-  explicit operator bool() const {
-    const auto opening = opening_.lock();
-    return opening != nullptr && *opening == mine_;
-  }
-
- private:
-  std::weak_ptr<std::uint64_t> opening_;
-  std::uint64_t mine_;
-};
+using serial::StillOpen;
 
 }  // namespace
 

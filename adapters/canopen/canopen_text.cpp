@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "adapters/bus/node_state.hpp"
 #include "adapters/canopen/cob_id.hpp"
 #include "adapters/canopen/emergency.hpp"
 #include "adapters/canopen/nmt.hpp"
@@ -19,20 +20,6 @@ std::string object_text(bus::ObjectAddress object) { return fmt::format("{:04X}:
 std::string value_text(Bytes bytes) {
   if (bytes.empty() || bytes.size() > kExpeditedBytes) return hex_text(bytes);
   return fmt::format("0x{:0{}X}", load_le(bytes, 0, bytes.size()), 2 * bytes.size());
-}
-
-std::string_view state_text(bus::NodeState state) {
-  switch (state) {
-    case bus::NodeState::stopped:
-      return "stopped";
-    case bus::NodeState::pre_operational:
-      return "pre-operational";
-    case bus::NodeState::operational:
-      return "operational";
-    case bus::NodeState::unknown:
-      break;
-  }
-  return "passing state";
 }
 
 std::string_view command_text(NmtCommand command) {
@@ -63,7 +50,7 @@ std::string error_control_text(const can::CanFrame& frame) {
   const auto heard = decode_error_control(frame.bytes());
   if (!heard) return "error control, no state";
   if (heard->boot_up) return "boot-up";
-  return fmt::format("{}{}", state_text(heard->state), heard->toggle ? ", toggled" : "");
+  return fmt::format("{}{}", bus::text(heard->state), heard->toggle ? ", toggled" : "");
 }
 
 std::string emergency_text(Bytes bytes) {

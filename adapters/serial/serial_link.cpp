@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "adapters/serial/serial_port.hpp"
+#include "adapters/serial/still_open.hpp"
 
 namespace axisgate::serial {
 
@@ -16,20 +17,6 @@ namespace {
 
 namespace asio = boost::asio;
 using Error = boost::system::error_code;
-
-/// True in a handler as long as the link exists and has the same opening as when the handler was made.
-class StillOpen {
- public:
-  explicit StillOpen(const std::shared_ptr<std::uint64_t>& opening) : opening_(opening), mine_(*opening) {}
-  explicit operator bool() const {
-    const auto opening = opening_.lock();
-    return opening != nullptr && *opening == mine_;
-  }
-
- private:
-  std::weak_ptr<std::uint64_t> opening_;
-  std::uint64_t mine_;
-};
 
 char parity_letter(Parity parity) { return parity == Parity::none ? 'N' : parity == Parity::even ? 'E' : 'O'; }
 

@@ -37,22 +37,6 @@ void check_bitrate(const ConfigNode& node, const BusConfig& bus, bool lawicel, C
   }
 }
 
-void settle_timeout(BusConfig& bus, const std::vector<drive::DriveModel>& drives, ConfigFaults& faults) {
-  const Duration on_wire = timing_of(bus).on_wire;
-  if (bus.timeout == Duration{}) {
-    Duration answer{};
-    for (const drive::DriveModel& model : drives) answer = std::max(answer, model.timeout);
-    bus.timeout = (on_wire + answer + milliseconds(1) - Duration(1)) / milliseconds(1) * milliseconds(1);
-  } else if (bus.timeout <= on_wire) {
-    faults.add(
-        bus.pointer + "/timeout_ms",
-        fmt::format("{} ms is less than an SDO request and its answer take at {} bit/s ({:.1f} ms), every answer "
-                    "would come too late: write at least {}",
-                    bus.timeout / milliseconds(1), bus.bitrate, static_cast<double>(on_wire.count()) / 1e6,
-                    on_wire / milliseconds(1) + 20));
-  }
-}
-
 /// TPDOs win the line against every SDO request, stops among them: they must not fill it, however much moves at once.
 void stretch_tpdos(const BusConfig& bus, std::vector<drive::DriveModel>& drives) {
   const int load = plan_bus(timing_of(bus), drives).load_unasked;
@@ -96,7 +80,8 @@ void settle_can_buses(Config& config, std::vector<std::vector<drive::DriveModel>
   for (std::size_t i = 0; i < config.buses.size(); ++i) {
     BusConfig& bus = config.buses[i];
     if (bus.adapter != "canopen") continue;
-    settle_timeout(bus, models[i], faults);
+    settle_timeout(bus, models[i], timing_of(bus).on_wire,
+                   fmt::format("an SDO request and its answer take at {} bit/s", bus.bitrate), faults);
     stretch_tpdos(bus, models[i]);
     stretch_confirming(bus, models[i]);
     if (!bus.poll_given) bus.poll = comfortable_periods(plan_bus(timing_of(bus), models[i]));

@@ -22,22 +22,6 @@ Duration longest_on_wire(const BusConfig& bus, const std::vector<drive::DriveMod
   return longest;
 }
 
-void settle_timeout(BusConfig& bus, const std::vector<drive::DriveModel>& drives, ConfigFaults& faults) {
-  const Duration on_wire = longest_on_wire(bus, drives);
-  if (bus.timeout == Duration{}) {
-    Duration answer{};
-    for (const drive::DriveModel& model : drives) answer = std::max(answer, model.timeout);
-    bus.timeout = (on_wire + answer + milliseconds(1) - Duration(1)) / milliseconds(1) * milliseconds(1);
-  } else if (bus.timeout <= on_wire) {
-    faults.add(
-        bus.pointer + "/timeout_ms",
-        fmt::format("{} ms is less than an exchange takes on the wire at {} baud ({:.1f} ms), every answer would "
-                    "come too late: write at least {}",
-                    bus.timeout / milliseconds(1), bus.baud, static_cast<double>(on_wire.count()) / 1e6,
-                    on_wire / milliseconds(1) + 20));
-  }
-}
-
 void check_nodes(const BusConfig& bus, const std::vector<drive::DriveModel>& drives, ConfigFaults& faults) {
   constexpr std::uint8_t kLastUnit = 254;
   for (std::size_t i = 0; i < drives.size(); ++i) {
@@ -59,7 +43,8 @@ void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>
     BusConfig& bus = config.buses[i];
     if (bus.adapter != "modbus-rtu") continue;
     check_nodes(bus, models[i], faults);
-    settle_timeout(bus, models[i], faults);
+    settle_timeout(bus, models[i], longest_on_wire(bus, models[i]),
+                   fmt::format("an exchange takes on the wire at {} baud", bus.baud), faults);
     if (!bus.poll_given) bus.poll = comfortable_periods(plan_bus(timing_of(bus), models[i]));
     for (drive::DriveModel& model : models[i]) model.poll_period = bus.poll;
   }

@@ -32,6 +32,10 @@ void warn_without_effect(const ConfigNode& root, ConfigFaults& faults);
                                                                       const std::vector<std::string>& profile_folders,
                                                                       ConfigFaults& faults);
 
+/// A timeout that nobody has given is what the longest exchange and the slowest drive need; one that is given must be
+/// longer than the exchange. `takes`: what `on_wire` is the time of, for the message.
+void settle_timeout(BusConfig& bus, const std::vector<drive::DriveModel>& drives, Duration on_wire,
+                    const std::string& takes, ConfigFaults& faults);
 /// modbus-rtu: timeouts and poll periods that nobody has given follow from the drives on the line.
 void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
 

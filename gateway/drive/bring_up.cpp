@@ -40,7 +40,7 @@ bool BringUp::any_enabled(const ObjectStore& store) const {
     const ObjectState& s = store[axis.statusword];
     if (!s.known) return false;
     const State402 state = state_of(static_cast<std::uint16_t>(s.number));
-    return state == State402::operation_enabled || state == State402::quick_stop_active;
+    return holds_motor(state);
   });
 }
 

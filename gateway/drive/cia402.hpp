@@ -41,6 +41,11 @@ inline constexpr std::uint16_t kHalt = 1U << 8;
 inline constexpr std::uint16_t kMaker = 0xF800;
 }  // namespace controlword
 
+/// The motor has torque and obeys: enabled, or stood still by a quick stop that ends there.
+[[nodiscard]] constexpr bool holds_motor(State402 state) {
+  return state == State402::operation_enabled || state == State402::quick_stop_active;
+}
+
 /// What a raw controlword asks of the state machine (CiA 402-2 table 28).
 enum class Request402 : std::uint8_t {
   disable_voltage,   ///< bit 1 = 0

@@ -209,14 +209,18 @@ void Drive::on_timeout(const bus::Exchange& exchange, bool stop_insists) {
   }
   // A stop has its three tries, also at a drive that was silent before it came.
   if (mute_ >= kMuteTimeouts && !stop_insists) {
-    set_state(LinkState::offline);
-    setup_order_ = 0;
-    unmap_values();
-    bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
-    probe_due_ = now() + backoff_.next();
+    go_offline();
   } else if (state_ == LinkState::online) {
     set_state(LinkState::suspect);
   }
+}
+
+void Drive::go_offline() {
+  set_state(LinkState::offline);
+  setup_order_ = 0;
+  unmap_values();
+  bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
+  probe_due_ = now() + backoff_.next();
 }
 
 void Drive::on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& result) {

@@ -85,6 +85,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void break_chain();
   void store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result);
   void on_timeout(const bus::Exchange& exchange, bool stop_insists);
+  void go_offline();
   void on_write_without_owner(const bus::Exchange& exchange, const bus::ExchangeResult& result, bool trusted);
   void on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& result);
   /// `restarted`: the drive comes up anew; else a running one was adopted and is only set up now.

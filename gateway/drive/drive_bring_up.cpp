@@ -118,7 +118,7 @@ void Drive::leave_adoption() {
   // A drive that stands in quick stop active holds its motor: bring-up would find it enabled, and adopt it again.
   const bool enabled = std::any_of(axes_.begin(), axes_.end(), [this](const auto& a) {
     const AxisFacts facts = a->core().facts();
-    return facts.enabled() || (bring_up_.has_setup() && facts.state == State402::quick_stop_active);
+    return facts.enabled() || (bring_up_.has_setup() && holds_motor(facts.state));
   });
   if (!adopted_ || enabled) return;
   adopted_ = false;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "adapters/bus/node_state.hpp"
 #include "gateway/drive/drive.hpp"
 
 namespace axisgate::drive {
@@ -10,20 +11,6 @@ namespace {
 
 // A heartbeat that was on its way when the node was told to start tells of the state before.
 constexpr Duration kNmtSettles = std::chrono::milliseconds(100);
-
-std::string_view text(bus::NodeState state) {
-  switch (state) {
-    case bus::NodeState::stopped:
-      return "stopped";
-    case bus::NodeState::pre_operational:
-      return "pre-operational";
-    case bus::NodeState::operational:
-      return "operational";
-    case bus::NodeState::unknown:
-      break;
-  }
-  return "unknown";
-}
 
 }  // namespace
 
@@ -87,7 +74,7 @@ void Drive::on_present(bus::NodeState state) {
 // Somebody else has stopped it, or it fell back by itself. Its process data is dead; what runs is polled, and it is set
 // up anew as soon as its motor is disabled: a node with an enabled motor gets no NMT command.
 void Drive::left_operational(bus::NodeState state) {
-  tell_all(EventKind::warning, 0, fmt::format("the node has become {}, by no command of ours", text(state)));
+  tell_all(EventKind::warning, 0, fmt::format("the node has become {}, by no command of ours", bus::text(state)));
   unmap_values();
   adopted_ = true;
 }
@@ -96,13 +83,9 @@ void Drive::on_gone() {
   heard_ = false;
   if (state_ == LinkState::link_down || state_ == LinkState::offline) return;
   tell_all(EventKind::warning, 0, "no sign of life from the node any more");
-  set_state(LinkState::offline);
-  setup_order_ = 0;
   mute_ = 0;
-  unmap_values();
   backoff_.reset();
-  bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
-  probe_due_ = now() + backoff_.next();
+  go_offline();
 }
 
 void Drive::on_values(const bus::ReplyFields& fields) {

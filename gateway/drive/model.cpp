@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "gateway/drive/profile_scale.hpp"
+
 namespace axisgate::drive {
 namespace {
 
@@ -110,18 +112,11 @@ std::optional<Rational> value_of(const DriveConstant& constant,
 namespace {
 
 /// What it writes, once every constant it waits for is known.
-std::optional<std::int64_t> raw_of(const FactoryWrite& write, const DriveModel& model,
-                                   const std::function<std::optional<std::int64_t>(ObjectId)>& number_of) {
+std::optional<std::int64_t> raw_of(const FactoryWrite& write, const std::vector<std::optional<Rational>>& constants) {
+  const std::optional<Rational> scale = scale_of(write.recipe, constants);
+  if (!scale) return std::nullopt;
   try {
-    Rational scale = write.recipe.fixed;
-    for (const auto& [names, divides] : {std::pair(&write.recipe.mul, false), std::pair(&write.recipe.div, true)}) {
-      for (const std::size_t name : *names) {
-        const std::optional<Rational> factor = value_of(model.constants[name], number_of);
-        if (!factor || factor->numerator() <= 0) return std::nullopt;
-        scale = divides ? scale / *factor : scale * *factor;
-      }
-    }
-    const std::optional<std::int64_t> raw = (write.amount * scale).scale(1);
+    const std::optional<std::int64_t> raw = (write.amount * *scale).scale(1);
     return raw && write.recipe.raw.holds(*raw) ? raw : std::nullopt;
   } catch (const std::overflow_error&) {
     return std::nullopt;
@@ -133,10 +128,13 @@ std::optional<std::int64_t> raw_of(const FactoryWrite& write, const DriveModel& 
 std::vector<ObjectWrite> setup_writes(const DriveModel& model,
                                       const std::function<std::optional<std::int64_t>(ObjectId)>& number_of) {
   std::vector<ObjectWrite> out = model.setup;
+  if (model.factory_writes.empty()) return out;
+  std::vector<std::optional<Rational>> constants;
+  for (const DriveConstant& constant : model.constants) constants.push_back(value_of(constant, number_of));
   for (const FactoryWrite& write : model.factory_writes) {
     const std::optional<std::int64_t> held = number_of(write.object);
     if (!held || std::find(write.instead_of.begin(), write.instead_of.end(), *held) == write.instead_of.end()) continue;
-    const std::optional<std::int64_t> raw = raw_of(write, model, number_of);
+    const std::optional<std::int64_t> raw = raw_of(write, constants);
     if (raw && *raw != *held) out.push_back({write.object, *raw, write.why});
   }
   return out;

@@ -21,26 +21,6 @@ Int128 floor_of(Int128 numerator, Int128 denominator) {
 
 Int128 ceiling_of(Int128 numerator, Int128 denominator) { return -floor_of(-numerator, denominator); }
 
-std::optional<Rational> scale_of(const ScaleRecipe& recipe, const std::vector<std::optional<Rational>>& constants) {
-  const auto known = [&](std::size_t at) { return at < constants.size() ? constants[at] : std::nullopt; };
-  Rational out = recipe.fixed;
-  try {
-    for (const std::size_t at : recipe.mul) {
-      const std::optional<Rational> value = known(at);
-      if (!value || value->numerator() <= 0) return std::nullopt;
-      out = out * *value;
-    }
-    for (const std::size_t at : recipe.div) {
-      const std::optional<Rational> value = known(at);
-      if (!value || value->numerator() <= 0) return std::nullopt;
-      out = out / *value;
-    }
-  } catch (const std::overflow_error&) {
-    return std::nullopt;
-  }
-  return out;
-}
-
 }  // namespace
 
 std::optional<Rational> value_of(const Factor& factor, const Constants& constants) {
@@ -111,6 +91,26 @@ Range registers_within(const Range& raw, const Rational& raw_per_register) {
 }
 
 Range intersection(const Range& a, const Range& b) { return {std::max(a.min, b.min), std::min(a.max, b.max)}; }
+
+std::optional<Rational> scale_of(const ScaleRecipe& recipe, const std::vector<std::optional<Rational>>& constants) {
+  const auto known = [&](std::size_t at) { return at < constants.size() ? constants[at] : std::nullopt; };
+  Rational out = recipe.fixed;
+  try {
+    for (const std::size_t at : recipe.mul) {
+      const std::optional<Rational> value = known(at);
+      if (!value || value->numerator() <= 0) return std::nullopt;
+      out = out * *value;
+    }
+    for (const std::size_t at : recipe.div) {
+      const std::optional<Rational> value = known(at);
+      if (!value || value->numerator() <= 0) return std::nullopt;
+      out = out / *value;
+    }
+  } catch (const std::overflow_error&) {
+    return std::nullopt;
+  }
+  return out;
+}
 
 void apply_recipe(Binding& binding, const std::vector<std::optional<Rational>>& constants, const ObjectDef& object) {
   const ScaleRecipe& recipe = binding.recipe;

@@ -29,6 +29,10 @@ using Constants = std::map<std::string, Rational, std::less<>>;
 [[nodiscard]] Range registers_within(const Range& raw, const Rational& raw_per_register);
 [[nodiscard]] Range intersection(const Range& a, const Range& b);
 
+/// fixed * product(mul) / product(div); none where a constant that it waits for is not known or not above 0, or where
+/// the product fits no rational number.
+[[nodiscard]] std::optional<Rational> scale_of(const ScaleRecipe& recipe,
+                                               const std::vector<std::optional<Rational>>& constants);
 /// Makes scale and limits of a binding whose recipe waits for the drive's constants (model.hpp) out of what they are
 /// now: by position in DriveModel::constants, no value where one is not known. Afterwards the binding is as if they had
 /// been configured; it has no scale where a constant is not known, not above 0, or makes more than 64 bits. Limits may
