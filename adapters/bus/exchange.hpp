@@ -15,10 +15,12 @@
 namespace axisgate::bus {
 
 /// An object inside a drive: CiA 301 index and sub-index on CANopen and Kinco's serial protocol; the register and 0 on
-/// Modbus RTU; index and sub on Keya's CAN; 0x2100 + query code and the field's number on Keya's serial protocols.
+/// Modbus RTU; index and sub on Keya's CAN; on Keya's serial protocols 0x2100 + query code and 0 for what is asked,
+/// 0x200D (on) and 0x2000 (value) with the motor's number 1 or 2 for what is commanded.
 struct ObjectAddress {
   std::uint16_t index = 0;
   std::uint8_t sub = 0;
+  std::uint8_t byte = 0;  ///< Keya: one answer holds several objects; this one begins here, from 0, in its data
   friend auto operator<=>(const ObjectAddress&, const ObjectAddress&) = default;
 };
 
@@ -39,10 +41,11 @@ enum class Part : std::uint8_t {
 /// The longest list one answer can carry: a run of 26 registers (iD286pro) as 16-bit fields.
 inline constexpr std::size_t kMaxReplyFields = 26;
 
-/// Another object that the same request reads.
+/// Another object that the same request reads or writes.
 struct Neighbour {
   ObjectAddress object;
   std::uint8_t size = 0;  ///< bytes: 1, 2 or 4
+  std::uint32_t raw = 0;  ///< of a write: its value, in the low `size` bytes
   friend bool operator==(const Neighbour&, const Neighbour&) = default;
 };
 
@@ -54,6 +57,8 @@ struct Exchange {
   std::uint32_t raw = 0;  ///< value to write, in the low `size` bytes
   /// Modbus RTU, reads alone: objects at higher registers than `object`, ascending, read in one request from the first
   /// register of `object` to the last of the last; registers between that are nobody's are read and dropped.
+  /// Keya reads: objects of the same index and sub, in the order of their bytes. Keya's serial protocols, writes: the
+  /// other fields of the one control frame, which carries the whole desired state of both motors each time.
   boost::container::static_vector<Neighbour, kMaxReplyFields - 1> more{};
   /// Any other exchange with a node that has a chain open ends that chain (CiA 301: abort 0x08000022).
   Part part = Part::whole;
@@ -70,8 +75,10 @@ struct ReplyField {
 
 using ReplyFields = boost::container::static_vector<ReplyField, kMaxReplyFields>;
 
-/// How an exchange ended. `ok`: fields of a read (none for a write). `refused_by_drive`: `detail` is the drive's code.
-/// `timed_out`, `link_lost`, `bad_reply`: whether the drive acted is unknown.
+/// How an exchange ended. `ok`: fields of a read (none for a write). A request that no reply is documented for (Keya's
+/// serial control frame) ends ok when its last byte has left: that the drive has taken it is not known by that.
+/// `refused_by_drive`: `detail` is the drive's code. `timed_out`, `link_lost`, `bad_reply`: whether the drive acted is
+/// unknown.
 struct ExchangeResult {
   Errc code = Errc::ok;
   std::uint32_t detail = 0;

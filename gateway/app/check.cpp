@@ -165,7 +165,7 @@ void add_axis(std::string& out, const AxisConfig& config, const drive::AxisModel
 }
 
 bool any_lease(const Config& config) {
-  const auto leased = [](const AxisConfig& axis) { return axis.lease_configured; };
+  const auto leased = [](const AxisConfig& axis) { return axis.lease.on; };
   for (const BusConfig& bus : config.buses) {
     for (const DriveConfig& drive : bus.drives) {
       if (std::any_of(drive.axes.begin(), drive.axes.end(), leased)) return true;

@@ -35,9 +35,10 @@ struct AxisConfig {
   std::int64_t standstill_velocity = 1000;  ///< 0.001 rpm
   std::optional<std::int16_t> homing_method;
   Duration homing_timeout = std::chrono::seconds(60);
-  bool lease_configured = true;  ///< "lease" is not null; read and checked, not yet enforced by this version
-  Command lease_action = Command::quick_stop;  ///< "on_expiry"; none: nothing happens
-  std::string pointer;                         ///< JSON pointer of the entry, for messages
+  LeaseRules lease;
+  Duration jog_timeout = std::chrono::milliseconds(500);
+  std::string motor;    ///< "A", "B": which of the drive's motors; empty: as many as stand before it in the list
+  std::string pointer;  ///< JSON pointer of the entry, for messages
 };
 
 struct DriveConfig {

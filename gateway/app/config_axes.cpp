@@ -37,11 +37,11 @@ AxisLimits read_limits(const ConfigNode& node, ConfigFaults& faults) {
 void read_lease(const ConfigNode& node, AxisConfig& axis) {
   const auto lease = node.child("lease");
   if (!lease) return;
-  axis.lease_configured = !lease->is_null();
+  axis.lease.on = !lease->is_null();
   const std::string on_expiry = lease->string("on_expiry").value_or("quick_stop");
-  axis.lease_action = Command::none;
-  for (const Command command : {Command::quick_stop, Command::halt, Command::disable}) {
-    if (on_expiry == axisgate::text(command)) axis.lease_action = command;
+  axis.lease.on_expiry = LeaseAction::none;
+  for (const LeaseAction action : {LeaseAction::quick_stop, LeaseAction::halt, LeaseAction::disable}) {
+    if (on_expiry == axisgate::text(command_of(action))) axis.lease.on_expiry = action;
   }
 }
 

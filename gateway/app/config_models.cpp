@@ -33,6 +33,9 @@ drive::ResolveInput input_of(const BusConfig& bus, const DriveConfig& config) {
     resolved.standstill_velocity = axis.standstill_velocity;
     resolved.homing_method = axis.homing_method;
     resolved.homing_timeout = axis.homing_timeout;
+    resolved.lease = axis.lease;
+    resolved.jog_timeout = axis.jog_timeout;
+    resolved.motor = axis.motor;
     input.axes.push_back(std::move(resolved));
   }
   return input;
@@ -92,10 +95,11 @@ void check_travel(const drive::AxisModel& model, const drive::DriveModel& drive,
 }
 
 void check_lease(const drive::AxisModel& model, const AxisConfig& axis, ConfigFaults& faults) {
-  if (!axis.lease_configured || axis.lease_action == Command::none || model.command(axis.lease_action)) return;
+  const Command action = command_of(axis.lease.on_expiry);
+  if (!axis.lease.on || action == Command::none || model.command(action)) return;
   faults.add(axis.pointer + "/lease/on_expiry",
              fmt::format("this drive has no {} on its protocol: write quick_stop, halt or disable, whichever it has",
-                         axisgate::text(axis.lease_action)));
+                         axisgate::text(action)));
 }
 
 std::optional<drive::DriveModel> load_model(const BusConfig& bus, const DriveConfig& config, Profiles& profiles,

@@ -15,6 +15,7 @@
 #include "gateway/core/rational.hpp"
 #include "gateway/image/axis_image.hpp"
 #include "gateway/image/command.hpp"
+#include "gateway/image/lease.hpp"
 
 namespace axisgate::drive {
 
@@ -41,6 +42,13 @@ struct ObjectDef {
   /// Nobody has printed its width: read with Exchange::size 0 it is as wide as the drive answers, `size` at most.
   bool any_width = false;
   bool made = false;  ///< not in the drive: statusword, controlword and mode of a virtual axis (virtual_axis.hpp)
+  /// Objects at the same place in the drive: what is written to one is in all of them.
+  std::vector<ObjectId> aliases{};
+  /// Keya's serial control frame: written with all other objects of DriveModel::composed, never alone.
+  bool composed = false;
+  /// Of those: says that motor `slot` is to be on. Sent as 1 only for an axis that shows enabled, but by the write that
+  /// enables it: a motor that has tripped must not come back by a frame meant for its neighbour.
+  bool turns_on = false;
   Nvm nvm = Nvm::no;
   /// The low `size` bytes as the number they stand for.
   [[nodiscard]] std::int64_t number(std::uint32_t raw) const;
@@ -225,6 +233,8 @@ struct AxisModel {
   Duration homing_timeout = std::chrono::seconds(60);
   std::optional<std::int16_t> homing_method;  ///< configured
   bool configured_torque_limit = false;
+  LeaseRules lease;
+  Duration jog_timeout = std::chrono::milliseconds(500);
 
   std::vector<Binding> bindings;                          ///< supported quantities, in the order of their numbers
   std::array<std::int16_t, kQuantityCount> binding_of{};  ///< position in `bindings`, -1: not supported
@@ -240,6 +250,11 @@ struct AxisModel {
   std::vector<ObjectId> state_sources;
   /// Unified mode -> what the drive calls it; absent: refused. In ascending order of the unified number.
   std::vector<std::pair<std::int16_t, std::int64_t>> modes;
+  /// The mode can only be changed while the axis is disabled (Keya: the enable carries it, or it is a parameter).
+  bool mode_needs_disabled = false;
+  /// What the keep-alive sends again, by the mode in force: the set-point object that moves nothing by being repeated.
+  /// A mode that is not listed has none, and its motion ends by the drive's own watchdog.
+  std::vector<std::pair<std::int16_t, ObjectId>> keep_alive{};
   std::vector<std::int16_t> homing_methods;
   std::vector<HomingNeed> homing_needs;
   /// Velocity and torque set-points that must hold 0 before torque comes on, those without a known unit included: 0 is
@@ -314,6 +329,12 @@ struct CanopenFacts {
   }
 };
 
+/// Values that a drive sends by itself, in a frame of its own (Keya's heartbeat).
+struct UnaskedFacts {
+  Duration every{};  ///< 0: not known
+  std::vector<ObjectId> objects;
+};
+
 /// The gateway's own node-ID: in the drives' 1016h, and in no configuration of a drive.
 inline constexpr std::uint8_t kOwnNode = 127;
 
@@ -336,9 +357,13 @@ struct DriveModel {
   /// Written in the setup list so that it does: alarm no_comm_watchdog where the drive does not hold what was written.
   std::vector<ObjectId> loss_objects;
   std::string loss_text;  ///< what the drive then does, and what is not known of it; may be empty
-  RtuFacts rtu;           ///< Modbus RTU alone
-  CanopenFacts canopen;   ///< CANopen alone
-  Nvm nvm = Nvm::no;      ///< of objects that are not in `objects` (the mailbox reaches them)
+  /// The drive disables itself unless it is commanded so often (profile key "keepalive"); 0: it does not.
+  Duration keep_alive{};
+  std::vector<ObjectId> composed{};  ///< Keya's serial protocols: the fields of the control frame
+  UnaskedFacts unasked{};            ///< Keya's CAN protocol
+  RtuFacts rtu;                      ///< Modbus RTU alone
+  CanopenFacts canopen;              ///< CANopen alone
+  Nvm nvm = Nvm::no;                 ///< of objects that are not in `objects` (the mailbox reaches them)
   std::array<Duration, 3> poll_period{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
                                       std::chrono::milliseconds(1000)};
 

@@ -51,6 +51,9 @@ struct ResolveAxis {
   std::int64_t standstill_velocity = 1000;
   std::optional<std::int16_t> homing_method;
   Duration homing_timeout = std::chrono::seconds(60);
+  LeaseRules lease;
+  Duration jog_timeout = std::chrono::milliseconds(500);
+  std::string motor;  ///< "A", "B": which of the drive's motors; empty: its place in the list
 };
 
 struct ResolveInput {

@@ -148,6 +148,8 @@ void resolve_state(Resolving& r, bus::AxisSlot slot) {
   axis.name = input.name;
   axis.inverted = input.inverted;
   axis.standstill_velocity = input.standstill_velocity;
+  axis.lease = input.lease;
+  axis.jog_timeout = input.jog_timeout;
   axis.homing_timeout = input.homing_timeout;
   axis.homing_method = input.homing_method;
   axis.configured_torque_limit = input.torque_limit.has_value();

@@ -10,6 +10,7 @@
 
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
+#include "gateway/image/lease.hpp"
 #include "gateway/image/quantity.hpp"
 
 namespace axisgate {
@@ -105,8 +106,11 @@ struct AxisImage {
   MotionState motion_state = MotionState::none;
   std::uint16_t motion_id = 0;
   std::uint32_t alarms = 0;
-  std::uint16_t inputs = 0;          ///< AxisInput bits
-  std::uint16_t level_coils = 0;     ///< coils 0, 3, 7 read back: bits 0 enabled, 3 halted, 7 velocity running
+  std::uint16_t inputs = 0;  ///< AxisInput bits
+  /// Coils 0, 3, 7, 8, 9 read back: bits 0 enabled, 3 halted, 7 velocity running, 8 and 9 jogging.
+  std::uint16_t level_coils = 0;
+  std::uint32_t jog_velocity = 0;  ///< row 58, 0.001 rpm: the gateway's own
+  Lease lease{};
   Instant oldest_cyclic = kLongAgo;  ///< when the oldest cyclic value was confirmed
   LatestResult latest;
   std::uint32_t sequence = 0;
@@ -120,8 +124,8 @@ struct AxisImage {
   [[nodiscard]] std::uint32_t valid_bits() const;
 };
 
-/// Whether no client could tell the two apart: what `sequence` counts (design 3.2). Ages, times, `sequence` itself and
-/// the latest result do not count.
+/// Whether no client could tell the two apart: what `sequence` counts (design 3.2). Ages, times, how long the lease
+/// still runs, `sequence` itself and the latest result do not count.
 [[nodiscard]] bool shows_the_same(const AxisImage& a, const AxisImage& b);
 
 }  // namespace axisgate

@@ -36,6 +36,12 @@ std::string_view text(Command command) {
       return "take_over";
     case Command::end_halt:
       return "end_halt";
+    case Command::jog_forward:
+      return "jog_forward";
+    case Command::jog_reverse:
+      return "jog_reverse";
+    case Command::jog_end:
+      return "jog_end";
   }
   return "?";
 }

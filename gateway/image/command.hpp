@@ -5,6 +5,7 @@
 
 #include <boost/container/static_vector.hpp>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
 #include "gateway/image/axis_image.hpp"
+#include "gateway/image/lease.hpp"
 
 namespace axisgate {
 
@@ -31,7 +33,11 @@ enum class Command : std::uint8_t {
   save_parameters = 12,
   release = 13,
   take_over = 14,
-  end_halt = 30,  ///< coil 3 going 1 -> 0; never a register value, never in supported_commands
+  // Coils alone; never a register value, never in supported_commands.
+  end_halt = 30,     ///< coil 3 going 1 -> 0
+  jog_forward = 31,  ///< coil 8 going 0 -> 1
+  jog_reverse = 32,  ///< coil 9 going 0 -> 1
+  jog_end = 33,      ///< coil 8 or 9 going 1 -> 0, or both at 1: a halt where the axis jogs, else nothing
 };
 inline constexpr std::uint16_t kLastCommand = 14;
 [[nodiscard]] std::string_view text(Command command);
@@ -39,11 +45,7 @@ inline constexpr std::uint16_t kLastCommand = 14;
   return c == Command::disable || c == Command::quick_stop || c == Command::halt;
 }
 
-enum class Role : std::uint8_t { none = 0, viewer = 1, operator_ = 2, engineer = 3 };
 [[nodiscard]] std::string_view text(Role role);
-
-/// One client of any face: a TCP connection, a host (listener option "client": "address"), a DDS writer. Never reused.
-using ClientId = std::uint64_t;
 
 /// The object mailbox (registers 80..88) and FC 43/13.
 struct ObjectRequest {
@@ -67,6 +69,12 @@ struct Setpoint {
 struct Group {
   ClientId client = 0;
   Role role = Role::viewer;
+  /// Who asks; none: the gateway itself, which owns nothing and is refused nothing.
+  std::shared_ptr<const ClientLife> life{};
+  /// The request writes what makes its client the owner (design 3.5: offsets 40..79, coils 4..9, coil 0 = 1, a mailbox
+  /// or 43/13 write). A group that asks for nothing is submitted for this alone.
+  bool claims = false;
+  bool beats = false;  ///< register 56 was written with another value than before
   /// In register order; quantities but mode and controlword, each at most once.
   boost::container::static_vector<Setpoint, kQuantityCount> setpoints;
   std::optional<std::int16_t> mode;
@@ -77,11 +85,28 @@ struct Group {
   Command command = Command::none;
   /// Row 78; the axis keeps it (gateway's own, 0 at start).
   std::optional<std::int32_t> set_position_value;
+  std::optional<std::uint32_t> jog_velocity{};  ///< row 58; the axis keeps it (gateway's own, 0 at start)
+  std::optional<Command> jog_again{};           ///< jog_forward or jog_reverse: its coil was written 1 once more
   std::optional<ObjectRequest> object;
   std::uint16_t command_id = 0;
   Instant start_by = kNever;   ///< not begun by then: never_started
   Instant answer_by = kNever;  ///< begun, not acknowledged by then: timed_out
 };
+
+/// The stop that a lease's action is; none: nothing is done.
+[[nodiscard]] constexpr Command command_of(LeaseAction action) {
+  switch (action) {
+    case LeaseAction::quick_stop:
+      return Command::quick_stop;
+    case LeaseAction::halt:
+      return Command::halt;
+    case LeaseAction::disable:
+      return Command::disable;
+    case LeaseAction::none:
+      break;
+  }
+  return Command::none;
+}
 
 struct GroupResult {
   Outcome outcome;

@@ -87,7 +87,7 @@ TEST(Check, AnOverloadedBusIsNamedWithPeriodsThatFit) {
 TEST(Check, SaysOnceThatLeasesAreNotEnforced) {
   LoadedConfig loaded = one_axis();
   EXPECT_THAT(check(loaded).text, HasSubstr("Leases are not enforced by this version"));
-  loaded.config.buses[0].drives[0].axes[0].lease_configured = false;
+  loaded.config.buses[0].drives[0].axes[0].lease.on = false;
   EXPECT_THAT(check(loaded).text, Not(HasSubstr("Leases are not enforced")));
 }
 

@@ -86,8 +86,8 @@ TEST_F(ConfigLoader, FillsInEveryDefault) {
   EXPECT_FALSE(axis.inverted);
   EXPECT_EQ(axis.standstill_velocity, 1000);
   EXPECT_EQ(axis.homing_timeout, milliseconds(60000));
-  EXPECT_TRUE(axis.lease_configured);
-  EXPECT_EQ(axis.lease_action, Command::quick_stop);
+  EXPECT_TRUE(axis.lease.on);
+  EXPECT_EQ(axis.lease.on_expiry, LeaseAction::quick_stop);
   EXPECT_THAT(loaded.warnings, IsEmpty());
 }
 
@@ -140,7 +140,7 @@ TEST_F(ConfigLoader, ReadsEveryKeyOfABusAndItsAxis) {
   EXPECT_EQ(axis.limits.acceleration, 20000);
   EXPECT_EQ(axis.limits.torque, 900);
   EXPECT_EQ(axis.limits.quick_stop_deceleration_min, 3000);
-  EXPECT_FALSE(axis.lease_configured);
+  EXPECT_FALSE(axis.lease.on);
   EXPECT_EQ(axis.standstill_velocity, 2000);
   EXPECT_EQ(axis.homing_timeout, milliseconds(90000));
 }

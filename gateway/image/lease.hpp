@@ -1,0 +1,71 @@
+// Who owns an axis, and until when (design 3.5), in words that every face and the drive layer share.
+// Promises that a lease can be judged at any time from what is in it, without asking anybody.
+// Never decides what becomes of an axis whose lease has run out: gateway/drive/ownership.hpp does.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "gateway/core/clock.hpp"
+
+namespace axisgate {
+
+enum class Role : std::uint8_t { none = 0, viewer = 1, operator_ = 2, engineer = 3 };
+
+/// One client of any face: a TCP connection, a host (listener option "client": "address"), a DDS writer. Never reused.
+using ClientId = std::uint64_t;
+
+/// Where a client comes from: its IP address (IPv4 mapped into IPv6), or a DDS participant's GUID.
+using Origin = std::array<std::uint8_t, 16>;
+
+/// What its face knows of one client, kept up to date as long as anybody asks. The face alone writes it.
+struct ClientLife {
+  ClientId id = 0;
+  Role role = Role::viewer;
+  std::uint8_t rank = 0;  ///< 0..9: command take_over takes an axis from a lower one
+  Origin origin{};
+  std::string name;                 ///< "192.168.1.7:51234", for events
+  Instant last_request = kLongAgo;  ///< any request, reads included
+  Instant heartbeat = kLongAgo;     ///< gateway register 8 was written with another value than before
+  bool connected = true;            ///< false: its connection has ended, its leases are orphans
+};
+
+/// What keeps a lease alive.
+enum class LeaseRenewal : std::uint8_t {
+  any,        ///< any request of the owner
+  write,      ///< a write to this axis
+  heartbeat,  ///< a changed value in register 56 of the axis or 8 of the gateway
+};
+
+/// What is done to an enabled axis whose lease has run out.
+enum class LeaseAction : std::uint8_t { none, quick_stop, halt, disable };
+
+/// Configuration key "lease" of an axis.
+struct LeaseRules {
+  bool on = true;  ///< false ("lease": null): nobody owns the axis, nobody is refused, nothing runs out
+  Duration timeout = std::chrono::milliseconds(2000);
+  LeaseAction on_expiry = LeaseAction::quick_stop;
+  LeaseRenewal renew = LeaseRenewal::any;
+};
+
+/// The lease of one axis as the image shows it.
+struct Lease {
+  std::shared_ptr<const ClientLife> owner{};  ///< none: nobody owns the axis
+  bool running = false;        ///< without an owner: open to every operator, and on_expiry waits at its end
+  Instant renewed = kLongAgo;  ///< taken, or renewed by a write or by register 56
+  LeaseRules rules{};
+  /// When it runs out as things stand; kNever where nothing does.
+  [[nodiscard]] Instant until() const {
+    if (!running) return kNever;
+    Instant from = renewed;
+    if (owner && rules.renew == LeaseRenewal::any) from = std::max(from, owner->last_request);
+    if (owner && rules.renew == LeaseRenewal::heartbeat) from = std::max(from, owner->heartbeat);
+    return from + rules.timeout;
+  }
+  [[nodiscard]] bool owned_by(ClientId client) const { return owner && owner->id == client; }
+};
+
+}  // namespace axisgate
