@@ -132,7 +132,7 @@ Group stop_alone(const Group& group) {
 }
 
 bool stop_latches(const AxisCore& core, const Group& group) {
-  if (group.command == Command::quick_stop) return true;
+  if (group.latches || group.command == Command::quick_stop) return true;
   if (group.command == Command::halt) return halt_is_quick_stop(core);
   return group.controlword && request_of(*group.controlword) == Request402::quick_stop;
 }

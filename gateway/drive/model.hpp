@@ -229,6 +229,7 @@ struct AxisModel {
   AxisNumber number = 0;
   std::string name;
   bool inverted = false;
+  Rational units_per_rev{10000};
   std::int64_t standstill_velocity = 1000;  ///< 0.001 rpm
   Duration homing_timeout = std::chrono::seconds(60);
   std::optional<std::int16_t> homing_method;  ///< configured

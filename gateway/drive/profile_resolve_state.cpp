@@ -148,6 +148,7 @@ void resolve_state(Resolving& r, bus::AxisSlot slot) {
   axis.name = input.name;
   axis.inverted = input.inverted;
   axis.standstill_velocity = input.standstill_velocity;
+  axis.units_per_rev = input.units_per_rev;
   axis.lease = input.lease;
   axis.jog_timeout = input.jog_timeout;
   axis.homing_timeout = input.homing_timeout;

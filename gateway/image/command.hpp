@@ -83,6 +83,7 @@ struct Group {
   /// axis.
   bool single_controlword = false;
   Command command = Command::none;
+  bool latches = false;  ///< a lease's action: its stop latches the axis, whichever it is (design 3.4)
   /// Row 78; the axis keeps it (gateway's own, 0 at start).
   std::optional<std::int32_t> set_position_value;
   std::optional<std::uint32_t> jog_velocity{};  ///< row 58; the axis keeps it (gateway's own, 0 at start)
