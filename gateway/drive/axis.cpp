@@ -11,7 +11,11 @@
 namespace axisgate::drive {
 
 Axis::Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, AxisImage& image, AxisHost& host)
-    : host_(host), image_(image), slot_(slot), core_{drive, drive.axes[slot], store} {
+    : host_(host),
+      image_(image),
+      slot_(slot),
+      core_{drive, drive.axes[slot], store},
+      ownership_(image.lease, drive.axes[slot].lease) {
   show_model(core_.model, image_);
   set_alarm(AxisAlarm::no_comm_watchdog, !drive.stops_by_itself);
 }
@@ -59,21 +63,6 @@ void Axis::on_samples() {
 }
 
 void Axis::on_scale() { show_model(core_.model, image_); }
-
-void Axis::on_client_gone(ClientId client) {
-  // Others go on with what they were told; leases will settle it for every drive.
-  const bool nothing_else_would = core_.is_virtual() && !core_.drive.stops_by_itself;
-  if (!nothing_else_would || motion_by_ != client) return;
-  core_.now = host_.now();
-  core_.link = host_.link_state();
-  const AxisFacts facts = core_.facts();
-  if (core_.motion.running() == MotionKind::none && !facts.moving && !motion_pending()) return;
-  host_.event(image_.number, EventKind::command, 0, "the client that commanded the motion is gone: quick stop");
-  Group stop;
-  stop.role = Role::engineer;
-  stop.command = Command::quick_stop;
-  static_cast<void>(submit(stop, [](const GroupResult&) {}));
-}
 
 // --- Taking a group ------------------------------------------------------------------------------------------------
 
@@ -124,13 +113,13 @@ GroupResult Axis::refuse(const Group& group, Errc code) {
   return {outcome, 0, 0};
 }
 
-std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_result) {
-  core_.now = host_.now();
-  core_.link = host_.link_state();
+std::optional<GroupResult> Axis::carry_out(const Group& asked, Errc refusal, GroupCallback on_result) {
   auto [group, code] = as_quantities(core_, asked);
   const bool stop = holds_stop(group);
   if (code == Errc::ok) code = admit(core_, group);
   Pending pending;
+  pending.refusal = refusal;
+  pending.jogs = jog_.active() && group.command == Command::run_velocity && group.client == jog_.client();
   if (code != Errc::ok) {
     // A stop is carried out whatever nonsense stands beside it; the answer tells of the nonsense.
     if (!stop) return refuse(asked, code);
@@ -144,6 +133,7 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
     if (stop) publish(core_.now);
     return refuse(asked, of_link);
   }
+  claim(group);
   if (stop && pending.refusal == Errc::ok && join_stop(group, on_result)) {
     publish(core_.now);
     return std::nullopt;
@@ -316,10 +306,17 @@ void Axis::on_time(Instant now) {
     conversation.abort({conversation.begun() ? Errc::timed_out : Errc::never_started, 0});
     complete(id, conversation.result());
   }
+  core_.now = now;
+  core_.link = host_.link_state();
+  end_expired_lease();
+  if (!jog_.expired(now)) return;
+  jog_.end();
+  host_.event(image_.number, EventKind::warning, 0, "jog: its coil was not written 1 again in time: halted");
+  stop_by_itself(Command::halt, false, [](const GroupResult&) {});
 }
 
 Instant Axis::next_deadline() const {
-  Instant next = core_.motion.deadline();
+  Instant next = std::min({core_.motion.deadline(), ownership_.until(), jog_.until()});
   for (const Pending& p : pending_)
     if (!p.callbacks.empty()) next = std::min(next, p.conversation->group().answer_by);
   return next;

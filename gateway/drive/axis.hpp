@@ -1,6 +1,7 @@
 // One axis at work: takes groups, queues them with the bus, carries them out one after another and shows the axis's
 // image. Promises each group one result; a stop taken at any time, ahead of everything; callbacks only after the image
-// shows what they tell. Never enables or moves the axis by itself (a homing out of time is halted, nothing else).
+// shows what they tell. Never enables or moves the axis by itself: it stops one whose owner has fallen silent, a jog
+// whose button is let go, and a homing out of time, nothing else.
 #pragma once
 
 #include <memory>
@@ -8,6 +9,8 @@
 #include <vector>
 
 #include "gateway/drive/conversation.hpp"
+#include "gateway/drive/jog.hpp"
+#include "gateway/drive/ownership.hpp"
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/events.hpp"
 
@@ -55,8 +58,14 @@ class Axis {
   void on_samples();
   /// The drive's own constants were read: scales and limits have changed.
   void on_scale();
-  /// This client will never speak again: a motion that it commanded, where nothing else would stop it, is stopped.
+  /// This client will never speak again: its lease is an orphan. Where leases are off, a motion that it commanded is
+  /// stopped if nothing else would stop it.
   void on_client_gone(ClientId client);
+  /// Bring-up has found the axis enabled: it is open to every operator, until its lease runs out (design 3.5).
+  void on_adopted();
+  /// Somebody answers for what the axis does: its owner's lease runs, or leases are off. What must be commanded again
+  /// and again (profile key "keepalive") is commanded only so long.
+  [[nodiscard]] bool commands_live() const { return ownership_.live(host_.now()); }
 
   /// The order's next exchange; none: it waits or has just ended.
   [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::OrderId id);
@@ -91,6 +100,7 @@ class Axis {
     std::vector<GroupCallback> callbacks;
     bool starts_motion = false;
     bool by_mailbox = false;
+    bool jogs = false;                     ///< it starts a jog
     Errc refusal = Errc::ok;               ///< of what stood beside the stop; the answer once the stop is done
     std::optional<ClientId> stopped_by{};  ///< whose stop came first after it
   };
@@ -98,6 +108,21 @@ class Axis {
     GroupResult result;
     std::vector<GroupCallback> callbacks;
   };
+  // What comes before a group is carried out: who asks, and for what besides (axis_ownership.cpp).
+  [[nodiscard]] Errc judge_owner(const Group& group) const;
+  void claim(const Group& group);
+  [[nodiscard]] GroupResult release(const Group& group);
+  [[nodiscard]] std::optional<GroupResult> take_over(const Group& group, GroupCallback on_result);
+  [[nodiscard]] std::optional<GroupResult> taken_over(const Group& group, GroupCallback on_result);
+  void end_expired_lease();
+  void on_lease_action(const GroupResult& result);
+  [[nodiscard]] Errc begin_jog(Group& group);
+  [[nodiscard]] bool jog_must_stop(Command direction, std::int64_t velocity) const;
+  void observe_jog();
+  void stop_by_itself(Command command, bool latches, GroupCallback on_result);
+  /// `refusal`: of what stood beside the stop that the group is.
+  [[nodiscard]] std::optional<GroupResult> carry_out(const Group& asked, Errc refusal, GroupCallback on_result);
+
   [[nodiscard]] Errc link_admits(bool stop, bool reads_alone) const;
   [[nodiscard]] bool join_stop(const Group& group, GroupCallback& on_result);
   void accept_stop(const Group& group);
@@ -121,6 +146,8 @@ class Axis {
   Duration cycle_{};
   Instant last_statusword_ = kLongAgo;
   std::optional<ClientId> motion_by_{};  ///< who commanded the motion that runs
+  Ownership ownership_;
+  Jog jog_;
 };
 
 }  // namespace axisgate::drive

@@ -25,12 +25,10 @@ void Axis::observe(Instant now) {
     if (binding.object != kNoObject && binding.object != core_.model.controlword)
       clamped = clamped || core_.store[binding.object].clamped;
   set_alarm(AxisAlarm::clamped, clamped);
+  observe_jog();
   if (!core_.motion.take_homing_timeout()) return;
   host_.event(image_.number, EventKind::warning, 0, "homing took longer than its timeout: halted");
-  Group halt;
-  halt.role = Role::engineer;
-  halt.command = Command::halt;
-  static_cast<void>(submit(halt, [](const GroupResult&) {}));
+  stop_by_itself(Command::halt, false, [](const GroupResult&) {});
 }
 
 // --- The image -----------------------------------------------------------------------------------------------------
@@ -47,6 +45,10 @@ void Axis::publish(Instant now) {
   const AxisImage before = image_;
   image_.link_state = host_.link_state();
   show_state(core_, image_, now);
+  constexpr std::uint16_t kJogForward = 1U << 8, kJogReverse = 1U << 9;
+  if (jog_.active())
+    image_.level_coils = static_cast<std::uint16_t>(
+        image_.level_coils | (jog_.direction() == Command::jog_forward ? kJogForward : kJogReverse));
   if (!shows_the_same(before, image_)) {
     ++image_.sequence;
     tell_changes(before);

@@ -84,6 +84,8 @@ void Drive::end_bring_up() {
     event(axes_.front()->core().model.number, EventKind::warning, 0,
           "setup: the drive does not hold what was written to " + model_.object(id).name);
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, adopted_);
+  if (adopted_)
+    for (auto& axis : axes_) axis->on_adopted();
   judge_loss_reaction();
   set_state(LinkState::online);
   for (const auto& axis : axes_)

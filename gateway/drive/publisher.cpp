@@ -111,6 +111,9 @@ void show_model(const AxisModel& model, AxisImage& image) {
   image.supported = model.supported;
   image.writable = model.writable;
   image.supported_commands = model.supported_commands;
+  if (model.lease.on)
+    for (const Command command : {Command::release, Command::take_over})
+      image.supported_commands |= 1U << static_cast<unsigned>(command);
   image.supported_modes = model.supported_modes;
   for (const QuantityRow& row : quantity_table())
     image.limits[static_cast<std::size_t>(row.quantity)] = range_of(row.type);

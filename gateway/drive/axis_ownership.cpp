@@ -1,0 +1,277 @@
+// What an axis asks before it carries anything out: who owns it, whether its owner is still there, and whether a button
+// is still held (design 3.4 "Jog", 3.5).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "gateway/drive/admission.hpp"
+#include "gateway/drive/axis.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+bool asks_nothing(const Group& group) {
+  return group.setpoints.empty() && !group.mode && !group.controlword && group.command == Command::none &&
+         !group.set_position_value && !group.object && !group.jog_velocity;
+}
+
+bool is_jog(Command command) { return command == Command::jog_forward || command == Command::jog_reverse; }
+
+std::string in_words(Command stop) { return stop == Command::quick_stop ? "quick stop" : std::string(text(stop)); }
+
+}  // namespace
+
+// --- Who asks ------------------------------------------------------------------------------------------------------
+
+// Reads are free, and stops are open to every operator, without taking the lease.
+Errc Axis::judge_owner(const Group& group) const {
+  if (reads_alone(group)) return Errc::ok;
+  const bool stops_alone = holds_stop(group) && !group.claims;
+  if (stops_alone || group.command == Command::jog_end) return Errc::ok;
+  if (asks_nothing(group) && !group.claims && !group.jog_again) return Errc::ok;
+  return ownership_.judge(group.life, group.claims, core_.now);
+}
+
+// What was accepted from a client makes it the owner.
+void Axis::claim(const Group& group) {
+  if (group.jog_velocity) image_.jog_velocity = *group.jog_velocity;
+  if (!group.claims) return;
+  const Ownership::Taken taken = ownership_.take(group.life, core_.now);
+  if (taken == Ownership::Taken::nothing) return;
+  jog_.end();
+  host_.event(image_.number, EventKind::lease, 0, drive::text(taken, *group.life));
+}
+
+std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_result) {
+  core_.now = host_.now();
+  core_.link = host_.link_state();
+  end_expired_lease();
+  Group group = asked;
+  // Bits 0..3 = 6 or 7 are a stop of the owner's in a block of registers as well.
+  if (group.controlword && ownership_.is_owner(group.client)) group.single_controlword = true;
+  Errc refusal = judge_owner(group);
+  ownership_.wrote(group.life, group.beats, core_.now);
+  if (refusal != Errc::ok) {
+    if (!holds_stop(group)) return refuse(asked, refusal);
+    group = stop_alone(group);
+    group.claims = false;
+  }
+  if (group.jog_again) jog_.again(*group.jog_again, group.client, core_.now);
+  switch (group.command) {
+    case Command::release:
+      return release(group);
+    case Command::take_over:
+      return take_over(group, std::move(on_result));
+    case Command::jog_forward:
+    case Command::jog_reverse:
+      if (const Errc code = begin_jog(group); code != Errc::ok) return refuse(asked, code);
+      break;
+    case Command::jog_end:
+      if (!jog_.active() || jog_.client() != group.client) return GroupResult{};
+      jog_.end();
+      group.command = Command::halt;
+      break;
+    default:
+      break;
+  }
+  if (group.jog_velocity) {
+    const Binding* velocity = core_.model.binding(Quantity::target_velocity);
+    if (velocity == nullptr || !core_.model.command(Command::run_velocity)) return refuse(asked, Errc::not_supported);
+    if (!velocity->limits.holds(*group.jog_velocity)) return refuse(asked, Errc::bad_value);
+  }
+  if (asks_nothing(group)) {
+    claim(group);
+    publish(core_.now);
+    return GroupResult{};
+  }
+  const bool stop = holds_stop(group);
+  const auto owner = ownership_.owner();
+  if (stop && group.life && owner && owner->id != group.client)
+    host_.event(image_.number, EventKind::command, 0,
+                fmt::format("stopped by {}, which does not own the axis", group.life->name));
+  if (stop || (!is_jog(asked.command) && starts_motion(core_, group))) jog_.end();
+  auto result = carry_out(group, refusal, std::move(on_result));
+  if (result && is_jog(asked.command)) jog_.end();
+  return result;
+}
+
+GroupResult Axis::release(const Group& group) {
+  const auto owner = ownership_.owner();
+  const Errc code = ownership_.release(group.life, core_.facts().enabled(), core_.now);
+  if (code != Errc::ok) return refuse(group, code);
+  jog_.end();
+  if (owner) {
+    const bool enabled = ownership_.until() != kNever;
+    host_.event(image_.number, EventKind::lease, 0,
+                owner->name + (enabled ? " has released the axis, which is enabled: open to every operator for now"
+                                       : " has released the axis"));
+  }
+  show_latest(group, {});
+  publish(core_.now);
+  return {};
+}
+
+// Command 14: from a lower rank, after a halt. What else stands in the request comes after it, as the new owner's.
+std::optional<GroupResult> Axis::take_over(const Group& group, GroupCallback on_result) {
+  if (const Errc code = ownership_.may_take_over(group.life); code != Errc::ok) return refuse(group, code);
+  const auto owner = ownership_.owner();
+  const bool from_another = owner && group.life && owner->id != group.life->id;
+  if (!from_another || !core_.facts().enabled()) return taken_over(group, std::move(on_result));
+  Group halt;
+  halt.client = group.client;
+  halt.role = group.role;
+  halt.life = group.life;
+  halt.command = Command::halt;
+  halt.command_id = group.command_id;
+  halt.start_by = group.start_by;
+  halt.answer_by = group.answer_by;
+  auto halted = carry_out(halt, Errc::ok, [this, group, on_result](const GroupResult& result) {
+    if (result.outcome.code != Errc::ok) {
+      on_result(result);
+    } else if (const auto done = taken_over(group, on_result)) {
+      on_result(*done);
+    }
+  });
+  if (halted && halted->outcome.code == Errc::ok) return taken_over(group, std::move(on_result));
+  return halted;
+}
+
+std::optional<GroupResult> Axis::taken_over(const Group& group, GroupCallback on_result) {
+  core_.now = host_.now();
+  const auto before = ownership_.owner();
+  if (const Ownership::Taken taken = ownership_.take(group.life, core_.now); taken != Ownership::Taken::nothing) {
+    jog_.end();
+    host_.event(image_.number, EventKind::lease, 0,
+                drive::text(taken, *group.life) + (before ? " (before: " + before->name + ")" : std::string()));
+  }
+  Group rest = group;
+  rest.command = Command::none;
+  if (!asks_nothing(rest)) return submit(rest, std::move(on_result));
+  show_latest(group, {});
+  publish(core_.now);
+  return GroupResult{};
+}
+
+// --- When nobody is there any more -----------------------------------------------------------------------------------
+
+void Axis::stop_by_itself(Command command, bool latches, GroupCallback on_result) {
+  Group stop;
+  stop.role = Role::engineer;
+  stop.command = command;
+  stop.latches = latches;
+  if (const auto result = carry_out(stop, Errc::ok, on_result)) on_result(*result);
+}
+
+void Axis::end_expired_lease() {
+  const auto expired = ownership_.take_expired(core_.now);
+  if (!expired) return;
+  jog_.end();
+  const bool writes_wait = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
+    return !p.conversation->is_stop() && !reads_alone(p.conversation->group());
+  });
+  const Command action = command_of(ownership_.rules().on_expiry);
+  std::string what = "nobody has taken over the enabled axis";
+  if (expired->owner) {
+    what = "the lease of " + expired->owner->name + " has run out";
+    if (!expired->owner->connected) what += " after its connection had ended";
+  }
+  const bool acts = core_.facts().enabled() || writes_wait;
+  if (!acts || action == Command::none) {
+    host_.event(image_.number, EventKind::lease, 0, what + (acts ? ": nothing is done (on_expiry none)" : ""));
+    return;
+  }
+  if (expired->owner && !expired->owner->connected)
+    what += " (one-shot tools need \"lease\": null or \"client\": \"address\")";
+  host_.event(image_.number, EventKind::lease, static_cast<std::uint32_t>(action), what + ": " + in_words(action));
+  stop_by_itself(action, true, [this](const GroupResult& result) { on_lease_action(result); });
+}
+
+// A stop that the drive did not carry out is not given up while the axis is enabled: one lease later it is tried again.
+void Axis::on_lease_action(const GroupResult& result) {
+  if (result.outcome.code == Errc::ok || !core_.facts().enabled()) return;
+  host_.event(image_.number, EventKind::lease, 0, "the stop that the lease asked for has failed: it is tried again");
+  ownership_.open(host_.now());
+}
+
+void Axis::on_adopted() {
+  core_.now = host_.now();
+  core_.link = host_.link_state();
+  if (!core_.facts().enabled() || ownership_.owner() || !ownership_.rules().on) return;
+  ownership_.open(core_.now);
+  const Command action = command_of(ownership_.rules().on_expiry);
+  host_.event(image_.number, EventKind::lease, 0,
+              fmt::format("found enabled, and nobody owns it: {} unless a client writes to it within {} ms",
+                          action == Command::none ? "nothing is done" : in_words(action),
+                          ownership_.rules().timeout / std::chrono::milliseconds(1)));
+}
+
+void Axis::on_client_gone(ClientId client) {
+  core_.now = host_.now();
+  core_.link = host_.link_state();
+  if (ownership_.rules().on) {
+    if (ownership_.is_owner(client))
+      host_.event(image_.number, EventKind::lease, 0,
+                  ownership_.owner()->name + " has closed its connection: its lease goes on until it runs out");
+    return;
+  }
+  // Leases are off: others go on with what they were told. But where neither the drive nor anybody else would ever stop
+  // the motor, it is not left running.
+  const bool nothing_else_would = core_.is_virtual() && !core_.drive.stops_by_itself;
+  if (!nothing_else_would || motion_by_ != client) return;
+  if (core_.motion.running() == MotionKind::none && !core_.facts().moving && !motion_pending()) return;
+  host_.event(image_.number, EventKind::command, 0, "the client that commanded the motion is gone: quick stop");
+  stop_by_itself(Command::quick_stop, false, [](const GroupResult&) {});
+}
+
+// --- Jog -------------------------------------------------------------------------------------------------------------
+
+// A jog is a run at the jog velocity that needs its button: what the drive is told is the same.
+Errc Axis::begin_jog(Group& group) {
+  const Binding* velocity = core_.model.binding(Quantity::target_velocity);
+  if (velocity == nullptr || !core_.model.command(Command::run_velocity)) return Errc::not_supported;
+  const Command direction = group.command;
+  const auto speed = static_cast<std::int64_t>(image_.jog_velocity);
+  const std::int64_t signed_speed = direction == Command::jog_forward ? speed : -speed;
+  if (speed == 0 || !velocity->limits.holds(signed_speed)) return Errc::bad_value;
+  if (jog_must_stop(direction, 0)) return Errc::state_unsuitable;
+  group.setpoints.push_back({Quantity::target_velocity, signed_speed});
+  group.command = Command::run_velocity;
+  jog_.start(direction, group.client, core_.now, core_.model.jog_timeout);
+  return Errc::ok;
+}
+
+bool Axis::jog_must_stop(Command direction, std::int64_t velocity) const {
+  const Binding* target = core_.model.binding(Quantity::target_position);
+  const auto position = core_.value(Quantity::position_actual);
+  if (!core_.homed || target == nullptr || !position) return false;
+  JogTravel travel;
+  travel.position = *position;
+  travel.velocity = velocity;
+  travel.deceleration = core_.value(Quantity::profile_deceleration);
+  travel.units_per_rev = core_.model.units_per_rev;
+  travel.latency = 2 * cycle_;  // the sample is as old as one, and the halt waits for one exchange
+  travel.limits = target->limits;
+  if (const auto low = core_.value(Quantity::position_limit_min)) travel.limits.min = std::max(travel.limits.min, *low);
+  if (const auto high = core_.value(Quantity::position_limit_max))
+    travel.limits.max = std::min(travel.limits.max, *high);
+  return travel.limits.min < travel.limits.max && must_stop(travel, direction);
+}
+
+void Axis::observe_jog() {
+  if (!jog_.active()) return;
+  const bool starting = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) { return p.jogs; });
+  if (!starting && core_.motion.running() != MotionKind::velocity) {
+    jog_.end();  // a fault, a stop, a loss, or another command: only a new press jogs again
+    return;
+  }
+  const std::int64_t shown = std::llabs(core_.value(Quantity::velocity_actual).value_or(0));
+  const std::int64_t speed = std::max<std::int64_t>(shown, image_.jog_velocity);
+  if (starting || !jog_must_stop(jog_.direction(), speed)) return;
+  jog_.end();
+  host_.event(image_.number, EventKind::warning, 0, "jog: halted at the position limit");
+  stop_by_itself(Command::halt, false, [](const GroupResult&) {});
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,54 @@
+// A jog: the axis runs while a button is held, and not a moment longer (design 3.4, "Jog"). Pure.
+// Promises that it ends by itself once its coil was not written 1 again within its time, and that nothing but a new
+// press begins it anew. Never moves or stops an axis: the axis asks it, and halts.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "gateway/core/rational.hpp"
+#include "gateway/image/command.hpp"
+
+namespace axisgate::drive {
+
+class Jog {
+ public:
+  void start(Command direction, ClientId client, Instant now, Duration timeout) {
+    direction_ = direction;
+    client_ = client;
+    until_ = now + timeout;
+    timeout_ = timeout;
+  }
+  /// Its coil was written 1 once more.
+  void again(Command direction, ClientId client, Instant now) {
+    if (active() && direction == direction_ && client == client_) until_ = now + timeout_;
+  }
+  void end() { direction_ = Command::none; }
+
+  [[nodiscard]] bool active() const { return direction_ != Command::none; }
+  /// jog_forward, jog_reverse, or none.
+  [[nodiscard]] Command direction() const { return direction_; }
+  [[nodiscard]] ClientId client() const { return client_; }
+  [[nodiscard]] Instant until() const { return active() ? until_ : kNever; }
+  [[nodiscard]] bool expired(Instant now) const { return active() && now >= until_; }
+
+ private:
+  Command direction_ = Command::none;
+  ClientId client_ = 0;
+  Instant until_ = kNever;
+  Duration timeout_{};
+};
+
+/// What a jog near a position limit is judged by. All in register units.
+struct JogTravel {
+  std::int64_t position = 0;
+  std::int64_t velocity = 0;  ///< signed, 0.001 rpm: the faster of what is shown and what was asked for
+  std::optional<std::int64_t> deceleration{};  ///< 0.1 rpm/s; none: not known, the ramp's way is not reckoned
+  Rational units_per_rev{10000};
+  Duration latency{};  ///< until a halt that is decided now acts
+  Range limits;
+};
+/// A halt that is decided now would come to rest at the limit in the jog's direction, or past it.
+[[nodiscard]] bool must_stop(const JogTravel& travel, Command direction);
+
+}  // namespace axisgate::drive
