@@ -122,7 +122,8 @@ void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
     return;
   }
   const bool seen_after_start = facts.statusword_exchange > started_by_ && !target_reached_masked_;
-  if (seen_after_start && (!facts.target_reached || (!facts.moving && facts.at - started_ >= kStartShows)))
+  if (awaits_fall_ && seen_after_start &&
+      (!facts.target_reached || (!facts.moving && facts.at - started_ >= kStartShows)))
     awaits_fall_ = false;
   if (kind_ == MotionKind::discrete && seen_after_start) {
     if (facts.target_reached && !awaits_fall_)
