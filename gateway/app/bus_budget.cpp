@@ -1,10 +1,13 @@
 #include "gateway/app/bus_budget.hpp"
 
 #include <algorithm>
+#include <set>
+#include <tuple>
 
 #include "adapters/kinco/kinco_exchange.hpp"
 #include "adapters/modbus_rtu/rtu_codec.hpp"
 #include "adapters/modbus_rtu/rtu_timing.hpp"
+#include "gateway/app/adapter_names.hpp"
 #include "gateway/drive/read_blocks.hpp"
 
 namespace axisgate::app {
@@ -13,6 +16,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr int kLongestFrame = 8;  // data bytes of CAN
+constexpr int kKeyaFrame = 12;    // bytes, of every frame of its serial protocols
 constexpr std::uint8_t kLastSynchronousType = 240;
 /// Without an inhibit time a TPDO may come whenever the drive finds a change: so often at least.
 constexpr Duration kUninhibited = milliseconds(1);
@@ -32,7 +36,8 @@ double share_of(Duration taken, Duration period) {
 }
 
 int load_permille(const BusBudget& budget, Duration BusBudget::Polled::*taken) {
-  double share = share_of(budget.confirmed.*taken, budget.confirmed.period);
+  double share = share_of(budget.confirmed.*taken, budget.confirmed.period) +
+                 share_of(budget.kept_alive.*taken, budget.kept_alive.period);
   for (const auto& polled : budget.classes) share += share_of(polled.*taken, polled.period);
   return permille_of(share);
 }
@@ -49,12 +54,19 @@ Duration answer_of(const drive::DriveModel& model) {
 
 BusTiming timing_of(const BusConfig& bus) {
   BusTiming timing{{}, bus.min_gap, bus.settle, bus.timeout, bus.poll};
-  if (bus.adapter == "canopen") {
+  if (bus.adapter == adapter::kCanopen) {
     timing.can_bitrate = bus.bitrate;
-    timing.on_wire = 2 * can_frame_time(bus.bitrate, kLongestFrame);
-    return timing;
-  }
-  if (bus.adapter == "modbus-rtu") {
+    timing.begun = can_frame_time(bus.bitrate, kLongestFrame);
+    timing.on_wire = 2 * timing.begun;
+  } else if (bus.adapter == adapter::kKeyaCan) {
+    timing.begun = extended_frame_time(bus.bitrate, kLongestFrame);
+    timing.unasked = timing.begun;
+    timing.on_wire = 2 * timing.begun;
+  } else if (adapter::keya_serial(bus.adapter)) {
+    timing.control = characters_time(bus.baud, kKeyaFrame);
+    timing.unasked = bus.adapter == adapter::kKeyaRs232 ? timing.control : Duration{};
+    timing.on_wire = 2 * timing.control;
+  } else if (bus.adapter == adapter::kModbusRtu) {
     timing.rtu_baud = bus.baud;
     timing.parity_bits = bus.parity == "none" ? 0 : 1;
     timing.on_wire = wire_time_of(timing, {0, bus::Access::write, {}, 4, 0});
@@ -75,16 +87,41 @@ namespace {
 /// Each request of one drive into its class; the longest of them on the wire.
 Duration add_polls(BusBudget& budget, const BusTiming& timing, const drive::DriveModel& model) {
   Duration longest{};
+  std::set<std::tuple<drive::PollClass, std::uint16_t, std::uint8_t>> queries;
   for (const drive::PlannedRead& read : drive::planned_reads(model)) {
     const Duration on_wire = wire_time_of(timing, read.exchange);
     longest = std::max(longest, on_wire);
     if (read.poll_class == drive::PollClass::once) continue;  // at bring-up and after writes, but a stop may meet it
+    // One query of Keya's answers for both motors, with several objects.
+    const bus::ObjectAddress& asked = read.exchange.object;
+    if (adapter::keya(model.protocol) && !queries.emplace(read.poll_class, asked.index, asked.sub).second) continue;
     BusBudget::Polled& polled = budget.classes[static_cast<std::size_t>(read.poll_class)];
     ++polled.reads;
     polled.on_wire += on_wire + timing.min_gap;
     polled.answered += on_wire + timing.min_gap + answer_of(model);
   }
   return longest;
+}
+
+/// What the gateway sends so that a drive stays enabled, one write for each axis.
+void add_keep_alives(BusBudget& budget, const BusTiming& timing, const drive::DriveModel& model) {
+  if (model.keep_alive == Duration{}) return;
+  BusBudget::Polled& kept = budget.kept_alive;
+  kept.period = kept.period == Duration{} ? model.keep_alive : std::min(kept.period, model.keep_alive);
+  const bool answered = timing.control == Duration{};
+  const Duration on_wire = (answered ? timing.on_wire : timing.control) + timing.min_gap;
+  for (const drive::AxisModel& axis : model.axes) {
+    if (axis.keep_alive.empty()) continue;
+    ++kept.reads;
+    kept.on_wire += on_wire;
+    kept.answered += on_wire + (answered ? answer_of(model) : Duration{});
+  }
+}
+
+/// Keya: a drive's heartbeats.
+double heartbeat_share(const BusTiming& timing, const drive::DriveModel& model) {
+  const Duration every = model.unasked.every;
+  return share_of(timing.unasked, every == Duration{} ? kAssumedHeartbeat : every);
 }
 
 /// On CANopen what is mapped is asked for now and then alone. Gives the share of the line it would take unmapped.
@@ -155,10 +192,14 @@ BusBudget plan_bus(const BusTiming& timing, const std::vector<drive::DriveModel>
   const bool can = timing.can_bitrate != 0;
   Duration longest = timing.on_wire;
   Duration answer = can ? kAssumedSdoAnswer : kAssumedAnswer;
+  double heartbeats = 0;
   for (const drive::DriveModel& model : drives) {
     answer = std::max(answer, answer_of(model));
     if (!can) longest = std::max(longest, add_polls(budget, timing, model));
+    add_keep_alives(budget, timing, model);
+    heartbeats += heartbeat_share(timing, model);
   }
+  budget.load_unasked = permille_of(heartbeats);
   if (can) plan_can(budget, timing, drives);
   budget.exchange = longest + answer;
   budget.load_on_wire = load_permille(budget, &BusBudget::Polled::on_wire);
@@ -166,24 +207,26 @@ BusBudget plan_bus(const BusTiming& timing, const std::vector<drive::DriveModel>
   if (!can) budget.load_unmapped = budget.load_answered;
   budget.cycle = stretched(timing.poll[0], budget.load_answered);
 
-  // On CAN a frame of another node may have just begun.
-  const Duration begun = can ? can_frame_time(timing.can_bitrate, kLongestFrame) : Duration{};
-  budget.stop_wait = budget.exchange + timing.min_gap + begun;
+  budget.stop_wait = budget.exchange + timing.min_gap + timing.begun;
   budget.command_wait = 2 * budget.stop_wait;
   // A drive that does not answer holds the line for its timeout; nothing may be sent while a late talker could collide.
-  budget.stop_wait_mute = timing.timeout + std::max(timing.settle, timing.min_gap) + begun;
+  budget.stop_wait_mute = timing.timeout + std::max(timing.settle, timing.min_gap) + timing.begun;
   budget.command_wait_mute = budget.stop_wait_mute + budget.stop_wait;
   return budget;
 }
 
 int BusBudget::load_confirmed() const { return permille_of(share_of(confirmed.answered, confirmed.period)); }
 
+int BusBudget::load_fixed() const {
+  return permille_of(share_of(confirmed.answered, confirmed.period) + share_of(kept_alive.answered, kept_alive.period));
+}
+
 std::array<Duration, 3> comfortable_periods(const BusBudget& budget) {
   std::array<Duration, 3> periods{};
-  // What is confirmed keeps its own period: the classes share what it leaves.
-  const int confirmed = budget.load_confirmed();
-  const int room = std::max(kComfortablePermille - confirmed, kLeastRoom);
-  const int polled = budget.load_answered - confirmed;
+  // What is confirmed and what keeps drives enabled have their own periods: the classes share what is left.
+  const int fixed = budget.load_fixed();
+  const int room = std::max(kComfortablePermille - fixed, kLeastRoom);
+  const int polled = budget.load_answered - fixed;
   for (std::size_t i = 0; i < periods.size(); ++i) {
     periods[i] = budget.classes[i].period;
     if (polled <= room) continue;

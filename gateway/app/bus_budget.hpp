@@ -24,6 +24,8 @@ inline constexpr int kComfortablePermille = 800;
 inline constexpr int kUnaskedPermille = 400;
 /// And reading what comes by TPDO all the same, this one.
 inline constexpr int kConfirmPermille = 300;
+/// Keya: how often a drive is taken to send its heartbeat where nobody has stated it.
+inline constexpr Duration kAssumedHeartbeat = std::chrono::milliseconds(100);
 
 struct BusTiming {
   Duration on_wire;  ///< of one exchange, without the drive's own time; modbus-rtu: of a write of 32 bits
@@ -34,6 +36,9 @@ struct BusTiming {
   std::uint32_t rtu_baud = 0;     ///< modbus-rtu, where each exchange has a length of its own; else 0
   int parity_bits = 0;            ///< of modbus-rtu: 0 or 1
   std::uint32_t can_bitrate = 0;  ///< canopen; else 0
+  Duration begun{};               ///< on CAN: a frame of another node that has just begun; else 0
+  Duration unasked{};             ///< keya-can, keya-rs232: a heartbeat of the drive; else 0
+  Duration control{};             ///< Keya's serial protocols: a control frame, which nobody answers; else 0
 };
 
 [[nodiscard]] BusTiming timing_of(const BusConfig& bus);
@@ -42,6 +47,15 @@ struct BusTiming {
 [[nodiscard]] constexpr Duration can_frame_time(std::uint32_t bitrate, int data_bytes) {
   const int bits = 47 + 8 * data_bytes + (33 + 8 * data_bytes) / 4;
   return Duration(std::chrono::seconds(1)) * bits / bitrate;
+}
+/// The same with a 29-bit identifier.
+[[nodiscard]] constexpr Duration extended_frame_time(std::uint32_t bitrate, int data_bytes) {
+  const int bits = 67 + 8 * data_bytes + (53 + 8 * data_bytes) / 4;
+  return Duration(std::chrono::seconds(1)) * bits / bitrate;
+}
+/// Characters of a serial port without parity: a start bit, eight of data, a stop bit.
+[[nodiscard]] constexpr Duration characters_time(std::uint32_t baud, int count) {
+  return Duration(std::chrono::seconds(1)) * (count * 10) / baud;
 }
 /// Of one exchange, without the drive's own time.
 [[nodiscard]] Duration wire_time_of(const BusTiming& timing, const bus::Exchange& exchange);
@@ -55,18 +69,21 @@ struct BusBudget {
   };
   std::array<Polled, 3> classes;
   Polled confirmed;       ///< canopen: comes by TPDO, and is read where it was silent for so long
+  Polled kept_alive;      ///< writes that keep drives enabled, with every axis enabled
   int load_on_wire = 0;   ///< 0.1 %, drives that answer at once
   int load_answered = 0;  ///< 0.1 %, drives that answer after answer_of()
   int load_unmapped = 0;  ///< canopen: load_answered where the drives map nothing; else load_answered
-  int load_unasked = 0;   ///< canopen: 0.1 %, TPDOs as often as they may come, heartbeats, guarding and SYNC
-  Duration exchange{};    ///< the longest request, with the slowest answer_of()
-  Duration cycle{};       ///< in which each fast value is read once; longer than its period where the bus is over 100 %
+  /// 0.1 %, what comes unasked. canopen: TPDOs as often as they may, heartbeats, guarding, SYNC; Keya: heartbeats.
+  int load_unasked = 0;
+  Duration exchange{};  ///< the longest request, with the slowest answer_of()
+  Duration cycle{};     ///< in which each fast value is read once; longer than its period where the bus is over 100 %
   Duration command_wait{};       ///< the exchange on the wire, and one poll whose turn it is
   Duration stop_wait{};          ///< the exchange on the wire
   Duration command_wait_mute{};  ///< the same while a drive is mute
   Duration stop_wait_mute{};
 
   [[nodiscard]] int load_confirmed() const;  ///< of load_answered, what `confirmed` takes
+  [[nodiscard]] int load_fixed() const;      ///< and `kept_alive` with it: no poll period changes it
   [[nodiscard]] bool overloaded() const { return load_answered > 1000 || load_on_wire + load_unasked > 1000; }
 };
 

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gateway/app/adapter_names.hpp"
 #include "gateway/app/bus_budget.hpp"
 #include "gateway/app/check_can.hpp"
+#include "gateway/app/check_lines.hpp"
+#include "gateway/app/check_masters.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -17,13 +20,6 @@ using std::chrono::milliseconds;
 constexpr std::array<std::string_view, 3> kClassNames{"fast", "normal", "slow"};
 /// Largest position a register shows.
 constexpr double kRegisterReach = 2147483647;
-
-double in_ms(Duration duration) { return static_cast<double>(duration.count()) / 1e6; }
-
-/// "  label            text": the labels of one report line up.
-void add_line(std::string& out, std::string_view label, std::string_view line) {
-  out += fmt::format("  {:<16}{}\n", label, line);
-}
 
 std::string polls_text(const BusBudget& budget) {
   std::vector<std::string> parts;
@@ -64,10 +60,20 @@ void add_load(std::string& out, const BusBudget& budget, const std::vector<drive
   }
 }
 
-bool add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::DriveModel>& drives) {
-  const BusBudget budget = plan_bus(timing_of(bus), drives);
-  const bool can = bus.adapter == "canopen";
-  const std::string speed = can ? bitrate_text(bus) : fmt::format("{} baud", bus.baud);
+/// Keya: what goes over the line beside the polls.
+void add_keya(std::string& out, const BusConfig& bus, const BusBudget& budget) {
+  if (budget.kept_alive.reads > 0)
+    add_line(out, "keep-alive",
+             fmt::format("{} writes each {:.0f} ms, with every axis enabled", budget.kept_alive.reads,
+                         in_ms(budget.kept_alive.period)));
+  if (adapter::keya(bus.adapter) && budget.load_unasked > 0)
+    add_line(out, "unasked", fmt::format("heartbeats of the drives: {:.1f} % of the line", budget.load_unasked / 10.0));
+}
+
+void add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::DriveModel>& drives,
+             const BusBudget& budget) {
+  const bool can = bus.adapter == adapter::kCanopen;
+  const std::string speed = adapter::on_can(bus.adapter) ? bitrate_text(bus) : fmt::format("{} baud", bus.baud);
   out += fmt::format("\nBus {}: {} on {}, {}{}\n", bus.name, bus.adapter, bus.device, speed,
                      bus.cascade ? ", drives in a chain" : "");
   std::vector<std::string> names;
@@ -75,8 +81,9 @@ bool add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::Dr
   for (const auto& model : drives) names.push_back(fmt::format("{} at node {}", model.title, model.node));
   add_line(out, "drives", fmt::format("{}", fmt::join(names, ", ")));
   add_line(out, "polls", polls_text(budget));
-  if (can)
-    for (const auto& [label, line] : can_lines(bus, drives, budget)) add_line(out, label, line);
+  if (can) add_lines(out, can_lines(bus, drives, budget));
+  if (bus.adapter == adapter::kKeyaCan) add_line(out, "interface", interface_text(bus));
+  add_keya(out, bus, budget);
   add_load(out, budget, drives);
   add_line(out, "cycle",
            fmt::format("fast values are {} each {:.0f} ms", can ? "polled, where no TPDO brings them," : "read",
@@ -87,7 +94,6 @@ bool add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::Dr
   add_line(out, "stop waits",
            fmt::format("at most {:.1f} ms; beside a mute drive at most {:.1f} ms", in_ms(budget.stop_wait),
                        in_ms(budget.stop_wait_mute)));
-  return budget.overloaded();
 }
 
 std::string missing_quantities(const drive::AxisModel& axis) {
@@ -125,22 +131,8 @@ std::string units_text(const AxisConfig& config) {
                      config.inverted ? ", inverted" : "", kRegisterReach / units.to_double());
 }
 
-std::string loss_text(const drive::DriveModel& drive) {
-  if (!drive.stops_by_itself)
-    return fmt::format("THE DRIVE DOES NOT STOP BY ITSELF on {}: it goes on with what it was told last",
-                       drive.protocol);
-  if (drive.loss_objects.empty()) return "the drive notices and stops by itself";
-  std::vector<std::string> written;
-  for (const drive::ObjectId id : drive.loss_objects) {
-    const bus::ObjectAddress address = drive.object(id).address;
-    written.push_back(fmt::format("{:04X}h:{:02X}", address.index, address.sub));
-  }
-  return fmt::format("the drive is told to notice ({}), which is verified at bring-up{}{}", fmt::join(written, ", "),
-                     drive.loss_text.empty() ? "" : ": ", drive.loss_text);
-}
-
-void add_axis(std::string& out, const AxisConfig& config, const drive::AxisModel& axis,
-              const drive::DriveModel& drive) {
+void add_axis(std::string& out, const MasteredAxis& whole) {
+  const auto& [config, axis, drive, budget] = whole;
   out += fmt::format("\nAxis {} \"{}\": {}, registers {} to {}\n", config.number, config.name, drive.title,
                      config.number * 100, config.number * 100 + 99);
   add_line(out, "units", units_text(config) + counter_text(config, axis, drive));
@@ -156,22 +148,7 @@ void add_axis(std::string& out, const AxisConfig& config, const drive::AxisModel
   if (config.inverted && axis.command(Command::home)) {
     add_line(out, "note", "homing methods are not translated for the inverted direction: they mean the drive's own");
   }
-  add_line(out, "gateway dies", loss_text(drive));
-  if (axis.virtual_axis && !drive.stops_by_itself) {
-    add_line(out, "client leaves",
-             "quick stop when the connection of the client that commanded the motion ends; not where \"client\" is "
-             "\"address\"");
-  }
-}
-
-bool any_lease(const Config& config) {
-  const auto leased = [](const AxisConfig& axis) { return axis.lease.on; };
-  for (const BusConfig& bus : config.buses) {
-    for (const DriveConfig& drive : bus.drives) {
-      if (std::any_of(drive.axes.begin(), drive.axes.end(), leased)) return true;
-    }
-  }
-  return false;
+  add_lines(out, master_lines(whole));
 }
 
 }  // namespace
@@ -181,18 +158,20 @@ CheckReport check(const LoadedConfig& loaded) {
   CheckReport report;
   std::string& out = report.text;
   out = fmt::format("{} is valid.\n", config.file);
+  std::vector<BusBudget> budgets;
   for (std::size_t b = 0; b < config.buses.size(); ++b) {
     const BusConfig& bus = config.buses[b];
-    report.overloaded |= add_bus(out, bus, loaded.models[b]);
+    budgets.push_back(plan_bus(timing_of(bus), loaded.models[b]));
+    report.overloaded |= budgets[b].overloaded();
+    add_bus(out, bus, loaded.models[b], budgets[b]);
     for (std::size_t d = 0; d < bus.drives.size(); ++d) {
       const drive::DriveModel& model = loaded.models[b][d];
-      for (std::size_t a = 0; a < model.axes.size(); ++a) add_axis(out, bus.drives[d].axes[a], model.axes[a], model);
+      for (std::size_t a = 0; a < model.axes.size(); ++a)
+        add_axis(out, {bus.drives[d].axes[a], model.axes[a], model, budgets[b]});
     }
   }
   out += "\nNo function of this gateway is a safety function: emergency stop and STO are wired.\n";
-  if (any_lease(config)) {
-    out += "Leases are not enforced by this version: an axis goes on when the client that commands it falls silent.\n";
-  }
+  for (const std::string& warning : lease_warnings(loaded, budgets)) out += "warning: " + warning + "\n";
   for (const std::string& warning : loaded.warnings) out += "warning: " + warning + "\n";
   return report;
 }

@@ -10,19 +10,6 @@
 namespace axisgate::app {
 namespace {
 
-double in_ms(Duration duration) { return static_cast<double>(duration.count()) / 1e6; }
-
-std::string interface_text(const BusConfig& bus) {
-  if (can::parse_can_device(bus.device).lawicel)
-    return fmt::format("a serial CAN adapter, which the gateway opens at {} bit/s", bus.bitrate);
-  const std::string how = fmt::format("ip link set {} up type can bitrate {} restart-ms 100", bus.device, bus.bitrate);
-  if (bus.bitrate_given) return fmt::format("bring it up as root: {}", how);
-  return fmt::format(
-      "bring it up as root, with the bit rate of the drives: {}; that rate is assumed below, \"bitrate\" "
-      "gives another",
-      how);
-}
-
 /// "statusword, position_actual at most each 5 ms"
 std::string tpdo_text(const drive::DriveModel& model, const drive::TpdoFacts& tpdo) {
   std::vector<std::string_view> names;
@@ -69,6 +56,17 @@ void add_by_node(ReportLines& out, const std::string& label, const std::vector<d
 
 std::string bitrate_text(const BusConfig& bus) {
   return fmt::format("{} bit/s{}", bus.bitrate, bus.bitrate_given ? "" : " assumed");
+}
+
+std::string interface_text(const BusConfig& bus) {
+  if (can::parse_can_device(bus.device).lawicel)
+    return fmt::format("a serial CAN adapter, which the gateway opens at {} bit/s", bus.bitrate);
+  const std::string how = fmt::format("ip link set {} up type can bitrate {} restart-ms 100", bus.device, bus.bitrate);
+  if (bus.bitrate_given) return fmt::format("bring it up as root: {}", how);
+  return fmt::format(
+      "bring it up as root, with the bit rate of the drives: {}; that rate is assumed below, \"bitrate\" "
+      "gives another",
+      how);
 }
 
 ReportLines can_lines(const BusConfig& bus, const std::vector<drive::DriveModel>& drives, const BusBudget& budget) {

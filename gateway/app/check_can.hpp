@@ -4,18 +4,17 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "gateway/app/bus_budget.hpp"
+#include "gateway/app/check_lines.hpp"
 
 namespace axisgate::app {
 
-/// Label and line, in their order.
-using ReportLines = std::vector<std::pair<std::string, std::string>>;
-
 /// "500000 bit/s"
 [[nodiscard]] std::string bitrate_text(const BusConfig& bus);
+/// How the interface or adapter is brought up.
+[[nodiscard]] std::string interface_text(const BusConfig& bus);
 [[nodiscard]] ReportLines can_lines(const BusConfig& bus, const std::vector<drive::DriveModel>& drives,
                                     const BusBudget& budget);
 

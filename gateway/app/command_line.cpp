@@ -153,6 +153,7 @@ void add_scan(CLI::App& app, Parsed& parsed) {
       ->type_name("A-B")
       ->default_str("1-127");
   command->footer(
+      "CANopen alone: drives that speak another protocol, Keya's own on CAN among them, are not found by it.\n"
       "It reads by SDO, and writes, starts and resets nothing. Exit code 1: nobody answered, or the bus cannot be "
       "used.\n"
       "A gateway that runs on the same bus is another SDO client: the drives answer both under one number, so stop it\n"

@@ -37,8 +37,11 @@ struct AxisConfig {
   Duration homing_timeout = std::chrono::seconds(60);
   LeaseRules lease;
   Duration jog_timeout = std::chrono::milliseconds(500);
-  std::string motor;    ///< "A", "B": which of the drive's motors; empty: as many as stand before it in the list
-  std::string pointer;  ///< JSON pointer of the entry, for messages
+  std::string motor;      ///< "A", "B": which of the drive's motors; empty: as many as stand before it in the list
+  bool vertical = false;  ///< the load falls where the torque is taken away
+  std::string pointer;    ///< JSON pointer of the entry, for messages
+  /// Not in the file: its profile says that a quick stop ends without torque.
+  bool stop_without_torque = false;
 };
 
 struct DriveConfig {
@@ -53,14 +56,15 @@ struct DriveConfig {
 struct BusConfig {
   std::string name;
   std::string adapter;
-  std::string device;          ///< canopen: an interface, or slcan:PATH (adapters/can/can_device.hpp)
-  std::uint32_t baud = 38400;  ///< modbus-rtu: 19200 by default
+  std::string device;          ///< on CAN: an interface, or slcan:PATH (adapters/can/can_device.hpp)
+  std::uint32_t baud = 38400;  ///< by default: modbus-rtu 19200, Keya's serial protocols 115200
   std::string parity = "none";
-  std::string rs485 = "auto";      ///< auto: direction control where the port offers it; off
-  bool cascade = false;            ///< Kinco 6510:0B = 1: every request comes back before its reply
-  std::uint32_t bitrate = 500000;  ///< canopen; an interface is set by whoever brings it up: what it is taken for then
+  std::string rs485 = "auto";  ///< auto: direction control where the port offers it; off
+  bool cascade = false;        ///< Kinco 6510:0B = 1: every request comes back before its reply
+  /// On CAN; keya-can 250000 by default. An interface is set by whoever brings it up: what it is taken for then.
+  std::uint32_t bitrate = 500000;
   bool bitrate_given = false;
-  Duration timeout{};  ///< where none is given: what its drives need (settle_rtu_buses(), settle_can_buses())
+  Duration timeout{};  ///< where none is given: what its drives need (settle_..._buses())
   Duration min_gap{};
   Duration settle{};
   std::array<Duration, 3> poll{std::chrono::milliseconds(20), std::chrono::milliseconds(100),

@@ -34,14 +34,23 @@ AxisLimits read_limits(const ConfigNode& node, ConfigFaults& faults) {
   return limits;
 }
 
-void read_lease(const ConfigNode& node, AxisConfig& axis) {
+void read_lease(const ConfigNode& node, AxisConfig& axis, ConfigFaults& faults) {
   const auto lease = node.child("lease");
   if (!lease) return;
   axis.lease.on = !lease->is_null();
+  axis.lease.timeout = lease->milliseconds("timeout_ms", axis.lease.timeout);
+  const std::string renew = lease->string("renew").value_or("any");
+  if (renew == "write") axis.lease.renew = LeaseRenewal::write;
+  if (renew == "heartbeat") axis.lease.renew = LeaseRenewal::heartbeat;
   const std::string on_expiry = lease->string("on_expiry").value_or("quick_stop");
   axis.lease.on_expiry = LeaseAction::none;
   for (const LeaseAction action : {LeaseAction::quick_stop, LeaseAction::halt, LeaseAction::disable}) {
     if (on_expiry == axisgate::text(command_of(action))) axis.lease.on_expiry = action;
+  }
+  if (axis.vertical && axis.lease.on && axis.lease.on_expiry == LeaseAction::disable) {
+    faults.add(lease->pointer("on_expiry"),
+               "disable takes the torque away at once, and a vertical axis falls until its brake holds: write "
+               "quick_stop or halt");
   }
 }
 
@@ -60,7 +69,10 @@ AxisConfig read_axis(const ConfigNode& node, ConfigFaults& faults) {
   if (const auto method = node.integer("homing_method"); method && !faults.within(node.pointer("homing_method"))) {
     axis.homing_method = static_cast<std::int16_t>(*method);
   }
-  read_lease(node, axis);
+  axis.jog_timeout = node.milliseconds("jog_timeout_ms", axis.jog_timeout);
+  axis.motor = node.string("motor").value_or("");
+  axis.vertical = node.flag("vertical", false);
+  read_lease(node, axis, faults);
   return axis;
 }
 

@@ -5,6 +5,7 @@
 
 #include "adapters/kinco/kinco_exchange.hpp"
 #include "adapters/modbus_rtu/rtu_timing.hpp"
+#include "gateway/app/adapter_names.hpp"
 #include "gateway/app/config_sections.hpp"
 
 namespace axisgate::app {
@@ -12,9 +13,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::string_view kKincoSerial = "kinco-serial";
-constexpr std::string_view kModbusRtu = "modbus-rtu";
-constexpr std::string_view kCanopen = "canopen";
 /// As the drives leave their factories (JD, MD, iD286pro).
 constexpr std::uint32_t kRtuBaud = 19200;
 /// What a serial port of this system can be set to.
@@ -28,7 +26,7 @@ constexpr std::array kKincoRates{9600, 19200, 38400, 115200};
 /// it.
 constexpr std::array<Duration, 3> kKincoPoll{milliseconds(50), milliseconds(250), milliseconds(2500)};
 constexpr Duration kKincoTimeout = milliseconds(100);
-constexpr Duration kKincoSettle = milliseconds(10);
+constexpr Duration kSerialSettle = milliseconds(10);
 
 std::array<Duration, 3> default_poll(std::size_t drives) {
   std::array<Duration, 3> periods = kKincoPoll;
@@ -97,37 +95,62 @@ void check_timeout(const ConfigNode& node, const BusConfig& bus, ConfigFaults& f
                  wire / milliseconds(1) + 20));
 }
 
-BusConfig read_bus(const ConfigNode& node, ConfigFaults& faults) {
+/// What a bus of this adapter has where its configuration says nothing.
+BusConfig default_bus(std::string_view name, std::size_t drives) {
   BusConfig bus;
+  bus.adapter = name;
+  bus.settle = kSerialSettle;
+  bus.poll_given = false;
+  if (name == adapter::kKincoSerial) {
+    bus.timeout = kKincoTimeout;
+    bus.poll = default_poll(drives);
+    bus.poll_given = true;
+  }
+  if (name == adapter::kModbusRtu) bus.baud = kRtuBaud;
+  if (adapter::keya(name)) default_keya_bus(bus);
+  if (adapter::on_can(name)) bus.settle = {};  // two talkers cannot spoil each other's frames on CAN
+  return bus;
+}
+
+/// The silence between two exchanges where none is given: what parts two frames on this line.
+Duration default_gap(const BusConfig& bus) {
+  const std::uint32_t baud = std::max(bus.baud, 1U);
+  if (bus.adapter == adapter::kModbusRtu) return modbus_rtu::gap_time(baud);
+  return adapter::keya_serial(bus.adapter) ? keya_gap(baud) : Duration{};
+}
+
+void check_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+  const bool kinco = bus.adapter == adapter::kKincoSerial;
+  const bool rtu = bus.adapter == adapter::kModbusRtu;
+  if (kinco || rtu || adapter::keya_serial(bus.adapter)) check_serial_line(node, bus, faults);
+  if (kinco) {
+    check_kinco_line(node, bus, faults);
+    check_timeout(node, bus, faults);
+  }
+  if (rtu) check_rtu_line(node, bus, faults);
+  if (adapter::on_can(bus.adapter)) check_can_bus(node, bus, faults);
+  if (adapter::keya(bus.adapter)) check_keya_bus(node, bus, faults);
+}
+
+BusConfig read_bus(const ConfigNode& node, ConfigFaults& faults) {
+  const auto drives = node.items("drives");
+  BusConfig bus = default_bus(node.string("adapter").value_or(""), drives.size());
   bus.pointer = node.pointer();
   bus.name = node.string("name").value_or("");
-  bus.adapter = node.string("adapter").value_or("");
   bus.device = node.string("device").value_or("");
-  const bool rtu = bus.adapter == kModbusRtu;
-  const bool can = bus.adapter == kCanopen;
-  bus.baud = static_cast<std::uint32_t>(node.integer("baud").value_or(rtu ? kRtuBaud : bus.baud));
+  bus.baud = static_cast<std::uint32_t>(node.integer("baud").value_or(bus.baud));
   bus.bitrate = static_cast<std::uint32_t>(node.integer("bitrate").value_or(bus.bitrate));
   bus.bitrate_given = node.has("bitrate");
   bus.parity = node.string("parity").value_or(bus.parity);
   bus.rs485 = node.string("rs485").value_or(bus.rs485);
   bus.cascade = node.flag("cascade", false);
   bus.decode = node.flag("decode", false);
-  const bool kinco = bus.adapter == kKincoSerial;
-  const auto drives = node.items("drives");
-  if (kinco) bus.poll = default_poll(drives.size());
-  bus.timeout = node.milliseconds("timeout_ms", rtu || can ? Duration{} : kKincoTimeout);
-  bus.min_gap = node.milliseconds("min_gap_ms", rtu ? modbus_rtu::gap_time(std::max(bus.baud, 1U)) : Duration{});
-  // Two talkers cannot spoil each other's frames on CAN.
-  bus.settle = node.milliseconds("settle_ms", can ? Duration{} : kKincoSettle);
-  bus.poll_given = !(rtu || can) || node.child("poll").has_value();
+  bus.timeout = node.milliseconds("timeout_ms", bus.timeout);
+  bus.min_gap = node.milliseconds("min_gap_ms", default_gap(bus));
+  bus.settle = node.milliseconds("settle_ms", bus.settle);
+  bus.poll_given = bus.poll_given || node.child("poll").has_value();
   read_poll(node, bus, faults);
-  if (kinco || rtu) check_serial_line(node, bus, faults);
-  if (kinco) {
-    check_kinco_line(node, bus, faults);
-    check_timeout(node, bus, faults);
-  }
-  if (rtu) check_rtu_line(node, bus, faults);
-  if (can) check_can_bus(node, bus, faults);
+  check_bus(node, bus, faults);
   for (const ConfigNode& drive : drives) bus.drives.push_back(read_drive(drive, bus, faults));
   return bus;
 }

@@ -5,6 +5,7 @@
 
 #include "adapters/can/can_device.hpp"
 #include "adapters/can/lawicel.hpp"
+#include "gateway/app/adapter_names.hpp"
 #include "gateway/app/bus_budget.hpp"
 #include "gateway/app/config_sections.hpp"
 
@@ -25,7 +26,7 @@ void refuse_serial_keys(const ConfigNode& node, ConfigFaults& faults) {
 
 void check_bitrate(const ConfigNode& node, const BusConfig& bus, bool lawicel, ConfigFaults& faults) {
   const std::string pointer = node.pointer("bitrate");
-  if (faults.within(pointer)) return;
+  if (faults.within(pointer) || bus.adapter != adapter::kCanopen) return;  // Keya's rates are its own
   if (lawicel && !bus.bitrate_given) {
     faults.add(pointer, "is missing: a serial CAN adapter must be told the bit rate of the drives, such as 500000");
   } else if (lawicel && !can::lawicel_rate(bus.bitrate)) {
@@ -79,7 +80,7 @@ void check_can_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& f
 void settle_can_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults) {
   for (std::size_t i = 0; i < config.buses.size(); ++i) {
     BusConfig& bus = config.buses[i];
-    if (bus.adapter != "canopen") continue;
+    if (bus.adapter != adapter::kCanopen) continue;
     settle_timeout(bus, models[i], timing_of(bus).on_wire,
                    fmt::format("an SDO request and its answer take at {} bit/s", bus.bitrate), faults);
     stretch_tpdos(bus, models[i]);

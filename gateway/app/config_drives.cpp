@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "adapters/kinco/kinco_exchange.hpp"
+#include "gateway/app/adapter_names.hpp"
 #include "gateway/app/config_sections.hpp"
 
 namespace axisgate::app {
@@ -16,29 +17,43 @@ void read_constants(const ConfigNode& node, DriveConfig& drive, ConfigFaults& fa
   }
 }
 
-void check_can_node(const ConfigNode& node, const DriveConfig& drive, ConfigFaults& faults) {
-  if (drive.node < drive::kOwnNode) return;
-  if (drive.node == drive::kOwnNode) {
-    faults.add(node.pointer("node"),
-               "127 is the gateway's own node-ID, in its heartbeat: give the drive one of 1 to 126");
-  } else {
-    faults.add(
-        node.pointer("node"),
-        fmt::format("{} is no CANopen node-ID: they go from 1 to 127, and 127 is the gateway's own", drive.node));
-  }
+/// What is wrong with a node-ID of CANopen; empty: nothing.
+std::string canopen_mistake(int node) {
+  if (node < drive::kOwnNode) return "";
+  if (node == drive::kOwnNode)
+    return "127 is the gateway's own node-ID, in its heartbeat: give the drive one of 1 to 126";
+  return fmt::format("{} is no CANopen node-ID: they go from 1 to 127, and 127 is the gateway's own", node);
 }
 
-void check_node(const ConfigNode& node, const DriveConfig& drive, const BusConfig& bus, ConfigFaults& faults) {
-  if (bus.adapter == "canopen" && !faults.within(node.pointer("node"))) return check_can_node(node, drive, faults);
-  if (bus.adapter != "kinco-serial" || drive.node <= kinco::kLastStation || faults.within(node.pointer("node"))) return;
-  if (drive.node == kinco::kLastStation + 1) {
-    faults.add(node.pointer("node"),
-               "127 is the address with which Kinco's PC tool reaches every drive: give the drive a station "
-               "number of 1 to 126 (object 100B:00 or its DIP switches)");
-  } else {
-    faults.add(node.pointer("node"),
-               fmt::format("{} is no station number of a Kinco drive: they go from 1 to 126", drive.node));
+std::string kinco_mistake(int node) {
+  if (node <= kinco::kLastStation) return "";
+  if (node == kinco::kLastStation + 1)
+    return "127 is the address with which Kinco's PC tool reaches every drive: give the drive a station "
+           "number of 1 to 126 (object 100B:00 or its DIP switches)";
+  return fmt::format("{} is no station number of a Kinco drive: they go from 1 to 126", node);
+}
+
+std::string rtu_mistake(int node) {
+  constexpr int kLastUnit = 247;  // Modbus over serial line V1.02, section 2.2
+  if (node <= kLastUnit) return "";
+  return fmt::format("{} is no unit id that a drive may have: they go from 1 to 247", node);
+}
+
+std::uint8_t read_node(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+  if (!node.has("node")) {
+    if (bus.adapter == adapter::kKeyaRs232) return 1;  // its frames carry none
+    if (!faults.within(bus.pointer + "/adapter")) faults.add(node.pointer(), "key \"node\" is missing");
+    return 0;
   }
+  const std::int64_t number = node.integer("node").value_or(0);
+  const auto in_use = static_cast<std::uint8_t>(number);
+  if (faults.within(node.pointer("node"))) return in_use;
+  std::string mistake;
+  if (bus.adapter == adapter::kCanopen) mistake = canopen_mistake(in_use);
+  if (bus.adapter == adapter::kKincoSerial) mistake = kinco_mistake(in_use);
+  if (bus.adapter == adapter::kModbusRtu) mistake = rtu_mistake(in_use);
+  if (!mistake.empty()) faults.add(node.pointer("node"), mistake);
+  return in_use;
 }
 
 std::array<std::optional<std::uint32_t>, 4> read_identity(const ConfigNode& node) {
@@ -56,12 +71,11 @@ DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFault
   DriveConfig drive;
   drive.pointer = node.pointer();
   drive.profile = node.string("profile").value_or("");
-  drive.node = static_cast<std::uint8_t>(node.integer("node").value_or(0));
-  check_node(node, drive, bus, faults);
+  drive.node = read_node(node, bus, faults);
   read_constants(node, drive, faults);
   drive.identity = read_identity(node);
   // Accepting it unchecked would promise a safety that is not there.
-  if (node.has("identity") && (bus.adapter == "kinco-serial" || bus.adapter == "modbus-rtu")) {
+  if (node.has("identity") && bus.adapter != adapter::kCanopen && !faults.within(bus.pointer + "/adapter")) {
     faults.add(node.pointer("identity"),
                fmt::format("{} has no object 1018h to compare with: remove the key", bus.adapter));
   }

@@ -63,6 +63,7 @@ LoadResult load_config(const std::string& file, const std::vector<std::string>& 
     if (faults.faults().empty()) {
       settle_rtu_buses(loaded.config, loaded.models, faults);
       settle_can_buses(loaded.config, loaded.models, faults);
+      settle_keya_buses(loaded.config, loaded.models, faults);
     }
   }
   if (!faults.faults().empty()) return faults.faults();

@@ -102,7 +102,7 @@ void check_lease(const drive::AxisModel& model, const AxisConfig& axis, ConfigFa
                          axisgate::text(action)));
 }
 
-std::optional<drive::DriveModel> load_model(const BusConfig& bus, const DriveConfig& config, Profiles& profiles,
+std::optional<drive::DriveModel> load_model(const BusConfig& bus, DriveConfig& config, Profiles& profiles,
                                             ConfigFaults& faults) {
   const drive::LoadedProfile* profile = profiles.find(config);
   if (profile == nullptr || faults.within(config.pointer)) return std::nullopt;
@@ -122,21 +122,21 @@ std::optional<drive::DriveModel> load_model(const BusConfig& bus, const DriveCon
   for (std::size_t i = 0; i < model.axes.size(); ++i) {
     check_travel(model.axes[i], model, config.axes[i], faults);
     check_lease(model.axes[i], config.axes[i], faults);
+    config.axes[i].stop_without_torque = !profile->profile.state.quick_stop_energised;
   }
   return std::move(model);
 }
 
 }  // namespace
 
-std::vector<std::vector<drive::DriveModel>> load_models(const Config& config,
-                                                        const std::vector<std::string>& profile_folders,
+std::vector<std::vector<drive::DriveModel>> load_models(Config& config, const std::vector<std::string>& profile_folders,
                                                         ConfigFaults& faults) {
   std::vector<std::vector<drive::DriveModel>> models;
   Profiles profiles(profile_folders, faults);
-  for (const BusConfig& bus : config.buses) {
+  for (BusConfig& bus : config.buses) {
     auto& drives = models.emplace_back();
     if (faults.within(bus.pointer + "/adapter")) continue;  // no protocol to resolve for
-    for (const DriveConfig& drive : bus.drives) {
+    for (DriveConfig& drive : bus.drives) {
       if (faults.within(drive.pointer + "/profile") || drive.profile.empty()) continue;
       if (auto model = load_model(bus, drive, profiles, faults)) drives.push_back(std::move(*model));
     }

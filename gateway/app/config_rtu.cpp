@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gateway/app/adapter_names.hpp"
 #include "gateway/app/bus_budget.hpp"
 #include "gateway/app/config_sections.hpp"
 #include "gateway/drive/read_blocks.hpp"
@@ -23,12 +24,11 @@ Duration longest_on_wire(const BusConfig& bus, const std::vector<drive::DriveMod
 }
 
 void check_nodes(const BusConfig& bus, const std::vector<drive::DriveModel>& drives, ConfigFaults& faults) {
-  constexpr std::uint8_t kLastUnit = 254;
   for (std::size_t i = 0; i < drives.size(); ++i) {
     const std::uint8_t node = drives[i].node;
     const bool broadcast = std::any_of(drives.begin(), drives.end(),
                                        [&](const drive::DriveModel& model) { return model.rtu.broadcast == node; });
-    if (node == 0 || broadcast || node > kLastUnit)
+    if (node == 0 || broadcast)
       faults.add(bus.drives[i].pointer + "/node",
                  fmt::format("{} is an address that every drive obeys and none answers: give the drive a number of its "
                              "own, 1 to 247",
@@ -41,7 +41,7 @@ void check_nodes(const BusConfig& bus, const std::vector<drive::DriveModel>& dri
 void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults) {
   for (std::size_t i = 0; i < config.buses.size(); ++i) {
     BusConfig& bus = config.buses[i];
-    if (bus.adapter != "modbus-rtu") continue;
+    if (bus.adapter != adapter::kModbusRtu) continue;
     check_nodes(bus, models[i], faults);
     settle_timeout(bus, models[i], longest_on_wire(bus, models[i]),
                    fmt::format("an exchange takes on the wire at {} baud", bus.baud), faults);

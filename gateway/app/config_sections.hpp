@@ -28,7 +28,7 @@ void check_unique(const Config& config, ConfigFaults& faults);
 void warn_without_effect(const ConfigNode& root, ConfigFaults& faults);
 
 /// The profiles of all drives, resolved for their axes. Drives with mistakes of their own are left out.
-[[nodiscard]] std::vector<std::vector<drive::DriveModel>> load_models(const Config& config,
+[[nodiscard]] std::vector<std::vector<drive::DriveModel>> load_models(Config& config,
                                                                       const std::vector<std::string>& profile_folders,
                                                                       ConfigFaults& faults);
 
@@ -39,10 +39,19 @@ void settle_timeout(BusConfig& bus, const std::vector<drive::DriveModel>& drives
 /// modbus-rtu: timeouts and poll periods that nobody has given follow from the drives on the line.
 void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
 
-/// What a canopen bus may not have, and what its device must be.
+/// What a bus on CAN may not have, and what its device must be.
 void check_can_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
 /// canopen: the same for timeouts and periods; and inhibit and confirmation times that leave the line to requests,
 /// however many drives share it.
 void settle_can_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
+
+/// Keya's protocols: rates as the drives leave their factory.
+void default_keya_bus(BusConfig& bus);
+/// The silence that is kept between two frames of its serial protocols where the configuration names none.
+[[nodiscard]] Duration keya_gap(std::uint32_t baud);
+/// Rates, parity and number of drives of a bus that speaks one of Keya's protocols.
+void check_keya_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
+/// Keya's protocols: the same for timeouts and periods.
+void settle_keya_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
 
 }  // namespace axisgate::app

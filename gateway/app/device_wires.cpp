@@ -2,10 +2,13 @@
 
 #include "adapters/can/make_can_link.hpp"
 #include "adapters/canopen/canopen_wire.hpp"
+#include "adapters/keya/keya_can_wire.hpp"
+#include "adapters/keya/keya_serial_wire.hpp"
 #include "adapters/kinco/kinco_wire.hpp"
 #include "adapters/modbus_rtu/libmodbus_link.hpp"
 #include "adapters/modbus_rtu/rtu_wire.hpp"
 #include "adapters/serial/serial_link.hpp"
+#include "gateway/app/adapter_names.hpp"
 #include "gateway/app/can_wires.hpp"
 
 namespace axisgate::app {
@@ -28,22 +31,39 @@ std::vector<modbus_rtu::RtuNode> rtu_nodes(const std::vector<drive::DriveModel>&
   return nodes;
 }
 
+keya::KeyaCanSettings keya_can_settings(const BusConfig& bus, const std::vector<drive::DriveModel>& drives) {
+  keya::KeyaCanSettings settings;
+  settings.name = bus.name;
+  settings.timeout = bus.timeout;
+  for (const drive::DriveModel& drive : drives) settings.nodes.push_back(drive.node);
+  return settings;
+}
+
+keya::KeyaSerialSettings keya_serial_settings(const BusConfig& bus) {
+  const bool rs232 = bus.adapter == adapter::kKeyaRs232;
+  return {bus.name, rs232 ? keya::KeyaLine::rs232 : keya::KeyaLine::rs485, bus.baud};
+}
+
 }  // namespace
 
 MakeWire device_wires(boost::asio::io_context& io, Runtime& runtime, const Log& log) {
   return [&io, &runtime, &log](const BusConfig& bus,
                                const std::vector<drive::DriveModel>& drives) -> std::unique_ptr<bus::Wire> {
-    if (bus.adapter == "modbus-rtu") {
+    if (bus.adapter == adapter::kModbusRtu) {
       auto link = std::make_unique<modbus_rtu::LibmodbusLink>(bus.name, settings_of(bus), io, runtime, log);
       const modbus_rtu::LineSpeed speed{bus.baud, bus.parity == "none" ? 0 : 1};
       return std::make_unique<modbus_rtu::RtuWire>(bus.name, rtu_nodes(drives), speed, std::move(link), runtime, log);
     }
-    if (bus.adapter == "canopen") {
+    if (adapter::on_can(bus.adapter)) {
       auto link = can::make_can_link(bus.device, bus.bitrate, bus.name, io, runtime, log);
+      if (bus.adapter == adapter::kKeyaCan)
+        return keya::make_keya_can_wire(keya_can_settings(bus, drives), std::move(link), runtime, log);
       return canopen::make_canopen_wire(canopen_settings(bus, drives), std::move(link), runtime, log);
     }
-    // The loader has refused every other adapter.
     auto link = std::make_unique<serial::SerialLink>(bus.name, settings_of(bus), io, runtime, log);
+    if (adapter::keya_serial(bus.adapter))
+      return keya::make_keya_serial_wire(keya_serial_settings(bus), std::move(link), runtime, log);
+    // The loader has refused every other adapter.
     return std::make_unique<kinco::KincoWire>(bus.name, std::move(link), runtime, log);
   };
 }

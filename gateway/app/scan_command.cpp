@@ -203,7 +203,7 @@ std::string where_to_look(const ScanOptions& options) {
                                    : fmt::format("`ip -details link show {}` shows the interface's", options.device);
   return fmt::format(
       "Look at:\n"
-      "  the drives       powered, CANopen chosen where they offer several buses, a node-ID set\n"
+      "  the drives       powered, CANopen chosen where they offer several protocols, a node-ID set\n"
       "  the cable        CAN_H to CAN_H, CAN_L to CAN_L, and a common ground\n"
       "  the bit rate     the same in every drive; {}\n"
       "  the termination  120 ohm at both ends of the line: 60 ohm between CAN_H and CAN_L, all power off\n",

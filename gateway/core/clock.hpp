@@ -22,10 +22,11 @@ struct GatewayClock {
 };
 using Instant = GatewayClock::time_point;
 
-/// Later than every deadline: "no deadline".
-inline constexpr Instant kNever = Instant::max();
+/// Later than every deadline: "no deadline". Half of what fits, so that a time added to it, or the time since what never
+/// happened, is still a number.
+inline constexpr Instant kNever = Instant(Duration::max() / 2);
 /// Earlier than everything: "never happened".
-inline constexpr Instant kLongAgo = Instant::min();
+inline constexpr Instant kLongAgo = Instant(Duration::min() / 2);
 
 /// Whole milliseconds from `from` to `to`, not below 0; kLongAgo and kNever saturate.
 [[nodiscard]] constexpr std::int64_t elapsed_ms(Instant from, Instant to) {

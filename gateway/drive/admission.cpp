@@ -75,6 +75,36 @@ std::optional<Errc> as_command(const AxisCore& core, ObjectId id, std::int64_t n
   return std::nullopt;
 }
 
+bool is_alias(const AxisCore& core, ObjectId id, ObjectId other) {
+  const auto& aliases = core.object(id).aliases;
+  return id == other || std::find(aliases.begin(), aliases.end(), other) != aliases.end();
+}
+
+// The quantity that a write of this object is one of; where several are at its place, that of the mode in force.
+const Binding* quantity_at(const AxisCore& core, ObjectId id) {
+  const Binding* found = nullptr;
+  const auto of_mode = setpoint_of_mode(core.mode_in_force());
+  for (const Binding& binding : core.model.bindings) {
+    if (binding.object == kNoObject || !binding.writable || !is_alias(core, id, binding.object)) continue;
+    if (found == nullptr || of_mode == binding.quantity) found = &binding;
+  }
+  return found;
+}
+
+// Another motor's object, one that moves or enables without any rule of ours standing before it, or, where a write is
+// always one of a whole control frame, one that is no field of it.
+bool out_of_reach(const AxisCore& core, ObjectId id) {
+  const bool frames = !core.drive.composed.empty();
+  if (id == kNoObject) return frames;
+  const ObjectDef& object = core.object(id);
+  if (object.slot != bus::kNoAxis && object.slot < core.drive.axes.size() &&
+      &core.drive.axes[object.slot] != &core.model)
+    return true;
+  if (quantity_at(core, id) != nullptr || id == core.model.controlword || id == core.model.mode) return false;
+  const bool enables = core.is_virtual() && !core.model.virtual_axis->gate_only;
+  return frames || object.composed || (enables && object.trigger);
+}
+
 // A width that this protocol can carry; 0 stands for all there is, and in a write for `bytes`.
 bool size_fits(const AxisCore& core, const ObjectRequest& request) {
   const auto fits_a_field = [](std::size_t size) { return size == 1 || size == 2 || size == 4; };
@@ -147,6 +177,7 @@ Translated as_quantities(const AxisCore& core, const Group& group) {
   const ObjectRequest& request = *group.object;
   if (cuts_a_quantity(core, request)) return {group, Errc::bad_value};
   const ObjectId id = core.drive.find({request.index, request.subindex});
+  if (out_of_reach(core, id)) return {group, Errc::bad_value};
   if (id == kNoObject) return {group, Errc::ok};
   const ObjectDef& object = core.object(id);
   Group out = group;
@@ -154,11 +185,9 @@ Translated as_quantities(const AxisCore& core, const Group& group) {
     if (request.size != object.size) return {group, Errc::bad_value};
     return {out, *trigger};
   }
-  const auto& bindings = core.model.bindings;
-  const auto binding =
-      std::find_if(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.object == id && b.writable; });
+  const Binding* binding = quantity_at(core, id);
   out.object.reset();
-  const bool of_a_quantity = id == core.model.controlword || id == core.model.mode || binding != bindings.end();
+  const bool of_a_quantity = id == core.model.controlword || id == core.model.mode || binding != nullptr;
   if (!of_a_quantity) return {group, Errc::ok};
   // A width of its own would cut the value, behind the limits' back.
   if (request.size != object.size) return {group, Errc::bad_value};

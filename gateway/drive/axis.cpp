@@ -221,6 +221,27 @@ bool Axis::insists(bus::OrderId id) const {
   });
 }
 
+bool Axis::stopping() const {
+  return std::any_of(pending_.begin(), pending_.end(),
+                     [](const Pending& p) { return p.conversation->is_stop() && !p.conversation->stop_is_over(); });
+}
+
+bool Axis::enabling() const {
+  return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
+    const Group& group = p.conversation->group();
+    const bool by_word = group.controlword && request_of(*group.controlword) == Request402::enable_operation;
+    return !p.conversation->is_stop() && p.conversation->begun() && (by_word || group.command == Command::enable);
+  });
+}
+
+bool Axis::disable_waits() const {
+  return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
+    const Group& group = p.conversation->group();
+    const bool by_word = group.controlword && request_of(*group.controlword) != Request402::quick_stop;
+    return p.conversation->is_stop() && !p.conversation->begun() && (by_word || group.command == Command::disable);
+  });
+}
+
 bus::OrderId Axis::chain_order() const {
   for (const Pending& p : pending_)
     if (p.conversation->chain_open()) return p.id;
@@ -272,7 +293,7 @@ void Axis::on_order_ended(bus::OrderId id, Errc code) {
   // Whether something was sent is what tells the two apart, not whether the bus had granted it a turn.
   if (code == Errc::link_lost && !begun) code = Errc::offline;
   if (code == Errc::offline && begun) code = Errc::link_lost;
-  conversation.abort({code, 0});
+  conversation.abort(refusal(code));
   complete(id, conversation.result());
 }
 

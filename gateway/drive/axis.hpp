@@ -67,6 +67,13 @@ class Axis {
   /// and again (profile key "keepalive") is commanded only so long.
   [[nodiscard]] bool commands_live() const { return ownership_.live(host_.now()); }
 
+  /// A stop of it waits for the wire or is under way.
+  [[nodiscard]] bool stopping() const;
+  /// An enable is under way.
+  [[nodiscard]] bool enabling() const;
+  /// A disable waits for the wire.
+  [[nodiscard]] bool disable_waits() const;
+
   /// The order's next exchange; none: it waits or has just ended.
   [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::OrderId id);
   [[nodiscard]] bool passes_fence(bus::OrderId id);
@@ -111,7 +118,8 @@ class Axis {
   // What comes before a group is carried out: who asks, and for what besides (axis_ownership.cpp).
   [[nodiscard]] Errc judge_owner(const Group& group) const;
   void claim(const Group& group);
-  [[nodiscard]] GroupResult release(const Group& group);
+  [[nodiscard]] std::optional<GroupResult> release(const Group& group, GroupCallback on_result);
+  [[nodiscard]] GroupResult released(const Group& group);
   [[nodiscard]] std::optional<GroupResult> take_over(const Group& group, GroupCallback on_result);
   [[nodiscard]] std::optional<GroupResult> taken_over(const Group& group, GroupCallback on_result);
   void end_expired_lease();

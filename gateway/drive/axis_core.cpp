@@ -93,7 +93,7 @@ std::optional<VirtualAxis::Seen> AxisCore::seen() const {
   out.enabled = holds(*this, by.enabled);
   out.fault = holds(*this, by.fault);
   out.limit = holds(*this, by.limit);
-  out.moving = holds(*this, model.moving);
+  out.moving = facts().moving;
   out.standing = by.reached ? holds(*this, by.reached) : !out.moving;
   out.homed_at = !by.homed_at || holds(*this, by.homed_at);
   if (const Binding* position = model.binding(Quantity::position_actual);

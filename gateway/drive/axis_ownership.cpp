@@ -30,6 +30,7 @@ Errc Axis::judge_owner(const Group& group) const {
   if (reads_alone(group)) return Errc::ok;
   const bool stops_alone = holds_stop(group) && !group.claims;
   if (stops_alone || group.command == Command::jog_end) return Errc::ok;
+  if (group.command == Command::take_over) return ownership_.may_take_over(group.life);
   if (asks_nothing(group) && !group.claims && !group.jog_again) return Errc::ok;
   return ownership_.judge(group.life, group.claims, core_.now);
 }
@@ -61,7 +62,7 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   if (group.jog_again) jog_.again(*group.jog_again, group.client, core_.now);
   switch (group.command) {
     case Command::release:
-      return release(group);
+      return release(group, std::move(on_result));
     case Command::take_over:
       return take_over(group, std::move(on_result));
     case Command::jog_forward:
@@ -97,7 +98,19 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   return result;
 }
 
-GroupResult Axis::release(const Group& group) {
+// Command 13. What else stands in the request comes before it, while its client owns the axis.
+std::optional<GroupResult> Axis::release(const Group& group, GroupCallback on_result) {
+  Group rest = group;
+  rest.command = Command::none;
+  if (asks_nothing(rest)) return released(group);
+  auto done = submit(rest, [this, group, on_result](const GroupResult& result) {
+    on_result(result.outcome.code == Errc::ok ? released(group) : result);
+  });
+  return done && done->outcome.code == Errc::ok ? std::optional(released(group)) : done;
+}
+
+GroupResult Axis::released(const Group& group) {
+  core_.now = host_.now();
   const auto owner = ownership_.owner();
   const Errc code = ownership_.release(group.life, core_.facts().enabled(), core_.now);
   if (code != Errc::ok) return refuse(group, code);
@@ -115,7 +128,6 @@ GroupResult Axis::release(const Group& group) {
 
 // Command 14: from a lower rank, after a halt. What else stands in the request comes after it, as the new owner's.
 std::optional<GroupResult> Axis::take_over(const Group& group, GroupCallback on_result) {
-  if (const Errc code = ownership_.may_take_over(group.life); code != Errc::ok) return refuse(group, code);
   const auto owner = ownership_.owner();
   const bool from_another = owner && group.life && owner->id != group.life->id;
   if (!from_another || !core_.facts().enabled()) return taken_over(group, std::move(on_result));

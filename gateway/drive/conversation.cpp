@@ -152,7 +152,10 @@ Conversation::Move Conversation::advance(Instant now) {
   while (!finished()) {
     if (phase_ == Phase::settle_stop || phase_ == Phase::settle) {
       if (const auto move = advance_settle()) return *move;
-      next_phase();
+      if (phase_ == Phase::settle && has_lost_torque())
+        fail(Errc::state_unsuitable, kDetailDeviceState);
+      else
+        next_phase();
       continue;
     }
     if (phase_ == Phase::object) {
@@ -257,7 +260,9 @@ std::optional<Conversation::Move> Conversation::advance_wait(const Action& actio
     }
     return std::nullopt;
   }
-  if (fresh && phase_ == Phase::stop && !action.optional && now >= repeat_at_ && repeat_stop()) return std::nullopt;
+  // Where nobody answers a frame, what may run out without a failure tells as well that it was lost.
+  const bool tells = !action.optional || !core_.drive.composed.empty();
+  if (fresh && phase_ == Phase::stop && tells && now >= repeat_at_ && repeat_stop()) return std::nullopt;
   if (fresh && now < look_after_) return Move{Move::Kind::wait, {}, look_after_};
   return exchange_for(Action::read(action.until.object));
 }
@@ -269,6 +274,10 @@ std::optional<Conversation::Move> Conversation::advance_settle() const {
   if (status.refused || (status.known && status.exchange > last_acknowledged_)) return std::nullopt;
   return exchange_for(Action::read(core_.model.statusword));
 }
+
+// The drive may answer such a write all the same, or answers none at all: whether the motor could obey, its state
+// tells.
+bool Conversation::has_lost_torque() const { return commanded_ && !core_.facts().enabled(); }
 
 bool Conversation::passes_fence() {
   if (phase_ != Phase::stop || verifying_) return false;

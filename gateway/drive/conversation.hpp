@@ -1,7 +1,8 @@
 // A conversation: one group carried out, exchange by exchange (design 3.3). Pure: results and instants in, the next
 // move out. Promises the fixed order set-points, mode, controlword, command, object; an end at the first failure; a
-// statusword sampled after the last acknowledgement before it is done; no write repeated but a stop, three times at
-// most. Never decides whose turn the wire is, and never calls anybody.
+// statusword sampled after the last acknowledgement before it is done, and not done where that shows an axis which
+// could not have obeyed; no write repeated but a stop, three times at most. Never decides whose turn the wire is, and
+// never calls anybody.
 #pragma once
 
 #include "adapters/bus/exchange.hpp"
@@ -76,6 +77,8 @@ class Conversation {
   [[nodiscard]] Move advance_object() const;
   [[nodiscard]] bool object_is_held() const;
   [[nodiscard]] bool would_enable(const Action& action) const;
+  [[nodiscard]] bool is_command_of_motion(ObjectId object) const;
+  [[nodiscard]] bool has_lost_torque() const;
   [[nodiscard]] bool within_nvm_budget(const bus::Exchange& exchange, Instant now);
   void reach(const Action& action, Instant now);
   [[nodiscard]] bool overtaken_by_stop(Mark mark) const;
@@ -105,6 +108,7 @@ class Conversation {
   std::optional<int> mode_before_;  ///< in force before the first preparation
   std::vector<Action> todo_;
   std::size_t at_ = 0;
+  bool commanded_ = false;               ///< a set-point that moves by being written went to an enabled axis
   std::uint64_t last_acknowledged_ = 0;  ///< exchange of the last write: samples asked for earlier are too old
   bool preparation_sent_ = false;        ///< the preparation of the command was more than a judgement
   Instant wait_until_ = kNever;          ///< of the wait under way; kNever: not begun

@@ -25,6 +25,13 @@ void Conversation::on_result(const bus::ExchangeResult& result, Instant sent_at,
   }
 }
 
+bool Conversation::is_command_of_motion(ObjectId object) const {
+  const auto& bindings = core_.model.bindings;
+  return moves_by_write(core_, object) && std::any_of(bindings.begin(), bindings.end(), [&](const Binding& b) {
+           return b.object == object && b.writable;
+         });
+}
+
 void Conversation::on_write(const Action& action, const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
   // Anything sampled from the next request on has seen this write, if it was one.
   last_acknowledged_ = core_.store.exchange();
@@ -37,6 +44,8 @@ void Conversation::on_write(const Action& action, const bus::ExchangeResult& res
         return;
       }
       core_.store.acknowledged(action.object, number_of(action), sent_at);
+      commanded_ =
+          commanded_ || (phase_ != Phase::stop && is_command_of_motion(action.object) && core_.facts().enabled());
       if (by_mailbox_) core_.store.doubt_all(action.object);
       pop();
       return;

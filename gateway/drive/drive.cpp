@@ -14,12 +14,14 @@ Drive::Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> imag
       bus_(bus),
       runtime_(runtime),
       events_(events),
-      store_(model_.objects.size()),
+      store_(model_.objects),
       plan_(model_),
       fence_(model_.fence, model_.objects),
       blocks_(model_),
       constants_(model_.constants.size()),
       bring_up_(model_),
+      frame_(model_),
+      keep_alive_(model_),
       backoff_(bus.settings().timeout),
       timer_(runtime.make_timer([this] { on_time(); })),
       mapped_(model_.objects.size(), false) {
@@ -27,6 +29,7 @@ Drive::Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> imag
   AxisHost& host = *this;
   for (std::size_t i = 0; i < images.size(); ++i)
     axes_.push_back(std::make_unique<Axis>(model_, static_cast<bus::AxisSlot>(i), store_, *images[i], host));
+  map_unasked();
   bus_.attach(slot_, *this);
   after_event();
 }
@@ -56,9 +59,11 @@ void Drive::event(AxisNumber axis, EventKind kind, std::uint32_t code, std::stri
 // --- What goes on the wire -----------------------------------------------------------------------------------------
 
 std::optional<bus::Exchange> Drive::on_grant(bus::OrderId id, bus::Priority priority) {
-  on_wire_ = {id, false, false, false, now()};
+  on_wire_ = {.order = id, .sent_at = now()};
   if (waits_for_chain(id, priority)) return std::nullopt;
-  auto exchange = id == 0 ? own_exchange() : exchange_of(id);
+  auto exchange = keep_alive_turn(priority);
+  if (!exchange) exchange = id == 0 ? own_exchange() : exchange_of(id, priority);
+  if (exchange) exchange = whole_frame(*exchange, id, priority);
   if (exchange) {
     if (exchange->part != bus::Part::next) break_chain();
     widen(*exchange);
@@ -74,7 +79,7 @@ std::optional<bus::Exchange> Drive::own_exchange() {
   return fence_.suspect() ? fence(0) : poll();
 }
 
-std::optional<bus::Exchange> Drive::exchange_of(bus::OrderId id) {
+std::optional<bus::Exchange> Drive::exchange_of(bus::OrderId id, bus::Priority priority) {
   Axis* owner = nullptr;
   for (auto& axis : axes_)
     if (axis->has(id)) owner = axis.get();
@@ -82,7 +87,13 @@ std::optional<bus::Exchange> Drive::exchange_of(bus::OrderId id) {
     on_wire_.order = 0;  // the order keeps its turn; this exchange is the drive's own
     return fence(id);
   }
-  if (owner != nullptr) return owner->on_grant(id);
+  if (owner != nullptr) {
+    if (const auto look = priority == bus::Priority::stop ? std::nullopt : look_before_frame()) {
+      on_wire_.order = 0;
+      return look;
+    }
+    return owner->on_grant(id);
+  }
   return id == setup_order_ ? next_of_bring_up() : std::nullopt;
 }
 
@@ -174,6 +185,7 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
       return;
     }
   }
+  on_control_result(exchange, result, asked, trusted);
   const ObjectId written = exchange.access == bus::Access::write ? model_.find(exchange.object) : kNoObject;
   if (asked.order != 0) {
     bool owned = asked.order == setup_order_;
@@ -261,6 +273,7 @@ void Drive::on_link(bool up) {
 void Drive::on_order_ended(bus::OrderId id, Errc code) {
   for (auto& axis : axes_) axis->on_order_ended(id, code);
   if (id == setup_order_) setup_order_ = 0;
+  if (id == keep_alive_order_) keep_alive_order_ = 0;
   after_event();
 }
 
@@ -296,6 +309,7 @@ void Drive::bring_up_to_date() {
     next = std::min({next, axis->next_deadline(), stale_deadline(axis->core(), now())});
     if (axis->has_due()) next = now();
   }
+  next = std::min(next, schedule_keep_alive());
   timer_->expires_at(next);
   if (state_ == LinkState::link_down) {
     bus_.set_poll_due(slot_, kNever);

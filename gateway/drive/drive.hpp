@@ -1,6 +1,7 @@
 // One drive on its bus: link state, bring-up, polling, the fence after a timeout, and its axes.
-// Promises that no value of a suspect drive is stored, no write but a stop is sent to one, and that a mute drive costs
-// its bus one probe per back-off step. Never enables anything.
+// Promises that no value of a suspect drive is stored, no write but a stop is sent to one, that a mute drive costs its
+// bus one probe per back-off step, and that a drive which must be commanded again and again is so while somebody
+// answers for its axis. Never enables anything.
 #pragma once
 
 #include <memory>
@@ -11,7 +12,9 @@
 #include "adapters/bus/bus.hpp"
 #include "gateway/drive/axis.hpp"
 #include "gateway/drive/bring_up.hpp"
+#include "gateway/drive/control_frame.hpp"
 #include "gateway/drive/fence.hpp"
+#include "gateway/drive/keep_alive.hpp"
 #include "gateway/drive/read_blocks.hpp"
 
 namespace axisgate::drive {
@@ -53,6 +56,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
     bool probe = false;
     bool widened = false;  ///< it reads neighbours that nobody asked for
     Instant sent_at = kLongAgo;
+    std::optional<bus::AxisSlot> keeps_alive{};  ///< a repetition for this axis, or the look before it
   };
 
   // AxisHost
@@ -77,7 +81,21 @@ class Drive final : public bus::BusDrive, private AxisHost {
   [[nodiscard]] std::optional<bus::Exchange> fence(bus::OrderId order);
   [[nodiscard]] std::optional<bus::Exchange> poll();
   [[nodiscard]] std::optional<bus::Exchange> own_exchange();
-  [[nodiscard]] std::optional<bus::Exchange> exchange_of(bus::OrderId id);
+  [[nodiscard]] std::optional<bus::Exchange> exchange_of(bus::OrderId id, bus::Priority priority);
+  // What is commanded again and again, and frames that command all motors at once (drive_control.cpp).
+  [[nodiscard]] std::vector<MotorShows> motors_show() const;
+  [[nodiscard]] std::optional<bus::Exchange> look_before_frame() const;
+  [[nodiscard]] std::optional<bus::Exchange> whole_frame(const bus::Exchange& exchange, bus::OrderId id,
+                                                         bus::Priority priority);
+  [[nodiscard]] bool may_repeat() const;
+  [[nodiscard]] std::optional<KeepAlive::Repeat> repeat_for(std::size_t slot) const;
+  [[nodiscard]] bool looked_just_now() const;
+  [[nodiscard]] std::optional<bus::Exchange> keep_alive_turn(bus::Priority priority);
+  /// Takes and gives up a place in the queue as it is needed; when it must be looked at again.
+  [[nodiscard]] Instant schedule_keep_alive();
+  void on_control_result(const bus::Exchange& exchange, const bus::ExchangeResult& result, const OnWire& asked,
+                         bool trusted);
+  void map_unasked();
   [[nodiscard]] std::optional<bus::Exchange> next_of_bring_up();
   /// A long object is under way in another order: an order that can wait does, any other ends it.
   [[nodiscard]] bool waits_for_chain(bus::OrderId id, bus::Priority priority);
@@ -123,6 +141,9 @@ class Drive final : public bus::BusDrive, private AxisHost {
   std::optional<bus::Exchange> silent_read_{};  ///< of a block, given up; whether the drive lives is not known yet
   std::vector<std::optional<Rational>> constants_;
   BringUp bring_up_;
+  ControlFrame frame_;
+  KeepAlive keep_alive_;
+  bus::OrderId keep_alive_order_ = 0;
   bus::Backoff backoff_;
   std::vector<std::unique_ptr<Axis>> axes_;
   std::unique_ptr<Timer> timer_;

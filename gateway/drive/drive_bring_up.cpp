@@ -30,6 +30,7 @@ void Drive::begin_bring_up(bool restarted) {
   fence_.answered();
   backoff_.reset();
   unmap_values();
+  keep_alive_.reset();
   bring_up_.begin();
   plan_.restart(now());
   if (restarted)

@@ -130,6 +130,15 @@ void Drive::map_values() {
   }
 }
 
+// What a drive sends by itself, whatever we tell it: mapped for good.
+void Drive::map_unasked() {
+  for (const ObjectId id : model_.unasked.objects) {
+    mapped_[id] = true;
+    const bool state = tells_state(id);
+    if (model_.unasked.every > Duration{} && !state) store_.set_period(id, model_.unasked.every);
+  }
+}
+
 void Drive::unmap_values() {
   if (!is_canopen(model_)) return;
   for (const TpdoFacts& tpdo : model_.canopen.tpdos) bus_.map_process_data(model_.node, tpdo.number, {});

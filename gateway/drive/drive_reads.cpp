@@ -38,7 +38,7 @@ void Drive::widen(bus::Exchange& exchange) {
     if (store_[id].refused) return false;
     return setup || tells_state(id) || (polled && plan_.due(id, now()));
   });
-  on_wire_.widened = !exchange.more.empty();
+  on_wire_.widened = exchange.access == bus::Access::read && !exchange.more.empty() && !blocks_.one_answer(exchange);
 }
 
 bool Drive::split(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
@@ -58,9 +58,26 @@ void Drive::store_refusal(const bus::Exchange& exchange, const bus::ExchangeResu
   plan_.done(id, now());
   for (const bus::Neighbour& neighbour : exchange.more) plan_.done(model_.find(neighbour.object), now());
   if (result.for_now || plain_read().object == exchange.object) return;
-  store_.refused(id);
-  plan_.drop(id);
+  const auto refuse = [this](ObjectId object) {
+    if (object == kNoObject) return;
+    store_.refused(object);
+    plan_.drop(object);
+  };
+  refuse(id);
+  if (!blocks_.one_answer(exchange)) return;
+  for (const bus::Neighbour& neighbour : exchange.more) refuse(model_.find(neighbour.object));
 }
+
+namespace {
+
+/// The width that this object was asked for in; 0: in whatever it has.
+std::uint8_t asked_width(const bus::Exchange& exchange, const bus::ObjectAddress& object) {
+  for (const bus::Neighbour& neighbour : exchange.more)
+    if (neighbour.object == object) return neighbour.size;
+  return exchange.size;
+}
+
+}  // namespace
 
 void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
   if (exchange.access != bus::Access::read) return;
@@ -78,8 +95,8 @@ void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResul
       narrow.size = field.size;
       narrow.is_signed = object.is_signed;
       store_.read(id, narrow.number(field.raw), on_wire_.sent_at);
-    } else if (on_wire_.fence) {
-      continue;
+    } else if (on_wire_.fence || asked_width(exchange, field.object) != object.size) {
+      continue;  // the mailbox asks in its client's width: what comes proves nothing of the profile
     } else if (!store_[id].refused) {
       store_.refused(id);
       plan_.drop(id);
@@ -89,6 +106,7 @@ void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResul
       continue;
     }
     plan_.done(id, now());
+    for (const ObjectId alias : object.aliases) plan_.done(alias, now());
   }
   read_constants();
   for (auto& axis : axes_) axis->on_samples();

@@ -7,6 +7,12 @@ namespace {
 
 std::uint8_t registers_of(std::uint8_t bytes) { return bytes > 2 ? 2 : 1; }
 
+// A reply names what was asked for; which of the values in it was meant (Keya: by their bytes) it does not tell.
+bus::ObjectAddress named_by_reply(bus::ObjectAddress object) {
+  object.byte = 0;
+  return object;
+}
+
 }  // namespace
 
 std::uint8_t registers_of(const bus::Exchange& exchange) {
@@ -16,14 +22,14 @@ std::uint8_t registers_of(const bus::Exchange& exchange) {
 }
 
 Fence::Likeness Fence::of(const bus::Exchange& exchange) const {
-  if (!facts_.by_length) return {exchange.object, 0};
+  if (!facts_.by_length) return {named_by_reply(exchange.object), 0};
   // The reply to a write has a function code of its own: no read's reply is like it.
   return {{}, exchange.access == bus::Access::write ? std::uint8_t{0} : registers_of(exchange)};
 }
 
 Fence::Likeness Fence::of(const FenceRead& read) const {
   const ObjectDef& object = objects_[read.object];
-  if (!facts_.by_length) return {object.address, 0};
+  if (!facts_.by_length) return {named_by_reply(object.address), 0};
   return {{}, read.registers != 0 ? read.registers : registers_of(object.size)};
 }
 

@@ -249,7 +249,8 @@ struct AxisModel {
   /// What must be read to know the state: the statusword itself, or what a virtual axis makes it from. The first is
   /// what a drive that is not there is asked for.
   std::vector<ObjectId> state_sources;
-  /// Unified mode -> what the drive calls it; absent: refused. In ascending order of the unified number.
+  /// Unified mode -> what the drive calls it; absent: refused. In ascending order of the unified number, but that what
+  /// a motor was set to by its maker's tool comes first (Keya): a virtual axis begins with the first.
   std::vector<std::pair<std::int16_t, std::int64_t>> modes;
   /// The mode can only be changed while the axis is disabled (Keya: the enable carries it, or it is a parameter).
   bool mode_needs_disabled = false;

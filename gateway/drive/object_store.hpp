@@ -1,8 +1,10 @@
 // What is known of each object of one drive: the number last read or acknowledged, and when its request was sent.
-// Promises that a number counts as held only while nothing has happened that could have changed it unseen (design 3.3).
-// Never holds a value of a suspect drive: the drive does not put one in.
+// Promises that a number counts as held only while nothing has happened that could have changed it unseen (design 3.3),
+// and that objects at one place of the drive hold one number. Never holds a value of a suspect drive: the drive does
+// not put one in.
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <vector>
 
@@ -25,7 +27,11 @@ struct ObjectState {
 
 class ObjectStore {
  public:
-  explicit ObjectStore(std::size_t objects) : states_(objects), periods_(objects) {}
+  explicit ObjectStore(std::size_t objects) : states_(objects), periods_(objects), aliases_(objects) {}
+  /// Objects that are aliases of one another share what becomes of any of them.
+  explicit ObjectStore(const std::vector<ObjectDef>& objects) : ObjectStore(objects.size()) {
+    for (std::size_t i = 0; i < objects.size(); ++i) aliases_[i] = objects[i].aliases;
+  }
 
   [[nodiscard]] const ObjectState& operator[](ObjectId id) const {
     assert(id < states_.size());
@@ -37,13 +43,24 @@ class ObjectStore {
   [[nodiscard]] std::uint64_t exchange() const { return exchange_; }
 
   void read(ObjectId id, std::int64_t number, Instant sent_at) {
-    ObjectState& s = at(id);
-    const bool clamped = s.unverified ? s.number != number : s.clamped && s.number == number;
-    s = {.number = number, .known = true, .held = true, .clamped = clamped, .sent_at = sent_at, .exchange = exchange_};
+    each(id, [&](ObjectState& s) {
+      const bool clamped = s.unverified ? s.number != number : s.clamped && s.number == number;
+      s = {
+          .number = number, .known = true, .held = true, .clamped = clamped, .sent_at = sent_at, .exchange = exchange_};
+    });
   }
   void acknowledged(ObjectId id, std::int64_t number, Instant sent_at) {
-    at(id) = {
-        .number = number, .known = true, .held = true, .unverified = true, .sent_at = sent_at, .exchange = exchange_};
+    each(id, [&](ObjectState& s) {
+      s = {
+          .number = number, .known = true, .held = true, .unverified = true, .sent_at = sent_at, .exchange = exchange_};
+    });
+  }
+  /// Of a frame that carries the whole desired state: it was sent and may not have arrived, and what it asked for is
+  /// what the next one asks for.
+  void asked(ObjectId id, std::int64_t number, Instant sent_at) {
+    each(id, [&](ObjectState& s) {
+      s = {.number = number, .known = true, .unsure = true, .sent_at = sent_at, .exchange = s.exchange};
+    });
   }
   /// The gateway's own number, made from samples of this exchange; kLongAgo and 0: from none.
   void make(ObjectId id, std::int64_t number, bool held = true, Instant sent_at = kLongAgo,
@@ -53,14 +70,16 @@ class ObjectStore {
   void refused(ObjectId id) { at(id) = {.refused = true}; }
   /// A write of it may or may not have happened.
   void doubt(ObjectId id) {
-    at(id).held = at(id).unverified = false;
-    at(id).unsure = true;
+    each(id, [](ObjectState& s) {
+      s.held = s.unverified = false;
+      s.unsure = true;
+    });
   }
   /// Nothing is taken as held any more, but what `except` holds: timeout, mailbox write, mode change, fault reset,
   /// set_position (design 3.3).
   void doubt_all(ObjectId except = kNoObject) {
     for (std::size_t i = 0; i < states_.size(); ++i)
-      if (i != except && !states_[i].made) states_[i].held = states_[i].unverified = false;
+      if (!same_place(i, except) && !states_[i].made) states_[i].held = states_[i].unverified = false;
     ++doubts_;
   }
   /// How often doubt_all() was called: whoever keeps the image true reads everything anew then.
@@ -80,8 +99,19 @@ class ObjectStore {
     assert(id < states_.size());
     return states_[id];
   }
+  template <typename Change>
+  void each(ObjectId id, Change change) {
+    change(at(id));
+    for (const ObjectId alias : aliases_[id]) change(at(alias));
+  }
+  [[nodiscard]] bool same_place(std::size_t id, ObjectId other) const {
+    if (other == kNoObject) return false;
+    const auto& aliases = aliases_[other];
+    return id == other || std::find(aliases.begin(), aliases.end(), id) != aliases.end();
+  }
   std::vector<ObjectState> states_;
   std::vector<Duration> periods_;
+  std::vector<std::vector<ObjectId>> aliases_;
   std::uint64_t exchange_ = 0;
   std::uint64_t doubts_ = 0;
 };

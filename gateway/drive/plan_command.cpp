@@ -101,6 +101,8 @@ Plan plan_enable(const AxisCore& core) {
   Plan plan;
   const AxisFacts facts = core.facts();
   if (facts.enabled()) {
+    // Found so, or enabled by somebody else: from now on it is so by our word.
+    if (!facts.commanded) add_virtual_controlword(core, kEnabledBits, plan);
     plan.add(Action::at(Mark::enabled));
     return plan;
   }
@@ -116,6 +118,7 @@ Plan plan_enable(const AxisCore& core) {
   // Before torque comes on, velocity and torque set-points are made 0 and a position set-point the actual position.
   add_running_targets(core, false, plan);
   add_target_here(core, plan);
+  add_quiet_setpoint(core, steps_of(core, Command::enable), plan);
   if (!add_command_steps(core, Command::enable, plan)) return plan;
   // CiA 402-2 table 28: shutdown, switch on, enable operation.
   constexpr std::array<std::uint16_t, 3> kSteps{0x0006, 0x0007, 0x000F};
@@ -182,15 +185,16 @@ Plan plan_run(const AxisCore& core, Command command) {
   const Quantity quantity = velocity ? Quantity::target_velocity : Quantity::target_torque;
   const Binding* binding = core.model.binding(quantity);
   if (binding == nullptr) return Plan::refuse(Errc::not_supported);
+  Plan steps;
+  if (!add_command_steps(core, command, steps)) return steps;
   Plan plan;
+  const bool by_steps = writes(steps, binding->object);
   // Where the drive must be told to run, it must know how fast before.
-  if (core.is_virtual() && !add_write(core, quantity, core.running_target(quantity), plan))
+  if (core.is_virtual() && !by_steps && !add_write(core, quantity, core.running_target(quantity), plan))
     return Plan::refuse(Errc::bad_value);
-  if (!add_command_steps(core, command, plan)) return plan;
-  const bool written = core.is_virtual() || std::any_of(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
-                         return a.kind == Action::Kind::write && a.object == binding->object;
-                       });
-  if (!written && !add_write(core, quantity, core.running_target(quantity), plan)) return Plan::refuse(Errc::bad_value);
+  append(plan, std::move(steps));
+  if (!core.is_virtual() && !by_steps && !add_write(core, quantity, core.running_target(quantity), plan))
+    return Plan::refuse(Errc::bad_value);
   plan.add(Action::at(velocity ? Mark::start_velocity : Mark::start_torque));
   return plan;
 }

@@ -5,6 +5,10 @@
 namespace axisgate::drive {
 namespace {
 
+bool target_of_a_mode(Quantity q) {
+  return q == Quantity::target_position || q == Quantity::target_velocity || q == Quantity::target_torque;
+}
+
 // How long a drive may take to show the mode it was given. No sheet says; two slow poll periods are ample.
 constexpr Duration kModeLimit = std::chrono::milliseconds(500);
 
@@ -67,7 +71,7 @@ bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Pl
   const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, object);
   if (!raw) return false;
   const ObjectState& state = core.store[binding->object];
-  if (state.held && state.number == *raw && !object.trigger) return true;
+  if (state.held && state.number == *raw && !object.trigger && !object.composed) return true;
   if (object.nvm != Nvm::no && !state.held && object.readable && !object.trigger && !state.refused) {
     // Where a write wears out the drive's memory, it is looked at first.
     plan.add(Action::read(binding->object));
@@ -99,19 +103,46 @@ void add_running_target(const AxisCore& core, ObjectId id, std::int64_t raw, Pla
 
 }  // namespace
 
+bool moves_by_write(const AxisCore& core, ObjectId object) {
+  return core.is_virtual() && object != kNoObject && (core.object(object).trigger || core.object(object).composed);
+}
+
+std::optional<Quantity> setpoint_of_mode(int mode) {
+  switch (mode) {
+    case 1:
+      return Quantity::target_position;
+    case 3:
+      return Quantity::target_velocity;
+    case 4:
+      return Quantity::target_torque;
+    default:
+      return std::nullopt;
+  }
+}
+
+bool writes(const Plan& plan, ObjectId object) {
+  return std::any_of(plan.actions.begin(), plan.actions.end(),
+                     [&](const Action& a) { return a.kind == Action::Kind::write && a.object == object; });
+}
+
 void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
   bool look_again = false;
   for (const Quantity q : {Quantity::target_velocity, Quantity::target_torque}) {
     const Binding* binding = core.model.binding(q);
-    if (binding == nullptr || !binding->writable) continue;
+    if (binding == nullptr || !binding->writable || moves_by_write(core, binding->object)) continue;
     const Wanted wanted = keep_wanted ? core.running_target(q) : Wanted{};
     const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, core.object(binding->object));
     add_running_target(core, binding->object, raw.value_or(0), plan, look_again);
   }
   // Those without a quantity on this axis are nobody's to ask for: 0 in any unit.
   const auto& bindings = core.model.bindings;
+  const auto same_place = [&](ObjectId id, ObjectId other) {
+    const auto& aliases = core.object(id).aliases;
+    return id == other || std::find(aliases.begin(), aliases.end(), other) != aliases.end();
+  };
   for (const ObjectId id : core.model.zero_before_enable)
-    if (std::none_of(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.object == id && b.writable; }))
+    if (std::none_of(bindings.begin(), bindings.end(),
+                     [&](const Binding& b) { return b.writable && same_place(id, b.object); }))
       add_running_target(core, id, 0, plan, look_again);
   if (look_again) plan.add(Action::at(Mark::look_again));
 }
@@ -122,6 +153,24 @@ void add_target_here(const AxisCore& core, Plan& plan) {
   // The target of a virtual axis starts nothing: only its command does.
   if (core.is_virtual()) return;
   if (target == nullptr || actual == nullptr || !target->writable || core.object(target->object).trigger) return;
+  plan.add(Action::read(actual->object));
+  plan.add(Action::copy(actual->object, target->object));
+}
+
+void add_quiet_setpoint(const AxisCore& core, const Steps* steps, Plan& plan) {
+  const auto quantity = setpoint_of_mode(core.mode_in_force());
+  const Binding* target = quantity ? core.model.binding(*quantity) : nullptr;
+  if (target == nullptr || !target->writable || !moves_by_write(core, target->object)) return;
+  const auto by_step = [&](const Step& step) {
+    return step.verb == Step::Verb::write && step.object == target->object;
+  };
+  if (steps != nullptr && std::any_of(steps->begin(), steps->end(), by_step)) return;
+  if (quantity != Quantity::target_position) {
+    plan.add(Action::write(target->object, 0));
+    return;
+  }
+  const Binding* actual = core.model.binding(Quantity::position_actual);
+  if (actual == nullptr || actual->object == kNoObject) return;
   plan.add(Action::read(actual->object));
   plan.add(Action::copy(actual->object, target->object));
 }
@@ -142,12 +191,31 @@ void add_changed_run(const AxisCore& core, const Group& group, Plan& plan) {
   const auto& run = core.model.command(Command::run_velocity);
   if (!run || !run->repeat_on_change || !core.facts().enabled() || group.command == Command::run_velocity) return;
   const Binding* binding = core.model.binding(Quantity::target_velocity);
-  const bool changes = std::any_of(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
-    return a.kind == Action::Kind::write && a.object == binding->object;
-  });
-  if (!changes) return;
+  if (!writes(plan, binding->object)) return;
   add_steps(core, run->steps, plan);
   plan.add(Action::at(Mark::start_velocity));
+}
+
+}  // namespace
+
+namespace {
+
+// What moves the axis by being written is kept for a start of its own mode, and acts at once only while that runs. The
+// drive is not asked for the number that it holds once more: keep-alive does that (profile key "keepalive").
+bool may_be_written(const AxisCore& core, const Setpoint& sp, const AxisFacts& facts) {
+  const Binding* binding = core.model.binding(sp.quantity);
+  const bool held_back = core.held_back(sp.quantity);
+  if (binding == nullptr || !moves_by_write(core, binding->object) || !target_of_a_mode(sp.quantity))
+    return core.motion.target_acts_now(sp.quantity, facts, held_back);
+  const bool runs = facts.enabled() && facts.commanded && setpoint_of_mode(facts.mode) == sp.quantity;
+  if (!runs || !core.motion.target_acts_now(sp.quantity, facts, true)) return false;
+  const auto raw = sp.exact ? sp.exact : binding->to_raw(sp.value, core.object(binding->object));
+  const ObjectState& state = core.store[binding->object];
+  const auto& repeated = core.model.keep_alive;
+  const bool kept_alive = std::any_of(repeated.begin(), repeated.end(), [&](const auto& row) {
+    return row.first == facts.mode && row.second == binding->object;
+  });
+  return !(kept_alive && state.held && raw && state.number == *raw);
 }
 
 }  // namespace
@@ -159,7 +227,7 @@ Plan plan_setpoints(const AxisCore& core, const Group& group) {
   const AxisFacts facts = core.facts();
   const auto add = [&](const Setpoint& sp) {
     if (sent_with_start(group.command, sp.quantity)) return true;
-    if (!core.motion.target_acts_now(sp.quantity, facts, core.held_back(sp.quantity))) return true;
+    if (!may_be_written(core, sp, facts)) return true;
     return add_write(core, sp.quantity, {sp.value, sp.exact}, plan);
   };
   const bool max_first = upper_limit_first(core, group);

@@ -38,7 +38,8 @@ bool would_enable(const AxisCore& core, const Steps& steps) {
 Plan quick_stop(const AxisCore& core) {
   Plan plan;
   if (!add_command_steps(core, Command::quick_stop, plan)) return plan;
-  plan.actions.insert(plan.actions.begin() + 1, Action::at(Mark::quick_stopped));  // as soon as it is acknowledged
+  // As soon as it is acknowledged.
+  plan.actions.insert(plan.actions.begin() + (plan.actions.empty() ? 0 : 1), Action::at(Mark::quick_stopped));
   add_virtual_controlword(core, controlword::kEnableVoltage, plan);
   plan.add(Action::wait(not_enabled(core), kStopLimit));
   return plan;
@@ -50,6 +51,17 @@ Plan disable(const AxisCore& core) {
   add_virtual_controlword(core, kSwitchedOn, plan);
   plan.add(Action::wait(torque_off(core), kStopLimit));
   return plan;
+}
+
+// Nobody answers a control frame: that a halt has arrived, only the motor tells. A long ramp goes on after the answer.
+void add_look_at_standstill(const AxisCore& core, Plan& plan) {
+  constexpr Duration kHaltShows = std::chrono::milliseconds(600);
+  const Binding* velocity = core.model.binding(Quantity::velocity_actual);
+  if (core.drive.composed.empty() || velocity == nullptr || velocity->object == kNoObject) return;
+  Condition stands;
+  stands.object = velocity->object;
+  stands.values = {0};
+  plan.add(Action::wait(stands, kHaltShows, true));
 }
 
 // A halt must never enable: not the axis whose disable is still on its way, not the drive that has just restarted. What
@@ -75,6 +87,7 @@ Plan halt(const AxisCore& core) {
     }
   }
   add_steps(core, *steps, plan);
+  add_look_at_standstill(core, plan);
   if (core.facts().enabled()) add_virtual_controlword(core, controlword::kHalt | kEnabled, plan);
   return plan;
 }

@@ -15,10 +15,17 @@ Plan plan_close(const AxisCore& core) {
   return plan;
 }
 
+// The steps before it were gone, and nothing stands against it: the word enables.
+bool opens(const AxisFacts& facts) { return !facts.faulted() && facts.state != State402::switch_on_disabled; }
+
 Plan plan_open(const AxisCore& core) {
   if (core.alarm(AxisAlarm::local_control)) return Plan::refuse(Errc::state_unsuitable);
   Plan plan;
-  if (core.facts().faulted()) return plan;  // as a servo does: the word is taken, and nothing comes of it
+  const AxisFacts facts = core.facts();
+  if (facts.faulted()) return plan;  // as a servo does: the word is taken, and nothing comes of it
+  // Nor without the steps before it, where it is the drive that would be enabled.
+  if (!core.model.virtual_axis->gate_only && !opens(facts)) return plan;
+  add_quiet_setpoint(core, steps_of(core, Command::enable), plan);
   static_cast<void>(add_command_steps(core, Command::enable, plan));
   return plan;
 }
@@ -30,13 +37,19 @@ std::optional<Command> start_of(const AxisCore& core, std::uint16_t word) {
   return mode == 6 ? std::optional(Command::home) : std::nullopt;
 }
 
-// In velocity mode an enabled axis follows its target: what was asked for since the last stop, else nothing.
+// In velocity or torque mode an enabled axis follows its target: what was asked for since the last stop, else nothing.
 Plan plan_follow(const AxisCore& core) {
   Plan plan;
   plan.add(Action::at(Mark::run_raw));
-  const Wanted wanted = core.running_target(Quantity::target_velocity);
+  const auto quantity = setpoint_of_mode(core.mode_in_force());
+  if (!quantity) return plan;
+  const Wanted wanted = core.running_target(*quantity);
   if (wanted.value == 0 && wanted.exact.value_or(0) == 0) return plan;
-  static_cast<void>(append(plan, plan_command(core, Command::run_velocity, core.mode_in_force())));
+  if (quantity == Quantity::target_velocity) {
+    static_cast<void>(append(plan, plan_command(core, Command::run_velocity, core.mode_in_force())));
+  } else if (!add_write(core, *quantity, wanted, plan)) {
+    return Plan::refuse(Errc::bad_value);
+  }
   return plan;
 }
 
@@ -53,6 +66,7 @@ Plan plan_virtual_mode(const AxisCore& core, std::int16_t mode, bool asked_for) 
   Plan plan;
   if (core.mode_in_force() == mode) return plan;
   const AxisFacts facts = core.facts();
+  if (core.model.mode_needs_disabled && facts.enabled()) return Plan::refuse(Errc::state_unsuitable);
   // A command replaces what runs by itself; a mode alone would leave it running unseen.
   if (asked_for && facts.enabled() && (facts.moving || core.motion.running() != MotionKind::none) &&
       !add_command_steps(core, Command::halt, plan))
@@ -88,7 +102,7 @@ Plan plan_virtual_controlword(const AxisCore& core, std::uint16_t word) {
       if (judged.refused()) return judged;
       static_cast<void>(append(plan, plan_command(core, *command, core.mode_in_force())));
     }
-  } else if (!facts.enabled() && is_continuous(core.mode_in_force())) {
+  } else if (!facts.enabled() && opens(facts) && is_continuous(core.mode_in_force())) {
     static_cast<void>(append(plan, plan_follow(core)));
   }
   return plan;

@@ -53,6 +53,9 @@ void add_end_of_halt(const AxisCore& core, Plan& plan);
 [[nodiscard]] Plan plan_virtual_mode(const AxisCore& core, std::int16_t mode, bool asked_for);
 /// Appends the controlword in effect from now on; nothing where the drive has its own.
 void add_virtual_controlword(const AxisCore& core, std::uint16_t controlword, Plan& plan);
+/// Where a set-point moves the axis by being written: what the set-point of the mode in force must be before torque
+/// comes on, 0 or the present position; nothing where `steps` write it themselves.
+void add_quiet_setpoint(const AxisCore& core, const Steps* steps, Plan& plan);
 
 // --- Building blocks -----------------------------------------------------------------------------------------------
 
@@ -70,6 +73,12 @@ bool add_command_steps(const AxisCore& core, Command command, Plan& plan);
 void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan);
 /// Makes the position set-point the actual position.
 void add_target_here(const AxisCore& core, Plan& plan);
+/// On this drive the write of this set-point is what moves the axis: it goes with a start, and while that runs.
+[[nodiscard]] bool moves_by_write(const AxisCore& core, ObjectId object);
+/// The set-point of this mode; none where it has none.
+[[nodiscard]] std::optional<Quantity> setpoint_of_mode(int mode);
+/// The plan writes this object.
+[[nodiscard]] bool writes(const Plan& plan, ObjectId object);
 /// The steps of a command in the mode in force, or null where the drive has none.
 [[nodiscard]] const Steps* steps_of(const AxisCore& core, Command command);
 

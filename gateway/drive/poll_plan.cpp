@@ -14,6 +14,17 @@ void add(std::vector<PollItem>& items, ObjectId object, PollClass poll_class) {
     found->poll_class = std::min(found->poll_class, poll_class);
 }
 
+/// It comes by itself, in a known beat, and is asked for never; but the state is.
+bool comes_unasked(const DriveModel& model, ObjectId id) {
+  if (model.unasked.every == Duration{}) return false;
+  const auto has = [id](const std::vector<ObjectId>& list) {
+    return std::find(list.begin(), list.end(), id) != list.end();
+  };
+  const bool state =
+      std::any_of(model.axes.begin(), model.axes.end(), [&](const AxisModel& axis) { return has(axis.state_sources); });
+  return !state && has(model.unasked.objects);
+}
+
 }  // namespace
 
 std::vector<PollItem> poll_items(const DriveModel& model) {
@@ -43,6 +54,9 @@ std::vector<PollItem> poll_items(const DriveModel& model) {
   for (const Check& check : model.checks) add(items, check.bad.object, PollClass::once);
   // Scales depend on them, and a panel or the mailbox may change what they follow from.
   for (const ObjectId id : constant_objects(model)) add(items, id, PollClass::slow);
+  std::erase_if(items, [&](const PollItem& item) {
+    return !model.object(item.object).readable || comes_unasked(model, item.object);
+  });
   for (PollItem& item : items)
     for (const TpdoFacts& tpdo : model.canopen.tpdos)
       item.mapped = item.mapped || std::find(tpdo.map.begin(), tpdo.map.end(), item.object) != tpdo.map.end();

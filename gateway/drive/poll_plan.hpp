@@ -16,7 +16,8 @@ struct PollItem {
   bool mapped = false;  ///< planned to come by TPDO: then read only where it was silent for CanopenFacts::confirm
 };
 
-/// Every object that must be read to keep the image of these axes true, each once, in its fastest class.
+/// Every object that must be read to keep the image of these axes true, each once, in its fastest class. What the drive
+/// sends by itself in a beat of its own is not asked for, but for the state: it is never slower than class fast.
 [[nodiscard]] std::vector<PollItem> poll_items(const DriveModel& model);
 
 class PollPlan {

@@ -39,8 +39,21 @@ Range Object::numbers() const {
   return out;
 }
 
-const Object* Profile::find(std::string_view object, bus::AxisSlot slot) const {
-  const std::string own = slot < axes.size() ? axes[slot] + "." + std::string(object) : std::string();
+const std::string& QuantitySpec::unit_of(const Object& object) const {
+  if (units.empty()) return object.unit;
+  return object.slot < units.size() ? units[object.slot] : units.front();
+}
+
+bool ConfiguredModeSpec::is_fixed_on(std::string_view protocol) const {
+  return std::find(fixed_on.begin(), fixed_on.end(), protocol) != fixed_on.end();
+}
+
+bool KeepAliveSpec::is_on(std::string_view protocol) const {
+  return on.empty() || std::find(on.begin(), on.end(), protocol) != on.end();
+}
+
+const Object* Profile::find(std::string_view object, bus::AxisSlot motor) const {
+  const std::string own = motor < axes.size() ? axes[motor] + "." + std::string(object) : std::string();
   const Object* shared = nullptr;
   for (const Object& candidate : objects) {
     if (candidate.name == own) return &candidate;

@@ -60,17 +60,18 @@ struct DataType {
 /// Where an object is found on one protocol.
 struct Place {
   bus::ObjectAddress address;
-  std::string request;  ///< keya-*: the named frame that carries it; empty: `address` alone
-  std::uint8_t byte = 0;
-  std::optional<std::uint8_t> bit;
-  std::uint8_t bits = 1;  ///< with `bit`: how many
+  std::string request;      ///< keya-*: the named frame that carries it; empty: `address` alone
+  bool write_only = false;  ///< keya-*: a command, which no query tells
+  bool composed = false;    ///< keya-rs232, keya-rs485: a field of the one control frame
+  bool turns_on = false;    ///< of those: says that its motor is to be on
+  bool unasked = false;     ///< keya-can: in a frame that the drive sends by itself; nothing asks for it
   std::optional<DataType> type;
   bool derived = false;  ///< follows from a rule of the manual's table, not printed
 };
 
 struct Object {
   std::string name;
-  bus::AxisSlot slot = bus::kNoAxis;
+  bus::AxisSlot slot = bus::kNoAxis;  ///< position of its motor in Profile::axes
   DataType type;
   bool readable = true;
   bool writable = false;
@@ -83,6 +84,7 @@ struct Object {
   std::map<std::string, Place, std::less<>> places;  ///< by protocol
   std::string pointer;
   [[nodiscard]] Range numbers() const;  ///< of its type and range together
+  [[nodiscard]] DataType type_at(const Place& place) const { return place.type.value_or(type); }
 };
 
 struct BitsSpec {
@@ -94,11 +96,13 @@ struct BitsSpec {
 struct QuantitySpec {
   Quantity quantity{};
   std::vector<std::string> objects;  ///< the first that the protocol has
-  std::string unit;                  ///< empty: the object's
+  std::vector<std::string> units;    ///< one for all motors, or one for each; empty: the object's
   std::optional<PollClass> poll;
   std::optional<Amount> min, max;
   std::vector<BitsSpec> bits;
   std::string pointer;
+  /// What this object counts in, where it stands for the quantity.
+  [[nodiscard]] const std::string& unit_of(const Object& object) const;
 };
 
 struct ConditionSpec {
@@ -106,6 +110,9 @@ struct ConditionSpec {
   std::uint32_t mask = 0;
   Condition::Test test{};
   std::vector<std::int64_t> values;
+  /// Checks: compared with this constant of the configuration, times so many; empty: with `values`.
+  std::string constant;
+  std::int64_t times = 1;
 };
 
 /// Register 78: the position that command set_position asks for.
@@ -136,6 +143,7 @@ struct CommandSpec {
   bool quick_stop_otherwise = false;
   bool zero_only = false;
   bool repeat_on_change = false;
+  bool as_absolute = false;  ///< move_relative: the gateway carries it out as an absolute move
   std::string pointer;
 };
 
@@ -202,14 +210,22 @@ struct CanopenSpec {
   std::vector<std::uint8_t> unused_tpdos;
 };
 
+/// A named frame of a keya protocol.
+struct FrameSpec {
+  enum class Kind : std::uint8_t { query, control, unasked, wrong };  ///< wrong: a fault has been told
+  Kind kind = Kind::query;
+  std::uint8_t code = 0;  ///< of a query
+  Duration every{};       ///< unasked; 0: not stated
+};
+
 struct ProtocolSpec {
   std::vector<FenceSpec> fence;
   Duration worst_reply{};
   Duration timeout{};
   LossSpec loss;
-  std::vector<std::string> requests;  ///< names of frames, keya-* only
-  RtuFacts rtu;                       ///< modbus-rtu only
-  CanopenSpec canopen;                ///< canopen only
+  std::map<std::string, FrameSpec, std::less<>> frames;  ///< keya-* only
+  RtuFacts rtu;                                          ///< modbus-rtu only
+  CanopenSpec canopen;                                   ///< canopen only
   [[nodiscard]] bool stops_by_itself() const { return loss.by != LossSpec::By::nothing; }
 };
 
@@ -222,6 +238,23 @@ struct StateSpec {
   std::int64_t within = 0;  ///< of position_actual, as the drive counts
   bool gate_only = false;
   bool quick_stop_energised = true;
+};
+
+/// A parameter that only the maker's tool can reach decides a motor's mode; the configuration says what it was set to.
+struct ConfiguredModeSpec {
+  std::vector<std::string> constants;  ///< one for each motor; its number is what the drive calls the mode
+  std::vector<std::string> fixed_on;   ///< protocols on which the motor has this mode and no other
+  std::vector<std::int16_t> only;      ///< elsewhere: modes that can be had only where they are the configured one
+  bool needs_disabled = false;         ///< a mode takes effect by an enable
+  [[nodiscard]] bool is_fixed_on(std::string_view protocol) const;
+};
+
+/// What is repeated for a drive that disables itself when it hears no command.
+struct KeepAliveSpec {
+  Duration every{};
+  std::map<std::int16_t, std::string> resend;  ///< mode -> set-point object
+  std::vector<std::string> on;                 ///< protocols; empty: all
+  [[nodiscard]] bool is_on(std::string_view protocol) const;
 };
 
 struct HomingSpec {
@@ -246,16 +279,17 @@ struct Profile {
   std::vector<QuantitySpec> quantities;
   StateSpec state;
   std::map<std::int16_t, std::int64_t> modes;
+  std::optional<ConfiguredModeSpec> configured_mode;
   HomingSpec homing;
   std::vector<CommandSpec> commands;
   std::vector<WriteSpec> setup;
   std::vector<CheckSpec> checks;
   std::vector<std::string> fault_words;
   std::vector<AlarmSpec> alarms;
-  bool keepalive = false;
+  std::optional<KeepAliveSpec> keepalive;
 
-  /// The object that `name` means for this axis: its own ("A.speed") before the drive's ("speed").
-  [[nodiscard]] const Object* find(std::string_view object, bus::AxisSlot slot) const;
+  /// The object that `name` means for this motor: its own ("A.speed") before the drive's ("speed").
+  [[nodiscard]] const Object* find(std::string_view object, bus::AxisSlot motor) const;
   [[nodiscard]] const QuantitySpec* find(Quantity quantity) const;
 };
 

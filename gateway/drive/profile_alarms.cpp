@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kFaultWords = 2;
 
 /// The alarms that a check may raise: the others have their own makers.
-constexpr std::array<std::pair<std::string_view, AxisAlarm>, 3> kCheckAlarms{{
+constexpr std::array<std::pair<std::string_view, AxisAlarm>, 4> kCheckAlarms{{
+    {"identity_mismatch", AxisAlarm::identity_mismatch},
     {"local_control", AxisAlarm::local_control},
     {"limit_inputs_open", AxisAlarm::limit_inputs_open},
     {"stop_options", AxisAlarm::stop_options},

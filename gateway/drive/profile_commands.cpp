@@ -143,7 +143,7 @@ void check_set_position_value(Reading& reading, const CommandSpec& command, cons
   reading.each_meaning(step.object, [&](const Object& written) {
     for (const std::string& name : actual->objects)
       reading.each_meaning(name, [&](const Object& read) {
-        if (written.unit != (actual->unit.empty() ? read.unit : actual->unit))
+        if (written.unit != actual->unit_of(read))
           reading.fault(pointer, "object \"" + written.name + "\" must have the unit of position_actual");
       });
   });
@@ -163,6 +163,10 @@ void read_options(Reading& reading, const json& node, CommandSpec& out) {
   out.repeat_on_change = flag_in(node, "repeat_on_change", false);
   if (out.repeat_on_change && out.command != Command::run_velocity)
     reading.fault(pointer_to(out.pointer, "repeat_on_change"), "belongs to run_velocity");
+  out.as_absolute = member(node, "as") != nullptr;
+  if (out.as_absolute && (out.command != Command::move_relative || member(node, "steps") != nullptr ||
+                          member(node, "variants") != nullptr))
+    reading.fault(pointer_to(out.pointer, "as"), "stands for the steps of move_relative, and for no others");
   out.quick_stop_otherwise = member(node, "otherwise") != nullptr;
   if (out.quick_stop_otherwise && out.command != Command::halt)
     reading.fault(pointer_to(out.pointer, "otherwise"), "only halt can be replaced by quick_stop");
@@ -188,7 +192,7 @@ void read_command(Reading& reading, const std::string& key, const json& node) {
   read_variants(reading, node, out);
   out.steps = StepReader(reading).read(node, out.pointer);
   check_values(reading, out);
-  const bool everywhere = member(node, "steps") != nullptr || out.quick_stop_otherwise;
+  const bool everywhere = member(node, "steps") != nullptr || out.quick_stop_otherwise || out.as_absolute;
   if (!everywhere)
     reading.fault(out.pointer,
                   "says nothing for modes without a variant: give \"steps\"" +

@@ -29,7 +29,6 @@ void read_head(Reading& reading, const std::string& file) {
   if (out.axes.empty()) out.axes = {"A"};
   if (std::set<std::string>(out.axes.begin(), out.axes.end()).size() != out.axes.size())
     reading.fault("/axes", "an axis is named twice");
-  out.keepalive = member(reading.document, "keepalive") != nullptr;
   const std::string stem = std::filesystem::path(file).stem().string();
   // Configurations find a profile by its file's name, logs and maps show its own: they must be one.
   if (!out.name.empty() && out.name != stem)
@@ -60,13 +59,16 @@ LoadedProfile load_profile(const std::string& path) {
   read_objects(reading);
   read_quantities(reading);
   read_modes(reading);
+  read_configured_mode(reading);
   read_state(reading);
   read_homing(reading);
   read_commands(reading);
   read_setup(reading);
   read_checks(reading);
   read_alarms(reading);
+  read_keepalive(reading);
   check_protocols(reading);
+  check_keepalive(reading);
   read_constant_rules(reading);
   check_state_places(reading);
   for (SchemaFault& fault : faults) out.faults.push_back({path, std::move(fault.pointer), std::move(fault.message)});

@@ -28,8 +28,8 @@ std::optional<bus::ObjectAddress> register_number(const json& node) {
 
 class PlaceReader {
  public:
-  PlaceReader(Reading& reading, std::string protocol, std::string pointer)
-      : reading_(reading), protocol_(std::move(protocol)), pointer_(std::move(pointer)) {}
+  PlaceReader(Reading& reading, const Object& object, std::string protocol, std::string pointer)
+      : reading_(reading), object_(object), protocol_(std::move(protocol)), pointer_(std::move(pointer)) {}
 
   std::optional<Place> read(const json& node) {
     const bool detailed = node.is_object();
@@ -37,14 +37,12 @@ class PlaceReader {
     Place out;
     out.request = text_in(node, "request");
     out.derived = flag_in(node, "derived", false);
-    out.byte = static_cast<std::uint8_t>(whole_in(node, "byte", 0));
-    if (member(node, "bit") != nullptr) out.bit = static_cast<std::uint8_t>(whole_in(node, "bit", 0));
-    out.bits = static_cast<std::uint8_t>(whole_in(node, "bits", 1));
     out.type = type_named(text_in(node, "type"));
-    const bool keya = protocol_.starts_with("keya-");
+    const bool keya = is_keya(protocol_);
     if (!keya && (!out.request.empty() || member(node, "byte") != nullptr || member(node, "bit") != nullptr))
       reading_.fault(pointer_, "\"request\", \"byte\" and \"bit\" belong to the keya protocols; " + expected());
-    if (!out.request.empty()) return in_request(std::move(out));
+    if (keya && !out.request.empty())
+      return place_in_frame(reading_, protocol_, object_, node, pointer_, std::move(out));
     const std::optional<bus::ObjectAddress> found = address == nullptr          ? std::nullopt
                                                     : protocol_ == "modbus-rtu" ? register_number(*address)
                                                                                 : index_and_sub(*address);
@@ -55,28 +53,19 @@ class PlaceReader {
       return std::nullopt;
     }
     out.address = *found;
-    return out;
+    return keya ? place_in_frame(reading_, protocol_, object_, node, pointer_, std::move(out)) : std::optional(out);
   }
 
  private:
-  std::optional<Place> in_request(Place out) {
-    const auto protocol = reading_.profile.protocols.find(protocol_);
-    if (protocol == reading_.profile.protocols.end()) return out;
-    const std::vector<std::string>& known = protocol->second.requests;
-    if (std::find(known.begin(), known.end(), out.request) == known.end())
-      reading_.fault(pointer_to(pointer_, "request"), "unknown request \"" + out.request + "\": not under /protocols/" +
-                                                          protocol_ + hint(out.request, known));
-    return out;
-  }
-
   [[nodiscard]] std::string expected() const {
     if (protocol_ == "modbus-rtu") return "give a register, 302 or \"0x3100\"";
     if (protocol_ == "keya-can") return "give index and sub-index, \"200D.01\", or a request and its byte";
-    if (protocol_.starts_with("keya-")) return "give a request and its byte";
+    if (is_keya(protocol_)) return "give a request and its byte";
     return "give index and sub-index in hexadecimal, \"6041.00\"";
   }
 
   Reading& reading_;
+  const Object& object_;
   std::string protocol_;
   std::string pointer_;
 };
@@ -139,7 +128,7 @@ void read_object(Reading& reading, const std::string& name, const json& node) {
                               hint(protocol, keys_in(reading.profile.protocols)));
         continue;
       }
-      if (std::optional<Place> found = PlaceReader(reading, protocol, at).read(place))
+      if (std::optional<Place> found = PlaceReader(reading, out, protocol, at).read(place))
         out.places.emplace(protocol, std::move(*found));
     }
   }
@@ -155,16 +144,11 @@ struct Extent {
 };
 
 Extent extent(const std::string& protocol, const Object& object, const Place& place) {
-  const std::int64_t size = place.type.value_or(object.type).size * 8;
+  const std::int64_t size = object.type_at(place).size * 8;
   if (protocol == "modbus-rtu")
     return {"", place.address.index * 16, place.address.index * 16 + std::max<std::int64_t>(size, 16)};
-  if (!place.request.empty() || place.byte != 0 || place.bit) {
-    const std::int64_t from = place.byte * 8 + place.bit.value_or(0);
-    const std::string where =
-        place.request + std::to_string(place.address.index) + "." + std::to_string(place.address.sub);
-    return {where, from, from + (place.bit ? place.bits : size)};
-  }
-  return {place.request + std::to_string(place.address.index) + "." + std::to_string(place.address.sub), 0, size};
+  const std::int64_t from = place.address.byte * 8;
+  return {std::to_string(place.address.index) + "." + std::to_string(place.address.sub), from, from + size};
 }
 
 bool are_aliases(const Object& a, const Object& b) {

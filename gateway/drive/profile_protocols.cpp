@@ -1,4 +1,4 @@
-// Section "protocols", "keepalive", and what of them only makes sense once objects are known.
+// Section "protocols", and what of it only makes sense once objects are known.
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -17,28 +17,6 @@ constexpr std::int64_t kFirstErrorFunction = 0x80, kLastErrorFunction = 0xFF;  /
 constexpr std::int64_t kLastRegister = 0xFFFF;
 
 Duration milliseconds(std::int64_t count) { return std::chrono::milliseconds(count); }
-
-void read_requests(Reading& reading, const json& node, const std::string& pointer, ProtocolSpec& out) {
-  for (const char* section : {"requests", "unsolicited"}) {
-    const json* frames = member(node, section);
-    if (frames == nullptr || !frames->is_object()) continue;
-    for (const auto& [name, frame] : frames->items()) {
-      if (std::find(out.requests.begin(), out.requests.end(), name) != out.requests.end())
-        reading.fault(pointer_to(pointer_to(pointer, section), name), "a request has this name already");
-      out.requests.push_back(name);
-    }
-  }
-  const json* requests = member(node, "requests");
-  if (requests == nullptr || !requests->is_object()) return;
-  for (const auto& [name, frame] : requests->items()) {
-    const std::string confirm = text_in(frame, "confirm");
-    const std::string at = pointer_to(pointer_to(pointer, "requests"), name);
-    if (!confirm.empty() && member(*requests, confirm) == nullptr)
-      reading.fault(pointer_to(at, "confirm"), "unknown request \"" + confirm + "\"" + hint(confirm, out.requests));
-    if (text_in(frame, "ack") == "none" && confirm.empty())
-      reading.fault(at, "a request without an answer needs \"confirm\": what else would decide its outcome?");
-  }
-}
 
 /// Ranges of registers without holes, in their order.
 void read_runs(Reading& reading, const json& node, const std::string& pointer, RtuFacts& out) {
@@ -179,13 +157,23 @@ void check_registers(Reading& reading, const ProtocolSpec& protocol, const std::
                   "needs at least two different counts: the reply of a read tells its length and nothing else");
 }
 
+/// Values of one answer are no two reads.
+bus::ObjectAddress asked_for(bus::ObjectAddress address) { return {address.index, address.sub, 0}; }
+
 void check_fence(Reading& reading, const std::string& name, const ProtocolSpec& protocol, const std::string& pointer) {
   std::set<bus::ObjectAddress> addresses;
+  std::set<std::string> requests;
   for (std::size_t i = 0; i < protocol.fence.size(); ++i) {
     const std::string at = pointer_to(pointer_to(pointer, "fence"), i);
     const std::string& wanted = protocol.fence[i].name;
     // A fence may also be one of the protocol's own requests (Keya's queries).
-    if (std::find(protocol.requests.begin(), protocol.requests.end(), wanted) != protocol.requests.end()) continue;
+    if (const auto frame = protocol.frames.find(wanted); frame != protocol.frames.end()) {
+      if (frame->second.kind != FrameSpec::Kind::query && frame->second.kind != FrameSpec::Kind::wrong)
+        reading.fault(at, "\"" + wanted + "\" is no query, so nothing answers it");
+      else if (!requests.insert(wanted).second)
+        reading.fault(at, "the same request stands in this fence already");
+      continue;
+    }
     if (!reading.names_object(wanted, at)) continue;
     const Object& object = *reading.profile.find(wanted, 0);
     const auto place = object.places.find(name);
@@ -193,18 +181,11 @@ void check_fence(Reading& reading, const std::string& name, const ProtocolSpec& 
       reading.fault(at, "object \"" + wanted + "\" has no address on " + name);
     else if (!object.readable)
       reading.fault(at, "object \"" + wanted + "\" cannot be read, so it is no fence");
-    else if (name != "modbus-rtu" && place->second.request.empty() && !addresses.insert(place->second.address).second)
+    else if (place->second.unasked)
+      reading.fault(at, "object \"" + wanted + "\" comes unasked, so it is no fence");
+    else if (name != "modbus-rtu" && !addresses.insert(asked_for(place->second.address)).second)
       reading.fault(at, "the same address stands in this fence already");
   }
-}
-
-void check_keepalive(Reading& reading) {
-  const json* keepalive = member(reading.document, "keepalive");
-  if (keepalive == nullptr) return;
-  for (const std::string& protocol : names_in(*keepalive, "on"))
-    if (!reading.profile.protocols.contains(protocol))
-      reading.fault("/keepalive/on", "protocol \"" + protocol + "\" is not under /protocols" +
-                                         hint(protocol, keys_in(reading.profile.protocols)));
 }
 
 }  // namespace
@@ -219,7 +200,7 @@ void read_protocols(Reading& reading) {
     out.loss = loss_in(node);
     out.fence = fence_in(node);
     const std::string pointer = pointer_to("/protocols", name);
-    read_requests(reading, node, pointer, out);
+    if (is_keya(name)) read_frames(reading, name, node, pointer, out);
     if (name == "modbus-rtu") read_rtu(reading, node, pointer, out);
     if (name == "canopen") read_canopen(reading, node, pointer, out.canopen);
     if (out.worst_reply < out.timeout)
@@ -230,13 +211,13 @@ void read_protocols(Reading& reading) {
 }
 
 void check_protocols(Reading& reading) {
-  check_keepalive(reading);
   for (const auto& [name, protocol] : reading.profile.protocols) {
     const std::string pointer = pointer_to("/protocols", name);
     check_loss(reading, name, protocol.loss, pointer);
     if (name == "canopen") check_canopen(reading, protocol, pointer);
     check_fence(reading, name, protocol, pointer);
     if (name == "modbus-rtu") check_registers(reading, protocol, pointer);
+    if (is_keya(name)) check_control_frame(reading, name, pointer);
   }
 }
 

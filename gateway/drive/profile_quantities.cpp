@@ -59,15 +59,16 @@ void read_bits(Reading& reading, const json& node, QuantitySpec& out) {
 }
 
 void check_unit(Reading& reading, const QuantitySpec& spec, const Object& object) {
-  const std::string& name = spec.unit.empty() ? object.unit : spec.unit;
+  const std::string& name = spec.unit_of(object);
   const Kind kind = row(spec.quantity).kind;
   const std::string quantity(row(spec.quantity).name);
   if (kind == Kind::code) {
-    if (!spec.unit.empty())
+    if (!spec.units.empty())
       reading.fault(pointer_to(spec.pointer, "unit"), "\"" + quantity + "\" is a code and has no unit");
     return;
   }
   if (name.empty()) {
+    if (!spec.units.empty()) return;  // told by read_units()
     reading.fault(spec.pointer,
                   "\"" + quantity + "\" needs a unit: give object \"" + object.name + "\" one, or the quantity itself");
     return;
@@ -83,6 +84,24 @@ void check_object(Reading& reading, const QuantitySpec& spec, const Object& obje
   if (!writable && !object.readable)
     reading.fault(spec.pointer, "object \"" + object.name + "\" cannot be read, so no value can come from it");
   check_unit(reading, spec, object);
+}
+
+/// "unit": one for all motors, or one for each.
+void read_units(Reading& reading, const json& node, QuantitySpec& out) {
+  const json* unit = member(node, "unit");
+  if (unit == nullptr) return;
+  const std::string pointer = pointer_to(out.pointer, "unit");
+  if (unit->is_string()) out.units = {unit->get<std::string>()};
+  if (unit->is_object()) {
+    for (const std::string& axis : reading.profile.axes) {
+      out.units.push_back(text_in(*unit, axis));
+      if (out.units.back().empty()) reading.fault(pointer, "a unit for axis \"" + axis + "\" is missing");
+    }
+  }
+  for (const std::string& name : out.units)
+    if (!name.empty() && !reading.profile.units.contains(name))
+      reading.fault(pointer,
+                    "unknown unit \"" + name + "\": not under /units" + hint(name, keys_in(reading.profile.units)));
 }
 
 void read_limits(Reading& reading, const json& node, QuantitySpec& out) {
@@ -116,11 +135,8 @@ void read_quantities(Reading& reading) {
     out.quantity = known.quantity;
     out.pointer = pointer_to("/quantities", known.name);
     out.objects = names_in(*node, "object");
-    out.unit = text_in(*node, "unit");
     out.poll = poll_named(text_in(*node, "poll"));
-    if (!out.unit.empty() && !reading.profile.units.contains(out.unit))
-      reading.fault(pointer_to(out.pointer, "unit"), "unknown unit \"" + out.unit + "\": not under /units" +
-                                                         hint(out.unit, keys_in(reading.profile.units)));
+    read_units(reading, *node, out);
     if (out.objects.empty() == (member(*node, "bits") == nullptr))
       reading.fault(out.pointer, "a quantity needs either \"object\" or \"bits\"");
     for (const std::string& name : out.objects)

@@ -48,6 +48,7 @@ class Reading {
   [[nodiscard]] std::optional<Amount> amount(const nlohmann::json& node, const std::string& pointer);
 
  private:
+  void by_constant(const nlohmann::json& node, std::int64_t mask, const std::string& pointer, ConditionSpec& out);
   std::vector<SchemaFault>& faults_;
   std::size_t from_schema_;
 };
@@ -65,6 +66,8 @@ class Reading {
 /// The unit counts by a constant that is read from the drive: nothing can be converted by it before that.
 [[nodiscard]] bool waits_for_drive(const Profile& profile, const Unit& unit);
 [[nodiscard]] std::string range_text(const Range& range);
+/// What an axis in this mode follows; none: no single quantity.
+[[nodiscard]] std::optional<Quantity> setpoint_of(std::int16_t mode);
 template <class Map>
 [[nodiscard]] std::vector<std::string> keys_in(const Map& map) {
   std::vector<std::string> out;
@@ -81,17 +84,28 @@ void read_protocols(Reading& reading);
 void read_objects(Reading& reading);
 void read_quantities(Reading& reading);
 void read_modes(Reading& reading);
+void read_configured_mode(Reading& reading);
 void read_state(Reading& reading);
 void read_homing(Reading& reading);
 void read_commands(Reading& reading);
 void read_setup(Reading& reading);
 void read_checks(Reading& reading);
 void read_alarms(Reading& reading);
+void read_keepalive(Reading& reading);
 /// Of section "protocols": what belongs to canopen alone.
 void read_canopen(Reading& reading, const nlohmann::json& node, const std::string& pointer, CanopenSpec& out);
 void check_canopen(Reading& reading, const ProtocolSpec& protocol, const std::string& pointer);
+/// Of sections "protocols" and "objects": what belongs to Keya's own protocols alone.
+[[nodiscard]] bool is_keya(std::string_view protocol);
+void read_frames(Reading& reading, std::string_view protocol, const nlohmann::json& node, const std::string& pointer,
+                 ProtocolSpec& out);
+/// `place` has what every protocol's places have; none where it is wrong.
+[[nodiscard]] std::optional<Place> place_in_frame(Reading& reading, std::string_view protocol, const Object& object,
+                                                  const nlohmann::json& node, const std::string& pointer, Place place);
+void check_control_frame(Reading& reading, const std::string& protocol, const std::string& pointer);
 /// After all: what a section can only be judged by together with others.
 void check_protocols(Reading& reading);
+void check_keepalive(Reading& reading);
 void read_constant_rules(Reading& reading);
 void check_state_places(Reading& reading);
 

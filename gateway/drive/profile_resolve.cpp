@@ -8,37 +8,32 @@
 namespace axisgate::drive {
 namespace {
 
-/// The protocols whose adapters this version has.
-constexpr std::array<std::string_view, 3> kAvailable{"canopen", "kinco-serial", "modbus-rtu"};
-
 std::string listed(const std::vector<std::string>& names) {
   std::string out;
   for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
   return out;
 }
 
-/// Parts of a profile that are checked but have nothing behind them yet are refused by name, never half carried out.
-void refuse_unavailable(Resolving& r) {
-  const auto refuse = [&](const std::string& what) {
-    r.fault("", what + " is not available in this version of axisgate");
-  };
+void check_protocol(Resolving& r) {
   const std::string& protocol = r.input.protocol;
-  if (!r.profile.protocols.contains(protocol)) {
-    std::vector<std::string> known;
-    for (const auto& [name, spec] : r.profile.protocols) known.push_back(name);
-    r.fault("/profile",
-            "profile \"" + r.profile.name + "\" has no protocol \"" + protocol + "\": it has " + listed(known));
-    return;
-  }
-  if (std::find(kAvailable.begin(), kAvailable.end(), protocol) == kAvailable.end())
-    refuse("protocol \"" + protocol + "\"");
-  if (r.profile.keepalive) refuse("\"keepalive\", which profile \"" + r.profile.name + "\" needs,");
+  if (r.profile.protocols.contains(protocol)) return;
+  std::vector<std::string> known;
+  for (const auto& [name, spec] : r.profile.protocols) known.push_back(name);
+  r.fault("/profile",
+          "profile \"" + r.profile.name + "\" has no protocol \"" + protocol + "\": it has " + listed(known));
+}
+
+/// A constant that decides a mode tells why there are no more of them.
+std::string why_no_more(const Profile& profile, const std::string& name, const Constant& constant) {
+  if (!profile.configured_mode) return "";
+  const auto& names = profile.configured_mode->constants;
+  return std::find(names.begin(), names.end(), name) == names.end() ? "" : ": " + constant.text;
 }
 
 }  // namespace
 
 ObjectId Resolving::id(std::string_view name, bus::AxisSlot slot) const {
-  const Object* object = profile.find(name, slot);
+  const Object* object = profile.find(name, motor(slot));
   if (object == nullptr) return kNoObject;
   const auto at = ids.find(object->name);
   return at == ids.end() ? kNoObject : at->second;
@@ -51,15 +46,20 @@ std::optional<Condition> Resolving::condition(const ConditionSpec& spec, bus::Ax
   out.mask = spec.mask;
   out.test = spec.test;
   out.values = spec.values;
+  if (spec.constant.empty()) return out;
+  const auto value = constants.find(spec.constant);
+  const auto number = value == constants.end() ? std::nullopt : value->second.scale(spec.times);
+  if (!number) return std::nullopt;
+  out.values = {*number};
   return out;
 }
 
 std::optional<std::int64_t> Resolving::raw(const std::vector<ValueSpec>& values, std::string_view name,
                                            bus::AxisSlot slot) const {
-  const std::size_t which = values.size() > 1 && slot < values.size() ? slot : 0;
+  const std::size_t which = values.size() > 1 && motor(slot) < values.size() ? motor(slot) : 0;
   const ValueSpec& value = values.at(which);
   if (const auto* literal = std::get_if<std::int64_t>(&value)) return *literal;
-  const Object* object = profile.find(name, slot);
+  const Object* object = profile.find(name, motor(slot));
   if (object == nullptr || !std::holds_alternative<Amount>(value)) return std::nullopt;
   // Units per revolution cancel out here: any number will do.
   const Rational per_rev(1);
@@ -79,7 +79,7 @@ std::optional<ObjectWrite> Resolving::write(const WriteSpec& spec, bus::AxisSlot
 }
 
 std::optional<FactoryWrite> Resolving::factory_write(const WriteSpec& spec, bus::AxisSlot slot) {
-  const Object* object = profile.find(spec.object, slot);
+  const Object* object = profile.find(spec.object, motor(slot));
   const ObjectId written = id(spec.object, slot);
   if (object == nullptr || written == kNoObject) return std::nullopt;
   FactoryWrite out{written, spec.instead_of, {}, {}, spec.why};
@@ -184,8 +184,8 @@ void resolve_constants(Resolving& r) {
     };
     if (constant.min && constant.max &&
         (value.to_double() < constant.min->to_double() || value.to_double() > constant.max->to_double()))
-      r.fault(pointer,
-              "must be " + decimal(*constant.min) + " to " + decimal(*constant.max) + ", is " + decimal(value));
+      r.fault(pointer, "must be " + decimal(*constant.min) + " to " + decimal(*constant.max) + ", is " +
+                           decimal(value) + why_no_more(r.profile, name, constant));
     r.constants.insert_or_assign(name, value);
   }
 }
@@ -194,15 +194,21 @@ void resolve_objects(Resolving& r) {
   for (const Object& object : r.profile.objects) {
     const auto place = object.places.find(r.input.protocol);
     if (place == object.places.end()) continue;
-    const DataType type = place->second.type.value_or(object.type);
+    const Place& at = place->second;
+    const bus::AxisSlot axis = object.slot == bus::kNoAxis ? bus::kNoAxis : r.axis_of(object.slot);
+    // Of a motor that is no axis only what travels with the others' is needed.
+    if (object.slot != bus::kNoAxis && axis == bus::kNoAxis && !at.composed) continue;
+    const DataType type = object.type_at(at);
     ObjectDef def;
     def.name = object.name;
-    def.slot = object.slot;
-    def.address = place->second.address;
+    def.slot = axis;
+    def.address = at.address;
     def.size = type.size;
     def.is_signed = type.is_signed;
-    def.readable = object.readable;
+    def.readable = object.readable && !at.write_only && !at.unasked;
     def.writable = object.writable;
+    def.composed = at.composed;
+    def.turns_on = at.turns_on;
     def.trigger = object.trigger;
     def.any_width = object.any_width && r.input.protocol == "canopen";
     def.nvm = object.nvm;
@@ -217,12 +223,14 @@ std::variant<DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded
     r.fault("/profile", "profile \"" + loaded.file + "\" has mistakes of its own");
     return r.faults;
   }
-  refuse_unavailable(r);
+  check_protocol(r);
   resolve_constants(r);
   if (input.axes.empty() || input.axes.size() > loaded.profile.axes.size())
     r.fault("/axes", "profile \"" + loaded.profile.name + "\" is a drive of " +
                          std::to_string(loaded.profile.axes.size()) + " axes, " + std::to_string(input.axes.size()) +
                          " are configured");
+  if (!r.faults.empty()) return r.faults;
+  resolve_motors(r);
   if (!r.faults.empty()) return r.faults;
   try {
     resolve_objects(r);
@@ -234,6 +242,7 @@ std::variant<DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded
       resolve_state(r, slot);
       resolve_commands(r, slot);
     }
+    resolve_together(r);
     resolve_drive(r);
   } catch (const std::overflow_error& error) {
     r.fault("/constants", std::string(error.what()) + ": give constants and units_per_rev with fewer digits");

@@ -30,6 +30,7 @@ void hold(Resolving& r, const std::string& name, std::int64_t raw, const std::st
 }
 
 void resolve_mapping(Resolving& r, const CanopenSpec& spec) {
+  r.model.canopen.unused_tpdos = spec.unused_tpdos;
   for (const CanopenSpec::Tpdo& tpdo : spec.tpdos) {
     TpdoFacts out;
     out.number = tpdo.number;
@@ -39,9 +40,12 @@ void resolve_mapping(Resolving& r, const CanopenSpec& spec) {
     out.event_ms = tpdo.event_ms;
     for (const std::string& name : tpdo.map)
       if (const auto id = r.ids.find(name); id != r.ids.end()) out.map.push_back(id->second);
-    r.model.canopen.tpdos.push_back(std::move(out));
+    // Nothing of it is wanted: it carries the values of a motor that is no axis.
+    if (out.map.empty())
+      r.model.canopen.unused_tpdos.push_back(out.number);
+    else
+      r.model.canopen.tpdos.push_back(std::move(out));
   }
-  r.model.canopen.unused_tpdos = spec.unused_tpdos;
 }
 
 void resolve_loss(Resolving& r, const LossSpec& loss, const CanopenSpec& spec) {

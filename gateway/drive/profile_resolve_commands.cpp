@@ -109,6 +109,11 @@ void resolve_commands(Resolving& r, bus::AxisSlot slot) {
     const auto command = static_cast<Command>(number);
     const CommandSpec* spec = spec_for(r.profile, command, r.input.protocol);
     if (spec == nullptr) continue;
+    if (spec->as_absolute) {
+      // Without steps of its own the planner carries it out as the absolute move it comes to.
+      if (axis.command(Command::move_absolute)) axis.supported_commands |= 1U << number;
+      continue;
+    }
     axis.commands[number] = command_from(r, *spec, slot);
     if (axis.commands[number]) axis.supported_commands |= 1U << number;
   }

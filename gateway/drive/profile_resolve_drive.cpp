@@ -46,11 +46,22 @@ void resolve_setup(Resolving& r) {
   }
 }
 
+/// A query is asked for by any object that its answer holds.
+ObjectId fence_object(const Resolving& r, const ProtocolSpec& protocol, const std::string& name) {
+  if (!protocol.frames.contains(name)) return r.id(name, 0);
+  for (const Object& object : r.profile.objects) {
+    const auto place = object.places.find(r.input.protocol);
+    const auto id = r.ids.find(object.name);
+    if (place != object.places.end() && place->second.request == name && id != r.ids.end()) return id->second;
+  }
+  return kNoObject;
+}
+
 void resolve_fence(Resolving& r, const ProtocolSpec& protocol) {
   r.model.fence.worst_reply = protocol.worst_reply;
   r.model.fence.by_length = r.input.protocol == "modbus-rtu";
   for (const FenceSpec& read : protocol.fence) {
-    const ObjectId id = r.id(read.name, 0);
+    const ObjectId id = fence_object(r, protocol, read.name);
     if (id == kNoObject) continue;
     if (read.counts.empty()) r.model.fence.candidates.push_back({id, 0});
     for (const std::uint8_t count : read.counts) r.model.fence.candidates.push_back({id, count});
@@ -68,6 +79,8 @@ void resolve_drive(Resolving& r) {
   r.model.poll_period = r.input.poll;
   r.model.stops_by_itself = protocol.stops_by_itself();
   r.model.loss_text = protocol.loss.text;
+  if (r.profile.keepalive && r.profile.keepalive->is_on(r.input.protocol))
+    r.model.keep_alive = r.profile.keepalive->every;
   r.model.timeout = protocol.timeout;
   r.model.rtu = protocol.rtu;
   r.model.nvm = r.profile.nvm;

@@ -78,6 +78,7 @@ class AxisQuantities {
     if (r_.profile.state.is_virtual)
       if (std::optional<Binding> made = bind_made(row)) return made;
     const QuantitySpec* spec = r_.profile.find(axis_.inverted ? opposite(row.quantity) : row.quantity);
+    if (!r_.can_follow(slot_, row.quantity)) return std::nullopt;
     if (spec == nullptr) return row.quantity == Quantity::error_code ? from_alarm_table() : std::nullopt;
     Binding out;
     out.quantity = row.quantity;
@@ -86,7 +87,7 @@ class AxisQuantities {
     if (!spec->bits.empty()) return compose(*spec, std::move(out));
     for (const std::string& name : spec->objects) {
       out.object = r_.id(name, slot_);
-      if (out.object != kNoObject) return scaled(row, *spec, *r_.profile.find(name, slot_), std::move(out));
+      if (out.object != kNoObject) return scaled(row, *spec, *r_.profile.find(name, r_.motor(slot_)), std::move(out));
     }
     return std::nullopt;
   }
@@ -147,7 +148,7 @@ class AxisQuantities {
 
   std::optional<Binding> scaled(const QuantityRow& row, const QuantitySpec& spec, const Object& object, Binding out) {
     if (row.kind != Kind::code) {
-      const Unit& unit = r_.profile.units.find(spec.unit.empty() ? object.unit : spec.unit)->second;
+      const Unit& unit = r_.profile.units.find(spec.unit_of(object))->second;
       std::optional<ScaleRecipe> recipe = r_.recipe(unit);
       if (!recipe) return std::nullopt;  // not supported, never guessed
       recipe->fixed = recipe->fixed * base_per_register(unit.base, axis_.units_per_rev);

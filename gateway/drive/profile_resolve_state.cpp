@@ -6,30 +6,9 @@
 namespace axisgate::drive {
 namespace {
 
-/// A mode whose set-point the gateway cannot give is not offered: what would run then is whatever the drive still
-/// holds.
-std::optional<Quantity> setpoint_of(std::int16_t mode) {
-  switch (mode) {
-    case 1:
-    case 7:
-    case 8:
-      return Quantity::target_position;
-    case 3:
-    case 9:
-      return Quantity::target_velocity;
-    case 4:
-    case 10:
-      return Quantity::target_torque;
-    case 6:
-      return Quantity::homing_method;
-    default:
-      return std::nullopt;
-  }
-}
-
 ObjectId make_object(Resolving& r, bus::AxisSlot slot, const std::string& name, DataType type, bool writable) {
   ObjectDef def;
-  def.name = r.profile.axes.size() > 1 ? r.profile.axes[slot] + "." + name : name;
+  def.name = r.profile.axes.size() > 1 ? r.profile.axes[r.motor(slot)] + "." + name : name;
   def.slot = slot;
   def.size = type.size;
   def.is_signed = type.is_signed;
@@ -41,6 +20,18 @@ ObjectId make_object(Resolving& r, bus::AxisSlot slot, const std::string& name, 
 
 std::optional<Condition> condition(const Resolving& r, const std::optional<ConditionSpec>& spec, bus::AxisSlot slot) {
   return spec ? r.condition(*spec, slot) : std::nullopt;
+}
+
+/// A motor whose mode is fixed must not be sent another mode's set-point: where they share a place, a speed of 0 would
+/// be the position 0.
+bool may_be_zeroed(const Resolving& r, const std::string& name, bus::AxisSlot slot) {
+  const auto belongs_to = [&](Quantity quantity) {
+    const QuantitySpec* spec = r.profile.find(quantity);
+    return spec != nullptr && std::find(spec->objects.begin(), spec->objects.end(), name) != spec->objects.end();
+  };
+  for (const Quantity quantity : {Quantity::target_velocity, Quantity::target_torque})
+    if (belongs_to(quantity) && !r.can_follow(slot, quantity)) return false;
+  return true;
 }
 
 void resolve_roles(Resolving& r, bus::AxisSlot slot) {
@@ -59,7 +50,8 @@ void resolve_roles(Resolving& r, bus::AxisSlot slot) {
   for (std::size_t i = 0; i < r.profile.fault_words.size(); ++i)
     axis.fault_words[i] = r.id(r.profile.fault_words[i], slot);
   for (const std::string& name : r.profile.state.zero_before_enable)
-    if (const ObjectId id = r.id(name, slot); id != kNoObject) axis.zero_before_enable.push_back(id);
+    if (const ObjectId id = r.id(name, slot); id != kNoObject && may_be_zeroed(r, name, slot))
+      axis.zero_before_enable.push_back(id);
   axis.moving = condition(r, r.profile.state.moving, slot);
 }
 
@@ -98,15 +90,6 @@ void resolve_machine(Resolving& r, bus::AxisSlot slot) {
   out.quick_stop_energised = spec.quick_stop_energised;
   add_state_sources(out, axis);
   axis.virtual_axis = std::move(out);
-}
-
-void resolve_modes(Resolving& r, AxisModel& axis) {
-  for (const auto& [mode, raw] : r.profile.modes) {
-    const std::optional<Quantity> setpoint = setpoint_of(mode);
-    if (setpoint && axis.binding(*setpoint) == nullptr) continue;
-    axis.modes.emplace_back(mode, r.profile.state.is_virtual ? mode : raw);  // a mode object of ours holds the register
-    if (mode >= 1 && mode <= 16) axis.supported_modes |= static_cast<std::uint16_t>(1U << (mode - 1));
-  }
 }
 
 void resolve_homing(Resolving& r, bus::AxisSlot slot) {
@@ -155,7 +138,7 @@ void resolve_state(Resolving& r, bus::AxisSlot slot) {
   axis.homing_method = input.homing_method;
   axis.configured_torque_limit = input.torque_limit.has_value();
   resolve_machine(r, slot);
-  resolve_modes(r, axis);
+  resolve_modes(r, slot);
   resolve_homing(r, slot);
 }
 

@@ -37,6 +37,16 @@ class Resolving {
   /// What a unit makes of a number, before the axis's own factors: known now, or once constants of the drive are.
   [[nodiscard]] std::optional<ScaleRecipe> recipe(const Unit& unit);
 
+  /// The motor that an axis is, and the axis that a motor is (kNoAxis: none).
+  [[nodiscard]] bus::AxisSlot motor(bus::AxisSlot slot) const;
+  [[nodiscard]] bus::AxisSlot axis_of(bus::AxisSlot motor) const;
+  /// The mode that the maker's tool has given this axis's motor; none where the drive is simply told.
+  [[nodiscard]] std::optional<std::int16_t> configured_mode(bus::AxisSlot slot) const;
+  /// Whether the axis can have a mode, and follow a set-point in one of its modes.
+  [[nodiscard]] bool can_have(bus::AxisSlot slot, std::int16_t mode) const;
+  [[nodiscard]] bool can_follow(bus::AxisSlot slot, Quantity setpoint) const;
+
+  std::vector<bus::AxisSlot> motors;                 ///< of each axis: position in Profile::axes
   std::map<std::string, ObjectId, std::less<>> ids;  ///< by full name
 
  private:
@@ -46,13 +56,18 @@ class Resolving {
 
 // The parts, in their order.
 void resolve_constants(Resolving& resolving);
+/// Which motor each axis is, and that its mode is known.
+void resolve_motors(Resolving& resolving);
 void resolve_objects(Resolving& resolving);
+/// After all axes: objects at one place, and what is sent or comes together.
+void resolve_together(Resolving& resolving);
 /// The objects that the gateway makes for a virtual axis.
 void make_objects(Resolving& resolving, bus::AxisSlot slot);
 /// Bindings and limits of the axis at `slot`.
 void resolve_quantities(Resolving& resolving, bus::AxisSlot slot);
 /// How its state is known, its modes and its homing.
 void resolve_state(Resolving& resolving, bus::AxisSlot slot);
+void resolve_modes(Resolving& resolving, bus::AxisSlot slot);
 void resolve_commands(Resolving& resolving, bus::AxisSlot slot);
 void resolve_drive(Resolving& resolving);
 /// After the setup list, which it adds to.

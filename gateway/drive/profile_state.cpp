@@ -1,4 +1,4 @@
-// Sections "state", "modes" and "homing".
+// Sections "state" and "homing".
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -126,20 +126,6 @@ void read_homed_at(Reading& reading, const json& section) {
 }
 
 }  // namespace
-
-void read_modes(Reading& reading) {
-  const json* section = member(reading.document, "modes");
-  if (section == nullptr || !section->is_object()) return;
-  for (const auto& [key, node] : section->items()) {
-    const std::optional<std::int64_t> mode = key_number(key);
-    const std::string pointer = pointer_to("/modes", key);
-    if (!mode || *mode < kLowestMode || *mode > kHighestMode) {
-      reading.fault(pointer, "\"" + key + "\" is no mode: use CiA 402 numbers, or negative ones for the drive's own");
-      continue;
-    }
-    reading.profile.modes.emplace(static_cast<std::int16_t>(*mode), whole(node).value_or(0));
-  }
-}
 
 void read_state(Reading& reading) {
   const json* section = member(reading.document, "state");

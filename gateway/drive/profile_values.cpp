@@ -96,6 +96,21 @@ void Reading::value_known(const ValueSpec& value, const Object& object, const st
               "\" counts by a constant of the drive: the amount cannot be converted before the drive was read");
 }
 
+/// Compared with a constant: what it may be must be possible.
+void Reading::by_constant(const json& node, std::int64_t mask, const std::string& pointer, ConditionSpec& out) {
+  out.constant = text_in(node, "constant");
+  out.times = whole_in(node, "times", 1);
+  const auto constant = profile.constants.find(out.constant);
+  if (constant == profile.constants.end())
+    return fault(pointer, "unknown constant \"" + out.constant + "\": not under /constants" +
+                              hint(out.constant, keys_in(profile.constants)));
+  if (constant->second.from_drive)
+    return fault(pointer, "constant \"" + out.constant + "\" is read from the drive: no condition can wait for it");
+  const auto most = constant->second.max ? constant->second.max->scale(out.times) : std::nullopt;
+  if (most && mask != 0 && (*most & ~mask) != 0)
+    fault(pointer, std::to_string(*most) + " has bits outside the mask: this can never be");
+}
+
 ConditionSpec Reading::condition(const json& node, const std::string& object, const std::string& pointer) {
   static constexpr std::array<std::pair<const char*, Condition::Test>, 4> kTests{{
       {"equals", Condition::Test::equals},
@@ -119,6 +134,7 @@ ConditionSpec Reading::condition(const json& node, const std::string& object, co
     if (found->is_array())
       for (const json& entry : *found)
         if (const std::optional<std::int64_t> value = whole(entry)) out.values.push_back(*value);
+    if (found->is_object()) by_constant(*found, mask, at, out);
   }
   if (tests != 1) fault(pointer, "a condition needs exactly one of \"equals\", \"not_equals\", \"in\", \"not_in\"");
   if (!names_object(object, pointer)) return out;

@@ -25,8 +25,15 @@ bool refused(const AxisCore& core, const Binding& binding) {
   return binding.object != kNoObject && core.store[binding.object].refused;
 }
 
+// The drive never says what it holds: what it was told is all that can be shown, and no younger than that.
+bool is_told_alone(const AxisCore& core, const Binding& binding) {
+  if (binding.object == kNoObject) return false;
+  const ObjectDef& object = core.object(binding.object);
+  return !object.readable && !object.made && core.store.period(binding.object) == Duration{};
+}
+
 Duration stale_after(const AxisCore& core, const Binding& binding) {
-  if (binding.poll == PollClass::once) return Duration::max();
+  if (binding.poll == PollClass::once || is_told_alone(core, binding)) return Duration::max();
   Duration period = core.drive.poll_period[static_cast<std::size_t>(binding.poll)];
   const auto mapped = [&](ObjectId id) {
     if (id != kNoObject) period = std::max(period, core.store.period(id));
@@ -142,7 +149,8 @@ void show_state(const AxisCore& core, AxisImage& image, Instant now) {
     const Duration limit = stale_after(core, binding);
     sample.valid = good && image.reachable() && (limit == Duration::max() || now - at <= limit);
     const bool cyclic = binding.poll == PollClass::fast || binding.poll == PollClass::normal;
-    if (cyclic && !refused(core, binding)) image.oldest_cyclic = std::min(image.oldest_cyclic, at);
+    if (cyclic && !refused(core, binding) && !is_told_alone(core, binding))
+      image.oldest_cyclic = std::min(image.oldest_cyclic, at);
   }
   if (image.oldest_cyclic == kNever) image.oldest_cyclic = kLongAgo;
   image.alarms = alarms_of(core);

@@ -1,6 +1,7 @@
-// Objects that one request may read together: neighbouring registers of one poll class inside a run without holes.
-// Promises that a block never leaves its run nor exceeds what the drive reads at once, and that a block which the drive
-// refused is split for good, so that one bad register never spoils the others. Never decides when anything is read.
+// Objects that one request reads together: neighbouring registers of one poll class inside a run without holes, or all
+// values that one answer of the drive holds (Keya: at differing bytes), which come along for nothing. Promises that a
+// block never leaves its run nor exceeds what the drive reads at once, and that a run which the drive refused is split
+// for good, so that one bad register never spoils the others. Never decides when anything is read.
 #pragma once
 
 #include <concepts>
@@ -33,10 +34,15 @@ class ReadBlocks {
     bus::Exchange wide = exchange;
     wide.size = 0;
     for (const ObjectId id : blocks_[at].objects)
-      if (wanted(id) || model_.object(id).address == exchange.object) add(wide, id);
+      if (blocks_[at].one_answer || wanted(id) || model_.object(id).address == exchange.object) add(wide, id);
     exchange = wide;
   }
 
+  /// It reads the values of one answer, not a run: refused or unanswered, it is so as a whole.
+  [[nodiscard]] bool one_answer(const bus::Exchange& exchange) const {
+    const std::size_t at = block_of(exchange);
+    return at != kNone && blocks_[at].one_answer;
+  }
   /// The drive refused this exchange: its block falls in two. False: it read one object, and that is what is refused.
   bool refused(const bus::Exchange& exchange);
   /// It was not answered at all. True: once too often, and its block fell in two.
@@ -45,11 +51,13 @@ class ReadBlocks {
 
  private:
   struct Block {
-    std::vector<ObjectId> objects;  ///< by ascending register
+    std::vector<ObjectId> objects;  ///< by ascending register, or byte
     int silences = 0;
+    bool one_answer = false;
   };
   static constexpr std::size_t kNone = SIZE_MAX;
   void pack(const std::vector<ObjectId>& neighbours);
+  void group_answers();
   [[nodiscard]] std::size_t block_of(const bus::Exchange& exchange) const;
   void add(bus::Exchange& exchange, ObjectId id) const;
 

@@ -32,10 +32,27 @@ void VirtualAxis::started(MotionKind kind, std::optional<std::int64_t> goal, Ins
   end_ = End::none;
 }
 
-void VirtualAxis::observe(const Seen& seen, const VirtualFacts& facts) {
+// Where the bus cannot take the torque away, the gate is the gateway's, and the drive's word only closes it.
+void VirtualAxis::keep_gate(const Seen& seen) {
   // Found moving at the first look: somebody has enabled and started it.
   if (gate_ == Gate::unknown) gate_ = seen.enabled && seen.moving && !seen.fault ? Gate::open : Gate::disabled;
   if (seen.fault || !seen.enabled) gate_ = Gate::disabled;
+}
+
+// Elsewhere the drive says whether it is enabled, whoever has enabled it; only what a disabled one was told so far is
+// ours to remember.
+void VirtualAxis::follow_drive(const Seen& seen) {
+  const bool holds = gate_ == Gate::open || gate_ == Gate::quick_stopped;
+  if (seen.fault || (!seen.enabled && (holds || gate_ == Gate::unknown))) gate_ = Gate::disabled;
+  if (seen.enabled && !seen.fault && gate_ != Gate::quick_stopped) gate_ = Gate::open;
+}
+
+void VirtualAxis::observe(const Seen& seen, const VirtualFacts& facts) {
+  if (facts.gate_only)
+    keep_gate(seen);
+  else
+    follow_drive(seen);
+  shows_gate_ = !facts.gate_only;
   if (gate_ != Gate::open || seen.running == MotionKind::none) run_.under_way = false;
   if (run_.under_way && seen.exchange > run_.exchange) follow(seen, facts);
 }
@@ -80,7 +97,7 @@ std::uint16_t VirtualAxis::statusword(const Seen& seen) const {
   std::uint16_t word = kDisabled;
   if (seen.fault) {
     word = kFault;
-  } else if (seen.enabled) {
+  } else if (seen.enabled || shows_gate_) {
     switch (gate_) {
       case Gate::unknown:
       case Gate::disabled:

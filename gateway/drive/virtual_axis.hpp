@@ -1,8 +1,9 @@
 // The built-in CiA 402 machine of an axis whose drive has none (design 2 and 3.4): its state, and what became of the
 // motion it started. Pure: controlwords, starts and samples in, a statusword out.
 // Promises that it shows nothing the drive did not tell: enabled only while the drive holds torque and the gate is
-// open, target reached only where the axis has stopped at its target. Never opens the gate but by a controlword; an
-// axis found moving at bring-up is shown enabled, because it is.
+// open, target reached only where the axis has stopped at its target. Never opens a gate of its own but by a
+// controlword; an axis found moving at bring-up is shown enabled, because it is, and so is a motor whose drive has an
+// enable for it (VirtualFacts::gate_only false), whenever it holds torque.
 #pragma once
 
 #include <cstdint>
@@ -66,9 +67,12 @@ class VirtualAxis {
     bool moved = false;
     std::uint64_t stopped = 0;  ///< exchange that showed the axis standing again; 0: none yet
   };
+  void keep_gate(const Seen& seen);
+  void follow_drive(const Seen& seen);
   void follow(const Seen& seen, const VirtualFacts& facts);
 
   Gate gate_ = Gate::unknown;
+  bool shows_gate_ = false;  ///< what a disabled axis was told (6, 7) shows: its drive has an enable of its own
   Run run_;
   End end_ = End::none;
 };

@@ -5,14 +5,10 @@ namespace {
 
 using namespace std::string_literals;
 
-bool has_command(const ListedAxis& axis, Command command) {
-  return (axis.supported_commands >> static_cast<unsigned>(command) & 1U) != 0;
-}
-
 bool is_supported(const RegisterRow& row, const ListedAxis& axis) {
-  if (!row.built) return false;
   if (row.source == Source::quantity) return (axis.supported & bit(row.quantity)) != 0;
-  if (row.source == Source::set_position_value) return has_command(axis, Command::set_position);
+  if (row.source == Source::set_position_value) return supports(Command::set_position, axis.supported_commands);
+  if (row.source == Source::jog_velocity) return supports(Command::run_velocity, axis.supported_commands);
   return true;
 }
 
@@ -74,7 +70,7 @@ std::vector<MapEntry> map_entries(const ListedMap& map) {
     for (const CoilRow& coil : coil_rows()) {
       entries.push_back(one_bit("coil", axis, coil.offset, coil.name));
       entries.back().access = "rw";
-      entries.back().supported = coil.built && has_command(axis, coil.on);
+      entries.back().supported = supports(coil, axis.supported_commands);
     }
   }
   for (const ListedAxis& axis : map.axes)

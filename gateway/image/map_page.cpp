@@ -10,7 +10,7 @@ using namespace std::string_literals;
 std::string cell(std::string_view text) { return " " + std::string(text) + " |"; }
 
 std::string role_of_writer(const RegisterRow& row) {
-  if (!row.writable || !row.built) return "";
+  if (!row.writable) return "";
   return std::string(text(row.may_write));
 }
 

@@ -10,16 +10,18 @@ namespace axisgate {
 namespace {
 
 constexpr std::array<CoilRow, kCoils> kCoilRows{{
-    {0, "enable", true, Command::enable, Command::disable, true, "1 enables, 0 disables; reads: enabled"},
-    {1, "fault_reset", false, Command::fault_reset, Command::none, true, "acts on 0 to 1"},
-    {2, "quick_stop", false, Command::quick_stop, Command::none, true, "acts on 0 to 1"},
-    {3, "halt", true, Command::halt, Command::end_halt, true, "1 halts, 0 ends the halt without moving; reads: halted"},
-    {4, "start_absolute", false, Command::move_absolute, Command::none, true, "acts on 0 to 1"},
-    {5, "start_relative", false, Command::move_relative, Command::none, true, "acts on 0 to 1"},
-    {6, "home", false, Command::home, Command::none, true, "acts on 0 to 1"},
-    {7, "run_velocity", true, Command::run_velocity, Command::halt, true, "1 runs, 0 halts; reads: velocity running"},
-    {8, "jog_forward", true, Command::none, Command::none, false, "not in this version: reads 0"},
-    {9, "jog_reverse", true, Command::none, Command::none, false, "not in this version: reads 0"},
+    {0, "enable", true, Command::enable, Command::disable, "1 enables, 0 disables; reads: enabled"},
+    {1, "fault_reset", false, Command::fault_reset, Command::none, "acts on 0 to 1"},
+    {2, "quick_stop", false, Command::quick_stop, Command::none, "acts on 0 to 1"},
+    {3, "halt", true, Command::halt, Command::end_halt, "1 halts, 0 ends the halt without moving; reads: halted"},
+    {4, "start_absolute", false, Command::move_absolute, Command::none, "acts on 0 to 1"},
+    {5, "start_relative", false, Command::move_relative, Command::none, "acts on 0 to 1"},
+    {6, "home", false, Command::home, Command::none, "acts on 0 to 1"},
+    {7, "run_velocity", true, Command::run_velocity, Command::halt, "1 runs, 0 halts; reads: velocity running"},
+    {8, "jog_forward", true, Command::jog_forward, Command::jog_end,
+     "0 to 1 runs at jog_velocity for as long as 1 is written again within jog_timeout_ms; 0, or both jog coils at 1, "
+     "halts; reads: jogging"},
+    {9, "jog_reverse", true, Command::jog_reverse, Command::jog_end, "as jog_forward, the other way"},
 }};
 
 constexpr std::array<InputRow, kAxisInputCount> kInputRows{{
@@ -34,7 +36,7 @@ constexpr std::array<InputRow, kAxisInputCount> kInputRows{{
     {8, "limit_active", ""},
     {9, "quick_stop_active", "or stop-latched"},
     {10, "following_error", ""},
-    {11, "owned_by_me", "this version: 0"},
+    {11, "owned_by_me", "this client owns the axis"},
     {12, "stop_latched", ""},
 }};
 
@@ -106,6 +108,15 @@ std::uint16_t address_of(Block block, std::uint16_t number) {
 
 std::span<const CoilRow> coil_rows() { return kCoilRows; }
 std::span<const InputRow> input_rows() { return kInputRows; }
+
+bool supports(Command command, std::uint32_t supported_commands) {
+  return command <= Command{kLastCommand} && (supported_commands >> static_cast<unsigned>(command) & 1U) != 0;
+}
+
+bool supports(const CoilRow& coil, std::uint32_t supported_commands) {
+  const bool jogs = coil.on == Command::jog_forward || coil.on == Command::jog_reverse;
+  return supports(jogs ? Command::run_velocity : coil.on, supported_commands);
+}
 
 std::string_view unit_of(const RegisterRow& row, std::string_view position_unit) {
   if (row.kind == Kind::position) return position_unit;

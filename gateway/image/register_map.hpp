@@ -34,16 +34,16 @@ enum class Source : std::uint8_t {
   supported_commands,
   supported_modes,
   set_position_value,
+  jog_velocity,
+  lease_remaining_ms,
   // The client's own, per axis.
   command_result,
   command_detail,
   owner,
-  lease_remaining_ms,
   command_id_seen,
   command,
   command_id,
   heartbeat,
-  jog_velocity,
   object_request,
   object_index,
   object_subindex,
@@ -88,7 +88,6 @@ struct RegisterRow {
   Source source = Source::quantity;
   Quantity quantity = Quantity::statusword;
   Role may_write = Role::engineer;  ///< the lowest role that may (design 3.3, Roles); of writable rows
-  bool built = true;                ///< false: its feature is not in this version; reads 0, writes are refused
   std::string_view note = {};
   [[nodiscard]] int registers() const { return registers_of(type); }
 };
@@ -133,7 +132,6 @@ struct CoilRow {
   bool level = false;           ///< acts on both changes; else on 0 -> 1 only, and reads 0
   Command on = Command::none;   ///< what 1 asks for
   Command off = Command::none;  ///< what 0 asks for, of level coils
-  bool built = true;
   std::string_view note = {};
 };
 struct InputRow {
@@ -145,6 +143,11 @@ inline constexpr std::uint16_t kCoils = 10;
 inline constexpr std::uint16_t kReservedCoilsEnd = 16;  ///< 10..15: a 0 is accepted, a 1 is no such address
 [[nodiscard]] std::span<const CoilRow> coil_rows();     ///< in the order of their offsets 0..9
 [[nodiscard]] std::span<const InputRow> input_rows();
+
+/// Register 36 says that the drive can do it.
+[[nodiscard]] bool supports(Command command, std::uint32_t supported_commands);
+/// What 1 asks for; jogging is running at a velocity for as long as the coil is held.
+[[nodiscard]] bool supports(const CoilRow& coil, std::uint32_t supported_commands);
 
 /// What `unit` columns say of a row; positions: `position_unit`, "1/10000 rev".
 [[nodiscard]] std::string_view unit_of(const RegisterRow& row, std::string_view position_unit);

@@ -34,10 +34,6 @@ RegisterRow in(Kind kind, RegisterRow made) {
   made.kind = kind;
   return made;
 }
-RegisterRow not_built(RegisterRow made) {
-  made.built = false;
-  return made;
-}
 
 }  // namespace
 
@@ -69,8 +65,9 @@ std::vector<RegisterRow> axis_register_rows() {
             "7 not owner, 8 stopped by another client, 9 state unsuitable"),
       shows(26, "command_detail", u32, Source::command_detail,
             "SDO abort code, Modbus exception or the drive's own code"),
-      shows(28, "owner", u16, Source::owner, "0 nobody, 1 this client, 2 another; this version: 0"),
-      shows(29, "lease_remaining_ms", u16, Source::lease_remaining_ms, "this version: 0", "ms"),
+      shows(28, "owner", u16, Source::owner, "0 nobody, 1 this client, 2 another"),
+      shows(29, "lease_remaining_ms", u16, Source::lease_remaining_ms,
+            "until the lease runs out as things stand, saturating; 0: none runs", "ms"),
       shows(30, "command_id_seen", u16, Source::command_id_seen, "the last command_id from this client's address"),
       shows(31, "axis_state", u16, Source::axis_state,
             "0 disabled, 1 standstill, 2 discrete motion, 3 continuous motion, 4 homing, 5 stopping or stop-latched, "
@@ -97,11 +94,12 @@ std::vector<RegisterRow> axis_register_rows() {
       of(52, profile_deceleration, kOperator),
       takes(54, "command", u16, Source::command, kOperator,
             "1 enable, 2 disable, 3 quick_stop, 4 halt, 5 fault_reset, 6 move_absolute, 7 move_relative, "
-            "8 run_velocity, 9 run_torque, 10 home, 11 set_position, 12 save_parameters (engineer)"),
+            "8 run_velocity, 9 run_torque, 10 home, 11 set_position, 12 save_parameters (engineer), 13 release, "
+            "14 take_over"),
       takes(55, "command_id", u16, Source::command_id, kOperator),
-      takes(56, "heartbeat", u16, Source::heartbeat, kOperator),
-      not_built(in(Kind::velocity,
-                   takes(58, "jog_velocity", u32, Source::jog_velocity, kOperator, "not in this version: reads 0"))),
+      takes(56, "heartbeat", u16, Source::heartbeat, kOperator, "a changed value renews a lease with renew heartbeat"),
+      in(Kind::velocity, takes(58, "jog_velocity", u32, Source::jog_velocity, kOperator,
+                               "of coils 8 and 9; the gateway's own, the same for every client")),
       of(60, homing_method, kOperator),
       of(62, homing_speed_switch, kOperator),
       of(64, homing_speed_zero, kOperator),
@@ -148,7 +146,8 @@ std::vector<RegisterRow> gateway_register_rows() {
             "5 a check failed, 6 adopted_running, 7 DDS process down, 8 configuration not the one on disk, "
             "9 certificate expires, 10 event loop slow, 11 EEPROM write budget, 12 bus overloaded"),
       shows(7, "role", u16, Source::role, "of this client: 0 none, 1 viewer, 2 operator, 3 engineer"),
-      takes(8, "heartbeat", u16, Source::gateway_heartbeat, kViewer),
+      takes(8, "heartbeat", u16, Source::gateway_heartbeat, kViewer,
+            "a changed value renews this client's leases with renew heartbeat"),
       shows(10, "word_order_test", u32, Source::word_order_test, "always 0x01020304"),
   };
 }

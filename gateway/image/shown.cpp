@@ -3,7 +3,7 @@
 namespace axisgate {
 namespace {
 
-constexpr std::uint16_t kLevelCoils = (1U << 0) | (1U << 3) | (1U << 7);
+constexpr std::uint16_t kLevelCoils = (1U << 0) | (1U << 3) | (1U << 7) | (1U << 8) | (1U << 9);
 // Inputs 0..10 tell of the drive; owned_by_me and stop_latched are the gateway's own knowledge and outlive the link.
 constexpr std::uint16_t kInputsOfTheDrive = (1U << 11) - 1;
 

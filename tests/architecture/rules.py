@@ -17,6 +17,8 @@ ARROWS = {
     # A Lawicel adapter is a serial port: the CAN links share how those are opened and found again.
     "adapters/can": {"adapters/serial", "adapters/bus", "gateway/core"},
     "adapters/canopen": {"adapters/can", "adapters/bus", "gateway/core"},
+    # Of canopen babble_watch.hpp alone, which knows nothing of CANopen: how many frames of one id come in a second.
+    "adapters/keya": {"adapters/canopen", "adapters/can", "adapters/bus", "gateway/core"},
     "adapters/*": {"adapters/bus", "gateway/core"},
     # The simulated drives come from the makers' sheets: what they share with the gateway could be wrong on both sides.
     "tests/simulated": set(),
@@ -34,7 +36,7 @@ ONE_PLACE = {
 }
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
-DECIDING = ("gateway/core/", "gateway/image/", "gateway/drive/", "gateway/upstream/modbus_tcp/", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_", "adapters/canopen/",
+DECIDING = ("gateway/core/", "gateway/image/", "gateway/drive/", "gateway/upstream/modbus_tcp/", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_", "adapters/canopen/", "adapters/keya/",
             "adapters/can/can_", "adapters/can/lawicel", "gateway/app/config_", "gateway/app/bus_budget", "gateway/app/check.")
 SHELLS = tuple(f"gateway/upstream/modbus_tcp/{shell}" for shell in ("server", "listener", "connection"))
 IMPURE = re.compile(r'#include <(boost/asio|boost/beast|sys/socket|sys/epoll|poll\.h|thread|mutex|condition_variable|atomic|random)'

@@ -14,7 +14,11 @@ constexpr std::string_view help =
     "2601|2602 BITS; clear 2601|2602 BITS; stores; transitions. An id286pro: fault CODE [hardware]; clear CODE; "
     "enable on|off; eeprom; starts. On CAN: mute lose duplicate wrong-station wrong-length emergencies "
     "on|off|next [N]|RATE; babble [0xID] ...; exception ABORTCODE ...; restart before|after [next [N]]; nmt; "
-    "emergency CODE; connect on|off; twin on|off; an ld2: fault CODE; clear CODE; stores; transitions. LINE: unplug; "
+    "emergency CODE; connect on|off; twin on|off; an ld2: fault CODE; clear CODE; stores; transitions. A Keya, motors "
+    "A "
+    "and B: state, faults, enabled, position, speed, moves (each of both motors); last-command; commands; trips; fault|"
+    "clear A|B BITS; jam A|B on|off; set voltage|temperature|version VALUE; set count|current|motor-temperature A|B "
+    "VALUE; heartbeat MS; heartbeat-twice on|off|next [N]|RATE. LINE: unplug; "
     "plug; reply-delay MS; exchanges; on CAN bus-off on|off; no-ack; overlaps. lines; help";
 
 // The number that a fault may come with.
@@ -133,10 +137,12 @@ std::string Control::switch_fault(const ControlWords& words, const Target& targe
   const bool can = target.port.can != nullptr;
   if (!target.port.line->has(*fault)) {
     const bool bus = *fault == DriveFault::emergencies;
+    const bool life = *fault == DriveFault::heartbeat_twice;
     refuse_word("'" + words[0] +
-                (can   ? "' cannot happen on CAN"
-                 : bus ? "' is for drives on CAN alone"
-                       : "' is for drives on Modbus RTU alone"));
+                (can    ? "' cannot happen on CAN"
+                 : bus  ? "' is for drives on CAN alone"
+                 : life ? "' is for drives that send heartbeats"
+                        : "' is for drives on Modbus RTU alone"));
   }
   const bool counted = *fault == DriveFault::late || *fault == DriveFault::exception;
   const bool hex = can && words.size() > 2 && words[2].starts_with("0x");
@@ -172,6 +178,12 @@ std::string Control::on_drive(const ControlWords& words) {
 
 std::optional<std::string> Control::ask_drive(PortLine& port, std::size_t position, const ControlWords& words) {
   if (port.can != nullptr) return ask_can(simulator_, port, position, words);
+  if (port.keya != nullptr) {
+    if (words[0] != "heartbeat") return ask_keya(port.keya->drive(position), words, simulator_.now());
+    need_words(words, 3, "heartbeat LINE/NODE MS, 0 for none");
+    port.keya->set_heartbeat(position, std::chrono::milliseconds(number_in(words[2])));
+    return "";
+  }
   KincoDrive* kinco = port.rtu != nullptr ? port.rtu->kinco(position) : &port.serial->drive(position);
   return kinco != nullptr ? ask_kinco(*kinco, words) : ask_id286pro(*port.rtu->id286pro(position), words);
 }

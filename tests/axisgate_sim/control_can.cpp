@@ -87,9 +87,15 @@ std::optional<std::string> ask_can(Simulator& simulator, PortLine& port, std::si
     if (command == "twin") simulator.set_twin(port, position, on);
     return "";
   }
-  if (auto told = ask_node(bus.node(position), words, now)) return told;
+  if (KeyaDrive* keya = bus.keya(position)) {
+    if (auto told = ask_keya(*keya, words, now)) return told;
+  }
+  CanopenNode* node = bus.canopen(position);
+  if (node == nullptr) return std::nullopt;
+  if (auto told = ask_node(*node, words, now)) return told;
   if (KincoDrive* kinco = bus.kinco(position)) return ask_kinco(*kinco, words);
-  return ask_leadshine(*bus.leadshine(position), words);
+  LeadshineDrive* leadshine = bus.leadshine(position);
+  return leadshine != nullptr ? ask_leadshine(*leadshine, words) : std::nullopt;
 }
 
 }  // namespace axisgate::simulated

@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-#include "tests/axisgate_sim/spec_words.hpp"
+#include "tests/axisgate_sim/keya_words.hpp"
 
 namespace axisgate::simulated {
 namespace {
@@ -114,8 +114,27 @@ RtuDriveOptions parse_rtu_drive(std::string_view text, const DriveOptions& commo
   return drive;
 }
 
+KeyaOptions parse_keya(const Typed& it, const DriveOptions& common) {
+  KeyaOptions drive;
+  drive.node = it.station;
+  drive.boot_time = common.boot_time;
+  for (const std::string_view word : it.words) modify_keya(drive, word);
+  return drive;
+}
+
+// On RS232 a drive has no number: "keya-rs232" is "keya-rs232@1".
+KeyaOptions parse_keya_serial(std::string_view text, LineKind kind, const DriveOptions& common) {
+  if (kind == LineKind::keya_rs485) return parse_keya(typed(text, {"keya-rs485"}, "keya-rs485", 255), common);
+  std::string whole(text);
+  if (whole.find('@') == std::string::npos) whole.insert(std::min(whole.find('+'), whole.size()), "@1");
+  return parse_keya(typed(whole, {"keya-rs232"}, "keya-rs232", 1), common);
+}
+
 CanDriveOptions parse_can_drive(std::string_view text, const DriveOptions& common) {
-  const Typed it = typed(text, {"jd", "md", "ld2"}, "jd, md or ld2", 127);
+  const Typed it = typed(text, {"jd", "md", "ld2", "keya-can", "keya-kydas4860-2e"},
+                         "jd, md, ld2, keya-can or keya-kydas4860-2e", 127);
+  if (it.type == "keya-can") return KeyaCanDrive{parse_keya(it, common)};
+  if (it.type == "keya-kydas4860-2e") return KeyaCanopenDrive{parse_keya(it, common)};
   if (it.type != "ld2") {
     KincoCanDrive drive{parse_kinco(it, common), {}};
     for (const std::string_view word : it.words) modify(drive, word);
@@ -129,6 +148,26 @@ CanDriveOptions parse_can_drive(std::string_view text, const DriveOptions& commo
   return drive;
 }
 
+// Some types tell their line by themselves.
+LineKind kind_by_type(std::string_view drives) {
+  if (drives.starts_with("keya-rs232")) return LineKind::keya_rs232;
+  if (drives.starts_with("keya-rs485")) return LineKind::keya_rs485;
+  if (drives.starts_with("keya-")) return LineKind::can;
+  return LineKind::kinco;
+}
+
+void add_drive(LineSpec& spec, std::string_view drive, const DriveOptions& common) {
+  if (spec.is_can()) {
+    spec.can_drives.push_back(parse_can_drive(drive, common));
+  } else if (spec.is_keya_serial()) {
+    spec.keya_drives.push_back(parse_keya_serial(drive, spec.kind, common));
+  } else if (spec.kind == LineKind::rtu) {
+    spec.rtu_drives.push_back(parse_rtu_drive(drive, common));
+  } else {
+    spec.drives.push_back(parse_drive(drive, common));
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> LineSpec::stations() const {
@@ -136,6 +175,7 @@ std::vector<std::uint8_t> LineSpec::stations() const {
   for (const DriveOptions& drive : drives) found.push_back(drive.station);
   for (const RtuDriveOptions& drive : rtu_drives) found.push_back(unit_of(drive));
   for (const CanDriveOptions& drive : can_drives) found.push_back(node_of(drive));
+  for (const KeyaOptions& drive : keya_drives) found.push_back(drive.node);
   return found;
 }
 
@@ -147,6 +187,9 @@ std::string LineSpec::describe() const {
   }
   for (const RtuDriveOptions& drive : rtu_drives) append(simulated::describe(drive));
   for (const CanDriveOptions& drive : can_drives) append(simulated::describe(drive));
+  for (const KeyaOptions& drive : keya_drives) {
+    append((kind == LineKind::keya_rs232 ? "keya-rs232@" : "keya-rs485@") + std::to_string(drive.node));
+  }
   const auto mark = std::ranges::find(marks, kind, &Mark::kind);
   return (mark == marks.end() ? "" : std::string(mark->word.substr(1)) + ":") + text;
 }
@@ -157,7 +200,7 @@ LineSpec parse_line_spec(std::string_view text, const DriveOptions& common) {
     refuse_spec(
         "line", text,
         "write PATH:DRIVES, PATH:rtu:DRIVES, IFACE:can:DRIVES or PATH:lawicel:DRIVES, for example /tmp/lift:jd@1, "
-        "/tmp/table:md@1,jd@2, /tmp/axes:rtu:id286pro@1,jd@2 or vcan0:can:ld2@1");
+        "/tmp/table:md@1,jd@2, /tmp/axes:rtu:id286pro@1,jd@2, vcan0:can:ld2@1 or /tmp/cart:keya-rs232");
   }
   LineSpec spec;
   spec.path = text.substr(0, colon);
@@ -166,19 +209,14 @@ LineSpec parse_line_spec(std::string_view text, const DriveOptions& common) {
     spec.kind = mark.kind;
     spec.path.resize(spec.path.size() - mark.word.size());
   }
+  if (spec.kind == LineKind::kinco) spec.kind = kind_by_type(text.substr(colon + 1));
   spec.name = spec.path.substr(spec.path.rfind('/') + 1);
   if (spec.name.empty()) refuse_spec("line", text, "the path ends in '/': name the link itself");
   if (spec.kind == LineKind::can && (spec.name != spec.path || spec.path.size() > longest_interface)) {
     refuse_spec("line", text, "a CAN interface has a name of at most 15 characters and no '/', for example vcan0");
   }
   for (const std::string_view drive : split(text.substr(colon + 1), ',')) {
-    if (spec.is_can()) {
-      spec.can_drives.push_back(parse_can_drive(drive, common));
-    } else if (spec.kind == LineKind::rtu) {
-      spec.rtu_drives.push_back(parse_rtu_drive(drive, common));
-    } else {
-      spec.drives.push_back(parse_drive(drive, common));
-    }
+    add_drive(spec, drive, common);
     const auto stations = spec.stations();
     if (std::ranges::count(stations, stations.back()) > 1)
       refuse_spec("drive", drive, "this station is already on the line");

@@ -37,11 +37,18 @@ void describe_options(CLI::App& app, Options& options) {
       "On CANopen a drive may carry +block (SDO block transfer), a Kinco +short (replies shorter than 8 bytes), an "
       "ld2\n"
       "+ack (statusword bit 12 in profile position) and any stored object: ld2@1+2008.00=10000+6085.00=500000.\n"
+      "Keya KYDAS4860-2E (two motors): --line /tmp/cart:keya-rs232, --line /tmp/carts:keya-rs485@1,keya-rs485@2,\n"
+      "             --line vcan0:keya-can@1 (its maker's protocol), --line vcan0:can:keya-kydas4860-2e@1 (CANopen); it "
+      "may\n"
+      "             carry any parameter of its manual: keya-rs232+0020=3+0050=4, and +coast|+ramp, +queries-feed,\n"
+      "             +repeat-ignored, +zero-ignored, +other-kept, +sub-00, +keeps-counts, +period-only, +heartbeat=MS.\n"
       "The control socket takes text lines: echo 'mute lift/1 on' | socat - UNIX:/tmp/sim.sock; 'help' lists them.");
-  app.add_option("--line", options.lines,
-                 "PATH:TYPE@STATION[,TYPE@STATION...], type jd or md; PATH:rtu:TYPE@UNIT[,...] for Modbus RTU, type "
-                 "jd, md or id286pro; one pty each, linked at PATH. IFACE:can:TYPE@NODE[,...] for CANopen on a "
-                 "SocketCAN interface, PATH:lawicel:TYPE@NODE[,...] behind a serial CAN adapter, type jd, md or ld2")
+  app.add_option(
+         "--line", options.lines,
+         "PATH:TYPE@STATION[,TYPE@STATION...], type jd or md; PATH:rtu:TYPE@UNIT[,...] for Modbus RTU, type "
+         "jd, md or id286pro; one pty each, linked at PATH. IFACE:can:TYPE@NODE[,...] for CANopen on a "
+         "SocketCAN interface, PATH:lawicel:TYPE@NODE[,...] behind a serial CAN adapter, type jd, md, ld2, keya-can "
+         "or keya-kydas4860-2e; PATH:keya-rs232 or PATH:keya-rs485@NODE[,...] for a Keya's serial protocols")
       ->required();
   app.add_flag("--cascade", options.cascade,
                "All drives have 6510:0B = 1 and return the host's frames, as several on one RS232 line always do");
@@ -72,8 +79,8 @@ void build(Simulator& simulator, Control& control, const Options& options) {
   drive.store_time = milliseconds_of(options.store_ms);
   LineTimings timings;
   timings.serial.wiring = options.rs485 ? Wiring::rs485 : Wiring::rs232;
-  timings.serial.baud = timings.rtu.baud = options.baud;
-  timings.serial.reply_delay = milliseconds_of(options.reply_delay_ms.value_or(0));
+  timings.serial.baud = timings.rtu.baud = timings.keya.baud = options.baud;
+  timings.serial.reply_delay = timings.keya.reply_delay = milliseconds_of(options.reply_delay_ms.value_or(0));
   if (options.reply_delay_ms) timings.rtu.reply_delay = milliseconds_of(*options.reply_delay_ms);
   if (options.reply_delay_ms) timings.can.reply_delay = milliseconds_of(*options.reply_delay_ms);
   timings.can.bit_rate = 0;  // a real interface takes its own time, and an adapter is told its rate
@@ -93,7 +100,8 @@ void build(Simulator& simulator, Control& control, const Options& options) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Simulated Kinco JD, MD, iD286pro and Leadshine LD2-CAN drives on pseudo-terminals and CAN interfaces, as their "
+      "Simulated Kinco JD, MD, iD286pro, Leadshine LD2-CAN and Keya KYDAS4860-2E drives on pseudo-terminals and CAN "
+      "interfaces, as their "
       "makers' manuals describe them."};
   Options options;
   describe_options(app, options);

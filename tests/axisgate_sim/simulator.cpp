@@ -37,6 +37,13 @@ void Simulator::add(const LineSpec& spec, const LineTimings& timings, std::uint6
     for (const RtuDriveOptions& drive : spec.rtu_drives) line->add(drive);
     port.rtu = line.get();
     port.line = std::move(line);
+  } else if (spec.is_keya_serial()) {
+    KeyaLineOptions options = timings.keya;
+    options.wiring = spec.kind == LineKind::keya_rs232 ? KeyaWiring::rs232 : KeyaWiring::rs485;
+    auto line = std::make_unique<KeyaLine>(options, Random(seed), to_port);
+    for (const KeyaOptions& drive : spec.keya_drives) line->add(drive);
+    port.keya = line.get();
+    port.line = std::move(line);
   } else {
     auto line = std::make_unique<SerialLine>(timings.serial, Random(seed), to_port);
     for (const DriveOptions& drive : spec.drives) line->add(drive);

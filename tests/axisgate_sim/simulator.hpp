@@ -23,6 +23,7 @@ struct PortLine {
   SerialLine* serial = nullptr;  // the same line, as what it is
   RtuLine* rtu = nullptr;
   CanPortLine* can = nullptr;
+  KeyaLine* keya = nullptr;
   std::map<std::size_t, std::size_t> twins{};  // where the second drive with the number of the first stands
   std::unique_ptr<Port> port;                  // none while unplugged
 };
@@ -31,6 +32,7 @@ struct LineTimings {
   LineOptions serial;
   RtuLineOptions rtu;
   CanLineOptions can;
+  KeyaLineOptions keya{};
 };
 
 class Simulator {

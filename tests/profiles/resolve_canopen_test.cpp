@@ -167,7 +167,8 @@ TEST_F(CanopenProfile, GuardingWithoutALossReactionWritesNothing) {
 
 TEST_F(CanopenProfile, WhatIsMappedIsPlannedSo) {
   int mapped = 0;
-  for (const ObjectId id : model().canopen.tpdos.at(0).map) mapped += id != kNoObject ? 1 : 0;
+  const DriveModel resolved = model();
+  for (const ObjectId id : resolved.canopen.tpdos.at(0).map) mapped += id != kNoObject ? 1 : 0;
   EXPECT_EQ(mapped, 2);
 }
 

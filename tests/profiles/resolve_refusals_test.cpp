@@ -6,7 +6,6 @@
 namespace axisgate::drive {
 namespace {
 
-using testing::Contains;
 using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
@@ -46,12 +45,6 @@ TEST(Refusals, AConstantOutsideItsRangeIsRefused) {
               ElementsAre(says("/constants/encoder_counts_per_rev", "must be 16 to 16777216, is 0")));
 }
 
-TEST(Refusals, ProtocolsWithoutAnAdapterAreRefusedByName) {
-  for (const std::string protocol : {"keya-can", "keya-rs232", "keya-rs485"})
-    EXPECT_THAT(refused(valid_file("keya-kydas4860-2e"), one_axis(protocol)),
-                Contains(says("", "protocol \"" + protocol + "\" is not available")));
-}
-
 TEST(Refusals, AProtocolTheDriveDoesNotHaveIsAMistakeOfTheConfiguration) {
   ResolveInput input = kinco_axis();
   input.protocol = "keya-can";
@@ -59,11 +52,6 @@ TEST(Refusals, AProtocolTheDriveDoesNotHaveIsAMistakeOfTheConfiguration) {
       refused(shipped("kinco-md"), input),
       ElementsAre(says("/profile",
                        "profile \"kinco-md\" has no protocol \"keya-can\": it has canopen, kinco-serial, modbus-rtu")));
-}
-
-TEST(Refusals, KeepaliveIsRefusedByName) {
-  ResolveInput input = one_axis("keya-can");
-  EXPECT_THAT(refused(valid_file("keya-kydas4860-2e"), input), Contains(says("", "\"keepalive\"")));
 }
 
 TEST(Refusals, MoreAxesThanTheDriveHasAreRefused) {

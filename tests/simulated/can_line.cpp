@@ -5,22 +5,33 @@
 namespace axisgate::simulated {
 namespace {
 
+// The bits of arbitration as a number: 11 of the identifier, then that it is extended, then the other 18.
+std::uint64_t rank(const BusFrame& frame) {
+  constexpr unsigned rest = 18;
+  if (!frame.extended) return std::uint64_t{frame.id} << (rest + 1);
+  return std::uint64_t{frame.id >> rest} << (rest + 1) | 1U << rest | (frame.id & ((1U << rest) - 1));
+}
+
 // Lower wins: identifier, then data before remote, then who was first.
 bool wins(const BusFrame& one, const BusFrame& other) {
-  if (one.id != other.id) return one.id < other.id;
+  if (rank(one) != rank(other)) return rank(one) < rank(other);
   return !one.remote && other.remote;
 }
 
 }  // namespace
 
 std::uint8_t node_of(const CanDriveOptions& options) {
-  const auto* kinco = std::get_if<KincoCanDrive>(&options);
-  return kinco != nullptr ? kinco->drive.station : std::get<LeadshineOptions>(options).node;
+  if (const auto* kinco = std::get_if<KincoCanDrive>(&options)) return kinco->drive.station;
+  if (const auto* keya = std::get_if<KeyaCanDrive>(&options)) return keya->drive.node;
+  if (const auto* keya = std::get_if<KeyaCanopenDrive>(&options)) return keya->drive.node;
+  return std::get<LeadshineOptions>(options).node;
 }
 
 std::string describe(const CanDriveOptions& options) {
-  const auto* kinco = std::get_if<KincoCanDrive>(&options);
-  const std::string type = kinco != nullptr ? std::string(model_of(kinco->drive.type).name) : "ld2";
+  std::string type = "ld2";
+  if (const auto* kinco = std::get_if<KincoCanDrive>(&options)) type = model_of(kinco->drive.type).name;
+  if (std::holds_alternative<KeyaCanDrive>(options)) type = "keya-can";
+  if (std::holds_alternative<KeyaCanopenDrive>(options)) type = "keya-kydas4860-2e";
   return type + '@' + std::to_string(node_of(options));
 }
 
@@ -30,6 +41,11 @@ std::unique_ptr<CanopenNode> make_can_node(const CanDriveOptions& options) {
   if (const auto* kinco = std::get_if<KincoCanDrive>(&options)) {
     device = std::make_unique<KincoCan>(*kinco);
     facts = communication_of(*kinco);
+  } else if (const auto* keya = std::get_if<KeyaCanopenDrive>(&options)) {
+    device = std::make_unique<KeyaCanopen>(keya->drive);
+    facts = communication_of(*keya);
+  } else if (std::holds_alternative<KeyaCanDrive>(options)) {
+    throw std::invalid_argument(describe(options) + " speaks no CANopen");
   } else {
     device = std::make_unique<LeadshineDrive>(std::get<LeadshineOptions>(options));
     facts = communication_of(std::get<LeadshineOptions>(options));
@@ -40,24 +56,47 @@ std::unique_ptr<CanopenNode> make_can_node(const CanDriveOptions& options) {
 CanLine::CanLine(const CanLineOptions& options, Random random, CanToHostSink sink)
     : options_(options), random_(random), sink_(std::move(sink)), journal_(options.journal_capacity) {}
 
-CanopenNode& CanLine::add(const CanDriveOptions& options) {
+CanNode& CanLine::add(const CanDriveOptions& options) {
   const int number = node_of(options);
   if (number < 1 || number > highest_can_node) {
     throw std::invalid_argument("node " + std::to_string(number) + " is outside 1 to 127");
   }
-  Slot slot{options, make_can_node(options), {}, true, {}, {}};
+  std::unique_ptr<CanNode> node;
+  if (const auto* keya = std::get_if<KeyaCanDrive>(&options)) {
+    node = std::make_unique<KeyaCan>(keya->drive);
+  } else {
+    node = make_can_node(options);
+  }
+  Slot slot{options, std::move(node), {}, true, {}, {}};
   slot.node->advance(now_);
   slots_.push_back(std::move(slot));
   return *slots_.back().node;
 }
 
+CanopenNode* CanLine::canopen(std::size_t position) { return dynamic_cast<CanopenNode*>(&any_node(position)); }
+
+CanopenNode& CanLine::node(std::size_t position) {
+  CanopenNode* found = canopen(position);
+  if (found == nullptr) throw std::invalid_argument("the drive there speaks no CANopen");
+  return *found;
+}
+
 KincoDrive* CanLine::kinco(std::size_t position) {
-  auto* found = dynamic_cast<KincoCan*>(&node(position).device());
+  CanopenNode* node = canopen(position);
+  auto* found = node == nullptr ? nullptr : dynamic_cast<KincoCan*>(&node->device());
   return found == nullptr ? nullptr : &found->drive();
 }
 
 LeadshineDrive* CanLine::leadshine(std::size_t position) {
-  return dynamic_cast<LeadshineDrive*>(&node(position).device());
+  CanopenNode* node = canopen(position);
+  return node == nullptr ? nullptr : dynamic_cast<LeadshineDrive*>(&node->device());
+}
+
+KeyaDrive* CanLine::keya(std::size_t position) {
+  if (auto* found = dynamic_cast<KeyaCan*>(&any_node(position))) return &found->drive();
+  CanopenNode* node = canopen(position);
+  auto* found = node == nullptr ? nullptr : dynamic_cast<KeyaCanopen*>(&node->device());
+  return found == nullptr ? nullptr : &found->drive();
 }
 
 bool CanLine::has(DriveFault fault) const {
@@ -72,6 +111,7 @@ bool CanLine::has(DriveFault fault) const {
     case DriveFault::babble:
     case DriveFault::exception:
     case DriveFault::emergencies:
+    case DriveFault::heartbeat_twice:
       return true;
     default:
       return false;  // the CRC of the bus lets none of them through

@@ -8,6 +8,8 @@
 
 #include "tests/simulated/drive_faults.hpp"
 #include "tests/simulated/journal.hpp"
+#include "tests/simulated/keya_can.hpp"
+#include "tests/simulated/keya_canopen.hpp"
 #include "tests/simulated/kinco_can.hpp"
 #include "tests/simulated/leadshine_drive.hpp"
 
@@ -21,10 +23,11 @@ struct CanLineOptions {
 
 inline constexpr int highest_can_node = 127;
 
-using CanDriveOptions = std::variant<KincoCanDrive, LeadshineOptions>;
+using CanDriveOptions = std::variant<KincoCanDrive, LeadshineOptions, KeyaCanDrive, KeyaCanopenDrive>;
 
-std::string describe(const CanDriveOptions& options);  // "jd@1", "ld2@3"
+std::string describe(const CanDriveOptions& options);  // "jd@1", "ld2@3", "keya-can@1"
 std::uint8_t node_of(const CanDriveOptions& options);
+// Throws std::invalid_argument for a drive that speaks no CANopen.
 std::unique_ptr<CanopenNode> make_can_node(const CanDriveOptions& options);
 
 struct CanToHost : TimedFrame {
@@ -45,12 +48,16 @@ class CanLine {
   CanLine& operator=(const CanLine&) = delete;
 
   // Throws std::invalid_argument for a drive that cannot have this node number. Two may have the same.
-  CanopenNode& add(const CanDriveOptions& options);
+  CanNode& add(const CanDriveOptions& options);
   std::size_t size() const { return slots_.size(); }
-  CanopenNode& node(std::size_t position) { return *slots_.at(position).node; }
+  CanNode& any_node(std::size_t position) { return *slots_.at(position).node; }
+  // Throws std::invalid_argument where the drive there speaks no CANopen.
+  CanopenNode& node(std::size_t position);
+  CanopenNode* canopen(std::size_t position);
   // Nothing where another kind of drive stands there.
   KincoDrive* kinco(std::size_t position);
   LeadshineDrive* leadshine(std::size_t position);
+  KeyaDrive* keya(std::size_t position);  // in either protocol
   DriveFaults& faults(std::size_t position) { return slots_.at(position).faults; }
   bool has(DriveFault fault) const;
   void set_reply_delay(Time delay) { options_.reply_delay = delay; }
@@ -82,7 +89,7 @@ class CanLine {
  private:
   struct Slot {
     CanDriveOptions options;
-    std::unique_ptr<CanopenNode> node;
+    std::unique_ptr<CanNode> node;
     DriveFaults faults;
     bool connected = true;
     Time free_at{};  // it answers in order
@@ -107,9 +114,8 @@ class CanLine {
   void arrive(const Waiting& what, Time at);
   void hear(std::size_t position, const BusFrame& frame, std::uint64_t tag, Time at);
   void request_arrives(std::size_t position, const BusFrame& frame, std::uint64_t tag, Time at);
-  void note_overlap(const BusFrame& frame, Time at);
   void take_output(std::size_t position, Time at, CanExchange* exchange);
-  void answer(std::size_t position, const CanopenNode::Output& output, Time at, CanExchange* exchange);
+  void answer(std::size_t position, const CanOutput& output, Time at, CanExchange* exchange);
   void wait(Time ready, std::size_t from, std::uint64_t tag, const BusFrame& frame);
   void babble(Time now);
 

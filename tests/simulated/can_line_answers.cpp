@@ -4,34 +4,24 @@
 namespace axisgate::simulated {
 namespace {
 
-constexpr std::uint8_t abort_command = 0x80;
+constexpr std::uint32_t highest_standard_identifier = 0x7FF;
 constexpr Time shortest_babble = std::chrono::microseconds(100);
 
 CanBytes recorded(const BusFrame& frame) {
-  CanBytes bytes = little_endian(frame.id, 2);
+  CanBytes bytes = little_endian(frame.id, frame.extended ? 4 : 2);
   const CanView data = bytes_of(frame);
   bytes.insert(bytes.end(), data.begin(), data.end());
   return bytes;
 }
 
-bool is_sdo_request(const BusFrame& frame) {
-  return !frame.remote && frame.id > cob::sdo_request && frame.id < cob::error_control && frame.size > 0 &&
-         frame.data[0] != abort_command;
-}
-
 }  // namespace
-
-void CanLine::note_overlap(const BusFrame& frame, Time at) {
-  if (!is_sdo_request(frame)) return;
-  if (owed_until_ > at) ++overlapping_;
-}
 
 void CanLine::request_arrives(std::size_t position, const BusFrame& frame, std::uint64_t tag, Time at) {
   Slot& slot = slots_[position];
   take_output(position, at, nullptr);
-  note_overlap(frame, at);
   CanExchange exchange{tag, at, slot.node->node(), recorded(frame), {}, {}};
-  const bool answerable = frame.remote || is_sdo_request(frame);
+  const bool answerable = slot.node->wants_answer(frame);
+  if (answerable && !frame.remote && owed_until_ > at) ++overlapping_;
   if (answerable && slot.faults.strikes(DriveFault::mute, random_)) {
     journal_.record(std::move(exchange));
     return;
@@ -43,11 +33,8 @@ void CanLine::request_arrives(std::size_t position, const BusFrame& frame, std::
     restart(position, at);
     return;
   }
-  const bool talks = slot.node->state() != NmtState::stopped && slot.node->state() != NmtState::initialising;
-  if (is_sdo_request(frame) && talks && slot.faults.strikes(DriveFault::exception, random_)) {
-    const CanBytes refused = slot.node->server().refusal(bytes_of(frame), slot.faults.abort_code);
-    slot.node->server().reset();
-    answer(position, {tag, true, bus_frame(cob::sdo_reply + slot.node->node(), refused)}, at, &exchange);
+  if (slot.node->may_refuse(frame) && slot.faults.strikes(DriveFault::exception, random_)) {
+    answer(position, {tag, true, slot.node->refuse(frame, slot.faults.abort_code)}, at, &exchange);
   } else {
     slot.node->hear(frame, tag, at);
     take_output(position, at, &exchange);
@@ -56,17 +43,21 @@ void CanLine::request_arrives(std::size_t position, const BusFrame& frame, std::
 }
 
 void CanLine::take_output(std::size_t position, Time at, CanExchange* exchange) {
-  for (const CanopenNode::Output& output : slots_[position].node->take_output()) {
+  for (const CanOutput& output : slots_[position].node->take_output()) {
     if (!slots_[position].connected) continue;
     if (output.answer) {
       answer(position, output, at, exchange);
     } else {
       wait(at, position, output.tag, output.frame);
+      const bool life = output.frame.id == slots_[position].node->life_sign({}).id;
+      if (life && slots_[position].faults.strikes(DriveFault::heartbeat_twice, random_)) {
+        wait(at, position, output.tag, output.frame);
+      }
     }
   }
 }
 
-void CanLine::answer(std::size_t position, const CanopenNode::Output& output, Time at, CanExchange* exchange) {
+void CanLine::answer(std::size_t position, const CanOutput& output, Time at, CanExchange* exchange) {
   Slot& slot = slots_[position];
   BusFrame frame = output.frame;
   const Time ready = std::max(at + options_.reply_delay, slot.free_at);
@@ -82,8 +73,8 @@ void CanLine::answer(std::size_t position, const CanopenNode::Output& output, Ti
   }
   slot.free_at = ready + late;
   if (lost) return;
-  const bool sdo = output.frame.id == cob::sdo_reply + slot.node->node();
-  if (sdo && late == Time{}) owed_until_ = std::max(owed_until_, ready);
+  const bool guarding = output.frame.id == slot.node->life_sign({}).id;
+  if (!guarding && late == Time{}) owed_until_ = std::max(owed_until_, ready);
   if (exchange != nullptr) {
     if (exchange->sent.empty()) exchange->reply_ready = ready + late;
     const CanBytes bytes = recorded(frame);
@@ -105,11 +96,14 @@ void CanLine::babble(Time now) {
       take_output(position, now, nullptr);
     }
     if (!slot.faults.strikes(DriveFault::babble, random_)) continue;
-    const std::uint32_t id =
-        slot.faults.babble_id != 0 ? slot.faults.babble_id : cob::error_control + slot.node->node();
     CanBytes bytes(1 + random_.below(longest_can_frame));
     for (std::uint8_t& byte : bytes) byte = random_.byte();
-    wait(now, position, 0, bus_frame(id, bytes));
+    BusFrame frame = slot.node->life_sign(bytes);
+    if (slot.faults.babble_id != 0) {
+      frame.id = slot.faults.babble_id;
+      frame.extended = frame.id > highest_standard_identifier;
+    }
+    wait(now, position, 0, frame);
   }
 }
 

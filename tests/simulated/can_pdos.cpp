@@ -21,11 +21,20 @@ CanPdos::CanPdos(const PdoFacts& facts, std::uint8_t node) : facts_(facts) {
     pdo.type = facts.type;
     pdo.cob_id = i < predefined ? cob::first_rpdo + offset : without_identifier;
     settings_.receive.push_back(pdo);
+    deliver(settings_.receive.back(), facts.receive, i);
     pdo.cob_id = i < predefined ? cob::first_tpdo + offset : without_identifier;
     settings_.transmit.push_back(pdo);
+    deliver(settings_.transmit.back(), facts.transmit, i);
   }
   stored_ = settings_;
   sending_.resize(settings_.transmit.size());
+}
+
+void CanPdos::deliver(Pdo& pdo, const std::vector<PdoFacts::Delivered>& facts, std::size_t number) {
+  if (number >= facts.size()) return;
+  pdo.event = facts[number].event;
+  pdo.mapped = facts[number].mapped;
+  std::copy(facts[number].map.begin(), facts[number].map.end(), pdo.map.begin());
 }
 
 std::optional<CanPdos::Place> CanPdos::place_of(ObjectKey key) const {
@@ -47,10 +56,10 @@ ObjectReply CanPdos::read(ObjectKey key) const {
   const Pdo& pdo = pdo_at(place);
   if (place.mapping) {
     if (key.sub == 0) return {0, {pdo.mapped}};
-    if (key.sub > longest_map) return {sdo_abort::no_such_sub};
+    if (key.sub > facts_.entries) return {sdo_abort::no_such_sub};
     return {0, little_endian(pdo.map[key.sub - 1U], 4)};
   }
-  const bool timer = place.transmit && facts_.event_timer;
+  const bool timer = has_timers(place);
   switch (key.sub) {
     case 0:
       return {0, {static_cast<std::uint8_t>(timer ? 5 : place.transmit ? 3 : 2)}};
@@ -59,7 +68,10 @@ ObjectReply CanPdos::read(ObjectKey key) const {
     case 2:
       return {0, {pdo.type}};
     case 3:
-      if (place.transmit) return {0, little_endian(pdo.inhibit, 2)};
+      if (place.transmit || timer) return {0, little_endian(pdo.inhibit, 2)};
+      break;
+    case 4:
+      if (facts_.compatibility) return {0, {pdo.reserved}};
       break;
     case 5:
       if (timer) return {0, little_endian(pdo.event, 2)};
@@ -77,7 +89,7 @@ std::uint32_t CanPdos::write(ObjectKey key, CanView bytes, bool preoperational, 
   const Place place = *place_of(key);
   Pdo& pdo = (place.transmit ? settings_.transmit : settings_.receive).at(place.number);
   if (!place.mapping) return write_parameter(pdo, place, key.sub, little_endian(bytes), bytes.size());
-  if (!preoperational || pdo.valid()) return abort_of(Refusal::device_state);
+  if (!preoperational || (pdo.valid() && !facts_.free_mapping)) return abort_of(Refusal::device_state);
   return write_mapping(pdo, place, key.sub, little_endian(bytes), device, now);
 }
 
@@ -98,6 +110,8 @@ std::uint32_t CanPdos::write_parameter(Pdo& pdo, const Place& place, std::uint8_
     pdo.type = static_cast<std::uint8_t>(value);
   } else if (sub == 3) {
     pdo.inhibit = static_cast<std::uint16_t>(value);
+  } else if (sub == 4) {
+    pdo.reserved = static_cast<std::uint8_t>(value);
   } else {
     pdo.event = static_cast<std::uint16_t>(value);
   }
@@ -108,7 +122,7 @@ std::uint32_t CanPdos::write_parameter(Pdo& pdo, const Place& place, std::uint8_
 std::uint32_t CanPdos::write_mapping(Pdo& pdo, const Place& place, std::uint8_t sub, std::uint32_t value,
                                      CanDevice& device, Time now) {
   if (sub == 0) {
-    if (value > longest_map) return abort_of(Refusal::value_range);
+    if (value > facts_.entries) return abort_of(Refusal::value_range);
     std::size_t bytes = 0;
     for (std::size_t i = 0; i < value; ++i) {
       if (pdo.map[i] == 0) return abort_of(Refusal::no_such_object);
@@ -118,7 +132,7 @@ std::uint32_t CanPdos::write_mapping(Pdo& pdo, const Place& place, std::uint8_t 
     pdo.mapped = static_cast<std::uint8_t>(value);
     return 0;
   }
-  if (pdo.mapped != 0) return abort_of(Refusal::device_state);
+  if (pdo.mapped != 0 && !facts_.free_mapping) return abort_of(Refusal::device_state);
   if (value != 0) {
     const ObjectKey key = object_in(value);
     const ObjectReply found = device.read(key, now);
@@ -174,7 +188,7 @@ std::vector<BusFrame> CanPdos::due(CanDevice& device, Time now) {
     const Sending& sending = sending_[number];
     if (!by_event(pdo)) continue;
     CanBytes values = values_of(pdo, device, now);
-    const bool changed = !sending.sent || values != sending.last;
+    const bool changed = facts_.on_change && (!sending.sent || values != sending.last);
     const bool inhibited = sending.sent && now - sending.at < pdo.inhibit * facts_.inhibit_unit;
     // The event timer outranks the inhibit time (MD 4.4).
     const bool timer = pdo.event != 0 && now - sending.at >= pdo.event * one_millisecond;

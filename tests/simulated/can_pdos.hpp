@@ -17,6 +17,19 @@ struct PdoFacts {
   bool takes_type_254 = true;  // not the LD2-CAN (C11)
   std::uint8_t type = 254;     // as delivered
   Time inhibit_unit = std::chrono::microseconds(100);
+  bool on_change = true;        // of its values; else sub 5 alone sends it
+  bool free_mapping = false;    // entries change while the PDO is valid and has some
+  bool receive_timers = false;  // subs 3 to 5 of an RPDO too
+  bool compatibility = false;   // sub 4, which does nothing
+  std::size_t entries = 8;      // of a mapping
+  // PDOs as delivered, from the first on; the rest have no entries.
+  struct Delivered {
+    std::uint16_t event;
+    std::uint8_t mapped;
+    std::vector<std::uint32_t> map;
+  };
+  std::vector<Delivered> receive{};
+  std::vector<Delivered> transmit{};
 };
 
 class CanPdos {
@@ -49,6 +62,7 @@ class CanPdos {
     std::uint8_t type = 0;
     std::uint16_t inhibit = 0;
     std::uint16_t event = 0;
+    std::uint8_t reserved = 0;
     std::uint8_t mapped = 0;
     std::array<std::uint32_t, longest_map> map{};
     bool valid() const { return (cob_id & 0x80000000U) == 0; }
@@ -73,6 +87,8 @@ class CanPdos {
     CanBytes bytes;
   };
 
+  static void deliver(Pdo& pdo, const std::vector<PdoFacts::Delivered>& facts, std::size_t number);
+  bool has_timers(const Place& place) const { return place.transmit ? facts_.event_timer : facts_.receive_timers; }
   std::optional<Place> place_of(ObjectKey key) const;
   const Pdo& pdo_at(const Place& place) const;
   std::uint32_t write_parameter(Pdo& pdo, const Place& place, std::uint8_t sub, std::uint32_t value, std::size_t size);

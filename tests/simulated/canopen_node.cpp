@@ -54,6 +54,24 @@ bool CanopenNode::is_request(const BusFrame& frame) const {
                              (frame.remote && frame.id == cob::error_control + node_));
 }
 
+bool CanopenNode::wants_answer(const BusFrame& request) const {
+  constexpr std::uint8_t abort_command = 0x80;
+  return request.remote || (request.size > 0 && request.data[0] != abort_command);
+}
+
+bool CanopenNode::may_refuse(const BusFrame& request) const {
+  const bool talks = state_ != NmtState::stopped && state_ != NmtState::initialising;
+  return talks && !request.remote && wants_answer(request);
+}
+
+BusFrame CanopenNode::refuse(const BusFrame& request, std::uint32_t code) {
+  const CanBytes refused = server_.refusal(bytes_of(request), code);
+  server_.reset();
+  return bus_frame(cob::sdo_reply + node_, refused);
+}
+
+BusFrame CanopenNode::life_sign(CanView bytes) const { return bus_frame(cob::error_control + node_, bytes); }
+
 void CanopenNode::hear(const BusFrame& frame, std::uint64_t tag, Time now) {
   advance(now);
   if (state_ == NmtState::initialising || frame.extended) return;
@@ -141,8 +159,10 @@ void CanopenNode::announce_emergency(std::uint16_t code, Time) {
 }
 
 void CanopenNode::begin_communication(Time now) {
-  cells_ = stored_;
-  pdos_.power_up();
+  if (!facts_.keeps_settings) {
+    cells_ = stored_;
+    pdos_.power_up();
+  }
   server_.reset();
   toggle_ = false;
   guard_deadline_.reset();
@@ -208,6 +228,7 @@ Time CanopenNode::guarded_for() const { return cell(guard_time) * cell(life_fact
 void CanopenNode::answer_guarding(std::uint64_t tag, Time now) {
   // The life time begins with the first request (CiA 301 7.2.8.3.2.1).
   if (guarded_for() > Time{}) guard_deadline_ = now + guarded_for();
+  if (!facts_.answers_guarding) return;
   if (cell(heartbeat_time) != 0 && !facts_.answers_guarding_with_heartbeat) return;
   const auto state = static_cast<std::uint8_t>(state_);
   send(bus_frame(cob::error_control + node_, {static_cast<std::uint8_t>(state | (toggle_ ? 0x80 : 0))}), tag, true);

@@ -21,52 +21,56 @@ struct CommunicationFacts {
   SdoFacts sdo{};
   PdoFacts pdo{};
   bool guarding_objects = false;  // 100Ch, 100Dh, 100Eh and the reaction 6007h (MD 4.5); else guarding is answered only
-  bool answers_guarding_with_heartbeat = true;  // CiA 301 wants one of both; no sheet says what happens
-  int consumers = 1;                            // entries of 1016h; 0: there is none
-  bool leaves_operational_on_loss = true;       // CiA 301 1029h as delivered; no sheet mentions it
-  bool sends_emergencies = true;                // of alarms; the sheets leave it open
-  std::uint16_t heartbeat = 0;                  // 1017h as stored
-  std::uint32_t device_type = 0x00020192;       // 1000h: CiA 402, servo
-  std::array<std::uint32_t, 4> identity{};      // 1018h: vendor, product, revision, serial
-  std::string name{};                           // 1008h
-  std::string hardware{};                       // 1009h
-  std::string software{};                       // 100Ah
-  std::map<ObjectKey, std::string> texts{};     // more objects that hold a text; may be written
+  bool answers_guarding = true;
+  bool answers_guarding_with_heartbeat = true;   // CiA 301 wants one of both; no sheet says what happens
+  int consumers = 1;                             // entries of 1016h; 0: there is none
+  bool leaves_operational_on_loss = true;        // CiA 301 1029h as delivered; no sheet mentions it
+  bool sends_emergencies = true;                 // of alarms; the sheets leave it open
+  std::uint16_t heartbeat = 0;                   // 1017h as stored
+  std::uint8_t heartbeat_width = 2;              // bytes of it; CiA 301's
+  bool identity_object = true;                   // 1018h
+  bool keeps_settings = false;                   // whatever was written stays over a restart, without a save
+  std::uint32_t device_type = 0x00020192;        // 1000h: CiA 402, servo
+  std::array<std::uint32_t, 4> identity{};       // 1018h: vendor, product, revision, serial
+  std::string name{};                            // 1008h
+  std::string hardware{};                        // 1009h
+  std::string software{};                        // 100Ah
+  std::optional<std::uint16_t> version_numbers;  // 1009h and 100Ah are numbers, and this one
+  std::map<ObjectKey, std::string> texts{};      // more objects that hold a text; may be written
 };
 
-class CanopenNode final : private ObjectAccess {
+class CanopenNode final : public CanNode, private ObjectAccess {
  public:
   static constexpr std::size_t longest_history = 8;  // entries of 1003h
 
   CanopenNode(CommunicationFacts facts, std::uint8_t node, std::unique_ptr<CanDevice> device);
 
-  struct Output {
-    std::uint64_t tag;  // of the frame it answers; 0: it sends by itself
-    bool answer;        // of an SDO request or a guarding one: takes the drive's time
-    BusFrame frame;
-  };
+  using Output = CanOutput;
 
-  // What the bus does to it; what it sends then is in take_output().
-  void hear(const BusFrame& frame, std::uint64_t tag, Time now);
-  void advance(Time now);
-  std::vector<Output> take_output() { return std::exchange(output_, {}); }
-  std::optional<Time> next_event() const;
+  void hear(const BusFrame& frame, std::uint64_t tag, Time now) override;
+  void advance(Time now) override;
+  std::vector<Output> take_output() override { return std::exchange(output_, {}); }
+  std::optional<Time> next_event() const override;
 
   // What a world does to it.
-  void restart(Time now);
-  void announce_emergency(std::uint16_t code, Time now);  // as if it had happened
+  void restart(Time now) override;
+  void announce_emergency(std::uint16_t code, Time now) override;
   // As another port would write it; an abort code or 0.
   std::uint32_t poke(ObjectKey key, std::int64_t value, Time now);
 
   // What a world looks at.
-  std::uint8_t node() const { return node_; }
+  std::uint8_t node() const override { return node_; }
   NmtState state() const { return state_; }
   CanDevice& device() { return *device_; }
   CommunicationFacts& facts() { return facts_; }
   SdoServer& server() { return server_; }
   std::optional<CanBytes> peek(ObjectKey key, Time now);
-  bool is_request(const BusFrame& frame) const;  // SDO or guarding, to this node
-  std::string describe() const { return device_->describe(); }
+  bool is_request(const BusFrame& frame) const override;  // SDO or guarding, to this node
+  bool wants_answer(const BusFrame& request) const override;
+  bool may_refuse(const BusFrame& request) const override;
+  BusFrame refuse(const BusFrame& request, std::uint32_t code) override;
+  BusFrame life_sign(CanView bytes) const override;
+  std::string describe() const override { return device_->describe(); }
 
  private:
   struct Cell {

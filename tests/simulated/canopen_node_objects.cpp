@@ -31,9 +31,15 @@ void CanopenNode::make_cells() {
   free(0x1014, 0, cob::emergency + node, 4);
   if (facts_.consumers > 0) fixed(consumer_entries, 0, static_cast<std::uint32_t>(facts_.consumers), 1);
   for (int i = 1; i <= facts_.consumers; ++i) free(consumer_entries, static_cast<std::uint8_t>(i), 0, 4);
-  free(0x1017, 0, facts_.heartbeat, 2);
-  fixed(0x1018, 0, 4, 1);
-  for (std::uint8_t i = 0; i < 4; ++i) fixed(0x1018, static_cast<std::uint8_t>(i + 1), facts_.identity.at(i), 4);
+  free(0x1017, 0, facts_.heartbeat, facts_.heartbeat_width);
+  if (facts_.identity_object) fixed(0x1018, 0, 4, 1);
+  for (std::uint8_t i = 0; facts_.identity_object && i < 4; ++i) {
+    fixed(0x1018, static_cast<std::uint8_t>(i + 1), facts_.identity.at(i), 4);
+  }
+  if (facts_.version_numbers) {
+    fixed(0x1009, 0, *facts_.version_numbers, 2);
+    fixed(0x100A, 0, *facts_.version_numbers, 2);
+  }
   fixed(0x1200, 0, 2, 1);
   fixed(0x1200, 1, cob::sdo_request + node, 4);
   fixed(0x1200, 2, cob::sdo_reply + node, 4);

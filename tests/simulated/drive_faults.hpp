@@ -34,9 +34,11 @@ enum class DriveFault : std::uint8_t {
   exception,     // the drive does not act and refuses with `exception_code`; on CAN with `abort_code`
   // CAN alone:
   emergencies,  // an EMCY with `emergency_code` every `babble_period`, unasked
+  // Where a drive says by itself that it lives:
+  heartbeat_twice,  // its heartbeat comes twice
 };
 
-inline constexpr std::size_t drive_fault_count = 16;
+inline constexpr std::size_t drive_fault_count = 17;
 
 std::string_view name_of(DriveFault fault);
 std::optional<DriveFault> drive_fault_named(std::string_view name);

@@ -41,7 +41,9 @@ class RtuLine final : public DriveLine {
   KincoDrive* kinco(std::size_t position);
   Id286pro* id286pro(std::size_t position);
   DriveFaults& faults(std::size_t position) override { return slots_.at(position).faults; }
-  bool has(DriveFault fault) const override { return fault != DriveFault::emergencies; }
+  bool has(DriveFault fault) const override {
+    return fault != DriveFault::emergencies && fault != DriveFault::heartbeat_twice;
+  }
   void set_reply_delay(Time delay) override { options_.reply_delay = delay; }
   void restart(std::size_t position, Time now) override;
 

@@ -31,7 +31,7 @@ KincoDrive& SerialLine::add(const DriveOptions& options) {
 
 bool SerialLine::has(DriveFault fault) const {
   return fault != DriveFault::half && fault != DriveFault::wrong_length && fault != DriveFault::exception &&
-         fault != DriveFault::glued && fault != DriveFault::emergencies;
+         fault != DriveFault::glued && fault != DriveFault::emergencies && fault != DriveFault::heartbeat_twice;
 }
 
 bool SerialLine::passes_on(const Slot& slot) const {

@@ -76,6 +76,7 @@ void CanLinkSim::send(const can::CanFrame& frame, bool urgent) {
 
 void CanLinkSim::refuse(const can::CanFrame& frame) {
   using namespace simulated;
+  if (frame.extended) return;  // Keya's protocol has no refusal: there is no answer
   const std::uint32_t node = frame.id - cob::sdo_request;
   CanBytes bytes{0x80, frame.data[1], frame.data[2], frame.data[3]};
   const CanBytes code = little_endian(kRefused, 4);

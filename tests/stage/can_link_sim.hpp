@@ -58,7 +58,7 @@ class CanLinkSim final : public can::CanLink {
   /// From inside on_traffic(): what becomes of the frame just told.
   enum class Fate : std::uint8_t {
     delivered,
-    refused,     ///< an SDO request the drive does not see; the answer is an abort (0x06090030)
+    refused,     ///< an SDO request the drive does not see; the answer is an abort (0x06090030); in 29 bits: silence
     cut_before,  ///< the interface goes before it is sent
     cut_after,   ///< the drive acts, then the interface goes
   };

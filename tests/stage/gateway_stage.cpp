@@ -3,65 +3,17 @@
 #include <stdexcept>
 
 #include "adapters/canopen/canopen_wire.hpp"
+#include "adapters/keya/keya_can_wire.hpp"
+#include "adapters/keya/keya_serial_wire.hpp"
 #include "adapters/kinco/kinco_wire.hpp"
 #include "adapters/modbus_rtu/rtu_wire.hpp"
+#include "gateway/app/adapter_names.hpp"
 #include "gateway/app/can_wires.hpp"
 #include "gateway/app/config_sections.hpp"
+#include "tests/stage/stage_lines.hpp"
 
 namespace axisgate::test {
 namespace {
-
-/// What the profile and the configuration say of a drive: the profile by its name, found where it is shipped.
-struct Entry {
-  std::string profile;
-  std::string protocol;
-  std::uint8_t node = 1;
-  drive::ResolveAxis axis;
-  std::map<std::string, Rational> constants;
-  std::array<std::optional<std::uint32_t>, 4> identity{};
-};
-
-drive::DriveModel resolved(Entry entry, const std::optional<std::array<Duration, 3>>& poll) {
-  const drive::LoadedProfile loaded =
-      drive::load_profile(std::string(AXISGATE_SOURCE_DIR "/schemas/drives/") + entry.profile + ".json");
-  if (!loaded.faults.empty()) throw std::runtime_error(text(loaded.faults.front()));
-  drive::ResolveInput input;
-  input.protocol = entry.protocol;
-  input.node = entry.node;
-  input.constants = std::move(entry.constants);
-  input.identity = entry.identity;
-  if (poll) input.poll = *poll;
-  input.axes = {entry.axis};
-  auto model = drive::resolve(loaded, input);
-  if (auto* faults = std::get_if<std::vector<drive::Fault>>(&model)) throw std::runtime_error(text(faults->front()));
-  return std::get<drive::DriveModel>(std::move(model));
-}
-
-void name_kinco(Entry& entry, simulated::KincoType type) {
-  const bool jd = type == simulated::KincoType::jd;
-  entry.profile = jd ? "kinco-jd" : "kinco-md";
-  entry.constants.emplace("peak_current_a", jd ? Rational(275, 10) : Rational(36));
-}
-
-Entry entry_of(const StageDrive& staged) {
-  Entry entry{{}, "kinco-serial", staged.options.station, staged.axis, staged.constants, {}};
-  name_kinco(entry, staged.options.type);
-  return entry;
-}
-
-Entry entry_of(const RtuStageDrive& staged) {
-  Entry entry{"id286pro", "modbus-rtu", unit_of(staged.options), staged.axis, staged.constants, {}};
-  const auto* kinco = std::get_if<simulated::KincoRtuDrive>(&staged.options);
-  if (kinco != nullptr) name_kinco(entry, kinco->drive.type);
-  return entry;
-}
-
-Entry entry_of(const CanStageDrive& staged) {
-  Entry entry{"leadshine-ld2-can", "canopen", node_of(staged.options), staged.axis, staged.constants, staged.identity};
-  const auto* kinco = std::get_if<simulated::KincoCanDrive>(&staged.options);
-  if (kinco != nullptr) name_kinco(entry, kinco->drive.type);
-  return entry;
-}
 
 std::vector<modbus_rtu::RtuNode> nodes_of(const std::vector<drive::DriveModel>& models) {
   std::vector<modbus_rtu::RtuNode> nodes;
@@ -69,38 +21,6 @@ std::vector<modbus_rtu::RtuNode> nodes_of(const std::vector<drive::DriveModel>& 
     nodes.push_back({model.node, model.rtu.low_word_first, model.rtu.error_functions, model.rtu.broadcast});
   }
   return nodes;
-}
-
-drive::ResolveAxis axis_named(AxisNumber number) {
-  drive::ResolveAxis axis;
-  axis.number = number;
-  axis.name = "axis " + std::to_string(number);
-  return axis;
-}
-
-std::string adapter_of(const GatewayStage::Line& line) {
-  if (!line.can_drives.empty()) return "canopen";
-  return line.rtu_drives.empty() ? "kinco-serial" : "modbus-rtu";
-}
-
-app::BusConfig bus_of(const GatewayStage::Line& line) {
-  app::BusConfig bus;
-  bus.name = line.name;
-  bus.adapter = adapter_of(line);
-  const bool rtu = bus.adapter == "modbus-rtu";
-  bus.timeout = line.timeout.value_or(rtu ? Duration{} : std::chrono::milliseconds(100));
-  bus.settle = line.drives.size() + line.rtu_drives.size() > 1 ? std::chrono::milliseconds(20) : Duration{};
-  const std::size_t serial = rtu ? line.rtu_drives.size() : line.drives.size();
-  bus.drives.resize(bus.adapter == "canopen" ? line.can_drives.size() : serial);
-  if (bus.adapter == "canopen" && line.poll) bus.poll = *line.poll;
-  if (rtu) {
-    constexpr std::uint32_t kUsualBaud = 19200;
-    bus.baud = line.rtu_options.baud != 0 ? line.rtu_options.baud : kUsualBaud;
-    bus.min_gap = modbus_rtu::gap_time(bus.baud);
-    bus.poll_given = line.poll.has_value();
-    if (line.poll) bus.poll = *line.poll;
-  }
-  return bus;
 }
 
 /// A line's far end with its drives on it.
@@ -111,40 +31,12 @@ std::unique_ptr<Link> link_with(ManualRuntime& runtime, const Drives& drives, co
   auto link = std::make_unique<Link>(runtime, options, seed);
   for (const auto& staged : drives) {
     link->line().add(staged.options);
-    models.push_back(resolved(entry_of(staged), line.poll));
+    models.push_back(model_on(staged, line));
   }
   return link;
 }
 
 }  // namespace
-
-GatewayStage::Line line_of(simulated::KincoType type, AxisNumber axis) {
-  StageDrive staged;
-  staged.options.type = type;
-  staged.axis = axis_named(axis);
-  GatewayStage::Line line;
-  line.name = "line" + std::to_string(axis);
-  line.drives = {staged};
-  return line;
-}
-
-GatewayStage::Line rtu_line_of(std::vector<simulated::RtuDriveOptions> drives, AxisNumber first) {
-  GatewayStage::Line line;
-  line.name = "rtu" + std::to_string(first);
-  for (simulated::RtuDriveOptions& options : drives) {
-    line.rtu_drives.push_back({std::move(options), axis_named(first++), {}});
-  }
-  return line;
-}
-
-GatewayStage::Line can_line_of(std::vector<simulated::CanDriveOptions> drives, AxisNumber first) {
-  GatewayStage::Line line;
-  line.name = "can" + std::to_string(first);
-  for (simulated::CanDriveOptions& options : drives) {
-    line.can_drives.push_back({std::move(options), axis_named(first++), {}, {}});
-  }
-  return line;
-}
 
 GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
     : log_([this](LogLevel level, std::string_view source, std::string_view message) {
@@ -156,11 +48,12 @@ GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
   std::map<std::string, std::unique_ptr<SimLink>> kinco;
   std::map<std::string, std::unique_ptr<RtuLinkSim>> rtu;
   std::map<std::string, std::unique_ptr<CanLinkSim>> can;
+  std::map<std::string, std::unique_ptr<KeyaLinkSim>> keya;
   for (const Line& line : lines) {
-    app::BusConfig bus = bus_of(line);
+    app::BusConfig bus = bus_on(line);
     auto& of_line = models.emplace_back();
     LinkOfLine ends;
-    if (bus.adapter == "canopen") {
+    if (app::adapter::on_can(bus.adapter)) {
       auto link = link_with<CanLinkSim>(runtime_, line.can_drives, line.can_options, line, seed++, of_line);
       ends.can = link.get();
       can.emplace(line.name, std::move(link));
@@ -168,6 +61,10 @@ GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
       auto link = link_with<RtuLinkSim>(runtime_, line.rtu_drives, line.rtu_options, line, seed++, of_line);
       ends.rtu = link.get();
       rtu.emplace(line.name, std::move(link));
+    } else if (app::adapter::keya_serial(bus.adapter)) {
+      auto link = link_with<KeyaLinkSim>(runtime_, line.keya_drives, line.keya_options, line, seed++, of_line);
+      ends.keya = link.get();
+      keya.emplace(line.name, std::move(link));
     } else {
       auto link = link_with<SimLink>(runtime_, line.drives, line.options, line, seed++, of_line);
       ends.kinco = link.get();
@@ -179,11 +76,23 @@ GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
   }
   app::ConfigFaults faults("stage");
   app::settle_rtu_buses(config, models, faults);
+  app::settle_keya_buses(config, models, faults);
   if (!faults.faults().empty()) throw std::runtime_error(text(faults.faults().front()));
   const app::MakeWire make_wire = [&](const app::BusConfig& bus,
                                       const std::vector<drive::DriveModel>& drives) -> std::unique_ptr<bus::Wire> {
     if (bus.adapter == "kinco-serial") {
       return std::make_unique<kinco::KincoWire>(bus.name, std::move(kinco.at(bus.name)), runtime_, log_);
+    }
+    if (app::adapter::keya_serial(bus.adapter)) {
+      const auto line = bus.adapter == app::adapter::kKeyaRs232 ? keya::KeyaLine::rs232 : keya::KeyaLine::rs485;
+      return keya::make_keya_serial_wire({bus.name, line, bus.baud}, std::move(keya.at(bus.name)), runtime_, log_);
+    }
+    if (bus.adapter == app::adapter::kKeyaCan) {
+      keya::KeyaCanSettings settings;
+      settings.name = bus.name;
+      settings.timeout = bus.timeout;
+      for (const drive::DriveModel& model : drives) settings.nodes.push_back(model.node);
+      return keya::make_keya_can_wire(std::move(settings), std::move(can.at(bus.name)), runtime_, log_);
     }
     if (bus.adapter == "canopen") {
       return canopen::make_canopen_wire(app::canopen_settings(bus, drives), std::move(can.at(bus.name)), runtime_,
@@ -206,11 +115,22 @@ simulated::KincoDrive& GatewayStage::drive(std::size_t line, std::size_t positio
   if (link.rtu != nullptr) {
     link.rtu->advance_drives();
     found = link.rtu->line().kinco(position);
-  } else {
+  } else if (link.can != nullptr) {
     link.can->advance_drives();
     found = link.can->line().kinco(position);
   }
   if (found == nullptr) throw std::invalid_argument("the drive there is no Kinco");
+  return *found;
+}
+
+simulated::KeyaDrive& GatewayStage::keya(std::size_t line, std::size_t position) {
+  if (KeyaLinkSim* link = links_.at(line).keya) {
+    link->advance_drives();
+    return link->line().drive(position);
+  }
+  can_link(line).advance_drives();
+  simulated::KeyaDrive* found = can_link(line).line().keya(position);
+  if (found == nullptr) throw std::invalid_argument("the drive there is no Keya");
   return *found;
 }
 

@@ -11,6 +11,7 @@
 #include "gateway/app/gateway.hpp"
 #include "gateway/drive/profile_loader.hpp"
 #include "tests/stage/can_link_sim.hpp"
+#include "tests/stage/keya_link_sim.hpp"
 #include "tests/stage/rtu_link_sim.hpp"
 #include "tests/stage/sim_link.hpp"
 
@@ -37,6 +38,15 @@ struct CanStageDrive {
   std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
   /// 1018h as the configuration would have it: vendor, product, revision, serial.
   std::array<std::optional<std::uint32_t>, 4> identity{};
+  std::optional<drive::ResolveAxis> axis_b{};  ///< of a Keya: its motor B; none: that motor is nobody's axis
+};
+
+/// A Keya on RS232 or RS485.
+struct KeyaStageDrive {
+  simulated::KeyaOptions options{};
+  drive::ResolveAxis axis{};  ///< motor A
+  std::map<std::string, Rational> constants{};
+  std::optional<drive::ResolveAxis> axis_b{};  ///< none: motor B is nobody's axis
 };
 
 class GatewayStage {
@@ -52,7 +62,13 @@ class GatewayStage {
     /// Any here makes it a CAN bus.
     std::vector<CanStageDrive> can_drives{};
     simulated::CanLineOptions can_options{};
-    std::optional<Duration> timeout{};  ///< none: 100 ms, and on Modbus RTU what the product takes for these drives
+    std::optional<Duration> timeout{};  ///< none: 100 ms; on Modbus RTU and Keya's lines what the product takes
+    /// Any here makes it a line with Keya's serial protocol of `keya_options.wiring`.
+    std::vector<KeyaStageDrive> keya_drives{};
+    simulated::KeyaLineOptions keya_options{};
+    /// Of all axes of the line. None: leases are off, as tests that speak of no owner need it; what the axes' own
+    /// configuration says of a lease does not count.
+    std::optional<LeaseRules> lease{};
   };
   explicit GatewayStage(std::vector<Line> lines, std::uint64_t seed = 1);
 
@@ -61,10 +77,12 @@ class GatewayStage {
   [[nodiscard]] SimLink& link(std::size_t line) { return *links_.at(line).kinco; }
   [[nodiscard]] RtuLinkSim& rtu_link(std::size_t line) { return *links_.at(line).rtu; }
   [[nodiscard]] CanLinkSim& can_link(std::size_t line) { return *links_.at(line).can; }
+  [[nodiscard]] KeyaLinkSim& keya_link(std::size_t line) { return *links_.at(line).keya; }
   /// Brought up to now. The drive there must be of this kind, on whichever line.
   [[nodiscard]] simulated::KincoDrive& drive(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::Id286pro& id286pro(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::LeadshineDrive& leadshine(std::size_t line, std::size_t position = 0);
+  [[nodiscard]] simulated::KeyaDrive& keya(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::CanopenNode& can_node(std::size_t line, std::size_t position = 0);
   [[nodiscard]] const AxisImage& axis(AxisNumber number) { return *gateway_->image().find(number); }
   [[nodiscard]] std::vector<std::string>& log() { return log_lines_; }
@@ -97,6 +115,7 @@ class GatewayStage {
     SimLink* kinco = nullptr;
     RtuLinkSim* rtu = nullptr;
     CanLinkSim* can = nullptr;
+    KeyaLinkSim* keya = nullptr;
   };
   std::vector<LinkOfLine> links_;
   std::unique_ptr<app::Gateway> gateway_;
@@ -106,7 +125,11 @@ class GatewayStage {
 [[nodiscard]] GatewayStage::Line line_of(simulated::KincoType type, AxisNumber axis);
 /// Commissioned drives on one Modbus RTU line, with axes from `first` on.
 [[nodiscard]] GatewayStage::Line rtu_line_of(std::vector<simulated::RtuDriveOptions> drives, AxisNumber first);
-/// Commissioned drives on one CAN bus, with axes from `first` on.
+/// Keya drives on RS232 (one) or RS485, motors A and B being axes from `first` on.
+[[nodiscard]] GatewayStage::Line keya_line_of(simulated::KeyaWiring wiring, std::vector<simulated::KeyaOptions> drives,
+                                              AxisNumber first);
+/// Commissioned drives on one CAN bus, with axes from `first` on; a Keya has two. Keya's own protocol is for a bus
+/// where all drives speak it.
 [[nodiscard]] GatewayStage::Line can_line_of(std::vector<simulated::CanDriveOptions> drives, AxisNumber first);
 
 }  // namespace axisgate::test

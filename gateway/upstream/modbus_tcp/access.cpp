@@ -1,20 +1,11 @@
 #include "gateway/upstream/modbus_tcp/access.hpp"
 
-#include <arpa/inet.h>
-
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
 namespace axisgate::modbus_tcp {
 namespace {
-
-constexpr std::size_t kMappedBytes = 12;  // ::ffff: before the four bytes of IPv4
-
-bool is_mapped(const Address& address) {
-  return std::all_of(address.begin(), address.begin() + 10, [](std::uint8_t b) { return b == 0; }) &&
-         address[10] == 0xFF && address[11] == 0xFF;
-}
 
 bool same_bits(const Address& a, const Address& b, std::uint8_t bits) {
   const std::size_t whole = bits / 8U;
@@ -24,15 +15,15 @@ bool same_bits(const Address& a, const Address& b, std::uint8_t bits) {
   return ((static_cast<unsigned>(a[whole]) ^ b[whole]) & mask & 0xFFU) == 0;
 }
 
-}  // namespace
-
-std::string text(const Address& address) {
-  char written[INET6_ADDRSTRLEN] = {};
-  const bool v4 = is_mapped(address);
-  const void* from = v4 ? address.data() + kMappedBytes : address.data();
-  const char* result = inet_ntop(v4 ? AF_INET : AF_INET6, from, written, sizeof written);
-  return result == nullptr ? std::string() : std::string(result);
+const AllowEntry* deciding_entry(const ListenerSettings& settings, const Address& address) {
+  const AllowEntry* best = nullptr;
+  for (const AllowEntry& entry : settings.allow) {
+    if (holds(entry, address) && (best == nullptr || entry.prefix > best->prefix)) best = &entry;
+  }
+  return best;
 }
+
+}  // namespace
 
 bool is_loopback(const Address& address) {
   if (is_mapped(address)) return address[kMappedBytes] == 127;
@@ -45,11 +36,13 @@ bool holds(const AllowEntry& entry, const Address& address) {
 
 Role role_of(const ListenerSettings& settings, const Address& address) {
   if (!settings.has_allow) return is_loopback(address) ? Role::engineer : Role::viewer;
-  const AllowEntry* best = nullptr;
-  for (const AllowEntry& entry : settings.allow) {
-    if (holds(entry, address) && (best == nullptr || entry.prefix > best->prefix)) best = &entry;
-  }
-  return best == nullptr ? Role::none : best->role;
+  const AllowEntry* entry = deciding_entry(settings, address);
+  return entry == nullptr ? Role::none : entry->role;
+}
+
+std::uint8_t rank_of(const ListenerSettings& settings, const Address& address) {
+  const AllowEntry* entry = settings.has_allow ? deciding_entry(settings, address) : nullptr;
+  return entry == nullptr ? std::uint8_t{0} : entry->rank;
 }
 
 std::uint32_t kept_for_operators(const ListenerSettings& settings) {

@@ -9,17 +9,18 @@
 #include <string_view>
 
 #include "gateway/upstream/modbus_tcp/listener_settings.hpp"
+#include "gateway/upstream/modbus_tcp/peer.hpp"
 
 namespace axisgate::modbus_tcp {
 
-/// The way people write it: mapped IPv4 in dots.
-[[nodiscard]] std::string text(const Address& address);
 [[nodiscard]] bool is_loopback(const Address& address);
 
 [[nodiscard]] bool holds(const AllowEntry& entry, const Address& address);
 /// Role::none: no entry names it, close at accept. Several entries that hold: the longest prefix decides, as in a
 /// routing table, so that reordering the list changes no rights; of equal prefixes the first.
 [[nodiscard]] Role role_of(const ListenerSettings& settings, const Address& address);
+/// Of the same entry: command take_over takes an axis from a lower one. 0 without `allow`.
+[[nodiscard]] std::uint8_t rank_of(const ListenerSettings& settings, const Address& address);
 
 enum class Admission : std::uint8_t {
   admitted,

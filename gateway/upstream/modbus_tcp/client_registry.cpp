@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace axisgate::modbus_tcp {
 
@@ -15,33 +16,60 @@ std::optional<std::uint16_t> Client::last_id(AxisNumber axis) const {
   return found == host->ids.end() ? std::nullopt : found->second.last;
 }
 
-ClientRegistry::Connected ClientRegistry::connect(const Address& address, bool shared, Instant now) {
+Group Client::new_group(Role role) const {
+  Group group;
+  group.client = id;
+  group.role = role;
+  group.life = life;
+  return group;
+}
+
+std::shared_ptr<Client> ClientRegistry::make_client(std::shared_ptr<Host> host, std::shared_ptr<ClientLife> life) {
+  auto client = std::make_shared<Client>();
+  if (life == nullptr) {
+    life = std::make_shared<ClientLife>();
+    life->id = ++last_id_;
+  }
+  client->id = life->id;
+  client->host = std::move(host);
+  client->life = std::move(life);
+  return client;
+}
+
+ClientRegistry::Connected ClientRegistry::connect(const Peer& peer, bool shared, Instant now) {
   Connected connected;
-  Entry& entry = hosts_[address];
+  Entry& entry = hosts_[peer.address];
   const bool expired = entry.host != nullptr && entry.host->connections == 0 && now - entry.host->left_at >= kHostKept;
-  ClientId id = 0;
+  std::shared_ptr<ClientLife> life;
   if (entry.host == nullptr || expired) {
-    // What it wrote is forgotten, but who comes back is the client that left: nothing it commanded may end by that.
-    if (shared && entry.shared_client != nullptr) id = entry.shared_client->id;
+    // What it wrote is forgotten, but who comes back is the client that left: nothing it commanded may end by that, and
+    // what it owns is still its own.
+    if (shared && entry.shared_client != nullptr) life = entry.shared_client->life;
     entry = {std::make_shared<Host>(), nullptr};
   }
   ++entry.host->connections;
   connected.client = shared ? entry.shared_client : nullptr;
   if (connected.client == nullptr) {
-    connected.client = std::make_shared<Client>();
-    connected.client->id = id != 0 ? id : ++last_id_;
-    connected.client->address = address;
-    connected.client->host = entry.host;
+    connected.client = make_client(entry.host, std::move(life));
+    connected.client->address = peer.address;
     if (shared) entry.shared_client = connected.client;
   }
-  if (!connected.forgotten) connected.forgotten = forget_oldest_idle();
+  ++connected.client->connections;
+  ClientLife& alive = *connected.client->life;
+  alive.role = peer.role;
+  alive.rank = peer.rank;
+  alive.origin = peer.address;
+  alive.name = shared ? text(peer.address) : text(peer);
+  alive.connected = true;
+  connected.forgotten = forget_oldest_idle();
   return connected;
 }
 
 std::optional<ClientId> ClientRegistry::disconnect(const std::shared_ptr<Client>& client, Instant now) {
   Host& host = *client->host;
-  assert(host.connections > 0);
+  assert(host.connections > 0 && client->connections > 0);
   if (--host.connections == 0) host.left_at = now;
+  if (--client->connections == 0) client->life->connected = false;
   const auto entry = hosts_.find(client->address);
   const bool stays = entry != hosts_.end() && entry->second.shared_client == client;
   return stays ? std::nullopt : std::optional(client->id);

@@ -1,6 +1,6 @@
 // The clients of the Modbus-TCP face: what each of them has written and been answered, per axis (design 3.3 "A client",
-// "Edges"). Promises that memory is bounded whoever connects, and that one client never sees what belongs to another.
-// Never speaks to an axis and never reads a clock.
+// "Edges"), and the life of each that leases are judged by. Promises that memory is bounded whoever connects, and that
+// one client never sees what belongs to another. Never speaks to an axis and never reads a clock.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@
 #include "gateway/upstream/modbus_tcp/edges.hpp"
 #include "gateway/upstream/modbus_tcp/listener_settings.hpp"
 #include "gateway/upstream/modbus_tcp/object_buffers.hpp"
+#include "gateway/upstream/modbus_tcp/peer.hpp"
 
 namespace axisgate::modbus_tcp {
 
@@ -44,7 +45,7 @@ struct ClientAxis {
   std::uint64_t submission = 0;  ///< counts its groups: an older one's result does not replace a newer one's
   EdgeMemory edges;
   std::uint16_t command_id = 0;
-  std::uint16_t heartbeat = 0;
+  std::optional<std::uint16_t> heartbeat{};  ///< none written yet: the first one is a change
   Mailbox mailbox;
 };
 
@@ -59,10 +60,14 @@ struct Client {
   ClientId id = 0;
   Address address{};
   std::shared_ptr<Host> host;
-  std::map<AxisNumber, ClientAxis> axes;  ///< those it has written to
-  std::uint16_t heartbeat = 0;            ///< gateway register 8
-  ObjectBuffers objects;                  ///< function 43/13
+  std::shared_ptr<ClientLife> life;          ///< never null; outlives the client where it owns an axis
+  std::size_t connections = 0;               ///< more than one only where "client" is "address"
+  std::map<AxisNumber, ClientAxis> axes;     ///< those it has written to
+  std::optional<std::uint16_t> heartbeat{};  ///< gateway register 8; none written yet: the first one is a change
+  ObjectBuffers objects;                     ///< function 43/13
 
+  /// A group of this client that asks for nothing yet. `role`: of the connection that it asks by.
+  [[nodiscard]] Group new_group(Role role) const;
   /// nullptr where it has written nothing to this axis yet.
   [[nodiscard]] const ClientAxis* find(AxisNumber axis) const;
   [[nodiscard]] ClientAxis& at(AxisNumber axis) { return axes[axis]; }
@@ -80,9 +85,10 @@ class ClientRegistry {
     std::shared_ptr<Client> client;
     std::optional<ClientId> forgotten;  ///< another client that is gone for good by this
   };
-  /// `shared`: listener option "client": "address". Once per connection.
-  [[nodiscard]] Connected connect(const Address& address, bool shared, Instant now);
-  /// The client's id where it is gone for good by this.
+  /// `shared`: listener option "client": "address". Once per connection. A client of several connections has the role
+  /// and rank of the newest.
+  [[nodiscard]] Connected connect(const Peer& peer, bool shared, Instant now);
+  /// The client's id where it is gone for good by this. Without a connection left its life says so before.
   std::optional<ClientId> disconnect(const std::shared_ptr<Client>& client, Instant now);
 
   [[nodiscard]] std::size_t hosts() const { return hosts_.size(); }
@@ -94,6 +100,7 @@ class ClientRegistry {
     std::shared_ptr<Host> host;
     std::shared_ptr<Client> shared_client;  ///< where "client" is "address"
   };
+  [[nodiscard]] std::shared_ptr<Client> make_client(std::shared_ptr<Host> host, std::shared_ptr<ClientLife> life);
   [[nodiscard]] std::optional<ClientId> forget_oldest_idle();
 
   std::map<Address, Entry> hosts_;

@@ -2,46 +2,93 @@
 #include <array>
 #include <boost/container/static_vector.hpp>
 
+#include "gateway/upstream/modbus_tcp/claims.hpp"
 #include "gateway/upstream/modbus_tcp/write_plan.hpp"
 
 namespace axisgate::modbus_tcp {
 namespace {
 
 /// Coils that act in one request run in this order, whatever their numbers: stops first, starts last.
-constexpr std::array kOrder{Command::quick_stop,    Command::disable,     Command::halt, Command::fault_reset,
-                            Command::enable,        Command::end_halt,    Command::home, Command::move_absolute,
-                            Command::move_relative, Command::run_velocity};
+constexpr std::array kOrder{Command::quick_stop,    Command::disable,       Command::halt,         Command::jog_end,
+                            Command::fault_reset,   Command::enable,        Command::end_halt,     Command::home,
+                            Command::move_absolute, Command::move_relative, Command::run_velocity, Command::jog_forward,
+                            Command::jog_reverse};
 
-using Acting = boost::container::static_vector<Command, kCoils>;
+/// Both sides of a jog coil, and each of the others, ask for one thing at most.
+using Acting = boost::container::static_vector<Command, kCoils + 1>;
+
+constexpr std::uint16_t kJogForward = 8;
+constexpr std::uint16_t kJogReverse = 9;
 
 bool starts_motion(Command command) {
   return command == Command::home || command == Command::move_absolute || command == Command::move_relative ||
-         command == Command::run_velocity;
+         command == Command::run_velocity || command == Command::jog_forward || command == Command::jog_reverse;
 }
 
 bool has(const Acting& acting, Command command) {
   return std::find(acting.begin(), acting.end(), command) != acting.end();
 }
 
+bool any_of(const Acting& acting, bool (*is)(Command)) { return std::any_of(acting.begin(), acting.end(), is); }
+
 /// What a stop in the same request drops: every start, and the enable that a quick stop or a disable contradicts.
 bool dropped_by_stop(Command command, const Acting& acting) {
   const bool off = has(acting, Command::quick_stop) || has(acting, Command::disable);
   if (command == Command::enable) return off;
-  return starts_motion(command) && (off || has(acting, Command::halt));
+  return starts_motion(command) && (off || has(acting, Command::halt) || has(acting, Command::jog_end));
 }
 
-bool can(const AxisImage& axis, Command command) {
-  // Ending a halt is the other half of halt.
-  const Command listed = command == Command::end_halt ? Command::halt : command;
-  return (axis.supported_commands >> static_cast<unsigned>(listed) & 1U) != 0;
-}
-
-/// Reserved coils take a 0. Coils of another version, or that this drive cannot do, take a 0 in a longer write, which
-/// asks for nothing: a scanner may write the whole row of coils.
+/// Reserved coils take a 0. Coils that this drive cannot do take a 0 in a longer write, which asks for nothing: a
+/// scanner may write the whole row of coils.
 bool takes(const AxisImage& axis, std::uint16_t offset, bool value, bool single) {
   if (offset >= kCoils) return offset < kReservedCoilsEnd && !value;
-  const CoilRow& coil = coil_rows()[offset];
-  return (coil.built && can(axis, coil.on)) || (!value && !single);
+  return supports(coil_rows()[offset], axis.supported_commands) || (!value && !single);
+}
+
+struct Asked {
+  Acting acting;
+  std::optional<Command> jog_again{};
+};
+
+/// What the coils of the request ask for, by the edge rules.
+Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, const Writing& writing,
+          EdgeMemory& edges) {
+  Asked asked;
+  JogWrite jog;
+  for (std::uint16_t i = 0; i < request.write_count && first + i < kCoils; ++i) {
+    const CoilRow& coil = coil_rows()[first + i];
+    if (!supports(coil, axis.supported_commands)) continue;
+    const bool value = request.written_coil(i);
+    if (coil.offset == kJogForward || coil.offset == kJogReverse) {
+      (coil.offset == kJogForward ? jog.forward : jog.reverse) = value;
+      continue;
+    }
+    const auto command = edges.coil(coil, value, writing);
+    if (command && !has(asked.acting, *command)) asked.acting.push_back(*command);
+  }
+  const JogAsks jogs = edges.jog(jog, writing);
+  if (jogs.ends) asked.acting.push_back(Command::jog_end);
+  if (jogs.start) asked.acting.push_back(*jogs.start);
+  const bool stops = any_of(asked.acting, is_stop) || jogs.ends;
+  if (!stops && !any_of(asked.acting, starts_motion)) asked.jog_again = jogs.again;
+  return asked;
+}
+
+/// One group for each command that acts. A request in which nothing does is one all the same: by it its client owns the
+/// axis, is told that another does, or renews its lease.
+void add_groups(const Asked& asked, const Group& empty, WritePlan& plan) {
+  for (const Command command : kOrder) {
+    if (!has(asked.acting, command)) continue;
+    if (dropped_by_stop(command, asked.acting)) {
+      plan.afterwards = Errc::dropped_by_stop;
+      continue;
+    }
+    plan.groups.push_back(empty);
+    plan.groups.back().command = command;
+  }
+  if (plan.groups.empty()) plan.groups.push_back(empty);
+  // With the first: what the others wait for must not let the jog run out of time.
+  plan.groups.front().jog_again = asked.jog_again;
 }
 
 }  // namespace
@@ -60,31 +107,16 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
   const ClientAxis* before = client.find(axis.number);
   EdgeMemory edges = before == nullptr ? EdgeMemory{} : before->edges;
   const Writing writing{single ? WriteForm::single : WriteForm::block, onlooker.now, onlooker.settings.rearm};
-  Acting acting;
-  for (std::uint16_t i = 0; i < request.write_count && first->offset + i < kCoils; ++i) {
-    const CoilRow& coil = coil_rows()[first->offset + i];
-    if (!coil.built || !can(axis, coil.on)) continue;
-    const auto command = edges.coil(coil, request.written_coil(i), writing);
-    if (command && !has(acting, *command)) acting.push_back(*command);
-  }
+  const Asked asked = ask(request, first->offset, axis, writing, edges);
   // Two starts at once: no one can say which motion was meant.
-  if (std::count_if(acting.begin(), acting.end(), starts_motion) > 1) return Errc::bad_value;
+  if (std::count_if(asked.acting.begin(), asked.acting.end(), starts_motion) > 1) return Errc::bad_value;
 
   client.at(axis.number).edges = edges;
   WritePlan plan;
   plan.axis = axis.number;
-  for (const Command command : kOrder) {
-    if (!has(acting, command)) continue;
-    if (dropped_by_stop(command, acting)) {
-      plan.afterwards = Errc::dropped_by_stop;
-      continue;
-    }
-    Group group;
-    group.client = client.id;
-    group.role = onlooker.role;
-    group.command = command;
-    plan.groups.push_back(group);
-  }
+  Group empty = client.new_group(onlooker.role);
+  empty.claims = claims(request, first->offset);
+  add_groups(asked, empty, plan);
   return plan;
 }
 

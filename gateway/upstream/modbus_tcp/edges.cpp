@@ -1,6 +1,12 @@
 #include "gateway/upstream/modbus_tcp/edges.hpp"
 
 namespace axisgate::modbus_tcp {
+namespace {
+
+constexpr std::size_t kJogForward = 8;  // offsets of the coils
+constexpr std::size_t kJogReverse = 9;
+
+}  // namespace
 
 bool is_stop_controlword(std::uint16_t controlword) {
   const unsigned steps = controlword & 0x0FU;
@@ -23,7 +29,12 @@ bool EdgeMemory::acts(const Item& item, std::uint16_t value, bool is_stop, const
   return !item.written || differs || rearmed || is_stop;
 }
 
-void EdgeMemory::remember(Item& item, std::uint16_t value, Instant now) { item = {true, value, now}; }
+void EdgeMemory::remember(Item& item, std::uint16_t value, Instant now) {
+  if (!item.written || item.value != value) item = {.written = true, .value = value, .since = now};
+  item.at = now;
+}
+
+bool EdgeMemory::swallows_fall(const Item& item, bool value) { return !value && item.is_on() && item.disowned; }
 
 bool EdgeMemory::controlword(std::uint16_t value, const Writing& writing) {
   const bool acting = acts(controlword_, value, false, writing);
@@ -61,8 +72,45 @@ std::optional<Command> EdgeMemory::coil(const CoilRow& coil, bool value, const W
   }
   // "Edge coils act on 0 -> 1": a 0 does nothing and arms it.
   if (asked == Command::none) acting = false;
+  const bool swallowed = swallows_fall(item, value);
   remember(item, value ? 1 : 0, writing.now);
-  return acting ? std::optional(asked) : std::nullopt;
+  // Whoever meant it as a stop writes the 0 again, and that one acts at once.
+  if (swallowed) item.at = kLongAgo;
+  return acting && !swallowed ? std::optional(asked) : std::nullopt;
+}
+
+JogAsks EdgeMemory::jog(const JogWrite& write, const Writing& writing) {
+  struct Side {
+    Item& item;
+    std::optional<bool> value;
+    Command start;
+    bool was_on;
+    bool counts;  // not only remembered
+    [[nodiscard]] bool on() const { return value.value_or(was_on); }
+    [[nodiscard]] bool rises() const { return counts && *value && !was_on; }
+    /// A single 0 from a connection that has written nothing yet is a button that is let go after a reconnect.
+    [[nodiscard]] bool falls() const { return counts && !*value && (was_on || !item.written) && !item.disowned; }
+  };
+  const auto side_of = [&](std::size_t coil, std::optional<bool> value, Command start) {
+    Item& item = coils_.at(coil);
+    return Side{item, value, start, item.is_on(), value && (item.written || writing.form == WriteForm::single)};
+  };
+  const std::array sides{side_of(kJogForward, write.forward, Command::jog_forward),
+                         side_of(kJogReverse, write.reverse, Command::jog_reverse)};
+
+  JogAsks asks;
+  const bool both = sides[0].on() && sides[1].on();
+  for (const Side& side : sides) {
+    if (side.falls() || (both && side.counts && *side.value)) asks.ends = true;
+    const bool held = side.value.value_or(false) && side.was_on && !side.item.disowned && !side.item.spent;
+    if (!both && side.rises()) asks.start = side.start;
+    if (!both && held) asks.again = side.start;
+  }
+  for (const Side& side : sides) {
+    if (side.value) remember(side.item, *side.value ? 1 : 0, writing.now);
+    if (both) side.item.spent = true;
+  }
+  return asks;
 }
 
 void EdgeMemory::forget_presses(Instant when) {
@@ -72,6 +120,19 @@ void EdgeMemory::forget_presses(Instant when) {
   forget(controlword_);
   forget(command_);
   for (Item& item : coils_) forget(item);
+}
+
+void EdgeMemory::disown(Instant when) {
+  for (const CoilRow& coil : coil_rows()) {
+    Item& item = coils_.at(coil.offset);
+    // A stop is carried out whoever owns the axis.
+    if (item.is_on() && item.since == when && !axisgate::is_stop(coil.on)) item.disowned = true;
+  }
+}
+
+void EdgeMemory::own(Instant when) {
+  for (Item& item : coils_)
+    if (item.at == when) item.disowned = false;
 }
 
 }  // namespace axisgate::modbus_tcp

@@ -179,7 +179,7 @@ void Listener::admit(int descriptor, const ip::tcp::endpoint& from) {
   }
   ++server_.counters.accepted;
   ++server_.counters.open;
-  const Peer peer{address, from.port(), role};
+  const Peer peer{address, from.port(), role, rank_of(settings_, address)};
   auto connection = std::make_shared<Connection>(std::move(socket), server_.runtime, session_context_, peer,
                                                  [this](Connection& closed) { on_closed(closed); });
   connection->place = open_.size();
@@ -211,10 +211,8 @@ void Listener::on_closed(Connection& connection) {
     ++server_.counters.closed_late;
   }
   if (server_.log.wants(LogLevel::debug)) {
-    server_.log.write(
-        LogLevel::debug,
-        "modbus " + modbus_tcp::text(connection.peer().address) + ":" + std::to_string(connection.peer().port),
-        why.empty() ? "closed by the client" : why);
+    server_.log.write(LogLevel::debug, "modbus " + modbus_tcp::text(connection.peer()),
+                      why.empty() ? "closed by the client" : why);
   }
   --server_.counters.open;
   counts_.release(connection.peer().address);

@@ -37,6 +37,7 @@ Onlooker Pipeline::onlooker(Instant now) const {
 void Pipeline::accept(const Frame& frame, Instant now) {
   assert(entries_.size() < kMaxPipelined);
   ++context_.clients.counters.messages;
+  client_->life->last_request = now;
   const auto view = UnitView::of(frame.unit, context_.settings, context_.image);
   std::variant<Request, ModbusException> decoded = decode_request(frame.pdu);
   Request* const request = std::get_if<Request>(&decoded);

@@ -91,13 +91,19 @@ ModbusException read_registers(const Request& request, const UnitView& view, con
 /// Coils and inputs end below this offset of an axis's block; the rest of it reads 0.
 constexpr std::size_t kBitsPerAxis = 16;
 
+/// owned_by_me is each client's own; the gateway knows it whatever the link.
+unsigned inputs_seen_by(const AxisImage& axis, ClientId client) {
+  const unsigned own = axis.lease.owned_by(client) ? bit(AxisInput::owned_by_me) : 0U;
+  return shown_inputs(axis) | own;
+}
+
 ModbusException read_bits(const Request& request, const UnitView& view, const Onlooker& onlooker, std::span<Byte> to) {
   const bool coils = request.function == Function::read_coils;
   for (std::size_t done = 0; done < request.read_count;) {
     const auto place = view.place_bit(static_cast<std::uint32_t>(request.read_address + done), onlooker.image);
     if (!place) return kOutside;
     if (must_refuse(place->axis, onlooker.settings)) return kNoAnswer;
-    const unsigned bits = coils ? shown_level_coils(*place->axis) : shown_inputs(*place->axis);
+    const unsigned bits = coils ? shown_level_coils(*place->axis) : inputs_seen_by(*place->axis, onlooker.client.id);
     const std::size_t in_block = std::min<std::size_t>(request.read_count - done, kAxisBlock - place->offset);
     for (std::size_t i = 0; i < in_block && place->offset + i < kBitsPerAxis; ++i) {
       const unsigned value = (bits >> (place->offset + i)) & 1U;

@@ -92,9 +92,8 @@ ReferencePlan plan_reference(const Request& request, const UnitView& view, const
     if (reference.start != 0) return plan;
     object.count = reference.count;
   }
-  Group& group = plan.group.emplace();
-  group.client = client.id;
-  group.role = onlooker.role;
+  Group& group = plan.group.emplace(client.new_group(onlooker.role));
+  group.claims = reference.write;
   group.object = std::move(object);
   group.start_by = onlooker.now + onlooker.settings.start_deadline;
   group.answer_by = onlooker.now + onlooker.settings.reply_deadline;

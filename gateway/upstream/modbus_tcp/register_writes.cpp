@@ -1,3 +1,4 @@
+#include "gateway/upstream/modbus_tcp/claims.hpp"
 #include "gateway/upstream/modbus_tcp/row_writes.hpp"
 #include "gateway/upstream/modbus_tcp/write_plan.hpp"
 
@@ -67,9 +68,7 @@ Group make_group(const RowWrites& found, const Onlooker& onlooker, Client& clien
   const bool single = found.rows.size() == 1;
   const Writing writing{single ? WriteForm::single : WriteForm::block, onlooker.now, onlooker.settings.rearm};
   const RowWrite* id = found.of(Source::command_id);
-  Group group;
-  group.client = client.id;
-  group.role = onlooker.role;
+  Group group = client.new_group(onlooker.role);
   for (const RowWrite& each : found.rows) {
     if (each.skipped) continue;
     const auto word = static_cast<std::uint16_t>(each.value);
@@ -95,28 +94,32 @@ Group make_group(const RowWrites& found, const Onlooker& onlooker, Client& clien
         group.command_id = word;
         if (word == 0) client.host->ids[axis].zero_written = true;
         break;
+      case Source::jog_velocity:
+        group.jog_velocity = static_cast<std::uint32_t>(each.value);
+        break;
       case Source::heartbeat:
+        group.beats = own.heartbeat != word;
         own.heartbeat = word;
         break;
       default:
         break;  // the mailbox is written as a whole
     }
   }
+  group.claims = claims(found, group, onlooker.role);
   return group;
 }
 
-Group object_group(const Mailbox& box, Role role, ClientId client) {
-  Group group;
-  group.client = client;
-  group.role = role;
+Group object_group(const Mailbox& box, const Client& client, Role role) {
+  Group group = client.new_group(role);
+  group.claims = box.request == 2;
   group.object = ObjectRequest{box.request == 2, box.index, static_cast<std::uint8_t>(box.subindex),
                                static_cast<std::uint8_t>(box.size), box.data};
   return group;
 }
 
-bool asks_nothing(const Group& group) {
-  return group.setpoints.empty() && !group.mode && !group.controlword && group.command == Command::none &&
-         !group.set_position_value;
+void beat(Client& client, std::uint16_t value, Instant now) {
+  if (client.heartbeat != value) client.life->heartbeat = now;
+  client.heartbeat = value;
 }
 
 }  // namespace
@@ -127,7 +130,7 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
 
   WritePlan plan;
   if (found.axis == nullptr) {
-    client.heartbeat = static_cast<std::uint16_t>(found.rows.front().value);
+    beat(client, static_cast<std::uint16_t>(found.rows.front().value), onlooker.now);
     return plan;
   }
   plan.axis = found.axis->number;
@@ -142,9 +145,11 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
     own.used = true;
     own.mailbox.status = ObjectStatus::busy;
     own.mailbox.detail = 0;
-    plan.object = object_group(box.mailbox, onlooker.role, client.id);
+    plan.object = object_group(box.mailbox, client, onlooker.role);
   }
-  if (!asks_nothing(group)) plan.groups.push_back(group);
+  // A group that asks for nothing is submitted for its client's ownership: but where the mailbox's request stands for
+  // it, that is told by one of them.
+  if (!asks_nothing(group) || group.claims || !box.requested) plan.groups.push_back(group);
   return plan;
 }
 

@@ -26,7 +26,7 @@ std::uint32_t client_value(const RegisterRow& row, const AxisImage& axis, const 
     case Source::command_id:
       return own.command_id;
     case Source::heartbeat:
-      return own.heartbeat;
+      return own.heartbeat.value_or(0);
     case Source::object_request:
       return own.mailbox.request;
     case Source::object_index:
@@ -42,8 +42,22 @@ std::uint32_t client_value(const RegisterRow& row, const AxisImage& axis, const 
     case Source::object_detail:
       return own.mailbox.detail;
     default:
-      return 0;  // owner, lease_remaining_ms, jog_velocity: not in this version
+      break;
   }
+  assert(false);
+  return 0;
+}
+
+std::uint32_t owner(const Lease& lease, ClientId onlooker) {
+  enum : std::uint32_t { nobody = 0, this_client = 1, another = 2 };
+  if (!lease.owner) return nobody;
+  return lease.owned_by(onlooker) ? this_client : another;
+}
+
+std::uint32_t lease_remaining(const Lease& lease, Instant now) {
+  const Instant until = lease.until();
+  if (until == kNever) return 0;
+  return static_cast<std::uint32_t>(std::min<std::int64_t>(elapsed_ms(now, until), UINT16_MAX));
 }
 
 std::uint32_t age(Instant oldest, Instant now) {
@@ -78,6 +92,12 @@ std::uint32_t axis_value(const RegisterRow& row, const AxisImage& axis, const On
       return axis.supported_commands;
     case Source::supported_modes:
       return axis.supported_modes;
+    case Source::owner:
+      return owner(axis.lease, onlooker.client.id);
+    case Source::lease_remaining_ms:
+      return lease_remaining(axis.lease, onlooker.now);
+    case Source::jog_velocity:
+      return axis.jog_velocity;
     case Source::set_position_value:
       return static_cast<std::uint32_t>(onlooker.commands.set_position_value(axis.number));
     default:
@@ -103,7 +123,7 @@ std::uint32_t gateway_value(const RegisterRow& row, const Onlooker& onlooker) {
     case Source::role:
       return static_cast<std::uint32_t>(onlooker.role);
     case Source::gateway_heartbeat:
-      return onlooker.client.heartbeat;
+      return onlooker.client.heartbeat.value_or(0);
     case Source::word_order_test:
       return kWordOrderTest;
     default:

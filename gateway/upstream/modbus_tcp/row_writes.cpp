@@ -49,12 +49,12 @@ RowWrites gather(const Request& request, const UnitView& view, const Onlooker& o
 }
 
 bool exists(const RegisterRow& row, const AxisImage* axis) {
-  if (!row.built) return false;
   if (axis == nullptr) return true;
   if (row.source == Source::quantity) return (axis->supported & axis->writable & bit(row.quantity)) != 0;
   if (row.source == Source::set_position_value) {
-    return (axis->supported_commands >> static_cast<unsigned>(Command::set_position) & 1U) != 0;
+    return supports(Command::set_position, axis->supported_commands);
   }
+  if (row.source == Source::jog_velocity) return supports(Command::run_velocity, axis->supported_commands);
   return true;
 }
 
@@ -71,6 +71,7 @@ bool is_held(const RowWrite& write, const AxisImage& axis, const Onlooker& onloo
   if (row.source == Source::set_position_value) {
     return onlooker.commands.set_position_value(axis.number) == write.value;
   }
+  if (row.source == Source::jog_velocity) return axis.jog_velocity == write.value;
   return row.source == Source::quantity && row.quantity != Quantity::controlword &&
          onlooker.commands.holds(axis.number, row.quantity, write.value);
 }

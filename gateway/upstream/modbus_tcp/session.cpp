@@ -10,7 +10,7 @@ namespace axisgate::modbus_tcp {
 namespace {
 
 std::shared_ptr<Client> join(const SessionContext& context, const Peer& peer, Instant now) {
-  auto connected = context.clients.connect(peer.address, context.settings.client_is_address, now);
+  auto connected = context.clients.connect(peer, context.settings.client_is_address, now);
   if (connected.forgotten) context.commands.client_gone(*connected.forgotten);
   return std::move(connected.client);
 }

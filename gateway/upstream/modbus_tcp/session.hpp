@@ -15,6 +15,7 @@
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/process_image.hpp"
 #include "gateway/upstream/modbus_tcp/listener_settings.hpp"
+#include "gateway/upstream/modbus_tcp/peer.hpp"
 
 namespace axisgate::modbus_tcp {
 
@@ -22,12 +23,6 @@ inline constexpr std::size_t kMaxPipelined = 4;
 inline constexpr std::size_t kMaxAdu = 260;
 
 class ClientRegistry;
-
-struct Peer {
-  Address address{};
-  std::uint16_t port = 0;
-  Role role = Role::viewer;
-};
 
 /// What all sessions of one listener share.
 struct SessionContext {

@@ -30,7 +30,8 @@ bool asks_for_a_stop(const Request& request, const UnitView& view, const Process
     const auto place = view.place_bit(request.write_address, image);
     if (!place || place->offset >= kCoils) return false;
     const CoilRow& coil = coil_rows()[place->offset];
-    return is_stop(request.written_coil(0) ? coil.on : coil.off);
+    const Command asked = request.written_coil(0) ? coil.on : coil.off;
+    return is_stop(asked) || asked == Command::jog_end;
   }
   const auto place = view.place_register(request.write_address, image);
   if (!place || place->block != Block::axis) return false;

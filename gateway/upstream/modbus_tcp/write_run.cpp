@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "gateway/upstream/modbus_tcp/claims.hpp"
+
 namespace axisgate::modbus_tcp {
 namespace {
 
@@ -11,6 +13,9 @@ bool did_nothing(Errc code) {
   return code != Errc::ok && code != Errc::stopped_by_other && code != Errc::not_reached &&
          command_result(code) != CommandResult::outcome_unknown;
 }
+
+/// Of a group that asks for nothing: its client's result registers go on telling of what was asked last.
+constexpr std::uint64_t kNoSubmission = 0;
 
 /// CiA 301: "length of service parameter does not match". The object is longer than registers 84 and 85.
 constexpr std::uint32_t kAbortLength = 0x06070010;
@@ -54,7 +59,7 @@ void WriteRun::abandon() {
 std::optional<Outcome> WriteRun::carry_on() {
   while (next_ < plan_.groups.size()) {
     const Group& group = plan_.groups[next_++];
-    const std::uint64_t submission = begin(group.command_id);
+    const std::uint64_t submission = asks_nothing(group) ? kNoSubmission : begin(group.command_id);
     // The callback holds the run: results are recorded even when the session that began it is gone.
     const auto at_once = commands_.submit(
         plan_.axis, group,
@@ -94,7 +99,14 @@ std::uint64_t WriteRun::begin(std::uint16_t command_id) {
 void WriteRun::settle(std::uint64_t submission, const Outcome& outcome) {
   ClientAxis* const axis = own();
   if (axis == nullptr) return;
+  if (outcome.code == Errc::ok) axis->edges.own(began_);
+  if (outcome.code == Errc::not_owner) axis->edges.disown(began_);
   if (did_nothing(outcome.code)) axis->edges.forget_presses(began_);
+  if (submission == kNoSubmission) {
+    // It asked for nothing, so there is nothing to tell of but a refusal.
+    if (outcome.code == Errc::ok) return;
+    submission = begin(0);
+  }
   if (axis->submission != submission) return;
   axis->result.result = command_result(outcome.code);
   axis->result.detail = outcome.detail;

@@ -84,13 +84,6 @@ TEST(Check, AnOverloadedBusIsNamedWithPeriodsThatFit) {
   EXPECT_THAT(report.text, HasSubstr("\"poll\": {\"fast\": 20,"));
 }
 
-TEST(Check, SaysOnceThatLeasesAreNotEnforced) {
-  LoadedConfig loaded = one_axis();
-  EXPECT_THAT(check(loaded).text, HasSubstr("Leases are not enforced by this version"));
-  loaded.config.buses[0].drives[0].axes[0].lease.on = false;
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("Leases are not enforced")));
-}
-
 TEST(Check, RepeatsTheWarnings) {
   LoadedConfig loaded = one_axis();
   loaded.warnings.push_back("gateway.json: /modbus_tcp/0/listen: everybody may read");

@@ -87,7 +87,12 @@ TEST_F(ConfigLoader, FillsInEveryDefault) {
   EXPECT_EQ(axis.standstill_velocity, 1000);
   EXPECT_EQ(axis.homing_timeout, milliseconds(60000));
   EXPECT_TRUE(axis.lease.on);
+  EXPECT_EQ(axis.lease.timeout, milliseconds(2000));
   EXPECT_EQ(axis.lease.on_expiry, LeaseAction::quick_stop);
+  EXPECT_EQ(axis.lease.renew, LeaseRenewal::any);
+  EXPECT_EQ(axis.jog_timeout, milliseconds(500));
+  EXPECT_EQ(axis.motor, "");
+  EXPECT_FALSE(axis.vertical);
   EXPECT_THAT(loaded.warnings, IsEmpty());
 }
 
@@ -145,6 +150,26 @@ TEST_F(ConfigLoader, ReadsEveryKeyOfABusAndItsAxis) {
   EXPECT_EQ(axis.homing_timeout, milliseconds(90000));
 }
 
+TEST_F(ConfigLoader, HandsTheLeaseAndTheJogTimeToTheDrive) {
+  const LoadedConfig loaded = load_good(one_drive("", "", "", R"(, "vertical": true, "jog_timeout_ms": 250,
+    "lease": {"timeout_ms": 750, "on_expiry": "none", "renew": "write"})"));
+  EXPECT_TRUE(loaded.config.buses.at(0).drives.at(0).axes.at(0).vertical);
+  const drive::AxisModel& axis = loaded.models.at(0).at(0).axes.at(0);
+  EXPECT_TRUE(axis.lease.on);
+  EXPECT_EQ(axis.lease.timeout, milliseconds(750));
+  EXPECT_EQ(axis.lease.on_expiry, LeaseAction::none);
+  EXPECT_EQ(axis.lease.renew, LeaseRenewal::write);
+  EXPECT_EQ(axis.jog_timeout, milliseconds(250));
+}
+
+TEST_F(ConfigLoader, AKeyThatALeaseDoesNotNameHasItsDefault) {
+  const LoadedConfig loaded = load_good(one_drive("", "", "", R"(, "lease": {"renew": "heartbeat"})"));
+  const LeaseRules& lease = loaded.models.at(0).at(0).axes.at(0).lease;
+  EXPECT_EQ(lease.renew, LeaseRenewal::heartbeat);
+  EXPECT_EQ(lease.timeout, milliseconds(2000));
+  EXPECT_EQ(lease.on_expiry, LeaseAction::quick_stop);
+}
+
 TEST_F(ConfigLoader, KeepsConstantsExactly) {
   const LoadedConfig loaded =
       load_good(one_drive("", "", R"("constants": {"encoder_counts_per_rev": 65536, "peak_current_a": "27.55"})"));
@@ -169,11 +194,10 @@ TEST_F(ConfigLoader, GivesEachDriveItsModel) {
 TEST_F(ConfigLoader, WarnsWithoutRefusing) {
   const LoadedConfig loaded = load_good(one_drive(
       "", R"(, "baud": 57600)", "", R"(, "jog_timeout_ms": 300, "dds_unit": "m", "metres_per_rev": "0.005")"));
-  ASSERT_THAT(loaded.warnings, SizeIs(4));
+  ASSERT_THAT(loaded.warnings, SizeIs(3));
   EXPECT_THAT(loaded.warnings[0], HasSubstr("/buses/0/baud: 57600 is not among the rates of Kinco drives"));
-  EXPECT_THAT(loaded.warnings[1], HasSubstr("/buses/0/drives/0/axes/0/jog_timeout_ms: jog is not available"));
-  EXPECT_THAT(loaded.warnings[2], HasSubstr("/dds_unit: DDS is not available"));
-  EXPECT_THAT(loaded.warnings[3], HasSubstr("/metres_per_rev: DDS is not available"));
+  EXPECT_THAT(loaded.warnings[1], HasSubstr("/dds_unit: DDS is not available"));
+  EXPECT_THAT(loaded.warnings[2], HasSubstr("/metres_per_rev: DDS is not available"));
 }
 
 TEST_F(ConfigLoader, ToldOfAFileThatIsNotThereNamesIt) {

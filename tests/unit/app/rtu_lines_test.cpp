@@ -146,13 +146,14 @@ TEST(RtuLine, CheckReportsTheLine) {
   EXPECT_THAT(report, Not(HasSubstr("OVERLOADED")));
 }
 
-TEST(RtuLine, CheckSaysWhichAxisStopsWhenItsClientLeaves) {
-  constexpr const char* kLeaves =
-      "client leaves   quick stop when the connection of the client that commanded the motion ends; not where "
-      "\"client\" is "
-      "\"address\"\n";
-  EXPECT_THAT(check(load_line(kStepper)).text, HasSubstr(kLeaves));
-  EXPECT_THAT(check(load_line(kJd)).text, Not(HasSubstr(kLeaves)));
+TEST(RtuLine, CheckSaysWhichAxisStopsWithoutALeaseWhenItsClientLeaves) {
+  constexpr const char* kLeaves = "but for a quick stop when its connection ends, where \"client\" is \"connection\"\n";
+  const auto without_lease = [](std::string drive) {
+    return check(load_line(drive.replace(drive.find("\"axis\": "), 0, "\"lease\": null, "))).text;
+  };
+  EXPECT_THAT(without_lease(kStepper), HasSubstr(kLeaves));
+  EXPECT_THAT(without_lease(kJd), Not(HasSubstr(kLeaves)));
+  EXPECT_THAT(check(load_line(kStepper)).text, Not(HasSubstr(kLeaves))) << "its lease takes care of it";
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ std::vector<GatewayStage::Line> lines(KincoType type, const RigOptions& options)
   GatewayStage::Line line;
   line.name = "line";
   line.drives = {staged};
+  line.lease = options.lease;
   line.options.reply_delay = options.reply_delay;
   line.options.journal_capacity = 100'000;
   std::vector<GatewayStage::Line> out;

@@ -51,6 +51,7 @@ struct RigOptions {
   simulated::DriveOptions drive{};
   drive::ResolveAxis axis{};
   simulated::Time reply_delay = std::chrono::milliseconds(2);
+  std::optional<LeaseRules> lease{};  ///< none: leases are off
 };
 
 class Rig {

@@ -82,11 +82,16 @@ TEST(MapListing, SaysWhatTheDriveHasAndWhatCanBeWritten) {
   EXPECT_EQ(find(entries, "holding", 142)->access, "rw");
   EXPECT_EQ(find(entries, "holding", 147)->access, "r") << "max_torque, on this drive";
   EXPECT_EQ(find(entries, "holding", 100)->access, "r");
-  EXPECT_FALSE(find(entries, "holding", 158)->supported) << "jog_velocity";
+  EXPECT_TRUE(find(entries, "holding", 158)->supported) << "jog_velocity";
   EXPECT_FALSE(find(entries, "holding", 178)->supported) << "set_position_value, without the command";
   EXPECT_TRUE(find(entries, "coil", 106)->supported);
-  EXPECT_FALSE(find(entries, "coil", 108)->supported) << "jog_forward";
+  EXPECT_TRUE(find(entries, "coil", 108)->supported) << "jog_forward";
   EXPECT_TRUE(find(entries, "discrete", 511)->supported);
+  ListedMap without_velocity = two_axes();
+  without_velocity.axes[0].supported_commands &= ~(1U << 8);
+  const auto others = map_entries(without_velocity);
+  EXPECT_FALSE(find(others, "holding", 158)->supported) << "jogging is running at a velocity";
+  EXPECT_FALSE(find(others, "coil", 109)->supported);
 }
 
 TEST(MapListing, PrintsPositionsInTheAxissOwnUnit) {

@@ -198,10 +198,13 @@ TEST(RegisterMap, CoilsAndInputsStandAtTheirOffsets) {
   EXPECT_EQ(input_rows()[12].name, "stop_latched");
 }
 
-TEST(RegisterMap, WhatIsNotBuiltSaysSo) {
-  EXPECT_FALSE(register_table(Block::axis).covering(58)->built);
-  EXPECT_FALSE(coil_rows()[8].built);
-  EXPECT_FALSE(coil_rows()[9].built);
+TEST(RegisterMap, ACoilNeedsTheCommandThatItAsksForAndJoggingARunAtAVelocity) {
+  for (const CoilRow& coil : coil_rows()) {
+    const unsigned needed = coil.offset < 8 ? static_cast<unsigned>(coil.on) : 8U;
+    EXPECT_TRUE(supports(coil, 1U << needed)) << coil.name;
+    EXPECT_FALSE(supports(coil, ~(1U << needed))) << coil.name;
+  }
+  EXPECT_FALSE(supports(Command::jog_reverse, ~0U)) << "no register value, so no bit of supported_commands";
 }
 
 TEST(RegisterMapPage, IsTheOneInSchemas) {

@@ -90,7 +90,7 @@ TEST(Shown, OwnershipIsEachClientsOwnAndNeverTheAxiss) {
 TEST(Shown, OnlyLevelCoilsAreReadBack) {
   AxisImage axis = online_axis();
   axis.level_coils = 0xFFFF;
-  EXPECT_EQ(shown_level_coils(axis), 0x89);
+  EXPECT_EQ(shown_level_coils(axis), 0x389);
 }
 
 }  // namespace

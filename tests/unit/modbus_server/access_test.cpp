@@ -88,6 +88,17 @@ TEST(ClientCounts, ReleasedRoomIsRoomAgain) {
   EXPECT_EQ(counts.total(), 2U);
 }
 
+TEST(Ranks, AreThoseOfTheMostSpecificEntry) {
+  const AllowEntry wide{v4(192, 168, 0, 0), 112, Role::operator_, 9};
+  const AllowEntry host{v4(192, 168, 1, 7), 128, Role::operator_, 2};
+  for (const auto& settings : {with_allow({wide, host}), with_allow({host, wide})}) {
+    EXPECT_EQ(rank_of(settings, v4(192, 168, 1, 7)), 2);
+    EXPECT_EQ(rank_of(settings, v4(192, 168, 1, 8)), 9);
+    EXPECT_EQ(rank_of(settings, v4(10, 0, 0, 1)), 0) << "nobody";
+  }
+  EXPECT_EQ(rank_of(ListenerSettings{}, v4(127, 0, 0, 1)), 0) << "without allow";
+}
+
 TEST(ClientCounts, OneAddressCannotTakeAllRoom) {
   ListenerSettings settings;
   settings.max_clients_per_address = 3;

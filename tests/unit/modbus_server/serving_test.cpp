@@ -187,5 +187,23 @@ TEST(ModbusServer, AFloodOfRequestsDoesNotStarveAnotherClient) {
   EXPECT_EQ(flooding.receive(sent * 13).size(), sent * 13);
 }
 
+TEST(ModbusServer, AClientHasRoleRankAndNameByItsEntryOfTheAllowList) {
+  Served served;
+  const modbus_tcp::Address loopback{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 127, 0, 0, 0};
+  served.listeners[0].has_allow = true;
+  served.listeners[0].allow = {{loopback, 104, Role::operator_, 7}};
+  served.start();
+  TestClient plc(served);
+  plc.send(write_request(1, kTargetTorqueOfAxis1, 1));
+  ASSERT_TRUE(served.await([&] { return served.port.submitted.size() == 1; }));
+  const auto life = served.port.submitted[0].group.life;
+  ASSERT_NE(life, nullptr);
+  EXPECT_EQ(life->role, Role::operator_);
+  EXPECT_EQ(life->rank, 7);
+  EXPECT_EQ(life->name.rfind("127.0.0.1:", 0), 0U) << life->name;
+  plc.leave(true);
+  EXPECT_TRUE(served.await([&] { return !life->connected; }));
+}
+
 }  // namespace
 }  // namespace axisgate::test

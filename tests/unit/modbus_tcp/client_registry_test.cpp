@@ -9,11 +9,11 @@ using namespace std::chrono_literals;
 
 constexpr Instant kStart = Instant{} + 1h;
 
-Address host(int n) {
-  Address address{};
-  address[14] = static_cast<std::uint8_t>(n >> 8);
-  address[15] = static_cast<std::uint8_t>(n & 0xFF);
-  return address;
+Peer host(int n) {
+  Peer peer{.address = {}, .port = 51234, .role = Role::operator_, .rank = 3};
+  peer.address[14] = static_cast<std::uint8_t>(n >> 8);
+  peer.address[15] = static_cast<std::uint8_t>(n & 0xFF);
+  return peer;
 }
 
 TEST(Clients, AreOneForEachConnectionByDefault) {
@@ -50,6 +50,49 @@ TEST(Clients, OfAHostOutliveTheirConnectionsAndForgetAfter60s) {
   EXPECT_NE(later.client, first) << "what it wrote is forgotten";
   EXPECT_EQ(later.client->id, first->id) << "but it is nobody else";
   EXPECT_EQ(later.forgotten, std::nullopt) << "a reader's return ends nothing that it commanded before";
+}
+
+TEST(Lives, OfAHostAreKeptWhateverIsForgotten) {
+  ClientRegistry registry;
+  const auto first = registry.connect(host(1), true, kStart).client;
+  const auto life = first->life;
+  registry.disconnect(first, kStart);
+  EXPECT_FALSE(life->connected);
+  const auto later = registry.connect(host(1), true, kStart + 120s).client;
+  ASSERT_NE(later, first) << "what it wrote is forgotten";
+  EXPECT_EQ(later->life, life) << "but what it owns is its own";
+  EXPECT_TRUE(life->connected);
+}
+
+TEST(Lives, TellOfTheNewestConnection) {
+  ClientRegistry registry;
+  Peer peer = host(1);
+  const auto client = registry.connect(peer, true, kStart).client;
+  EXPECT_EQ(client->life->role, Role::operator_);
+  EXPECT_EQ(client->life->rank, 3);
+  peer.role = Role::engineer;
+  peer.rank = 5;
+  static_cast<void>(registry.connect(peer, true, kStart));
+  EXPECT_EQ(client->life->role, Role::engineer) << "by a listener that knows it otherwise";
+  EXPECT_EQ(client->life->rank, 5);
+}
+
+TEST(Lives, NameConnectionsByAddressAndPortAndHostsByAddress) {
+  ClientRegistry registry;
+  Peer peer{.address = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 192, 168, 1, 7}, .port = 51234};
+  EXPECT_EQ(registry.connect(peer, false, kStart).client->life->name, "192.168.1.7:51234");
+  EXPECT_EQ(registry.connect(peer, true, kStart).client->life->name, "192.168.1.7");
+  peer.address = {0xFE, 0x80, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
+  EXPECT_EQ(registry.connect(peer, false, kStart).client->life->name, "[fe80::1]:51234");
+}
+
+TEST(Lives, OfAHostAreDisconnectedThoughOthersFromItsAddressStay) {
+  ClientRegistry registry;
+  const auto host_client = registry.connect(host(1), true, kStart).client;
+  const auto other = registry.connect(host(1), false, kStart).client;
+  registry.disconnect(host_client, kStart);
+  EXPECT_FALSE(host_client->life->connected);
+  EXPECT_TRUE(other->life->connected);
 }
 
 TEST(CommandIds, AreKeptPerAddressFor60sAfterItsLastConnectionClosed) {

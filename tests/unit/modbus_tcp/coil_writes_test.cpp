@@ -46,14 +46,6 @@ TEST_F(CoilWrites, ReservedCoilsTakeA0) {
   EXPECT_EQ(write_row(0x0400, 16), "8F 02");
 }
 
-TEST_F(CoilWrites, JogIsOfAnotherVersion) {
-  EXPECT_EQ(plc.write_coil(108, true), "85 02");
-  EXPECT_EQ(plc.write_coil(109, true), "85 02");
-  EXPECT_EQ(plc.write_coil(108, false), "85 02");
-  EXPECT_TRUE(is_done(write_row(0, 10))) << "in a longer write a 0 asks for nothing";
-  EXPECT_EQ(write_row(0x100, 10), "8F 02");
-}
-
 TEST_F(CoilWrites, CoilsBeyond15AreNoAddress) {
   EXPECT_EQ(plc.write_coil(116, false), "85 02");
   EXPECT_EQ(plc.ask("0F 00 64 00 11 03 00 00 00"), "8F 02");

@@ -151,7 +151,7 @@ TEST_F(Reads, AddressesOutsideEveryBlockAreRefused) {
 
 TEST_F(Reads, CoilsShowTheAxissStateAndEdgeCoils0) {
   desk.axis(1).level_coils = 0xFFFF;
-  EXPECT_EQ(plc.ask("01 00 64 00 10"), "01 02 89 00");
+  EXPECT_EQ(plc.ask("01 00 64 00 10"), "01 02 89 03");
   EXPECT_EQ(plc.ask("01 00 67 00 01"), "01 01 01");
   desk.axis(1).link_state = LinkState::offline;
   EXPECT_EQ(plc.ask("01 00 64 00 10"), "01 02 00 00");

@@ -47,7 +47,7 @@ TEST(Roles, Command12IsTheEngineers) {
 }
 
 TEST(Roles, CoilsAreTheOperators) {
-  for (int coil = 0; coil < 8; ++coil) EXPECT_EQ(who_may("05" + word(100 + coil) + "FF 00"), "oe") << coil;
+  for (int coil = 0; coil < 10; ++coil) EXPECT_EQ(who_may("05" + word(100 + coil) + "FF 00"), "oe") << coil;
   EXPECT_EQ(who_may("0F 00 64 00 08 01 00"), "oe");
 }
 

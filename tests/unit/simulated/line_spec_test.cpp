@@ -68,6 +68,34 @@ TEST(LineSpec, NamesACanInterfaceOrAnAdapterAndTheirDrives) {
   EXPECT_EQ(serial.describe(), "lawicel:ld2@9");
 }
 
+TEST(LineSpec, NamesKeyaDrivesOnEachOfTheirInterfaces) {
+  const LineSpec rs232 = parse_line_spec("/tmp/cart:keya-rs232+0020=3+heartbeat=50+ramp", {});
+  EXPECT_EQ(rs232.path, "/tmp/cart");
+  EXPECT_EQ(rs232.kind, LineKind::keya_rs232);
+  ASSERT_EQ(rs232.keya_drives.size(), 1U);
+  EXPECT_THAT(rs232.keya_drives[0].parameters, testing::ElementsAre(testing::Pair(20, 3)));
+  EXPECT_EQ(rs232.keya_drives[0].heartbeat, std::chrono::milliseconds(50));
+  EXPECT_EQ(rs232.keya_drives[0].loss_stop, KeyaStop::ramp);
+  EXPECT_EQ(rs232.describe(), "keya-rs232@1");
+  const LineSpec rs485 = parse_line_spec("/tmp/carts:keya-rs485@1,keya-rs485@200+other-kept+zero-ignored", {});
+  EXPECT_EQ(rs485.kind, LineKind::keya_rs485);
+  EXPECT_THAT(rs485.stations(), testing::ElementsAre(1, 200));
+  EXPECT_FALSE(rs485.keya_drives[1].code_disables_other);
+  EXPECT_FALSE(rs485.keya_drives[1].enable_with_zero_moves);
+  const LineSpec can = parse_line_spec("vcan0:keya-can@2+sub-00+queries-feed+repeat-ignored,ld2@3", {});
+  EXPECT_EQ(can.kind, LineKind::can);
+  EXPECT_EQ(can.describe(), "can:keya-can@2,ld2@3");
+  const auto& own = std::get<KeyaCanDrive>(can.can_drives[0]).drive;
+  EXPECT_FALSE(own.echoes_sub);
+  EXPECT_TRUE(own.queries_feed_watchdog);
+  EXPECT_FALSE(own.repeated_move_moves);
+  const LineSpec adapter = parse_line_spec("/tmp/adapter:lawicel:keya-kydas4860-2e@7+period-only+keeps-counts", {});
+  EXPECT_EQ(adapter.kind, LineKind::lawicel);
+  EXPECT_EQ(adapter.describe(), "lawicel:keya-kydas4860-2e@7");
+  EXPECT_FALSE(std::get<KeyaCanopenDrive>(adapter.can_drives[0]).drive.pdo_on_change);
+  EXPECT_TRUE(std::get<KeyaCanopenDrive>(adapter.can_drives[0]).drive.keeps_counts);
+}
+
 TEST(LineSpec, SaysWhatToChange) {
   const auto message = [](const char* text) -> std::string {
     try {
@@ -94,11 +122,18 @@ TEST(LineSpec, SaysWhatToChange) {
   EXPECT_THAT(message("/tmp/x:rtu:id286pro@1+107=1"), HasSubstr("a stored register"));
   EXPECT_THAT(message("/tmp/x:rtu:id286pro@1+400=31"), HasSubstr("a stored register"));
   EXPECT_THAT(message("/tmp/x:rtu:id286pro@1+"), HasSubstr("a stored register"));
-  EXPECT_THAT(message("can0:can:id286pro@1"), HasSubstr("type jd, md or ld2"));
+  EXPECT_THAT(message("can0:can:id286pro@1"), HasSubstr("type jd, md, ld2, keya-can or keya-kydas4860-2e"));
   EXPECT_THAT(message("can0:can:ld2@1,md@1"), HasSubstr("already on the line"));
   EXPECT_THAT(message("can0:can:ld2@1+9999.00=1"), HasSubstr("a stored object"));
   EXPECT_THAT(message("can0:can:ld2@1+2008=1"), HasSubstr("a stored object"));
   EXPECT_THAT(message("can0:can:jd@1+ack"), HasSubstr("use fresh, block, short"));
+  EXPECT_THAT(message("/tmp/x:keya-rs232@2"), HasSubstr("1 to 1"));
+  EXPECT_THAT(message("/tmp/x:keya-rs232,keya-rs232"), HasSubstr("already on the line"));
+  EXPECT_THAT(message("/tmp/x:keya-rs485"), HasSubstr("1 to 255"));
+  EXPECT_THAT(message("/tmp/x:keya-rs485@1,jd@2"), HasSubstr("type keya-rs485"));
+  EXPECT_THAT(message("/tmp/x:keya-rs485@1+0020=5"), HasSubstr("0020=3"));
+  EXPECT_THAT(message("/tmp/x:keya-rs485@1+20=1"), HasSubstr("0020=3"));
+  EXPECT_THAT(message("/tmp/x:keya-rs485@1+"), HasSubstr("use coast, ramp"));
   EXPECT_THAT(message("/dev/can0:can:jd@1"), HasSubstr("at most 15 characters"));
   EXPECT_THAT(message("a-very-long-name:can:jd@1"), HasSubstr("at most 15 characters"));
 }

@@ -28,7 +28,7 @@ class Desk {
       AxisImage& axis = image.add_axis(n, "axis " + std::to_string(n), 0);
       axis.supported = ~0U;
       axis.writable = ~((1U << 14) - 1);
-      axis.supported_commands = 0x1FFE;
+      axis.supported_commands = 0x7FFE;
       axis.link_state = LinkState::online;
       for (const QuantityRow& each : quantity_table()) axis[each.quantity] = {0, true, true, runtime.now()};
       axis.oldest_cyclic = runtime.now();
@@ -51,7 +51,9 @@ class Desk {
 class Line {
  public:
   explicit Line(Desk& desk, Role role = Role::engineer, const Address& from = kPlc)
-      : desk_(desk), session_(desk.context(), Peer{from, 50000, role}, desk.runtime.now(), [this] { ++told; }) {}
+      : Line(desk, Peer{from, 50000, role, 0}) {}
+  Line(Desk& desk, const Peer& peer)
+      : desk_(desk), session_(desk.context(), peer, desk.runtime.now(), [this] { ++told; }) {}
 
   /// Sends a request; gives what came back by now: the reply's PDU, "" where none did yet, "closed".
   std::string ask(const std::string& pdu, std::uint8_t unit = 1) {
@@ -91,6 +93,11 @@ class Line {
     return "10" + word(address) + word(static_cast<std::int64_t>(count)) + hex_text(size) + registers;
   }
   Session& session() { return session_; }
+  /// The client that speaks here, as its last group named it.
+  std::shared_ptr<const ClientLife> life() {
+    static_cast<void>(ask("06 00 B6 00 00"));  // a row of the mailbox: claims and starts nothing
+    return desk_.port.submitted.back().group.life;
+  }
 
   int told = 0;
 

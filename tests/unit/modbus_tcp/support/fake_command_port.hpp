@@ -1,6 +1,6 @@
 // A CommandPort that a test plays: it keeps what is submitted and answers at once or when told.
-// Promises the port's own contract: one result each, callbacks never from inside submit().
-// Never decides anything by itself.
+// Promises the port's own contract: one result each, callbacks never from inside submit(), and for a group that asks
+// for nothing at once. Never decides anything by itself.
 #pragma once
 
 #include <deque>
@@ -12,10 +12,11 @@
 #include <vector>
 
 #include "gateway/image/command_port.hpp"
+#include "gateway/upstream/modbus_tcp/claims.hpp"
 
 namespace axisgate::modbus_tcp::test {
 
-class FakeCommandPort final : public CommandPort {
+class FakeCommandPort : public CommandPort {
  public:
   struct Submitted {
     AxisNumber axis;
@@ -29,7 +30,7 @@ class FakeCommandPort final : public CommandPort {
       at_once.pop_front();
       return result;
     }
-    if (!slow) return GroupResult{};
+    if (!slow || asks_nothing(group)) return GroupResult{};
     waiting.push_back(std::move(on_result));
     return std::nullopt;
   }

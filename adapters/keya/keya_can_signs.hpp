@@ -1,0 +1,43 @@
+// What one Keya drive shows of itself on CAN without being asked: its heartbeat, and replies that nobody waits for.
+// Promises notices in the order of the frames, within bounds: an id that babbles is thinned and told once in
+// BabbleWatch::kTellAgain, a twin once in kTellTwinAgain. Never says that a drive is gone: timeouts tell that, since
+// nothing is known of how regular its heartbeat is. Never looks at a clock.
+#pragma once
+
+#include <boost/container/static_vector.hpp>
+
+#include "adapters/canopen/babble_watch.hpp"
+#include "adapters/keya/keya_can_codec.hpp"
+
+namespace axisgate::keya {
+
+/// Two periods of the heartbeat: the first one after more is news.
+inline constexpr Duration kHeartbeatSilence = std::chrono::seconds(2);
+
+class CanSigns {
+ public:
+  static constexpr Duration kTellTwinAgain = std::chrono::seconds(10);
+
+  explicit CanSigns(std::uint8_t node) : node_(node) {}
+
+  struct News {
+    boost::container::static_vector<bus::Notice, 2> notices;
+    bool bad = false;  ///< the frame is not what its id says, or one too many
+  };
+  /// The link is a new one.
+  void reset();
+  [[nodiscard]] News on_heartbeat(Bytes bytes, Instant now);
+  /// `twin`: it is a second reply.
+  [[nodiscard]] News on_stray_reply(bool twin, Instant now);
+
+ private:
+  [[nodiscard]] bool passes(canopen::BabbleWatch& watch, std::uint32_t id, Instant now, News& news) const;
+
+  std::uint8_t node_;
+  Instant last_heartbeat_ = kLongAgo;
+  Instant tell_twin_at_ = kLongAgo;
+  canopen::BabbleWatch heartbeats_{canopen::kMaxSignsPerSecond};
+  canopen::BabbleWatch stray_replies_{canopen::kMaxUnaskedRepliesPerSecond};
+};
+
+}  // namespace axisgate::keya

@@ -1,0 +1,106 @@
+// The shipped Keya profile in tests: configured for one or two motors, and what its model says in short words.
+// Promises a model, or a failed test that shows every fault.
+// Never knows what is right: the tests say it, from the manual's own tables.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "tests/profiles/resolving.hpp"
+
+namespace axisgate::drive::keya {
+
+inline constexpr std::array<const char*, 4> kProtocols{"canopen", "keya-can", "keya-rs232", "keya-rs485"};
+inline constexpr std::array<const char*, 3> kFixed{"keya-can", "keya-rs232", "keya-rs485"};
+inline constexpr std::int64_t kSpeed = 1, kTorque = 2, kAbsolute = 3;  ///< parameters 0020 and 0050
+
+/// Axes for these motors; "": by their place in the list.
+inline ResolveInput drive(const std::string& protocol, const std::vector<std::string>& motors = {"A", "B"}) {
+  ResolveInput input;
+  input.protocol = protocol;
+  for (const std::string& motor : motors) {
+    input.axes.emplace_back();
+    input.axes.back().number = static_cast<AxisNumber>(input.axes.size());
+    input.axes.back().motor = motor;
+  }
+  return input;
+}
+
+/// Both motors in this mode, their currents known.
+inline ResolveInput in_mode(const std::string& protocol, std::int64_t mode,
+                            const std::vector<std::string>& motors = {"A", "B"}) {
+  ResolveInput input = drive(protocol, motors);
+  for (const char* motor : {"a", "b"}) {
+    const std::string name = motor;
+    input.constants["control_mode_" + name] = Rational(mode);
+    input.constants["rated_current_" + name + "_arms"] = Rational(15);
+    input.constants["configured_current_" + name + "_arms"] = Rational(15);
+  }
+  return input;
+}
+
+inline DriveModel model(const ResolveInput& input) { return resolved(shipped("keya-kydas4860-2e"), input); }
+
+inline nlohmann::json vectors(const std::string& part) {
+  std::ifstream file(AXISGATE_SOURCE_DIR "/tests/vectors/keya-kydas4860-2e.json");
+  return nlohmann::json::parse(file).at(part);
+}
+
+inline ObjectId id(const DriveModel& model, const std::string& name) {
+  const auto at =
+      std::find_if(model.objects.begin(), model.objects.end(), [&](const ObjectDef& o) { return o.name == name; });
+  return at == model.objects.end() ? kNoObject : static_cast<ObjectId>(at - model.objects.begin());
+}
+
+inline const ObjectDef& object(const DriveModel& model, const std::string& name) {
+  const ObjectId found = id(model, name);
+  if (found == kNoObject) throw std::runtime_error("no object " + name);
+  return model.object(found);
+}
+
+inline std::vector<std::string> names(const DriveModel& model, const std::vector<ObjectId>& ids) {
+  std::vector<std::string> out;
+  for (const ObjectId one : ids) out.push_back(model.object(one).name);
+  return out;
+}
+
+inline std::string text(const DriveModel& model, const Condition& condition) {
+  std::string out = model.object(condition.object).name;
+  if (condition.mask != 0) out += "&" + std::to_string(condition.mask);
+  out += condition.test == Condition::Test::equals ? "==" : "!=";
+  for (const std::int64_t value : condition.values) out += std::to_string(value);
+  return out;
+}
+
+/// "A.on=1, wait A.fault&1==0": a "?" where a wait may run out, "must" where it is a require.
+inline std::string text(const DriveModel& model, const Steps& steps) {
+  std::string out;
+  for (const Step& step : steps) {
+    out += out.empty() ? "" : ", ";
+    const std::string until = step.verb == Step::Verb::write ? "" : text(model, step.until);
+    if (step.verb == Step::Verb::wait)
+      out += "wait " + until + (step.optional ? "?" : "");
+    else if (step.verb == Step::Verb::require)
+      out += "must " + until;
+    else if (step.source == Step::Source::quantity)
+      out += model.object(step.object).name + "=" + std::string(row(step.quantity).name);
+    else
+      out += model.object(step.object).name + "=" + std::to_string(step.literal);
+  }
+  return out;
+}
+
+/// The steps of a command in a mode; "none" where it is not supported.
+inline std::string steps(const DriveModel& model, std::size_t axis, Command command, std::int16_t mode) {
+  const auto& def = model.axes.at(axis).command(command);
+  if (!def) return "none";
+  for (const CommandDef::Variant& variant : def->variants)
+    if (std::find(variant.modes.begin(), variant.modes.end(), mode) != variant.modes.end())
+      return text(model, variant.steps);
+  return def->quick_stop_otherwise ? "quick_stop" : text(model, def->steps);
+}
+
+}  // namespace axisgate::drive::keya

@@ -1,0 +1,64 @@
+// The cable between the gateway and a simulated line with Keya drives: a ByteLink whose far end is a KeyaLine, in
+// manual time. Promises bytes at the instants the line says and a cut that loses what is under way. Never delivers a
+// byte from inside send().
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "adapters/bus/byte_link.hpp"
+#include "tests/simulated/keya_line.hpp"
+#include "tests/unit/support/manual_runtime.hpp"
+
+namespace axisgate::test {
+
+class KeyaLinkSim final : public bus::ByteLink {
+ public:
+  KeyaLinkSim(ManualRuntime& runtime, simulated::KeyaLineOptions options, std::uint64_t seed);
+
+  [[nodiscard]] simulated::KeyaLine& line() { return line_; }
+  [[nodiscard]] simulated::Time time_of(Instant instant) const { return instant - origin_; }
+  /// Drives live on although nobody speaks to them.
+  void advance_drives() { line_.advance(time_of(runtime_.now())); }
+
+  void start(bus::ByteLinkEvents& events) override;
+  void send(Bytes bytes) override;
+  void reopen(std::string_view why) override;
+  void unplug();
+  void plug();
+  [[nodiscard]] bool plugged() const { return plugged_; }
+
+  struct Sent {
+    Instant at;
+    std::vector<Byte> bytes;
+  };
+  /// Everything the gateway has sent, and everything it was given, for transcripts.
+  std::vector<Sent> sent;
+  std::function<void(bool to_drive, Bytes)> on_traffic = [](bool, Bytes) {};
+  /// From inside on_traffic(): what becomes of the frame just told. The drive has no refusal that a line could carry.
+  enum class Fate : std::uint8_t {
+    delivered,
+    cut_before,  ///< the cable is pulled before it arrives
+    cut_after,   ///< the drive acts, then the cable is pulled
+  };
+  Fate fate = Fate::delivered;
+  std::function<void()> on_unplugged = [] {};
+
+ private:
+  void deliver();
+  void arm();
+
+  ManualRuntime& runtime_;
+  Instant origin_;
+  simulated::KeyaLine line_;
+  std::vector<Byte> arrived_;
+  bus::ByteLinkEvents* events_ = nullptr;
+  std::optional<std::uint64_t> cut_when_heard_;  ///< so many requests by the drives
+  bool plugged_ = true;
+  bool up_ = false;
+  std::unique_ptr<Timer> timer_;
+};
+
+}  // namespace axisgate::test

@@ -1,0 +1,105 @@
+// The keep-alive of one motor while many clients want the wire for everything else.
+#include <gmock/gmock.h>
+
+#include "tests/unit/drive/keya_rig.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kRpm150 = 150'000, kRaw150 = 1'000;
+constexpr Duration kPeriod = 500ms;
+
+class KeyaUnderLoad : public testing::TestWithParam<Speech> {
+ protected:
+  [[nodiscard]] KeyaOptions options() const { return {.speech = GetParam(), .keep_alive = kPeriod}; }
+};
+INSTANTIATE_TEST_SUITE_P(Speeches, KeyaUnderLoad, testing::Values(Speech::single, Speech::composed),
+                         [](const auto& p) { return p.param == Speech::single ? "single" : "composed"; });
+
+void run_motor(KeyaRig& rig, bus::AxisSlot slot) {
+  rig.enable(slot);
+  rig.run_at(slot, kRpm150);
+}
+
+/// Clients that never rest: each asks anew as soon as it has its answer.
+class Crowd {
+ public:
+  Crowd(KeyaRig& rig, int clients, std::function<std::pair<bus::AxisSlot, Group>(int client, int round)> ask)
+      : rig_(rig), ask_(std::move(ask)), waiting_(static_cast<std::size_t>(clients)) {}
+  void run(Duration time) {
+    const Instant end = rig_.runtime.now() + time;
+    int round = 0;
+    while (rig_.runtime.now() < end) {
+      ++round;
+      for (std::size_t i = 0; i < waiting_.size(); ++i) {
+        if (waiting_[i] && !waiting_[i]->has_value()) continue;
+        auto [slot, group] = ask_(static_cast<int>(i), round);
+        group.client = 100 + i;
+        waiting_[i] = rig_.begin(slot, group);
+      }
+      rig_.run(1ms);
+    }
+  }
+
+ private:
+  KeyaRig& rig_;
+  std::function<std::pair<bus::AxisSlot, Group>(int, int)> ask_;
+  std::vector<std::shared_ptr<std::optional<GroupResult>>> waiting_;
+};
+
+Group mailbox_read(std::uint16_t index, std::uint8_t size) {
+  Group group;
+  group.role = Role::engineer;
+  group.object = ObjectRequest{false, index, 1, size, 0};
+  return group;
+}
+
+TEST_P(KeyaUnderLoad, ThirtyTwoBusyClientsOfTheOtherMotorDelayItByNothingThatCounts) {
+  KeyaRig rig(options());
+  rig.online();
+  run_motor(rig, 0);
+  run_motor(rig, 1);
+  rig.mark();
+  Crowd crowd(rig, 32, [](int client, int round) -> std::pair<bus::AxisSlot, Group> {
+    if (client % 4 == 0) return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + round % 50), 4)};
+    return {bus::AxisSlot{1},
+            KeyaRig::group_of(Command::run_velocity, {{Quantity::target_velocity, (client + round % 10) * 10'000}})};
+  });
+  crowd.run(10s);
+  const auto instants = rig.heard(1);
+  EXPECT_GE(instants.size(), 20U);
+  EXPECT_LE(longest_gap(instants), kPeriod);
+  EXPECT_TRUE(rig.motor(0).enabled);
+  EXPECT_EQ(rig.motor(0).value, kRaw150);
+}
+
+TEST_P(KeyaUnderLoad, ThirtyTwoBusyReadersDelayItByNothingThatCounts) {
+  KeyaRig rig(options());
+  rig.online();
+  run_motor(rig, 0);
+  rig.mark();
+  Crowd crowd(rig, 32, [](int client, int round) -> std::pair<bus::AxisSlot, Group> {
+    return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + 100 * client + round % 100), 4)};
+  });
+  crowd.run(10s);
+  EXPECT_LE(longest_gap(rig.heard(1)), kPeriod);
+  EXPECT_LE(rig.motor(0).enables, 1);
+}
+
+TEST_P(KeyaUnderLoad, AQueueThatIsFullDoesNotKeepItFromItsTurn) {
+  KeyaRig rig(options());
+  rig.online();
+  run_motor(rig, 0);
+  rig.mark();
+  Crowd crowd(rig, 72, [](int client, int round) -> std::pair<bus::AxisSlot, Group> {
+    return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + client), round % 2 == 0 ? 4 : 2)};
+  });
+  crowd.run(2s);
+  EXPECT_LE(longest_gap(rig.heard(1)), kPeriod);
+  EXPECT_TRUE(rig.motor(0).enabled);
+}
+
+}  // namespace
+}  // namespace axisgate::test

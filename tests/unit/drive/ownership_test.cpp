@@ -1,0 +1,206 @@
+// Design 3.5 as rules: who owns an axis, who may take it, and when its lease runs out.
+#include <gtest/gtest.h>
+
+#include "gateway/drive/jog.hpp"
+#include "gateway/drive/ownership.hpp"
+#include "tests/unit/drive/clients.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+using namespace std::chrono_literals;
+using test::client;
+using Taken = Ownership::Taken;
+
+constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
+
+struct Owned : testing::Test {
+  Lease lease;
+  LeaseRules rules{};
+  std::shared_ptr<ClientLife> plc = client(1, "10.0.0.1");
+  std::shared_ptr<ClientLife> panel = client(2, "10.0.0.2");
+  Ownership of(LeaseRules with) { return Ownership(lease, with); }
+  /// Owned by the PLC since `at`, and heard from then.
+  Ownership owned(LeaseRules with, Instant at) {
+    Ownership out = of(with);
+    plc->last_request = at;
+    EXPECT_EQ(out.take(plc, at), Taken::free);
+    return out;
+  }
+};
+
+TEST_F(Owned, TheFirstClaimMakesAnOwnerAndOthersAreRefused) {
+  Ownership o = owned(rules, kStart);
+  EXPECT_TRUE(lease.owned_by(1));
+  EXPECT_EQ(o.judge(plc, true, kStart), Errc::ok);
+  EXPECT_EQ(o.judge(panel, true, kStart), Errc::not_owner);
+  EXPECT_EQ(o.judge(panel, false, kStart), Errc::not_owner);
+}
+
+TEST_F(Owned, TheGatewayItselfIsNeverRefused) {
+  const Ownership o = owned(rules, kStart);
+  EXPECT_EQ(o.judge(nullptr, false, kStart), Errc::ok);
+}
+
+TEST_F(Owned, NobodyIsRefusedAndNothingRunsOutWhereLeasesAreOff) {
+  rules.on = false;
+  Ownership o = of(rules);
+  EXPECT_EQ(o.take(plc, kStart), Taken::nothing);
+  EXPECT_EQ(o.judge(panel, true, kStart), Errc::ok);
+  EXPECT_EQ(o.until(), kNever);
+  EXPECT_TRUE(o.live(kStart + 1h));
+  EXPECT_EQ(o.may_take_over(panel), Errc::not_supported);
+  EXPECT_EQ(o.release(plc, true, kStart), Errc::not_supported);
+}
+
+TEST_F(Owned, ARequestOfAnyKindRenewsALeaseThatAnyRequestRenews) {
+  Ownership o = owned(rules, kStart);
+  plc->last_request = kStart + 1500ms;
+  EXPECT_FALSE(o.take_expired(kStart + 2000ms));
+  EXPECT_EQ(o.until(), kStart + 3500ms);
+  EXPECT_TRUE(o.live(kStart + 3499ms));
+  EXPECT_FALSE(o.live(kStart + 3500ms));
+  const auto expired = o.take_expired(kStart + 3500ms);
+  ASSERT_TRUE(expired);
+  EXPECT_EQ(expired->owner, plc);
+  EXPECT_FALSE(lease.owner);
+  EXPECT_FALSE(o.take_expired(kStart + 9s)) << "told once";
+}
+
+TEST_F(Owned, OnlyAWriteRenewsALeaseThatWritesRenew) {
+  rules.renew = LeaseRenewal::write;
+  Ownership o = owned(rules, kStart);
+  plc->last_request = plc->heartbeat = kStart + 1900ms;
+  o.wrote(panel, true, kStart + 1900ms);
+  EXPECT_EQ(o.until(), kStart + 2000ms);
+  o.wrote(plc, false, kStart + 1000ms);
+  EXPECT_EQ(o.until(), kStart + 3000ms);
+}
+
+TEST_F(Owned, OnlyAChangedHeartbeatRenewsALeaseThatHeartbeatsRenew) {
+  rules.renew = LeaseRenewal::heartbeat;
+  Ownership o = owned(rules, kStart);
+  plc->last_request = kStart + 1900ms;
+  o.wrote(plc, false, kStart + 1900ms);
+  EXPECT_EQ(o.until(), kStart + 2000ms) << "a PLC in STOP goes on scanning the same block";
+  o.wrote(plc, true, kStart + 1000ms);
+  EXPECT_EQ(o.until(), kStart + 3000ms) << "register 56";
+  plc->heartbeat = kStart + 1800ms;
+  EXPECT_EQ(o.until(), kStart + 3800ms) << "register 8 of the gateway";
+}
+
+TEST_F(Owned, AnOrphanIsTakenOverByItsOwnAddressAndRoleAlone) {
+  Ownership o = owned(rules, kStart);
+  plc->connected = false;
+  const auto again = client(7, "10.0.0.1");
+  const auto viewer = client(8, "10.0.0.1", Role::engineer);
+  EXPECT_EQ(o.judge(panel, true, kStart + 1s), Errc::not_owner);
+  EXPECT_EQ(o.judge(viewer, true, kStart + 1s), Errc::not_owner) << "another role";
+  EXPECT_EQ(o.judge(again, false, kStart + 1s), Errc::not_owner) << "not by a read or a fault reset";
+  ASSERT_EQ(o.judge(again, true, kStart + 1s), Errc::ok);
+  EXPECT_EQ(o.take(again, kStart + 1s), Taken::orphan);
+  EXPECT_TRUE(lease.owned_by(7));
+  EXPECT_EQ(o.until(), kStart + 3s);
+}
+
+TEST_F(Owned, AnOrphanRunsOutLikeAnyLease) {
+  Ownership o = owned(rules, kStart);
+  plc->connected = false;
+  EXPECT_TRUE(o.live(kStart + 1999ms));
+  EXPECT_TRUE(o.take_expired(kStart + 2s));
+}
+
+TEST_F(Owned, AHalfOpenConnectionsLeaseIsTakenOverOnceItWasSilentForHalfTheTimeout) {
+  Ownership o = owned(rules, kStart);
+  const auto again = client(7, "10.0.0.1");
+  EXPECT_EQ(o.judge(again, true, kStart + 1000ms), Errc::not_owner);
+  EXPECT_EQ(o.judge(again, true, kStart + 1001ms), Errc::ok);
+  EXPECT_EQ(o.take(again, kStart + 1001ms), Taken::half_open);
+}
+
+TEST_F(Owned, TakeOverNeedsAHigherRank) {
+  Ownership o = owned(rules, kStart);
+  EXPECT_EQ(o.may_take_over(panel), Errc::not_owner) << "equal ranks";
+  panel->rank = 1;
+  EXPECT_EQ(o.may_take_over(panel), Errc::ok);
+  EXPECT_EQ(o.take(panel, kStart + 10ms), Taken::lower_rank);
+  EXPECT_EQ(o.may_take_over(plc), Errc::not_owner);
+  EXPECT_EQ(o.may_take_over(panel), Errc::ok) << "the owner itself";
+}
+
+TEST_F(Owned, ReleaseFreesADisabledAxisAndLeavesAnEnabledOneOpen) {
+  Ownership o = owned(rules, kStart);
+  EXPECT_EQ(o.release(panel, false, kStart), Errc::not_owner);
+  EXPECT_EQ(o.release(plc, false, kStart + 1s), Errc::ok);
+  EXPECT_EQ(o.until(), kNever);
+  EXPECT_EQ(o.take(panel, kStart + 1s), Taken::free);
+  EXPECT_EQ(o.release(panel, true, kStart + 2s), Errc::ok);
+  EXPECT_FALSE(lease.owner);
+  EXPECT_EQ(o.until(), kStart + 4s);
+  EXPECT_EQ(o.judge(plc, true, kStart + 3s), Errc::ok) << "open to every operator";
+  const auto expired = o.take_expired(kStart + 4s);
+  ASSERT_TRUE(expired);
+  EXPECT_TRUE(expired->was_open);
+}
+
+TEST_F(Owned, AnAxisFoundEnabledIsOpenUntilItsLeaseRunsOut) {
+  Ownership o = of(rules);
+  o.open(kStart);
+  EXPECT_EQ(o.judge(panel, true, kStart + 1s), Errc::ok);
+  EXPECT_EQ(o.take(panel, kStart + 1s), Taken::open);
+  o.open(kStart + 2s);
+  EXPECT_TRUE(lease.owned_by(2)) << "an owned axis is not opened";
+}
+
+// --- Jog
+// ---------------------------------------------------------------------------------------------------------------
+
+TEST(Jog, EndsUnlessItsCoilIsWrittenAgainInTime) {
+  Jog jog;
+  jog.start(Command::jog_forward, 1, kStart, 500ms);
+  EXPECT_FALSE(jog.expired(kStart + 499ms));
+  jog.again(Command::jog_forward, 1, kStart + 400ms);
+  EXPECT_FALSE(jog.expired(kStart + 899ms));
+  jog.again(Command::jog_reverse, 1, kStart + 800ms);
+  jog.again(Command::jog_forward, 2, kStart + 800ms);
+  EXPECT_TRUE(jog.expired(kStart + 900ms)) << "neither another coil nor another client holds it";
+}
+
+TEST(Jog, IsNotBegunAnewByAButtonThatIsStillHeld) {
+  Jog jog;
+  jog.start(Command::jog_forward, 1, kStart, 500ms);
+  jog.end();
+  jog.again(Command::jog_forward, 1, kStart + 100ms);
+  EXPECT_FALSE(jog.active());
+  EXPECT_EQ(jog.until(), kNever);
+}
+
+TEST(JogTravel, BeginsTheHaltAsFarAheadOfTheLimitAsTheRampTakes) {
+  // 600 rpm, 600 rpm/s: one second at 5 turns/s on average is 5 turns, 50,000 units.
+  JogTravel travel{.position = 0, .velocity = 600'000, .deceleration = 6'000, .limits = {-200'000, 100'000}};
+  travel.position = 49'000;
+  EXPECT_FALSE(must_stop(travel, Command::jog_forward));
+  travel.position = 50'500;
+  EXPECT_TRUE(must_stop(travel, Command::jog_forward));
+  EXPECT_FALSE(must_stop(travel, Command::jog_reverse)) << "away from the limit";
+  travel.velocity = -600'000;
+  travel.position = -150'500;
+  EXPECT_TRUE(must_stop(travel, Command::jog_reverse));
+}
+
+TEST(JogTravel, ReckonsWithTheTimeUntilAHaltActs) {
+  // 600 rpm for 100 ms is one turn.
+  JogTravel travel{.position = 91'000, .velocity = 600'000, .latency = 100ms, .limits = {0, 100'000}};
+  EXPECT_TRUE(must_stop(travel, Command::jog_forward));
+  travel.position = 89'000;
+  EXPECT_FALSE(must_stop(travel, Command::jog_forward));
+}
+
+TEST(JogTravel, AtTheLimitOnlyTheWayBackIsOpen) {
+  const JogTravel travel{.position = 100'000, .limits = {0, 100'000}};
+  EXPECT_TRUE(must_stop(travel, Command::jog_forward));
+  EXPECT_FALSE(must_stop(travel, Command::jog_reverse));
+}
+
+}  // namespace
+}  // namespace axisgate::drive
