@@ -22,8 +22,8 @@ struct GatewayClock {
 };
 using Instant = GatewayClock::time_point;
 
-/// Later than every deadline: "no deadline". Half of what fits, so that a time added to it, or the time since what never
-/// happened, is still a number.
+/// Later than every deadline: "no deadline". Half of what fits, so that a time added to it, or the time since what
+/// never happened, is still a number.
 inline constexpr Instant kNever = Instant(Duration::max() / 2);
 /// Earlier than everything: "never happened".
 inline constexpr Instant kLongAgo = Instant(Duration::min() / 2);

@@ -265,10 +265,12 @@ bool Axis::jog_must_stop(Command direction, std::int64_t velocity) const {
   travel.units_per_rev = core_.model.units_per_rev;
   travel.latency = 2 * cycle_;  // the sample is as old as one, and the halt waits for one exchange
   travel.limits = target->limits;
-  if (const auto low = core_.value(Quantity::position_limit_min)) travel.limits.min = std::max(travel.limits.min, *low);
-  if (const auto high = core_.value(Quantity::position_limit_max))
-    travel.limits.max = std::min(travel.limits.max, *high);
-  return travel.limits.min < travel.limits.max && must_stop(travel, direction);
+  // The drive's own count where they are a range: 0 and 0 is how drives are told to have none.
+  const auto low = core_.value(Quantity::position_limit_min);
+  const auto high = core_.value(Quantity::position_limit_max);
+  if (low && high && *low < *high)
+    travel.limits = {std::max(travel.limits.min, *low), std::min(travel.limits.max, *high)};
+  return must_stop(travel, direction);
 }
 
 void Axis::observe_jog() {

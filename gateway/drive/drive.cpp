@@ -26,6 +26,7 @@ Drive::Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> imag
       timer_(runtime.make_timer([this] { on_time(); })),
       mapped_(model_.objects.size(), false) {
   assert(images.size() == model_.axes.size());
+  for (const ObjectDef& object : model_.objects) width_.push_back(object.size);
   AxisHost& host = *this;
   for (std::size_t i = 0; i < images.size(); ++i)
     axes_.push_back(std::make_unique<Axis>(model_, static_cast<bus::AxisSlot>(i), store_, *images[i], host));

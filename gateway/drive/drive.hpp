@@ -162,6 +162,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   int calls_ = 0;                                        ///< unanswered, since it was asked last
   bus::NodeState node_state_ = bus::NodeState::unknown;  ///< as it told last
   Instant started_at_ = kLongAgo;                        ///< when it was told to become operational
+  std::vector<std::uint8_t> width_;                      ///< bytes of each object, as the drive answered last
   std::vector<bool> mapped_;                             ///< objects that come by TPDO
   Instant twin_until_ = kLongAgo;                        ///< alarm duplicate_node
 };

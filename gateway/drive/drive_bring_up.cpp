@@ -19,6 +19,7 @@ std::optional<bus::Exchange> Drive::next_of_bring_up() {
   bus::Exchange exchange = read(next->object);
   if (next->write) {
     exchange.access = bus::Access::write;
+    exchange.size = width_[next->object];
     exchange.raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(next->number));
   }
   return exchange;
@@ -85,10 +86,10 @@ void Drive::end_bring_up() {
     event(axes_.front()->core().model.number, EventKind::warning, 0,
           "setup: the drive does not hold what was written to " + model_.object(id).name);
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, adopted_);
-  if (adopted_)
-    for (auto& axis : axes_) axis->on_adopted();
   judge_loss_reaction();
   set_state(LinkState::online);
+  if (adopted_)
+    for (auto& axis : axes_) axis->on_adopted();
   for (const auto& axis : axes_)
     event(axis->core().model.number, EventKind::boot, 0, adopted_ ? "online, found enabled: adopted" : "online");
 }

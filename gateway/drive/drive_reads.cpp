@@ -89,8 +89,10 @@ void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResul
     // A width other than the profile's is a wrong profile, not a value (JD sheet, K7): it is not shown. A fence reads
     // registers as they come.
     if (field.size == object.size) {
+      width_[id] = field.size;
       store_.read(id, object.number(field.raw), on_wire_.sent_at);
     } else if (object.any_width && field.size < object.size) {
+      width_[id] = field.size;
       ObjectDef narrow;
       narrow.size = field.size;
       narrow.is_signed = object.is_signed;
