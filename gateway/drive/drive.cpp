@@ -141,7 +141,7 @@ std::optional<bus::Exchange> Drive::probe() {
   }
   asked_ = true;
   calls_ = 0;
-  return plain_read();
+  return probe_read();
 }
 
 std::optional<bus::Exchange> Drive::fence(bus::OrderId order) {
@@ -157,7 +157,7 @@ std::optional<bus::Exchange> Drive::fence(bus::OrderId order) {
   }
   fence_.waited_out();
   on_wire_.fence = true;
-  return plain_read();
+  return probe_read();
 }
 
 std::optional<bus::Exchange> Drive::poll() {

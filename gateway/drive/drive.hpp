@@ -70,6 +70,8 @@ class Drive final : public bus::BusDrive, private AxisHost {
   [[nodiscard]] bus::Exchange read(const FenceRead& fence) const;
   /// A read that every drive of this type answers.
   [[nodiscard]] bus::Exchange plain_read() const;
+  /// A read that shows that the drive is there.
+  [[nodiscard]] bus::Exchange probe_read() const;
   void widen(bus::Exchange& exchange);
   /// A read of several objects that was refused: true where it is tried again in smaller parts.
   [[nodiscard]] bool split(const bus::Exchange& exchange, const bus::ExchangeResult& result);

@@ -22,6 +22,13 @@ bus::Exchange Drive::read(const FenceRead& fence) const {
 
 bus::Exchange Drive::plain_read() const { return read(model_.axes.front().state_sources.front()); }
 
+// Without a checksum or an address, an answer that is all zeros is the query's own echo as well (Keya's faults of two
+// enabled motors): a drive that is looked for is asked what is never 0.
+bus::Exchange Drive::probe_read() const {
+  const bool packed = !model_.composed.empty() && !model_.fence.candidates.empty();
+  return packed ? read(model_.fence.candidates.front()) : plain_read();
+}
+
 bool Drive::tells_state(ObjectId object) const {
   return std::any_of(model_.axes.begin(), model_.axes.end(), [&](const AxisModel& axis) {
     return std::find(axis.state_sources.begin(), axis.state_sources.end(), object) != axis.state_sources.end();

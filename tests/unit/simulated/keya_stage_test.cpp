@@ -91,6 +91,16 @@ TEST_P(KeyaStage, BothMotorsComeOnlineAndAreEnabledEachByItself) {
   EXPECT_TRUE(stage.keya(0).enabled(KeyaMotorName::b));
 }
 
+// Faults of two enabled motors are all zeros, and so the query's own echo for what can be told of one answer.
+TEST_P(KeyaStage, FoundWithBothMotorsEnabledItComesOnlineAdopted) {
+  GatewayStage stage({line()});
+  for (const KeyaMotorName motor : {KeyaMotorName::a, KeyaMotorName::b})
+    stage.keya(0).enable(motor, std::nullopt, simulated::Time{});
+  ASSERT_TRUE(stage.come_online()) << testing::PrintToString(stage.log());
+  for (const AxisNumber axis : {AxisNumber{1}, AxisNumber{2}})
+    EXPECT_NE(stage.axis(axis).alarms & bit(AxisAlarm::adopted_running), 0U) << testing::PrintToString(stage.log());
+}
+
 std::string name_of_way(const testing::TestParamInfo<Way>& way) {
   const char* const names[] = {"Rs232", "Rs485", "Can", "Canopen"};
   return names[static_cast<std::size_t>(way.param)];

@@ -1,0 +1,100 @@
+"""A master that is gone: its connection is closed, reset, or open and silent. Its motors stop, on every drive and protocol."""
+import time
+
+from lease_stage import Machine, main
+from modbus import Axis
+
+
+class OwnerGone(Machine):
+    """One owner has all motors running and goes away."""
+
+    lease = {"timeout_ms": 1500}
+
+    def goes_away(self, leave):
+        self.begin()
+        owner = self.peer()
+        axes = [Axis(owner, number) for number in self.numbers]
+        for axis in axes:
+            self.set_running(axis)
+        for axis in axes:
+            self.assertEqual((axis.get("owner"), self.watched(axis.number).get("owner")), (1, 2))
+        self.keep_running(owner, self.numbers, 2 * self.lease["timeout_ms"] / 1000)
+        before = time.monotonic()
+        owner.gateway()
+        leave(owner)
+        # No drive is stopped before its time.
+        for number in self.numbers:
+            turning = self.speed(number) != 0
+            if time.monotonic() - before < self.lease["timeout_ms"] / 1000:
+                self.assertTrue(turning, f"axis {number} was stopped while its lease lived")
+        for number in self.each():
+            self.assert_stopped_for_good(number)
+            self.assertGreaterEqual(time.monotonic() - before, self.lease["timeout_ms"] / 1000)
+            self.assertTrue(self.leases_told(number, "has run out"))
+        for number in self.each():
+            self.assert_it_can_be_had_again(number)
+
+
+class Closes(OwnerGone):
+    def test_it_closes_its_connection(self):
+        self.goes_away(lambda owner: owner.close())
+
+
+class Resets(OwnerGone):
+    def test_its_connection_is_reset(self):
+        self.goes_away(lambda owner: owner.reset())
+
+
+class FallsSilent(OwnerGone):
+    def test_its_connection_stays_open_and_silent(self):
+        self.goes_away(lambda owner: owner.fall_silent())
+
+
+class OneOfTwoMotors(Machine):
+    """Two masters, each with one motor of the same drive."""
+
+    lines_of = ("keya232", "keyacan")
+    lease = {"timeout_ms": 1500}
+
+    def test_the_other_motor_of_the_drive_goes_on(self):
+        self.begin()
+        for line in self.each_line():
+            gone, stays = self.peer(), self.peer("127.0.0.2")
+            a, b = Axis(gone, self.number_of(line, "A")), Axis(stays, self.number_of(line, "B"))
+            self.set_running(a)
+            self.set_running(b)
+            trips = self.sim.ask(f"trips {line}/1")
+            gone.reset()
+
+            def stopped():
+                self.assertNotEqual(self.speed(b.number), 0)
+                return b.get("owner") == 1 and self.speed(a.number) == 0
+
+            def stopped_meanwhile():
+                stays.gateway()
+                return stopped()
+
+            self.wait(stopped_meanwhile)
+            self.assert_goes_on(stays, b)
+            self.assertEqual(self.sim.ask(f"trips {line}/1"), trips, "its watchdog was fed")
+            self.assertIn("stop_latched", self.watched(a.number).inputs())
+            self.assertNotIn("stop_latched", b.inputs())
+            b.command("quick_stop")
+            self.until_it_stands(b.number)
+
+    def each_line(self):
+        for line in self.lines_of:
+            with self.subTest(line=line):
+                yield line
+
+    def wait(self, look):
+        from processes import until
+        until("motor A is stopped and B turns", look)
+
+    def assert_goes_on(self, client, axis):
+        self.keep_running(client, [axis.number], 2 * self.lease["timeout_ms"] / 1000)
+        self.assertEqual(axis.get("motion_state"), 1)
+
+
+if __name__ == "__main__":
+    main()
