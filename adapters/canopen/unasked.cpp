@@ -13,8 +13,8 @@ Unasked::Unasked(const NodeWatch::Settings& settings)
     : node_(settings.node),
       watch_(settings),
       twins_(settings.heartbeat),
-      process_data_{BabbleWatch(kMaxProcessDataPerSecond), BabbleWatch(kMaxProcessDataPerSecond),
-                    BabbleWatch(kMaxProcessDataPerSecond), BabbleWatch(kMaxProcessDataPerSecond)} {}
+      process_data_{can::BabbleWatch(can::kMaxProcessDataPerSecond), can::BabbleWatch(can::kMaxProcessDataPerSecond),
+                    can::BabbleWatch(can::kMaxProcessDataPerSecond), can::BabbleWatch(can::kMaxProcessDataPerSecond)} {}
 
 bool Unasked::News::restarted() const {
   return std::any_of(notices.begin(), notices.end(), [](const bus::Notice& n) { return n.kind == Kind::started; });
@@ -62,8 +62,8 @@ Unasked::News Unasked::on_stray_reply(bool twin, Instant now) {
   return news;
 }
 
-bool Unasked::passes(BabbleWatch& watch, std::uint32_t id, Instant now, News& news) {
-  const BabbleWatch::Verdict verdict = watch.on_frame(now);
+bool Unasked::passes(can::BabbleWatch& watch, std::uint32_t id, Instant now, News& news) {
+  const can::BabbleWatch::Verdict verdict = watch.on_frame(now);
   if (verdict.tell) {
     news.notices.push_back({.kind = Kind::babbling, .node = node_, .code = static_cast<std::uint16_t>(id)});
   }

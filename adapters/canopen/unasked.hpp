@@ -6,7 +6,7 @@
 #include <array>
 #include <boost/container/static_vector.hpp>
 
-#include "adapters/canopen/babble_watch.hpp"
+#include "adapters/can/babble_watch.hpp"
 #include "adapters/canopen/cob_id.hpp"
 #include "adapters/canopen/emergency.hpp"
 #include "adapters/canopen/node_watch.hpp"
@@ -48,7 +48,7 @@ class Unasked {
   void on_emergency(Bytes bytes, Instant now, News& news);
   void on_process_data(std::uint8_t number, Bytes bytes, News& news);
   void tell_twin(Instant now, News& news);
-  [[nodiscard]] bool passes(BabbleWatch& watch, std::uint32_t id, Instant now, News& news);
+  [[nodiscard]] bool passes(can::BabbleWatch& watch, std::uint32_t id, Instant now, News& news);
 
   std::uint8_t node_;
   NodeWatch watch_;
@@ -56,10 +56,10 @@ class Unasked {
   Instant tell_twin_at_ = kLongAgo;
   EmergencyLimit emergencies_;
   std::array<bus::ProcessMap, kTpdos> maps_{};
-  BabbleWatch error_control_{kMaxSignsPerSecond};
-  BabbleWatch emergency_{kMaxSignsPerSecond};
-  BabbleWatch stray_replies_{kMaxUnaskedRepliesPerSecond};
-  std::array<BabbleWatch, kTpdos> process_data_;
+  can::BabbleWatch error_control_{can::kMaxSignsPerSecond};
+  can::BabbleWatch emergency_{can::kMaxSignsPerSecond};
+  can::BabbleWatch stray_replies_{can::kMaxUnaskedRepliesPerSecond};
+  std::array<can::BabbleWatch, kTpdos> process_data_;
 };
 
 }  // namespace axisgate::canopen

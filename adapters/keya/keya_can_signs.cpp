@@ -32,8 +32,8 @@ CanSigns::News CanSigns::on_stray_reply(bool twin, Instant now) {
 }
 
 /// A notice holds half an id: the upper one, which says whether replies or heartbeats flood; the node stands beside it.
-bool CanSigns::passes(canopen::BabbleWatch& watch, std::uint32_t id, Instant now, News& news) const {
-  const canopen::BabbleWatch::Verdict verdict = watch.on_frame(now);
+bool CanSigns::passes(can::BabbleWatch& watch, std::uint32_t id, Instant now, News& news) const {
+  const can::BabbleWatch::Verdict verdict = watch.on_frame(now);
   if (verdict.tell) {
     news.notices.push_back({.kind = Kind::babbling, .node = node_, .code = static_cast<std::uint16_t>(id >> 16)});
   }

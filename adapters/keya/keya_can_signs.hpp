@@ -6,7 +6,7 @@
 
 #include <boost/container/static_vector.hpp>
 
-#include "adapters/canopen/babble_watch.hpp"
+#include "adapters/can/babble_watch.hpp"
 #include "adapters/keya/keya_can_codec.hpp"
 
 namespace axisgate::keya {
@@ -31,13 +31,13 @@ class CanSigns {
   [[nodiscard]] News on_stray_reply(bool twin, Instant now);
 
  private:
-  [[nodiscard]] bool passes(canopen::BabbleWatch& watch, std::uint32_t id, Instant now, News& news) const;
+  [[nodiscard]] bool passes(can::BabbleWatch& watch, std::uint32_t id, Instant now, News& news) const;
 
   std::uint8_t node_;
   Instant last_heartbeat_ = kLongAgo;
   Instant tell_twin_at_ = kLongAgo;
-  canopen::BabbleWatch heartbeats_{canopen::kMaxSignsPerSecond};
-  canopen::BabbleWatch stray_replies_{canopen::kMaxUnaskedRepliesPerSecond};
+  can::BabbleWatch heartbeats_{can::kMaxSignsPerSecond};
+  can::BabbleWatch stray_replies_{can::kMaxUnaskedRepliesPerSecond};
 };
 
 }  // namespace axisgate::keya

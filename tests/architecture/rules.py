@@ -17,8 +17,7 @@ ARROWS = {
     # A Lawicel adapter is a serial port: the CAN links share how those are opened and found again.
     "adapters/can": {"adapters/serial", "adapters/bus", "gateway/core"},
     "adapters/canopen": {"adapters/can", "adapters/bus", "gateway/core"},
-    # Of canopen babble_watch.hpp alone, which knows nothing of CANopen: how many frames of one id come in a second.
-    "adapters/keya": {"adapters/canopen", "adapters/can", "adapters/bus", "gateway/core"},
+    "adapters/keya": {"adapters/can", "adapters/bus", "gateway/core"},
     "adapters/*": {"adapters/bus", "gateway/core"},
     # The simulated drives come from the makers' sheets: what they share with the gateway could be wrong on both sides.
     "tests/simulated": set(),

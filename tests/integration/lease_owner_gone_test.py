@@ -1,8 +1,9 @@
 """A master that is gone: its connection is closed, reset, or open and silent. Its motors stop, on every drive and protocol."""
 import time
 
-from lease_stage import Machine, main
-from modbus import Axis
+from lease_stage import ANOTHER, ME, Machine, main
+from modbus import ACTIVE, Axis
+from processes import until
 
 
 class OwnerGone(Machine):
@@ -17,7 +18,7 @@ class OwnerGone(Machine):
         for axis in axes:
             self.set_running(axis)
         for axis in axes:
-            self.assertEqual((axis.get("owner"), self.watched(axis.number).get("owner")), (1, 2))
+            self.assertEqual((axis.get("owner"), self.watched(axis.number).get("owner")), (ME, ANOTHER))
         self.keep_running(owner, self.numbers, 2 * self.lease["timeout_ms"] / 1000)
         before = time.monotonic()
         owner.gateway()
@@ -58,42 +59,31 @@ class OneOfTwoMotors(Machine):
 
     def test_the_other_motor_of_the_drive_goes_on(self):
         self.begin()
-        for line in self.each_line():
-            gone, stays = self.peer(), self.peer("127.0.0.2")
-            a, b = Axis(gone, self.number_of(line, "A")), Axis(stays, self.number_of(line, "B"))
-            self.set_running(a)
-            self.set_running(b)
-            trips = self.sim.ask(f"trips {line}/1")
-            gone.reset()
-
-            def stopped():
-                self.assertNotEqual(self.speed(b.number), 0)
-                return b.get("owner") == 1 and self.speed(a.number) == 0
-
-            def stopped_meanwhile():
-                stays.gateway()
-                return stopped()
-
-            self.wait(stopped_meanwhile)
-            self.assert_goes_on(stays, b)
-            self.assertEqual(self.sim.ask(f"trips {line}/1"), trips, "its watchdog was fed")
-            self.assertIn("stop_latched", self.watched(a.number).inputs())
-            self.assertNotIn("stop_latched", b.inputs())
-            b.command("quick_stop")
-            self.until_it_stands(b.number)
-
-    def each_line(self):
         for line in self.lines_of:
             with self.subTest(line=line):
-                yield line
+                self.one_of_two(line)
 
-    def wait(self, look):
-        from processes import until
-        until("motor A is stopped and B turns", look)
+    def one_of_two(self, line):
+        gone, stays = self.peer(), self.peer("127.0.0.2")
+        a, b = Axis(gone, self.number_of(line, "A")), Axis(stays, self.number_of(line, "B"))
+        self.set_running(a)
+        self.set_running(b)
+        trips = self.sim.ask(f"trips {line}/1")
+        gone.reset()
 
-    def assert_goes_on(self, client, axis):
-        self.keep_running(client, [axis.number], 2 * self.lease["timeout_ms"] / 1000)
-        self.assertEqual(axis.get("motion_state"), 1)
+        def stopped_meanwhile():
+            stays.gateway()
+            self.assertNotEqual(self.speed(b.number), 0)
+            return self.speed(a.number) == 0
+
+        until("motor A is stopped", stopped_meanwhile)
+        self.keep_running(stays, [b.number], 2 * self.lease["timeout_ms"] / 1000)
+        self.assertEqual((b.get("motion_state"), b.get("owner")), (ACTIVE, ME))
+        self.assertEqual(self.sim.ask(f"trips {line}/1"), trips, "its watchdog was fed")
+        self.assertIn("stop_latched", self.watched(a.number).inputs())
+        self.assertNotIn("stop_latched", b.inputs())
+        b.command("quick_stop")
+        self.until_it_stands(b.number)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 their own and go away in every way, and the motors' speeds as the drives themselves know them."""
 import socket
 import struct
-import sys
 import time
 
 from pymodbus.client import ModbusTcpClient
@@ -193,7 +192,3 @@ class Machine(Story):
 
     def until_told(self, number, words):
         until(f"the log tells of axis {number}: {words}", lambda: self.leases_told(number, words))
-
-
-def story_names():
-    return sys.argv[4:]

@@ -1,12 +1,12 @@
 // Nodes that flood the bus (one id, or all of them) are thinned and named.
-#include "adapters/canopen/babble_watch.hpp"
+#include "adapters/can/babble_watch.hpp"
 
 #include "tests/unit/canopen/canopen_wire_stage.hpp"
 
 namespace axisgate::test {
 namespace {
 
-using canopen::BabbleWatch;
+using can::BabbleWatch;
 using testing::ElementsAre;
 using Kind = bus::Notice::Kind;
 
@@ -46,7 +46,7 @@ class Babble : public CanopenWireStage {
 TEST_F(Babble, process_data_at_full_bus_load_are_thinned_and_their_id_named) {
   wire->map_process_data(1, 3, {{{0x6041, 0}, 2}});
   flood(0x381, "37 06", 5000);
-  EXPECT_EQ(of(Kind::values), canopen::kMaxProcessDataPerSecond);
+  EXPECT_EQ(of(Kind::values), can::kMaxProcessDataPerSecond);
   ASSERT_EQ(of(Kind::babbling), 1);
   EXPECT_EQ(std::ranges::find(notices, Kind::babbling, &bus::Notice::kind)->code, 0x381);
 }

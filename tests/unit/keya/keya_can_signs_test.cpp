@@ -1,6 +1,6 @@
 // What drives show of themselves on Keya's CAN: heartbeats, twins, floods.
 #include "adapters/keya/keya_can_signs.hpp"
-#include "adapters/canopen/babble_watch.hpp"
+#include "adapters/can/babble_watch.hpp"
 #include "tests/unit/keya/keya_can_stage.hpp"
 
 namespace axisgate::test {
@@ -106,7 +106,7 @@ TEST_F(KeyaCanSigns, a_reply_long_after_is_no_twin) {
 
 TEST_F(KeyaCanSigns, heartbeats_that_flood_the_bus_are_thinned_and_named) {
   for (int i = 0; i < 1000; ++i) beat(2);
-  EXPECT_EQ(count(Kind::values), canopen::kMaxSignsPerSecond);
+  EXPECT_EQ(count(Kind::values), can::kMaxSignsPerSecond);
   ASSERT_EQ(count(Kind::babbling), 1);
   const auto told = std::ranges::find(bus.notices, Kind::babbling, &bus::Notice::kind);
   EXPECT_EQ(told->code, 0x0700);

@@ -1,11 +1,11 @@
-// How many frames of one COB-ID come in a second (faults.md row 5).
+// How many frames of one identifier come in a second (faults.md row 5).
 // Promises that no more than the limit pass in one second, and that an id over it is told once in kTellAgain.
 // Never looks at a frame or a clock.
 #pragma once
 
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::canopen {
+namespace axisgate::can {
 
 /// Frames in a second beyond which an id babbles. Sane process data come every millisecond at the fastest: that is the
 /// shortest event timer and SYNC period of CiA 301's 16-bit millisecond objects.
@@ -47,4 +47,4 @@ class BabbleWatch {
   Instant tell_at_ = kLongAgo;
 };
 
-}  // namespace axisgate::canopen
+}  // namespace axisgate::can

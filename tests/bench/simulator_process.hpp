@@ -1,0 +1,34 @@
+// axisgate-sim in a process of its own, with the lines it is told, and its control socket.
+// Promises that every port it was told of is there when it is made, and that it ends with the object.
+// Never understands a line or an answer: those are the simulator's.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace axisgate::bench {
+
+class SimulatorProcess {
+ public:
+  /// `lines`: each as `--line` takes it, PATH:DRIVES. `control`: where its socket shall be; empty: none.
+  /// Throws std::runtime_error when a port does not appear.
+  explicit SimulatorProcess(const std::vector<std::string>& lines, std::string control = {});
+  ~SimulatorProcess();
+  SimulatorProcess(const SimulatorProcess&) = delete;
+  SimulatorProcess& operator=(const SimulatorProcess&) = delete;
+
+  /// What it answers to this line of its control socket, without the "ok". Throws std::runtime_error on any other.
+  [[nodiscard]] std::string ask(std::string_view line) const;
+
+ private:
+  void begin(const std::vector<std::string>& lines);
+  void await(const std::vector<std::string>& paths) const;
+
+  std::string control_;
+  pid_t process_ = -1;
+};
+
+}  // namespace axisgate::bench

@@ -1,0 +1,119 @@
+"""A PLC that comes back within its lease goes on as if it had never been away; another address gets nothing."""
+from lease_stage import ANOTHER, ME, NOBODY, NOT_OWNER, PANEL_1, Machine, main
+from modbus import ACTIVE, BUSY, Axis, Refused
+from processes import until
+
+
+class Return(Machine):
+    lease = {"timeout_ms": 4000}
+
+    def setUp(self):
+        super().setUp()
+        self.begin()
+        self.plc = self.peer()
+        self.motions = {number: self.set_running(Axis(self.plc, number)) for number in self.numbers}
+
+    def assert_goes_on(self, client, rpm):
+        """All motors, as its own: none of them was stopped meanwhile."""
+        for number in self.each():
+            axis = Axis(client, number)
+            self.until_it_turns_at(number, rpm)
+            self.assertEqual((axis.get("motion_state"), axis.get("motion_id")), (ACTIVE, self.motions[number]))
+            self.assertEqual((axis.get("owner"), self.watched(number).get("owner")), (ME, ANOTHER))
+            self.assertEqual(axis.inputs() & {"enabled", "owned_by_me", "stop_latched"}, {"enabled", "owned_by_me"})
+            self.assertFalse(self.leases_told(number, "has run out"))
+
+    def stop_all(self, client):
+        for number in self.numbers:
+            Axis(client, number).command("quick_stop")
+        for number in self.each():
+            self.until_it_stands(number)
+
+
+class FromItsOwnAddress(Return):
+    def comes_back(self, words):
+        again = self.peer()
+        for number in self.numbers:
+            Axis(again, number).set(target_velocity=400_000)
+        self.assert_goes_on(again, 400)
+        for number in self.numbers:
+            self.until_told(number, words)
+        self.keep_running(again, self.numbers, 2 * self.lease["timeout_ms"] / 1000)
+        self.stop_all(again)
+
+    def test_after_it_closed_its_connection(self):
+        self.plc.close()
+        self.comes_back("its connection had ended")
+
+    def test_after_its_connection_was_reset(self):
+        self.plc.reset()
+        self.comes_back("its connection had ended")
+
+
+class WhileItsOldConnectionIsHalfOpen(Return):
+    """A cable was pulled: nobody has told the gateway that the old connection is dead."""
+
+    def test_it_is_the_owner_again_once_the_old_connection_was_silent(self):
+        again = self.peer()
+        for number in self.each():
+            self.plc.gateway()
+            with self.refused(BUSY):  # the old connection has just asked for something: it lives
+                Axis(again, number).set(target_velocity=400_000)
+            self.assertEqual(Axis(again, number).get("command_result"), NOT_OWNER)
+        self.plc.gateway()
+        self.plc.fall_silent()
+
+        def accepted(number):
+            try:
+                Axis(again, number).set(target_velocity=500_000)
+                return True
+            except Refused as refused:
+                self.assertEqual(refused.code, BUSY)
+                self.assertNotEqual(self.speed(number), 0)
+                return False
+
+        for number in self.each():
+            until("it is accepted", lambda: accepted(number))
+            self.until_told(number, "its other connection had fallen silent")
+        self.assert_goes_on(again, 500)
+        for number in self.each():
+            with self.refused(BUSY):  # and the old one, should it ever come alive, is another
+                Axis(self.plc, number).set(target_velocity=300_000)
+            self.assertEqual(Axis(self.plc, number).get("owner"), ANOTHER)
+        self.stop_all(again)
+
+
+class FromAnotherAddress(Return):
+    lease = {"timeout_ms": 3000}
+
+    def test_it_gets_nothing_until_the_lease_has_run_out(self):
+        other = self.peer(PANEL_1)
+        for number in self.each():
+            self.plc.gateway()
+            self.assert_refused(Axis(other, number))
+            self.until_it_turns_at(number, 300)
+        self.plc.reset()
+        for number in self.each():
+            axis = Axis(other, number)
+            if axis.get("owner") == ANOTHER:  # an orphan is not for everybody either
+                self.assert_refused(axis)
+        for number in self.each():
+            self.assert_stopped_for_good(number)
+            self.assertEqual(Axis(other, number).get("owner"), NOBODY)
+        for number in self.each():
+            self.assert_it_can_be_had_again(number, PANEL_1)
+
+    def assert_refused(self, axis):
+        for write in (lambda: axis.set(target_velocity=0), lambda: axis.client.write(axis.first + 54, 1), lambda: axis.coil("enable")):
+            try:
+                write()
+            except Refused as refused:
+                self.assertEqual(refused.code, BUSY)
+            else:
+                self.fail(f"axis {axis.number} took a write of a client that does not own it")
+            self.assertEqual((axis.get("command_result"), axis.get("owner")), (NOT_OWNER, ANOTHER))
+            self.assertNotIn("owned_by_me", axis.inputs())
+
+
+if __name__ == "__main__":
+    main()
