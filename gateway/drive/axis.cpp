@@ -193,10 +193,26 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<GroupResult>& refus
 
 // --- Carrying it out -----------------------------------------------------------------------------------------------
 
+namespace {
+
+bool begins_anything(const Group& group) {
+  const bool commands = group.command == Command::enable ||
+                        (group.command >= Command::move_absolute && group.command <= Command::set_position);
+  return commands || (group.controlword && request_of(*group.controlword) == Request402::enable_operation);
+}
+
+}  // namespace
+
 std::optional<bus::Exchange> Axis::on_grant(bus::OrderId id) {
   Pending* pending = find(id);
   if (pending == nullptr) return std::nullopt;
   core_.link = host_.link_state();
+  if (stopping() && begins_anything(pending->conversation->group()) && !pending->conversation->is_stop()) {
+    // A stop ramps down, and still shows enabled: what would enable or start comes when it is over.
+    constexpr Duration kStopsFirst = std::chrono::milliseconds(20);
+    host_.order_waits(id, host_.now() + kStopsFirst);
+    return std::nullopt;
+  }
   const auto move = pending->conversation->granted(host_.now());
   if (move.kind == Conversation::Move::Kind::exchange) return move.exchange;
   if (move.kind == Conversation::Move::Kind::wait) {

@@ -9,10 +9,17 @@ namespace {
 
 // The queue was full: its own exchanges carry what is due meanwhile, and a place is asked for again.
 constexpr Duration kPlaceRetry = std::chrono::milliseconds(5);
+// What a motor showed longer ago says nothing of what it does now: this process may have been held up meanwhile, and
+// the drive's watchdog (1000 ms after the last command) may have turned it off.
+constexpr Duration kShownFor = std::chrono::milliseconds(500);
 
 }  // namespace
 
 // --- Control frames ------------------------------------------------------------------------------------------------
+
+bool Drive::shown_lately(ObjectId object) const {
+  return store_[object].held && now() - store_[object].sent_at <= kShownFor;
+}
 
 std::vector<MotorShows> Drive::motors_show() const {
   std::vector<MotorShows> out;
@@ -21,7 +28,7 @@ std::vector<MotorShows> Drive::motors_show() const {
     const AxisCore& core = axis->core();
     const AxisFacts facts = core.facts();
     const auto& state = core.model.virtual_axis;
-    const bool held = state && store_[state->enabled.object].held && store_[state->fault.object].held;
+    const bool held = state && shown_lately(state->enabled.object) && shown_lately(state->fault.object);
     MotorShows shows{.enabled = trusted && held && facts.enabled(),
                      .enabling = axis->enabling() && !facts.faulted(),
                      .disabling = axis->disable_waits(),
@@ -35,13 +42,14 @@ std::vector<MotorShows> Drive::motors_show() const {
   return out;
 }
 
-// A frame tells the other motor as well: where something has made its state doubtful, it is looked at before.
+// A frame tells the other motor as well: where something has made its state doubtful, or it is old, it is looked at
+// before.
 std::optional<bus::Exchange> Drive::look_before_frame() const {
   if (model_.composed.empty()) return std::nullopt;
   for (const AxisModel& axis : model_.axes) {
     if (!axis.virtual_axis) continue;
     for (const ObjectId id : {axis.virtual_axis->enabled.object, axis.virtual_axis->fault.object})
-      if (!store_[id].held && !store_[id].refused) return read(id);
+      if (!shown_lately(id) && !store_[id].refused) return read(id);
   }
   return std::nullopt;
 }
