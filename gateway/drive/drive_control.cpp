@@ -115,7 +115,7 @@ bool Drive::looked_just_now() const {
   return std::all_of(model_.axes.begin(), model_.axes.end(), [this](const AxisModel& axis) {
     if (!axis.virtual_axis) return true;
     const ObjectState& state = store_[axis.virtual_axis->enabled.object];
-    return state.held && state.exchange == store_.exchange();
+    return shown_lately(axis.virtual_axis->enabled.object) && state.exchange == store_.exchange();
   });
 }
 

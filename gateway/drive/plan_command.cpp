@@ -47,7 +47,8 @@ std::optional<std::int16_t> mode_needed(const AxisCore& core, Command command) {
     case Command::home:
       return kModeHoming;
     case Command::set_position:
-      return by_value(core) ? std::nullopt : std::optional(kModeHoming);
+      // By a homing on the spot; a drive without CiA 402 has means of its own.
+      return by_value(core) || core.is_virtual() ? std::nullopt : std::optional(kModeHoming);
     case Command::enable:
       break;
     default:

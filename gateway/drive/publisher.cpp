@@ -52,6 +52,21 @@ std::int64_t error_code(const AxisCore& core, const AxisFacts& facts) {
   return facts.faulted() ? kGenericError : 0;
 }
 
+// Where the set-points of several modes lie in one object (Keya: 6081h), it holds that of the mode in force alone.
+bool is_of_another_mode(const AxisCore& core, const AxisFacts& facts, const Binding& binding) {
+  if (binding.object == kNoObject || core.object(binding.object).aliases.empty()) return false;
+  switch (binding.quantity) {
+    case Quantity::target_position:
+      return facts.mode != 1;
+    case Quantity::target_velocity:
+      return facts.mode != 3;
+    case Quantity::target_torque:
+      return facts.mode != 4;
+    default:
+      return false;
+  }
+}
+
 std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& facts, const Binding& binding) {
   switch (binding.quantity) {
     case Quantity::error_code:
@@ -71,6 +86,7 @@ std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& f
       return *value & ~static_cast<std::int64_t>(statusword::kTargetReached);
     }
     default:
+      if (is_of_another_mode(core, facts, binding)) return std::nullopt;
       return core.value(binding.quantity);
   }
 }

@@ -63,6 +63,7 @@ void VirtualAxis::follow(const Seen& seen, const VirtualFacts& facts) {
   run_.moved = run_.moved || seen.moving;
   if (!seen.standing) {
     run_.stopped = 0;
+    run_.rest.reset();
     return;
   }
   const bool sampled = seen.position && seen.position_exchange > run_.exchange;
@@ -70,11 +71,18 @@ void VirtualAxis::follow(const Seen& seen, const VirtualFacts& facts) {
   const bool began = run_.moved || seen.at - run_.since >= kStartShows;
   if (began && run_.stopped == 0) run_.stopped = seen.exchange;
   const bool settled = run_.stopped != 0 && sampled && seen.position_exchange > run_.stopped;
+  // A move that turns round stands for an instant: it has ended short of its target only if it stays where it is.
+  const bool rests =
+      settled && run_.rest && *seen.position == *run_.rest && seen.position_exchange > run_.rest_exchange;
+  if (settled && !rests && seen.position_exchange > run_.rest_exchange) {
+    run_.rest = seen.position;
+    run_.rest_exchange = seen.position_exchange;
+  }
   switch (run_.kind) {
     case MotionKind::discrete:
       if (at_goal && (settled || !run_.moved)) {
         end_ = End::reached;
-      } else if (settled) {
+      } else if (rests || (settled && !run_.goal)) {
         end_ = run_.goal ? End::failed : End::reached;
       }
       break;

@@ -65,7 +65,9 @@ class VirtualAxis {
     std::uint64_t exchange = 0;
     bool under_way = false;
     bool moved = false;
-    std::uint64_t stopped = 0;  ///< exchange that showed the axis standing again; 0: none yet
+    std::uint64_t stopped = 0;           ///< exchange that showed the axis standing again; 0: none yet
+    std::optional<std::int64_t> rest{};  ///< the first position read since
+    std::uint64_t rest_exchange = 0;
   };
   void keep_gate(const Seen& seen);
   void follow_drive(const Seen& seen);

@@ -76,12 +76,12 @@ GatewayProcess::GatewayProcess(const std::string& program, const std::string& fo
                      processor) {}
 
 GatewayProcess::GatewayProcess(const std::string& program, const std::string& folder, const std::string& buses,
-                               int axes, unsigned processor)
+                               int axes, unsigned processor, const std::string& listener)
     : axes_(axes), port_(free_port()) {
   const std::string config = folder + "/gateway.json";
   const std::string log = folder + "/gateway.log";
-  std::ofstream(config) << fmt::format("{{\"modbus_tcp\": [{{\"listen\": \"127.0.0.1:{}\"}}],\n\"buses\": [{}]}}\n",
-                                       port_, buses);
+  std::ofstream(config) << fmt::format("{{\"modbus_tcp\": [{{\"listen\": \"127.0.0.1:{}\"{}{}}}],\n\"buses\": [{}]}}\n",
+                                       port_, listener.empty() ? "" : ", ", listener, buses);
   begin(program, config, log, processor);
   try {
     await_axes();

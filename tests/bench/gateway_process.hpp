@@ -27,9 +27,9 @@ class GatewayProcess {
   /// Axes 1, 2, ... are the drives of the lines in order. Throws std::runtime_error.
   GatewayProcess(const std::string& program, const std::string& folder, const DriveProcess& drives,
                  const PollPeriods& periods, unsigned processor = 0);
-  /// `buses`: as a configuration has them, with axes 1 to `axes`.
+  /// `buses`: as a configuration has them, with axes 1 to `axes`; `listener`: further keys of its listener.
   GatewayProcess(const std::string& program, const std::string& folder, const std::string& buses, int axes,
-                 unsigned processor = 0);
+                 unsigned processor = 0, const std::string& listener = {});
   ~GatewayProcess();
   GatewayProcess(const GatewayProcess&) = delete;
   GatewayProcess& operator=(const GatewayProcess&) = delete;

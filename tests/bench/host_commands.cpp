@@ -1,6 +1,7 @@
 #include "tests/bench/host_commands.hpp"
 
 #include <charconv>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -17,7 +18,7 @@ using Octets = std::span<const std::uint8_t>;
 
 constexpr std::uint16_t kControlword = 0x6040, kTargetVelocity = 0x60FF;  // CiA 402
 
-/// Any controlword but one that lets the drive run (CiA 402-2, bits 0 to 3 set, halt not) stops it, and so does speed 0.
+/// Any controlword but one that lets the drive run (CiA 402-2: bits 0 to 3 set, halt not) stops it; so does speed 0.
 std::optional<HostCommand> cia402_command(std::uint16_t index, std::uint32_t value) {
   constexpr std::uint32_t kRunBits = 0x10F, kRun = 0x00F;
   if (index == kControlword) return HostCommand{kFirstMotor, (value & kRunBits) == kRun ? std::uint8_t{} : kFirstMotor};
@@ -56,7 +57,7 @@ class Id286proCommands final : public HostCommands {
  private:
   static constexpr Time kLongestPause = std::chrono::milliseconds(20);
   static constexpr std::size_t kHead = 7;  // up to the byte count of a write of several registers
-  static constexpr std::uint16_t kControl = CONTROL_REGISTER, kSlowDown = 6, kEmergencyStop = 7;
+  static constexpr std::uint16_t kControl = 323, kSlowDown = 6, kEmergencyStop = 7;
 
   [[nodiscard]] std::size_t whole() const {
     return frame_[1] == simulated::function::write_several ? kHead + frame_[6] + 2U : 8U;

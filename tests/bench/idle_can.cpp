@@ -1,53 +1,20 @@
 #include "tests/bench/idle_can.hpp"
 
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
-#include <csignal>
 #include <cstdio>
-#include <filesystem>
-#include <stdexcept>
 #include <thread>
 
 #include "tests/bench/gateway_process.hpp"
 #include "tests/bench/line_protocol.hpp"
 #include "tests/bench/modbus_client.hpp"
-#include "tests/bench/server_process.hpp"
+#include "tests/bench/simulator_process.hpp"
 
 namespace axisgate::bench {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
-
-/// axisgate-sim with these drives behind a Lawicel adapter.
-class Simulator {
- public:
-  Simulator(const std::string& path, const std::string& drives) {
-    std::fflush(nullptr);
-    process_ = ::fork();
-    if (process_ < 0) throw std::runtime_error("no process");
-    if (process_ != 0) return;
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    stay_on_processor(1);
-    const std::string line = path + ":lawicel:" + drives;
-    static_cast<void>(!::freopen("/dev/null", "w", stdout));
-    ::execl(AXISGATE_SIM, "axisgate-sim", "--line", line.c_str(), nullptr);
-    std::perror(AXISGATE_SIM);
-    ::_exit(127);
-  }
-  ~Simulator() {
-    ::kill(process_, SIGTERM);
-    ::waitpid(process_, nullptr, 0);
-  }
-  Simulator(const Simulator&) = delete;
-  Simulator& operator=(const Simulator&) = delete;
-
- private:
-  pid_t process_ = -1;
-};
 
 struct Setting {
   const char* what;
@@ -69,7 +36,7 @@ void measure(const Setting& setting, const BenchOptions& options) {
   constexpr std::uint16_t kRequests = 4;
   constexpr std::chrono::seconds kSettled{4};  // values of class once are read, set-points found
   const std::string path = options.folder + "/can";
-  const Simulator simulator(path, setting.simulated);
+  const SimulatorProcess simulator({path + ":lawicel:" + setting.simulated});
   const GatewayProcess gateway(
       options.program, options.folder,
       fmt::format(R"({{"name": "can", "adapter": "canopen", "device": "slcan:{}", "bitrate": {}, "drives": [{}]}})",

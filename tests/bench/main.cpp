@@ -19,6 +19,8 @@
 #include "tests/bench/footprint.hpp"
 #include "tests/bench/idle_can.hpp"
 #include "tests/bench/immediate_drive.hpp"
+#include "tests/bench/keepalive.hpp"
+#include "tests/bench/lease_expiry.hpp"
 #include "tests/bench/modbus_reads.hpp"
 #include "tests/bench/mute_neighbour.hpp"
 #include "tests/bench/shared_polling.hpp"
@@ -64,6 +66,9 @@ constexpr std::array kBenches{
     Bench{"slcan-delayed", "P2 on CANopen behind a serial adapter, at once and after 5 ms", on<delayed_drive, kSlcan>},
     Bench{"slcan-change", "from a TPDO to the register that shows it", on<change_latency, kSlcan>},
     Bench{"slcan-idle", "SDO requests while drives are online and stand", idle_can},
+    Bench{"keepalive", "gaps between the commands that keep a Keya's motors alive, with 0 and 32 busy clients",
+          keepalive},
+    Bench{"lease", "from a client's death to the stop on the wire, on every protocol", lease_expiry},
     Bench{"vcan-immediate", "P2 on CANopen, beside a raw CAN socket in a loop", on<immediate_drive, kVcan>, true},
     Bench{"vcan-delayed", "P2 on CANopen, nodes that answer at once and after 5 ms", on<delayed_drive, kVcan>, true},
     Bench{"vcan-change", "from a TPDO to the register that shows it", on<change_latency, kVcan>, true},

@@ -43,8 +43,16 @@ ModbusClient::ModbusClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_
   fail(std::strerror(errno));
 }
 
-ModbusClient::~ModbusClient() {
-  if (socket_ >= 0) ::close(socket_);
+ModbusClient::~ModbusClient() { close(); }
+
+void ModbusClient::close() {
+  if (socket_ >= 0) ::close(std::exchange(socket_, -1));
+}
+
+void ModbusClient::reset() {
+  const linger at_once{1, 0};
+  ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  close();
 }
 
 ModbusClient::ModbusClient(ModbusClient&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
@@ -93,6 +101,14 @@ int ModbusClient::write_coil(std::uint16_t address, bool on) {
   pdu[3] = on ? 0xFF : 0x00;
   const Bytes reply = ask(pdu);
   return reply[0] == 5 ? 0 : reply[1];
+}
+
+bool ModbusClient::read_object(std::uint8_t node, std::uint16_t index, std::uint8_t sub) {
+  constexpr Byte kEncapsulated = 0x2B, kGeneralReference = 0x0D;
+  std::array<Byte, 12> pdu{kEncapsulated, kGeneralReference, 0, 0, node};  // start 0, count 0: all there are
+  store_be16(pdu, 5, index);
+  pdu[7] = sub;
+  return ask(pdu)[0] == kEncapsulated;
 }
 
 }  // namespace axisgate::bench

@@ -27,6 +27,11 @@ class ModbusClient {
   /// FC 16 and FC 5: the exception code, 0 for none.
   [[nodiscard]] int write(std::uint16_t address, std::span<const std::uint16_t> values);
   [[nodiscard]] int write_coil(std::uint16_t address, bool on);
+  /// FC 43/13 (CANopen general reference), all bytes of the object. True: the drive answered.
+  [[nodiscard]] bool read_object(std::uint8_t node, std::uint16_t index, std::uint8_t sub);
+  /// Ends the connection, by its end or by a reset. Nothing may be asked afterwards.
+  void close();
+  void reset();
 
  private:
   Bytes ask(std::span<const Byte> pdu);

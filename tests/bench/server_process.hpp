@@ -26,4 +26,8 @@ class ServerProcess {
 /// The calling process runs on this processor alone from now on, where the machine has it.
 void stay_on_processor(unsigned number);
 
+/// The calling thread goes before all others from now on, where the system allows it (CAP_SYS_NICE): what stands for a
+/// wire or a drive must not wait for the clients that share its processor, or its answers come too late.
+void go_before_others();
+
 }  // namespace axisgate::bench

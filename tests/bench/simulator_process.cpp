@@ -69,6 +69,7 @@ void SimulatorProcess::begin(const std::vector<std::string>& lines) {
   if (process_ != 0) return;
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   stay_on_processor(1);
+  go_before_others();
   static_cast<void>(!::freopen("/dev/null", "w", stdout));
   ::execv(AXISGATE_SIM, const_cast<char* const*>(words.data()));
   std::perror(AXISGATE_SIM);

@@ -9,6 +9,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "tests/bench/server_process.hpp"
+
 namespace axisgate::bench {
 
 std::chrono::nanoseconds steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
@@ -29,6 +31,7 @@ TappedLine::~TappedLine() {
 }
 
 void TappedLine::relay() {
+  go_before_others();
   std::array<pollfd, 4> watched{{{gateway_.readable(), POLLIN, 0},
                                  {gateway_.closings(), POLLIN, 0},
                                  {drive_.get(), POLLIN, 0},

@@ -3,9 +3,9 @@
 // passed on. Never holds, changes or answers a byte, and keeps at most kKept commands: more of them are an error.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <exception>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -34,7 +34,8 @@ class TappedLine {
 
   /// All that came at this time or later. Throws std::runtime_error when more came than are kept.
   [[nodiscard]] std::vector<TappedCommand> since(std::chrono::nanoseconds from) const;
-  /// When the first came, at this time or later, that stops the first motor. Throws std::runtime_error after `patience`.
+  /// When the first came, at this time or later, that stops the first motor. Throws std::runtime_error after
+  /// `patience`.
   [[nodiscard]] std::chrono::nanoseconds await_stop(std::chrono::nanoseconds from, std::chrono::milliseconds patience);
 
  private:

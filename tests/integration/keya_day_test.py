@@ -127,5 +127,46 @@ class OneMotorInPositionMode(KeyaStory):
         self.spend_the_day(CANOPEN)
 
 
+class ModeChosenByTheClient(KeyaStory):
+    """On CANopen the code that enables a motor can choose its mode."""
+
+    def setUp(self):
+        super().setUp()
+        self.begin(CANOPEN)
+        self.left = self.axes[0]
+        self.enable(self.left)
+        self.run_axis(self.left)
+        until("more than two turns", lambda: self.positions()[0] > 2 * TURN)
+
+    def disable(self):
+        self.left.command("disable")
+        self.left.until(axis_state=DISABLED)
+        self.until_it_stands()
+
+    def test_a_speed_is_not_shown_as_a_position(self):
+        target_position = 1 << 16
+        self.assertFalse(self.left.get("valid") & target_position, f"target_position reads {self.left.get('target_position')}")
+        self.disable()
+        self.assertFalse(self.left.get("valid") & target_position, f"target_position reads {self.left.get('target_position')}")
+
+    def test_from_speed_to_position_and_back(self):
+        self.disable()
+        where = self.positions()[0]
+        self.left.set(mode=1)
+        self.enable(self.left)
+        self.let_pass(2)
+        self.assertEqual((self.ask("state"), self.positions()[0]), ("absolute disabled", where), "an enable moves nothing")
+        self.left.set(target_position=where - TURN)
+        self.left.command("move_absolute")
+        self.left.until(motion_state=COMPLETED)
+        self.assertAlmostEqual(self.positions()[0], where - TURN, delta=10)
+        self.disable()
+        self.left.set(mode=3)
+        self.enable(self.left)
+        self.let_pass(2)
+        self.assertEqual((self.ask("state"), self.speeds()), ("speed disabled", [0, 0]), "an enable moves nothing")
+        self.run_axis(self.left)
+
+
 if __name__ == "__main__":
     main()

@@ -40,14 +40,15 @@ class KeyaStory(Story):
         reads, so that it keeps no lease alive."""
         self.interface = interface
         self.simulate({"cart": interface.simulated + drive}, *sim_options)
-        self.configure_cart({"timeout_ms": 60000, **(lease or {})}, constants or {})
+        leases = lease if isinstance(lease, list) else [lease, lease]  # of A and B
+        self.configure_cart([{"timeout_ms": 60000, **(each or {})} for each in leases], constants or {})
         self.run_gateway()
         self.connect_clients()
 
-    def configure_cart(self, lease, constants):
+    def configure_cart(self, leases, constants):
         device = self.path("cart")
-        axes = [{"axis": 1, "name": "left", "motor": "A", "lease": lease},
-                {"axis": 2, "name": "right", "motor": "B", "lease": lease}]
+        axes = [{"axis": 1, "name": "left", "motor": "A", "lease": leases[0]},
+                {"axis": 2, "name": "right", "motor": "B", "lease": leases[1]}]
         node = {} if self.interface is RS232 else {"node": 1}
         entry = {"name": "cart", "adapter": self.interface.adapter, "device": f"slcan:{device}" if self.interface.on_can else device,
                  "timeout_ms": 500, **self.interface.settings,
@@ -124,13 +125,18 @@ class KeyaStory(Story):
         then = self.watcher.gateway()["uptime_s"] + seconds
         until("time", lambda: not while_true() or self.watcher.gateway()["uptime_s"] > then)
 
+    def assert_never_enabled_for(self, seconds, where):
+        """Looks without a pause: an enable for a moment is one too."""
+        then = self.watcher.gateway()["uptime_s"] + seconds
+        while self.watcher.gateway()["uptime_s"] <= then:
+            self.assertEqual((self.enabled(), self.positions()), ([False, False], where), f"faults {self.ask('faults')}")
+
     def assert_nothing_is_enabled_by_itself(self, where=None):
         """Seconds in which both axes stay online and disabled and no motor turns, also not since it stood at `where`."""
         where = where or self.positions()
         for axis in self.seen:
             axis.until(link_state=ONLINE)
-        self.let_pass(3, lambda: not any(self.enabled()))
-        self.assertEqual((self.enabled(), self.positions()), ([False, False], where))
+        self.assert_never_enabled_for(3, where)
         for axis in self.seen:
             block = axis.until(link_state=ONLINE)
             self.assertNotIn("enabled", axis.inputs())
@@ -142,7 +148,7 @@ class KeyaStory(Story):
         for axis in self.axes:
             self.assertEqual(axis.get("error_code"), 0)
         trips = self.trips()
-        self.let_pass(2)
+        self.let_pass(2, self.client.gateway)  # an owner lives by what it asks
         self.assertEqual((self.enabled(), self.trips()), ([True, True], trips), "it is kept alive")
         for axis in self.axes:
             axis.command("disable")

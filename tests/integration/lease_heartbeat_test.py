@@ -1,4 +1,4 @@
-"""A PLC in STOP: its program is dead, and its scanner goes on writing the same block for ever. The lease that wants a heartbeat knows."""
+"""A PLC in STOP: its program is dead, and its scanner goes on writing the same block. The lease that wants a heartbeat knows."""
 import time
 
 from lease_stage import ME, NOBODY, RPM, Machine, main

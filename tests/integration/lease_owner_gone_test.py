@@ -86,5 +86,30 @@ class OneOfTwoMotors(Machine):
         self.until_it_stands(b.number)
 
 
+class KeepAlive(Machine):
+    """A drive that wants a command each second gets it from the gateway, as long as somebody owns its motor."""
+
+    lines_of = ("keya232", "keyacan")
+    lease = {"timeout_ms": 2000}
+
+    def test_it_is_sent_while_the_owner_lives_and_not_afterwards(self):
+        self.begin()
+        owner = self.peer()
+        for number in self.numbers:
+            self.set_running(Axis(owner, number))
+        self.keep_running(owner, self.numbers, 4)  # it reads, and writes nothing
+        for line in self.lines_of:
+            self.assertEqual(self.sim.ask(f"trips {line}/1"), "0")
+        owner.reset()
+        for number in self.each():
+            self.assert_stopped_for_good(number)
+        sent = [self.sim.ask(f"commands {line}/1") for line in self.lines_of]
+        then = self.watcher.gateway()["uptime_s"] + 3
+        until("some more of them would have been due", lambda: self.watcher.gateway()["uptime_s"] >= then)
+        self.assertEqual([self.sim.ask(f"commands {line}/1") for line in self.lines_of], sent)
+        for line in self.lines_of:
+            self.assertEqual(self.sim.ask(f"trips {line}/1"), "0", "it was stopped by the gateway, not by its watchdog")
+
+
 if __name__ == "__main__":
     main()

@@ -1,6 +1,6 @@
 """A PLC that comes back within its lease goes on as if it had never been away; another address gets nothing."""
 from lease_stage import ANOTHER, ME, NOBODY, NOT_OWNER, PANEL_1, Machine, main
-from modbus import ACTIVE, BUSY, Axis, Refused
+from modbus import ACTIVE, BUSY, COMMANDS, Axis, Refused
 from processes import until
 
 
@@ -104,7 +104,9 @@ class FromAnotherAddress(Return):
             self.assert_it_can_be_had_again(number, PANEL_1)
 
     def assert_refused(self, axis):
-        for write in (lambda: axis.set(target_velocity=0), lambda: axis.client.write(axis.first + 54, 1), lambda: axis.coil("enable")):
+        enable = COMMANDS["enable"]
+        for write in (lambda: axis.set(target_velocity=0), lambda: axis.client.write(axis.first + 54, enable),
+                      lambda: axis.coil("enable")):
             try:
                 write()
             except Refused as refused:

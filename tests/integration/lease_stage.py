@@ -2,6 +2,7 @@
 their own and go away in every way, and the motors' speeds as the drives themselves know them."""
 import socket
 import struct
+import sys
 import time
 
 from pymodbus.client import ModbusTcpClient
@@ -59,6 +60,7 @@ class Machine(Story):
     axis_options = {}
     listener_options = {}
     allow = EVERYBODY
+    reply_timeout_ms = 1000
 
     def listener(self, **more):
         # Long enough for a machine that is busy with something else.
@@ -78,7 +80,7 @@ class Machine(Story):
                 self.motors[number] = (line, motor)
                 entry["axes"].append({"axis": number, "name": f"{line}{motor or ''}", "lease": self.lease, **self.axis_options})
             device = f"slcan:{self.path(line)}" if can else self.path(line)
-            made = bus(device, entry, adapter=adapter, timeout_ms=1000, **rate)
+            made = bus(device, entry, adapter=adapter, timeout_ms=self.reply_timeout_ms, **rate)
             if can:
                 made.pop("rs485")
             buses.append({**made, "name": line})
@@ -101,12 +103,20 @@ class Machine(Story):
     def watched(self, number):
         return Axis(self.watcher, number)
 
-    def each(self, numbers=None):
-        """Each axis, as a sub-test that names its line and motor."""
-        for number in numbers or self.numbers:
-            line, motor = self.motors[number]
-            with self.subTest(line=line, motor=motor):
-                yield number
+    def each(self):
+        """The number of each axis; where a story fails, the axis it was at is told."""
+        for number in self.numbers:
+            self.at = "{} {}".format(*self.motors[number])
+            yield number
+        self.at = None
+
+    def run(self, result=None):
+        before = len(result.errors) + len(result.failures)
+        self.at = None
+        outcome = super().run(result)
+        if len(result.errors) + len(result.failures) > before and self.at:
+            print(f"--- it was at {self.at}", file=sys.stderr)
+        return outcome
 
     def number_of(self, line, motor=None):
         return next(number for number, where in self.motors.items() if where == (line, motor))
@@ -161,8 +171,15 @@ class Machine(Story):
 
     # What is true afterwards.
 
+    def until_without_torque(self, number):
+        """A Keya's stop ends with that."""
+        line, motor = self.motors[number]
+        if motor:
+            until(f"axis {number} has no torque", lambda: self.sim.ask(f"enabled {line}/1").split()["AB".index(motor)] == "0")
+
     def assert_stopped_for_good(self, number):
         self.until_it_stands(number)
+        self.until_without_torque(number)
         axis = self.watched(number)
         axis.until_input("stop_latched")
         until("nobody owns it", lambda: axis.get("owner") == NOBODY)

@@ -1,0 +1,131 @@
+#include "tests/bench/keepalive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <thread>
+#include <vector>
+
+#include "tests/bench/busy_clients.hpp"
+#include "tests/bench/figures.hpp"
+#include "tests/bench/motor_stage.hpp"
+#include "tests/bench/server_process.hpp"
+
+namespace axisgate::bench {
+namespace {
+
+using std::chrono::milliseconds;
+constexpr int kClients = 32;
+constexpr int kAxes = 2;
+constexpr std::uint16_t kRegisters = 39;
+constexpr double kBoundMs = 500;
+
+/// What the clients write: nothing, the speeds that the drive holds already (which are not sent, so that only the
+/// keep-alive commands the motors), or other speeds each time.
+enum class Load : std::uint8_t { none, same_speeds, new_speeds };
+constexpr std::array<std::string_view, 3> kLoads{"the owner alone", "32, same speeds", "32, new speeds"};
+
+struct Speed {
+  std::uint16_t index;
+  std::uint8_t sub;
+};
+/// Where each protocol has motor A's speed: an object that can be asked for at any time.
+Speed speed_object(MotionProtocol protocol) {
+  if (protocol == MotionProtocol::keya_can) return {0x2103, 1};
+  return protocol == MotionProtocol::keya_canopen ? Speed{0x2012, 0} : Speed{0x2102, 0};
+}
+
+std::uint16_t address_of(int axis, int offset) { return static_cast<std::uint16_t>(100 * axis + offset); }
+
+constexpr std::uint32_t kOtherSpeed = 10'000;  // more, in 1/1000 rpm
+
+/// Half of them write, half make the drive be asked; all read, and each turns from one axis to the other.
+void add_busy_clients(BusyClients& clients, MotionProtocol protocol, Load load) {
+  for (int i = 0; i < kClients; ++i)
+    clients.add([i, load, protocol, turn = 0U](ModbusClient& client) mutable {
+      const int axis = 1 + static_cast<int>(++turn % kAxes);
+      static_cast<void>(client.read(address_of(axis, 0), kRegisters));
+      if (i % 2 != 0) {
+        const Speed object = speed_object(protocol);
+        static_cast<void>(client.read_object(static_cast<std::uint8_t>(axis), object.index, object.sub));
+        return;
+      }
+      const std::uint32_t more = load == Load::new_speeds ? kOtherSpeed * (turn / kAxes % 2) : 0;
+      static_cast<void>(client.write(address_of(axis, kTargetVelocityOffset), registers_of(kRunningVelocity + more)));
+    });
+}
+
+/// Milliseconds between commands to one of these motors, and the silence at the end where it is beyond the bound: a
+/// motor that gets no more commands has no gap with two ends.
+std::vector<double> gaps_of(const std::vector<TappedCommand>& commands, std::uint8_t motors,
+                            std::chrono::nanoseconds end) {
+  std::vector<double> gaps;
+  std::optional<std::chrono::nanoseconds> last;
+  for (const TappedCommand& it : commands) {
+    if ((it.command.motors & motors) == 0) continue;
+    if (last) gaps.push_back(std::chrono::duration<double, std::milli>(it.at - *last).count());
+    last = it.at;
+  }
+  const double silence = last ? std::chrono::duration<double, std::milli>(end - *last).count() : 0;
+  if (silence > kBoundMs) gaps.push_back(silence);
+  return gaps;
+}
+
+void measure(MotorStage& stage, Load load, milliseconds lasting) {
+  constexpr milliseconds kGettingGoing{100};
+  BusyClients clients(stage.port());
+  // The owner's own reads, which keep both leases alive when nobody else does.
+  clients.add([](ModbusClient& client) {
+    constexpr milliseconds kBetweenReads{100};
+    for (int axis = 1; axis <= kAxes; ++axis) static_cast<void>(client.read(address_of(axis, 0), kRegisters));
+    std::this_thread::sleep_for(kBetweenReads);
+  });
+  if (load != Load::none) add_busy_clients(clients, stage.drive(0).protocol, load);
+  std::this_thread::sleep_for(kGettingGoing);
+  const auto began = steady_now();
+  const std::uint64_t turns = clients.turns();
+  std::this_thread::sleep_for(lasting);
+  const auto ended = steady_now();
+  const double seconds = std::chrono::duration<double>(ended - began).count();
+  const double rate = static_cast<double>(clients.turns() - turns) / seconds;
+  const auto commands = stage.tap(0).since(began);
+  clients.stop();
+  const auto gaps = gaps_of(commands, kFirstMotor | kSecondMotor, ended);
+  double worst_of_one = 0;
+  for (const std::uint8_t motor : {kFirstMotor, kSecondMotor})
+    worst_of_one = std::max(worst_of_one, quantile(gaps_of(commands, motor, ended), 1));
+  fmt::print("{:<14} {:<16} {:>8.0f} {:>7} {:>8.1f} {:>8.1f} {:>8.1f} {:>10.1f} {:>6} {:>6} {:>8}\n",
+             stage.drive(0).name, kLoads[static_cast<std::size_t>(load)], rate, gaps.size(), median(gaps),
+             quantile(gaps, 0.99), quantile(gaps, 1), worst_of_one,
+             std::ranges::count_if(gaps, [](double gap) { return gap > kBoundMs; }), stage.ask(0, "trips"),
+             stage.ask(0, "enabled"));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+void keepalive(const BenchOptions& options) {
+  constexpr milliseconds kQuickly{1000}, kFull{30'000};
+  stay_on_processor(1);
+  fmt::print(
+      "Both motors run. Each is due a command every 300 ms and gets one at half of that, 150 ms, if the line is free;\n"
+      "the bound is 500 ms, and after 1000 ms the drive trips. Polled as by default. Milliseconds between commands as\n"
+      "they arrive at the drive, to either motor; then the worst between two to the same one. Clients read both axes\n"
+      "without a pause; half of them also write speeds, half have the drive asked for an object.\n"
+      "{:<14} {:<16} {:>8} {:>7} {:>8} {:>8} {:>8} {:>10} {:>6} {:>6} {:>8}\n",
+      "", "clients", "turns/s", "gaps", "median", "p99", "worst", "one motor", ">500", "trips", "enabled");
+  for (const MotionProtocol protocol :
+       {MotionProtocol::keya_rs232, MotionProtocol::keya_can, MotionProtocol::keya_canopen}) {
+    // One owner for all connections, so that 32 of them may write.
+    MotorStage stage(options, {motor_drive(protocol)}, {2000, R"("client": "address")"});
+    std::vector<ModbusClient> owners;
+    for (int axis = 1; axis <= kAxes; ++axis) owners.push_back(running_axis(stage.port(), axis));
+    for (const Load load : {Load::none, Load::same_speeds, Load::new_speeds})
+      measure(stage, load, options.quick ? kQuickly : kFull);
+  }
+}
+
+}  // namespace axisgate::bench

@@ -1,0 +1,227 @@
+"""The gateway is killed or hangs while both motors of a Keya run. By RS232, CAN and CANopen the drive stops by itself; by RS485 it goes
+on, as far as its manual says, and the axes had an alarm that told so."""
+import signal
+
+from keya_stage import ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, RS232, RS485, SPEED, TURN, KeyaStory, main
+from modbus import CONTINUOUS, DISABLED, FAILED, ONLINE
+from processes import until
+
+COMMUNICATION = 0x8130
+LEASE_MS = 2000
+ROUNDS = 6
+
+
+class GatewayDies(KeyaStory):
+    def run_in(self, interface):
+        self.begin(interface)
+        self.run_both()
+        watched = 0 if interface.loss else ALARM_NO_COMM_WATCHDOG
+        for axis in self.seen:
+            self.assertEqual(axis.get("axis_alarms") & ALARM_NO_COMM_WATCHDOG, watched)
+        self.assertEqual((self.trips(), self.speeds()), (0, [SPEED, SPEED]))
+
+
+class Killed(GatewayDies):
+    def kill(self, interface):
+        self.run_in(interface)
+        self.kill_the_gateway()
+        self.assert_stopped_by_its_watchdog()
+        where, commands = self.positions(), self.commands()
+        self.start_another_gateway()
+        for axis in self.seen:
+            axis.until(link_state=ONLINE, axis_state=DISABLED, error_code=COMMUNICATION)
+        self.assert_nothing_is_enabled_by_itself(where)
+        self.assertEqual(self.commands(), commands)
+        self.assert_fresh_enable_works()
+
+    def test_on_rs232(self):
+        self.kill(RS232)
+
+    def test_on_rs485_the_motors_run_on(self):
+        self.run_in(RS485)
+        self.kill_the_gateway()
+        self.assert_runs_on()
+
+    def test_on_its_own_can_protocol(self):
+        self.kill(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.kill(CANOPEN)
+
+
+class EndedInGoodOrder(GatewayDies):
+    def end(self, interface):
+        self.run_in(interface)
+        self.assertEqual(self.gateway.terminate(), 0)
+        self.assert_stopped_by_its_watchdog()
+
+    def test_on_rs232(self):
+        self.end(RS232)
+
+    def test_on_rs485_the_motors_run_on(self):
+        self.run_in(RS485)
+        self.assertEqual(self.gateway.terminate(), 0)
+        self.assert_runs_on()
+
+    def test_on_its_own_can_protocol(self):
+        self.end(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.end(CANOPEN)
+
+
+class Hangs(GatewayDies):
+    """Stopped until the drive has noticed, and then let go on: it must not carry on where it was."""
+
+    def hang(self):
+        self.gateway.send(signal.SIGSTOP)
+        self.addCleanup(self.gateway.send, signal.SIGCONT)
+
+    def hang_for_a_while(self, interface):
+        self.run_in(interface)
+        self.hang()
+        self.assert_stopped_by_its_watchdog()
+        where = self.positions()
+        self.gateway.send(signal.SIGCONT)
+        self.assert_never_enabled_for(2, where)
+        for axis in self.seen:
+            axis.until(link_state=ONLINE, axis_state=DISABLED, motion_state=FAILED, error_code=COMMUNICATION)
+        self.assert_nothing_is_enabled_by_itself(where)
+        self.assertEqual(self.trips(), 1, "it was not enabled for a moment either")
+        self.assert_fresh_enable_works()
+
+    def test_on_rs232(self):
+        self.hang_for_a_while(RS232)
+
+    def test_on_rs485_the_motors_run_on(self):
+        self.run_in(RS485)
+        self.hang()
+        self.assert_runs_on()
+        self.gateway.send(signal.SIGCONT)
+        for axis in self.axes:
+            axis.until(link_state=ONLINE, axis_state=CONTINUOUS)
+            axis.command("quick_stop")
+        self.until_it_stands()
+        self.assert_nothing_is_enabled_by_itself()
+        self.assert_fresh_enable_works()
+
+    def test_on_its_own_can_protocol(self):
+        self.hang_for_a_while(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.hang_for_a_while(CANOPEN)
+
+
+class HangsAgainAndAgain(GatewayDies):
+    """Whatever is due first when it goes on, a question or the keep-alive: on RS232 that one carries the enable of both motors. The
+    drive answers slowly here, so that what the gateway finds first is an answer from before the drive has tripped."""
+
+    def test_on_rs232(self):
+        self.begin(RS232)
+        self.sim.ask("reply-delay cart 40")
+        for count in range(1, ROUNDS + 1):
+            self.run_both()
+            self.gateway.send(signal.SIGSTOP)
+            self.addCleanup(self.gateway.send, signal.SIGCONT)
+            until("the drive notices", lambda: self.trips() == count)
+            self.until_it_stands()
+            where = self.positions()
+            self.gateway.send(signal.SIGCONT)
+            self.assert_never_enabled_for(1, where)
+
+
+class HangsLongerThanALease(GatewayDies):
+    def hang(self, interface, *leases):
+        self.begin(interface, lease=[{"timeout_ms": timeout} for timeout in leases])
+        self.run_both()
+        self.gateway.send(signal.SIGSTOP)
+        self.addCleanup(self.gateway.send, signal.SIGCONT)
+        until("it is silent", lambda: int(self.ask("last-command").split()[0]) > LEASE_MS + 1000)
+        if interface.loss:
+            self.assert_stopped_by_its_watchdog()
+        where = self.positions()
+        self.gateway.send(signal.SIGCONT)
+        if interface.loss:
+            self.assert_never_enabled_for(2, where)
+        self.seen[0].until(owner=0)
+
+    def hang_longer_than_both(self, interface):
+        self.hang(interface, LEASE_MS, LEASE_MS)
+        self.until_it_stands()
+        self.assert_nothing_is_enabled_by_itself()
+        self.assert_fresh_enable_works()
+
+    def test_on_rs232(self):
+        self.hang_longer_than_both(RS232)
+
+    def test_on_rs485_the_leases_act_at_once(self):
+        self.hang_longer_than_both(RS485)
+
+    def test_on_its_own_can_protocol(self):
+        self.hang_longer_than_both(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.hang_longer_than_both(CANOPEN)
+
+
+class HangsLongerThanOneOfTwoLeases(HangsLongerThanALease):
+    """The stop of motor A is no reason to set motor B going."""
+
+    def hang_longer_than_one(self, interface):
+        self.hang(interface, LEASE_MS, 60000)
+        if interface.loss:
+            self.seen[1].until(axis_state=DISABLED, motion_state=FAILED)
+            self.assert_nothing_is_enabled_by_itself()
+        else:
+            until("motor A stands without torque", lambda: self.enabled() == [False, True] and self.speeds() == [0, SPEED])
+            self.assertEqual(self.seen[1].get("axis_state"), CONTINUOUS)
+
+    def test_on_rs232(self):
+        self.hang_longer_than_one(RS232)
+
+    def test_on_rs485_the_leases_act_at_once(self):
+        self.hang_longer_than_one(RS485)
+
+    def test_on_its_own_can_protocol(self):
+        self.hang_longer_than_one(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.hang_longer_than_one(CANOPEN)
+
+
+class HangsInAMove(GatewayDies):
+    """Motor A is on its way to a far position, motor B runs at speed. Neither goes on, and an enable moves nothing."""
+
+    def hang(self, interface):
+        self.begin(interface, drive="+0020=3", constants={"control_mode_a": 3})
+        left, right = self.axes
+        self.enable(left)
+        self.enable(right)
+        self.run_axis(right)
+        left.set(target_position=20000 * TURN)
+        number = left.command("move_absolute")
+        until("it moves", lambda: self.positions()[0] > TURN)
+        self.gateway.send(signal.SIGSTOP)
+        self.addCleanup(self.gateway.send, signal.SIGCONT)
+        self.assert_stopped_by_its_watchdog()
+        where = self.positions()
+        self.gateway.send(signal.SIGCONT)
+        self.assert_never_enabled_for(2, where)
+        self.seen[0].until(axis_state=DISABLED, motion_state=FAILED, motion_id=number)
+        for axis in self.axes:
+            self.enable(axis)
+        self.let_pass(3)
+        self.assertEqual((self.enabled(), self.positions()), ([True, True], where), "an enable moves nothing")
+
+    def test_on_rs232(self):
+        self.hang(RS232)
+
+    def test_on_its_own_can_protocol(self):
+        self.hang(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.hang(CANOPEN)
+
+
+if __name__ == "__main__":
+    main()

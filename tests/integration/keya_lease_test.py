@@ -1,0 +1,217 @@
+"""Whoever commands a Keya keeps it alive by living: the drive wants to hear something each second, and the gateway speaks only while
+the owner does."""
+import socket
+import struct
+
+from keya_stage import CANOPEN, KEYA_CAN, RS232, RS485, SPEED, KeyaStory, main
+from modbus import BUSY, CONTINUOUS, DISABLED
+from processes import until
+
+LEASE = {"timeout_ms": 2000}
+NOBODY, ANOTHER = 0, 2
+
+
+class OwnerLives(KeyaStory):
+    def live(self, interface):
+        self.begin(interface, lease=LEASE)
+        self.run_both()
+        before, where = self.commands(), self.positions()
+        self.let_pass(6, self.owner_asks)
+        self.assertEqual((self.trips(), self.enabled(), self.speeds()), (0, [True, True], [SPEED, SPEED]))
+        for axis in self.seen:
+            self.assertEqual((axis.get("axis_state"), axis.get("owner")), (CONTINUOUS, ANOTHER))
+        self.assertTrue(all(now > then for now, then in zip(self.positions(), where)))
+        if interface.loss:
+            self.assertGreater(self.commands(), before + 6, "more often than once a second")
+        else:
+            self.assertEqual(self.commands(), before, "no watchdog, no keep-alive")
+
+    def owner_asks(self):
+        """Any request of the owner renews the leases of all that it owns."""
+        return self.axes[0].get("axis_state") == CONTINUOUS
+
+    def test_on_rs232(self):
+        self.live(RS232)
+
+    def test_on_rs485(self):
+        self.live(RS485)
+
+    def test_on_its_own_can_protocol(self):
+        self.live(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.live(CANOPEN)
+
+
+class OwnerDies(KeyaStory):
+    """Without a word, its connection open, as a PLC does whose cable is pulled."""
+
+    def die(self, interface, how=lambda: None):
+        self.begin(interface, lease=LEASE)
+        self.run_both()
+        how()
+        for axis in self.seen:
+            axis.until(owner=NOBODY)
+        self.until_it_stands()
+        commands, where = self.commands(), self.positions()
+        for axis in self.seen:
+            axis.until_input("stop_latched")
+            axis.until_input("enabled", False)
+        self.let_pass(2)
+        self.assertEqual((self.commands(), self.positions()), (commands, where), "the keep-alive has ended")
+        self.client = self.connect()  # the next one
+        self.axes = [self.client.axis(1), self.client.axis(2)]
+        self.run_both()
+        self.assertEqual(self.enabled(), [True, True])
+
+    def reset_the_connection(self):
+        connection = self.client.tcp.socket
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        connection.close()
+
+    def test_on_rs232(self):
+        self.die(RS232)
+
+    def test_on_rs485(self):
+        self.die(RS485)
+
+    def test_on_its_own_can_protocol(self):
+        self.die(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.die(CANOPEN)
+
+
+class OwnerEndsItsConnection(OwnerDies):
+    """By closing it, and by a reset, as a process does that is killed."""
+
+    def test_on_rs232(self):
+        self.die(RS232, lambda: self.client.close())
+
+    def test_on_rs485(self):
+        self.die(RS485, self.reset_the_connection)
+
+    def test_on_its_own_can_protocol(self):
+        self.die(KEYA_CAN, self.reset_the_connection)
+
+    def test_on_canopen(self):
+        self.die(CANOPEN, lambda: self.client.close())
+
+
+class ScannerGoesOnWithoutItsProgram(KeyaStory):
+    """A PLC in STOP: it asks and writes as ever, and its heartbeat register does not change any more."""
+
+    def stop_the_program(self, interface):
+        self.begin(interface, lease={**LEASE, "renew": "heartbeat"})
+        self.beats = 0
+        for axis in self.axes:
+            self.beating(lambda axis=axis: self.enable(axis))
+            self.beating(lambda axis=axis: self.run_axis(axis))
+        self.let_pass(4, self.beat)
+        self.assertEqual((self.trips(), self.enabled(), self.speeds()), (0, [True, True], [SPEED, SPEED]))
+
+        def scanned():
+            for axis in self.axes:
+                axis.block()
+                self.scan(axis)
+            return self.enabled() == [False, False]
+
+        until("its axes are stopped", scanned)
+        self.until_it_stands()
+        for axis in self.seen:
+            axis.until_input("stop_latched")
+
+    def beat(self):
+        self.beats += 1
+        for axis in self.axes:
+            axis.set(heartbeat=self.beats % 0x10000)
+        return True
+
+    def beating(self, work):
+        self.beat()
+        work()
+        self.beat()
+
+    def scan(self, axis):
+        axis.set(heartbeat=self.beats % 0x10000)
+
+    def test_on_rs232(self):
+        self.stop_the_program(RS232)
+
+    def test_on_rs485(self):
+        self.stop_the_program(RS485)
+
+    def test_on_its_own_can_protocol(self):
+        self.stop_the_program(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.stop_the_program(CANOPEN)
+
+
+class LeaseWithoutAStop(KeyaStory):
+    """`on_expiry` none: nothing is sent, and that is what the drive's watchdog waits for."""
+
+    def die(self, interface):
+        self.begin(interface, lease={**LEASE, "on_expiry": "none"})
+        self.run_both()
+        for axis in self.seen:
+            axis.until(owner=NOBODY)
+        if not interface.loss:
+            self.assert_runs_on()
+            return
+        self.assert_stopped_by_its_watchdog()
+        for axis in self.seen:
+            axis.until(axis_state=DISABLED, error_code=0x8130)
+        self.assert_nothing_is_enabled_by_itself()
+        self.assert_fresh_enable_works()
+
+    def test_on_rs232(self):
+        self.die(RS232)
+
+    def test_on_rs485(self):
+        self.die(RS485)
+
+    def test_on_its_own_can_protocol(self):
+        self.die(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.die(CANOPEN)
+
+
+class TwoOwners(KeyaStory):
+    """Two clients with a motor each: the death of one stops its motor alone."""
+
+    def one_dies(self, interface):
+        self.begin(interface, lease=LEASE)
+        dying = self.axes[0]
+        living = self.connect().axis(2)
+        self.enable(living)
+        self.run_axis(living)
+        self.enable(dying)
+        self.run_axis(dying)
+        with self.refused(BUSY):
+            living.client.axis(1).set(target_velocity=0)
+
+        def alive():
+            living.get("axis_state")
+            return self.enabled() == [False, True] and self.speeds()[0] == 0
+
+        until("its motor stands without torque", alive)
+        self.let_pass(3, lambda: living.get("axis_state") == CONTINUOUS)
+        self.assertEqual((self.enabled(), self.speeds(), self.trips()), ([False, True], [0, SPEED], 0))
+
+    def test_on_rs232(self):
+        self.one_dies(RS232)
+
+    def test_on_rs485(self):
+        self.one_dies(RS485)
+
+    def test_on_its_own_can_protocol(self):
+        self.one_dies(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.one_dies(CANOPEN)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,104 @@
+"""A Keya restarts while both of its motors run: both axes are told, every motion has ended for good, and nothing is enabled by the
+gateway, however short the restart was."""
+from keya_stage import CANOPEN, KEYA_CAN, RS232, RS485, KeyaStory, main
+from modbus import DISABLED, FAILED, ONLINE
+from processes import until
+
+OVERCURRENT = "0x0040"  # fault 7: cleared by a disabling
+
+
+class RestartsInMotion(KeyaStory):
+    def restart(self, interface, boot_ms):
+        self.begin(interface, "--boot-ms", str(boot_ms))
+        motions = self.run_both()
+        self.ask("restart")
+        self.assertEqual(self.ask("restarts"), "1")
+
+        def is_up_and_stands():
+            state = self.ask("state")
+            self.assertIn(state, ("booting", "disabled disabled"))
+            return state != "booting" and self.speeds() == [0, 0]
+
+        until("it is up, and its motors have coasted", is_up_and_stands)
+        where = self.positions()
+        for axis, motion in zip(self.seen, motions):
+            axis.until(link_state=ONLINE, axis_state=DISABLED, motion_state=FAILED, motion_id=motion)
+        self.assert_nothing_is_enabled_by_itself(where)
+        for axis, position in zip(self.seen, where):
+            axis.until(position_actual=position)
+        self.assert_fresh_enable_works()
+
+
+class RestartsSlowly(RestartsInMotion):
+    boot_ms = 3000
+
+    def test_on_rs232(self):
+        self.restart(RS232, self.boot_ms)
+
+    def test_on_rs485(self):
+        self.restart(RS485, self.boot_ms)
+
+    def test_on_its_own_can_protocol(self):
+        self.restart(KEYA_CAN, self.boot_ms)
+
+    def test_on_canopen(self):
+        self.restart(CANOPEN, self.boot_ms)
+
+
+class RestartsAtOnce(RestartsInMotion):
+    """Faster than anybody could call it offline."""
+
+    boot_ms = 20
+
+    def test_on_rs232(self):
+        self.restart(RS232, self.boot_ms)
+
+    def test_on_rs485(self):
+        self.restart(RS485, self.boot_ms)
+
+    def test_on_its_own_can_protocol(self):
+        self.restart(KEYA_CAN, self.boot_ms)
+
+    def test_on_canopen(self):
+        self.restart(CANOPEN, self.boot_ms)
+
+
+class OneMotorTrips(KeyaStory):
+    """A fault of one motor is no business of the other's: nothing that is sent for the neighbour switches it on again."""
+
+    def trip(self, interface):
+        self.begin(interface)
+        self.run_both()
+        left, right = self.axes
+        self.ask("fault", "A", OVERCURRENT)
+        left.until(error_code=0x2310, vendor_error=0x0040, motion_state=FAILED)
+        self.assertEqual(self.enabled(), [False, True])
+        self.run_axis(right, 600)
+        self.ask("clear", "A", OVERCURRENT)
+        self.let_pass(3)
+        self.assertEqual((self.enabled(), self.speeds(), self.trips()), ([False, True], [0, 600], 0))
+        if not interface.on_can:  # a frame names both motors: whether its 0 for one is the disabling that clears is not stated
+            right.command("disable")
+        enabled = self.enabled()
+        left.command("fault_reset")
+        left.until(axis_state=DISABLED, error_code=0)
+        self.assertEqual(self.enabled(), enabled)
+        self.enable(left)
+        self.assertEqual(self.enabled(), [True, enabled[1]])
+        self.run_axis(left)
+
+    def test_on_rs232(self):
+        self.trip(RS232)
+
+    def test_on_rs485(self):
+        self.trip(RS485)
+
+    def test_on_its_own_can_protocol(self):
+        self.trip(KEYA_CAN)
+
+    def test_on_canopen(self):
+        self.trip(CANOPEN)
+
+
+if __name__ == "__main__":
+    main()
