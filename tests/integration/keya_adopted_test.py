@@ -1,7 +1,7 @@
 """A gateway is started while both motors of a Keya are enabled and run: it reads, lets them run, and its open lease is all that a start
 can lead to."""
 from keya_stage import ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, RPM, RS232, RS485, SPEED, KeyaStory, main
-from modbus import ALARM_ADOPTED, ALARM_STOP_LATCHED, CONTINUOUS, DISABLED, ONLINE
+from modbus import ALARM_ADOPTED, ALARM_STOP_LATCHED, DISABLED, ONLINE
 from processes import until
 
 NOBODY, ME = 0, 1
@@ -49,15 +49,14 @@ class FoundRunningOnRs485(KeyaStory):
         self.until_it_stands()
         self.assert_fresh_enable_works()
 
-    def test_a_client_that_runs_one_of_them_on_its_own(self):
+    def test_a_client_that_runs_one_of_them_is_refused_because_nobody_knows_what_the_other_was_told(self):
         left, right = self.axes
         for axis in self.axes:
             axis.set(heartbeat=1)
         left.set(target_velocity=2 * SPEED * RPM)
-        left.command("run_velocity")
-        left.until(axis_state=CONTINUOUS)
-        until("left is faster", lambda: self.speeds()[0] == 2 * SPEED)
-        self.assertIn(self.speeds()[1], range(SPEED + 1), "the other goes on or is stopped, and does nothing else")
+        with self.assertRaisesRegex(Exception, "0x04"):
+            left.command("run_velocity")
+        self.assertEqual((self.enabled(), self.speeds()), ([True, True], [SPEED, SPEED]))
         for axis in (right, left):
             axis.command("quick_stop")
         self.until_it_stands()

@@ -149,24 +149,6 @@ class ModeChosenByTheClient(KeyaStory):
         self.disable()
         self.assertFalse(self.left.get("valid") & target_position, f"target_position reads {self.left.get('target_position')}")
 
-    def test_from_speed_to_position_and_back(self):
-        self.disable()
-        where = self.positions()[0]
-        self.left.set(mode=1)
-        self.enable(self.left)
-        self.let_pass(2)
-        self.assertEqual((self.ask("state"), self.positions()[0]), ("absolute disabled", where), "an enable moves nothing")
-        self.left.set(target_position=where - TURN)
-        self.left.command("move_absolute")
-        self.left.until(motion_state=COMPLETED)
-        self.assertAlmostEqual(self.positions()[0], where - TURN, delta=10)
-        self.disable()
-        self.left.set(mode=3)
-        self.enable(self.left)
-        self.let_pass(2)
-        self.assertEqual((self.ask("state"), self.speeds()), ("speed disabled", [0, 0]), "an enable moves nothing")
-        self.run_axis(self.left)
-
 
 if __name__ == "__main__":
     main()
