@@ -89,7 +89,7 @@ std::optional<bus::Exchange> Drive::exchange_of(bus::OrderId id, bus::Priority p
     return fence(id);
   }
   if (owner != nullptr) {
-    if (const auto look = priority == bus::Priority::stop ? std::nullopt : look_before_frame()) {
+    if (const auto look = look_before_frame(priority == bus::Priority::stop)) {
       on_wire_.order = 0;
       return look;
     }

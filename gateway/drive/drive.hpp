@@ -87,7 +87,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   // What is commanded again and again, and frames that command all motors at once (drive_control.cpp).
   [[nodiscard]] bool shown_lately(ObjectId object) const;
   [[nodiscard]] std::vector<MotorShows> motors_show() const;
-  [[nodiscard]] std::optional<bus::Exchange> look_before_frame() const;
+  [[nodiscard]] std::optional<bus::Exchange> look_before_frame(bool stop) const;
   [[nodiscard]] std::optional<bus::Exchange> whole_frame(const bus::Exchange& exchange, bus::OrderId id,
                                                          bus::Priority priority);
   [[nodiscard]] bool may_repeat() const;

@@ -43,13 +43,14 @@ std::vector<MotorShows> Drive::motors_show() const {
 }
 
 // A frame tells the other motor as well: where something has made its state doubtful, or it is old, it is looked at
-// before.
-std::optional<bus::Exchange> Drive::look_before_frame() const {
-  if (model_.composed.empty()) return std::nullopt;
+// before. A stop is worth that look only where nothing but time has passed (this process was held up): without it the
+// frame would have to turn the other motor off.
+std::optional<bus::Exchange> Drive::look_before_frame(bool stop) const {
+  if (model_.composed.empty() || (stop && (fence_.suspect() || state_ != LinkState::online))) return std::nullopt;
   for (const AxisModel& axis : model_.axes) {
     if (!axis.virtual_axis) continue;
     for (const ObjectId id : {axis.virtual_axis->enabled.object, axis.virtual_axis->fault.object})
-      if (!shown_lately(id) && !store_[id].refused) return read(id);
+      if (!shown_lately(id) && !store_[id].refused && (!stop || store_[id].held)) return read(id);
   }
   return std::nullopt;
 }
