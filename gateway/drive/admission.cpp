@@ -123,8 +123,12 @@ Errc admit(const AxisCore& core, const Group& group) {
   if (group.mode && !writable(core, Quantity::mode)) return Errc::not_supported;
   if (group.controlword && !writable(core, Quantity::controlword)) return Errc::not_supported;
   if (group.set_position_value && !core.model.command(Command::set_position)) return Errc::not_supported;
+  const Binding* velocity = core.model.binding(Quantity::target_velocity);
+  if (group.jog_velocity && (velocity == nullptr || !core.model.command(Command::run_velocity)))
+    return Errc::not_supported;
   if (const Errc code = admit_command(core, group.command); code != Errc::ok) return code;
   if (group.object && !size_fits(core, *group.object)) return Errc::bad_value;
+  if (group.jog_velocity && !velocity->limits.holds(*group.jog_velocity)) return Errc::bad_value;
   for (const Setpoint& sp : group.setpoints) {
     const Binding* binding = core.model.binding(sp.quantity);
     if (!binding->limits.holds(sp.value) || !binding->to_raw(sp.value, core.object(binding->object)))
@@ -155,6 +159,7 @@ Group stop_alone(const Group& group) {
   out.setpoints.clear();
   out.mode.reset();
   out.set_position_value.reset();
+  out.jog_velocity.reset();
   out.object.reset();
   if (!is_stop(out.command)) out.command = Command::none;
   if (out.controlword && !is_stop(*out.controlword, out.single_controlword)) out.controlword.reset();

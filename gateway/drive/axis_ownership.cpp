@@ -77,11 +77,6 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
     default:
       break;
   }
-  if (group.jog_velocity) {
-    const Binding* velocity = core_.model.binding(Quantity::target_velocity);
-    if (velocity == nullptr || !core_.model.command(Command::run_velocity)) return refuse(asked, Errc::not_supported);
-    if (!velocity->limits.holds(*group.jog_velocity)) return refuse(asked, Errc::bad_value);
-  }
   if (asks_nothing(group)) {
     claim(group);
     publish(core_.now);

@@ -318,6 +318,17 @@ TEST(JogOnAnAxis, NeedsAVelocity) {
   EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::bad_value);
 }
 
+TEST(JogOnAnAxis, AStopIsCarriedOutWhateverJogVelocityStandsBesideIt) {
+  JoggedAxis axis;
+  Group stop = with_command(Command::quick_stop);
+  stop.jog_velocity = 4'000'000'000;
+  EXPECT_EQ(axis.ask(axis.plc, stop), Errc::bad_value);
+  EXPECT_TRUE(axis.latched());
+  stop.jog_velocity = 5'000;
+  EXPECT_EQ(axis.ask(axis.panel, stop), Errc::not_owner);
+  EXPECT_EQ(axis.rig.axis().jog_velocity, 60'000U) << "what is refused is not kept";
+}
+
 TEST(JogOnAnAxis, AnotherClientsStopEndsItForGood) {
   JoggedAxis axis;
   EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
