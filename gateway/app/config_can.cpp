@@ -85,8 +85,7 @@ void settle_can_buses(Config& config, std::vector<std::vector<drive::DriveModel>
                    fmt::format("an SDO request and its answer take at {} bit/s", bus.bitrate), faults);
     stretch_tpdos(bus, models[i]);
     stretch_confirming(bus, models[i]);
-    if (!bus.poll_given) bus.poll = comfortable_periods(plan_bus(timing_of(bus), models[i]));
-    for (drive::DriveModel& model : models[i]) model.poll_period = bus.poll;
+    settle_poll(bus, models[i]);
   }
 }
 

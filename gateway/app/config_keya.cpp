@@ -76,8 +76,7 @@ void settle_keya_buses(Config& config, std::vector<std::vector<drive::DriveModel
                    fmt::format("a query and its answer take on the wire at {}",
                                can ? fmt::format("{} bit/s", bus.bitrate) : fmt::format("{} baud", bus.baud)),
                    faults);
-    if (!bus.poll_given) bus.poll = comfortable_periods(plan_bus(timing_of(bus), models[i]));
-    for (drive::DriveModel& model : models[i]) model.poll_period = bus.poll;
+    settle_poll(bus, models[i]);
   }
 }
 

@@ -45,8 +45,7 @@ void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>
     check_nodes(bus, models[i], faults);
     settle_timeout(bus, models[i], longest_on_wire(bus, models[i]),
                    fmt::format("an exchange takes on the wire at {} baud", bus.baud), faults);
-    if (!bus.poll_given) bus.poll = comfortable_periods(plan_bus(timing_of(bus), models[i]));
-    for (drive::DriveModel& model : models[i]) model.poll_period = bus.poll;
+    settle_poll(bus, models[i]);
   }
 }
 

@@ -36,6 +36,8 @@ void warn_without_effect(const ConfigNode& root, ConfigFaults& faults);
 /// longer than the exchange. `takes`: what `on_wire` is the time of, for the message.
 void settle_timeout(BusConfig& bus, const std::vector<drive::DriveModel>& drives, Duration on_wire,
                     const std::string& takes, ConfigFaults& faults);
+/// Poll periods that nobody has given are what the line carries.
+void settle_poll(BusConfig& bus, std::vector<drive::DriveModel>& drives);
 /// modbus-rtu: timeouts and poll periods that nobody has given follow from the drives on the line.
 void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
 

@@ -8,10 +8,6 @@
 namespace axisgate::drive {
 namespace {
 
-bool is_target(Quantity q) {
-  return q == Quantity::target_position || q == Quantity::target_velocity || q == Quantity::target_torque;
-}
-
 bool writable(const AxisCore& core, Quantity q) { return (core.model.writable & bit(q)) != 0; }
 
 Errc admit_command(const AxisCore& core, Command command) {
@@ -75,17 +71,12 @@ std::optional<Errc> as_command(const AxisCore& core, ObjectId id, std::int64_t n
   return std::nullopt;
 }
 
-bool is_alias(const AxisCore& core, ObjectId id, ObjectId other) {
-  const auto& aliases = core.object(id).aliases;
-  return id == other || std::find(aliases.begin(), aliases.end(), other) != aliases.end();
-}
-
 // The quantity that a write of this object is one of; where several are at its place, that of the mode in force.
 const Binding* quantity_at(const AxisCore& core, ObjectId id) {
   const Binding* found = nullptr;
   const auto of_mode = setpoint_of_mode(core.mode_in_force());
   for (const Binding& binding : core.model.bindings) {
-    if (binding.object == kNoObject || !binding.writable || !is_alias(core, id, binding.object)) continue;
+    if (binding.object == kNoObject || !binding.writable || !same_place(core, id, binding.object)) continue;
     if (found == nullptr || of_mode == binding.quantity) found = &binding;
   }
   return found;

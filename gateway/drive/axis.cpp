@@ -9,6 +9,18 @@
 #include "gateway/drive/publisher.hpp"
 
 namespace axisgate::drive {
+namespace {
+
+bool asks_to_enable(const Group& group) {
+  return group.command == Command::enable ||
+         (group.controlword && request_of(*group.controlword) == Request402::enable_operation);
+}
+
+bool begins_anything(const Group& group) {
+  return asks_to_enable(group) || (group.command >= Command::move_absolute && group.command <= Command::set_position);
+}
+
+}  // namespace
 
 Axis::Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, AxisImage& image, AxisHost& host)
     : host_(host),
@@ -193,16 +205,6 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<GroupResult>& refus
 
 // --- Carrying it out -----------------------------------------------------------------------------------------------
 
-namespace {
-
-bool begins_anything(const Group& group) {
-  const bool commands = group.command == Command::enable ||
-                        (group.command >= Command::move_absolute && group.command <= Command::set_position);
-  return commands || (group.controlword && request_of(*group.controlword) == Request402::enable_operation);
-}
-
-}  // namespace
-
 std::optional<bus::Exchange> Axis::on_grant(bus::OrderId id) {
   Pending* pending = find(id);
   if (pending == nullptr) return std::nullopt;
@@ -244,9 +246,7 @@ bool Axis::stopping() const {
 
 bool Axis::enabling() const {
   return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
-    const Group& group = p.conversation->group();
-    const bool by_word = group.controlword && request_of(*group.controlword) == Request402::enable_operation;
-    return !p.conversation->is_stop() && p.conversation->begun() && (by_word || group.command == Command::enable);
+    return !p.conversation->is_stop() && p.conversation->begun() && asks_to_enable(p.conversation->group());
   });
 }
 

@@ -186,8 +186,8 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
       return;
     }
   }
-  on_control_result(exchange, result, asked, trusted);
   const ObjectId written = exchange.access == bus::Access::write ? model_.find(exchange.object) : kNoObject;
+  on_control_result(exchange, result, asked, written, trusted);
   if (asked.order != 0) {
     bool owned = asked.order == setup_order_;
     if (owned) carry_on_bring_up(exchange, result);

@@ -97,7 +97,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   /// Takes and gives up a place in the queue as it is needed; when it must be looked at again.
   [[nodiscard]] Instant schedule_keep_alive();
   void on_control_result(const bus::Exchange& exchange, const bus::ExchangeResult& result, const OnWire& asked,
-                         bool trusted);
+                         ObjectId written, bool trusted);
   void map_unasked();
   [[nodiscard]] std::optional<bus::Exchange> next_of_bring_up();
   /// A long object is under way in another order: an order that can wait does, any other ends it.

@@ -73,11 +73,9 @@ std::optional<bus::Exchange> Drive::whole_frame(const bus::Exchange& exchange, b
 // What all fields of a frame were told counts for each of them; a repetition changes nothing, whether it arrived or
 // not.
 void Drive::on_control_result(const bus::Exchange& exchange, const bus::ExchangeResult& result, const OnWire& asked,
-                              bool trusted) {
+                              ObjectId written, bool trusted) {
   if (asked.keeps_alive && exchange.access == bus::Access::read && !looked_just_now())
     keep_alive_.failed(*asked.keeps_alive, now());
-  if (exchange.access != bus::Access::write) return;
-  const ObjectId written = model_.find(exchange.object);
   if (written == kNoObject) return;
   if (asked.keeps_alive && result.code != Errc::ok) keep_alive_.failed(*asked.keeps_alive, now());
   if (result.code == Errc::refused_by_drive) return;

@@ -98,6 +98,24 @@ Errc admissible(const AxisCore& core, Command command) {
   }
 }
 
+// A drive leaves the quick stop at the ramp's end or stays in it (605Ah): either ends the wait, and then it is planned
+// anew.
+void add_look_at_ramp(const AxisCore& core, Plan& plan) {
+  constexpr Duration kBetweenLooks = std::chrono::milliseconds(20);
+  Condition left;
+  left.object = core.model.statusword;
+  left.mask = 0x6F;
+  left.test = Condition::Test::not_equals;
+  left.values = {0x07};
+  plan.add(Action::wait(left, kBetweenLooks, true));
+  const Binding* velocity = core.model.binding(Quantity::velocity_actual);
+  if (core.model.moving)
+    plan.add(Action::read(core.model.moving->object));
+  else if (velocity != nullptr && velocity->object != kNoObject)
+    plan.add(Action::read(velocity->object));
+  plan.add(Action::at(Mark::look_again));
+}
+
 Plan plan_enable(const AxisCore& core) {
   Plan plan;
   const AxisFacts facts = core.facts();
@@ -107,14 +125,10 @@ Plan plan_enable(const AxisCore& core) {
     plan.add(Action::at(Mark::enabled));
     return plan;
   }
+  // The first step takes the torque away: a ramp under way is let to its end before, however long the client waits.
   if (facts.state == State402::quick_stop_active && facts.moving) {
-    // The first step takes the torque away: a ramp under way is let to its end before.
-    Condition stopped;
-    stopped.object = core.model.statusword;
-    stopped.mask = 0x6F;
-    stopped.test = Condition::Test::not_equals;
-    stopped.values = {0x07};
-    plan.add(Action::wait(stopped, std::chrono::seconds(2), true));
+    add_look_at_ramp(core, plan);
+    return plan;
   }
   // Before torque comes on, velocity and torque set-points are made 0 and a position set-point the actual position.
   add_running_targets(core, false, plan);

@@ -5,10 +5,6 @@
 namespace axisgate::drive {
 namespace {
 
-bool target_of_a_mode(Quantity q) {
-  return q == Quantity::target_position || q == Quantity::target_velocity || q == Quantity::target_torque;
-}
-
 // How long a drive may take to show the mode it was given. No sheet says; two slow poll periods are ample.
 constexpr Duration kModeLimit = std::chrono::milliseconds(500);
 
@@ -120,6 +116,16 @@ std::optional<Quantity> setpoint_of_mode(int mode) {
   }
 }
 
+bool is_target(Quantity quantity) {
+  return quantity == Quantity::target_position || quantity == Quantity::target_velocity ||
+         quantity == Quantity::target_torque;
+}
+
+bool same_place(const AxisCore& core, ObjectId a, ObjectId b) {
+  const auto& aliases = core.object(a).aliases;
+  return a == b || std::find(aliases.begin(), aliases.end(), b) != aliases.end();
+}
+
 bool writes(const Plan& plan, ObjectId object) {
   return std::any_of(plan.actions.begin(), plan.actions.end(),
                      [&](const Action& a) { return a.kind == Action::Kind::write && a.object == object; });
@@ -136,13 +142,9 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
   }
   // Those without a quantity on this axis are nobody's to ask for: 0 in any unit.
   const auto& bindings = core.model.bindings;
-  const auto same_place = [&](ObjectId id, ObjectId other) {
-    const auto& aliases = core.object(id).aliases;
-    return id == other || std::find(aliases.begin(), aliases.end(), other) != aliases.end();
-  };
   for (const ObjectId id : core.model.zero_before_enable)
     if (std::none_of(bindings.begin(), bindings.end(),
-                     [&](const Binding& b) { return b.writable && same_place(id, b.object); }))
+                     [&](const Binding& b) { return b.writable && same_place(core, id, b.object); }))
       add_running_target(core, id, 0, plan, look_again);
   if (look_again) plan.add(Action::at(Mark::look_again));
 }
@@ -196,16 +198,12 @@ void add_changed_run(const AxisCore& core, const Group& group, Plan& plan) {
   plan.add(Action::at(Mark::start_velocity));
 }
 
-}  // namespace
-
-namespace {
-
 // What moves the axis by being written is kept for a start of its own mode, and acts at once only while that runs. The
 // drive is not asked for the number that it holds once more: keep-alive does that (profile key "keepalive").
 bool may_be_written(const AxisCore& core, const Setpoint& sp, const AxisFacts& facts) {
   const Binding* binding = core.model.binding(sp.quantity);
   const bool held_back = core.held_back(sp.quantity);
-  if (binding == nullptr || !moves_by_write(core, binding->object) || !target_of_a_mode(sp.quantity))
+  if (binding == nullptr || !moves_by_write(core, binding->object) || !is_target(sp.quantity))
     return core.motion.target_acts_now(sp.quantity, facts, held_back);
   const bool runs = facts.enabled() && facts.commanded && setpoint_of_mode(facts.mode) == sp.quantity;
   if (!runs || !core.motion.target_acts_now(sp.quantity, facts, true)) return false;

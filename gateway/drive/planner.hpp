@@ -77,6 +77,10 @@ void add_target_here(const AxisCore& core, Plan& plan);
 [[nodiscard]] bool moves_by_write(const AxisCore& core, ObjectId object);
 /// The set-point of this mode; none where it has none.
 [[nodiscard]] std::optional<Quantity> setpoint_of_mode(int mode);
+/// Position, velocity or torque: what a start goes by.
+[[nodiscard]] bool is_target(Quantity quantity);
+/// One object, or two at one place in the drive.
+[[nodiscard]] bool same_place(const AxisCore& core, ObjectId a, ObjectId b);
 /// The plan writes this object.
 [[nodiscard]] bool writes(const Plan& plan, ObjectId object);
 /// The steps of a command in the mode in force, or null where the drive has none.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "gateway/drive/planner.hpp"
+
 namespace axisgate::drive {
 namespace {
 
@@ -55,16 +57,7 @@ std::int64_t error_code(const AxisCore& core, const AxisFacts& facts) {
 // Where the set-points of several modes lie in one object (Keya: 6081h), it holds that of the mode in force alone.
 bool is_of_another_mode(const AxisCore& core, const AxisFacts& facts, const Binding& binding) {
   if (binding.object == kNoObject || core.object(binding.object).aliases.empty()) return false;
-  switch (binding.quantity) {
-    case Quantity::target_position:
-      return facts.mode != 1;
-    case Quantity::target_velocity:
-      return facts.mode != 3;
-    case Quantity::target_torque:
-      return facts.mode != 4;
-    default:
-      return false;
-  }
+  return is_target(binding.quantity) && setpoint_of_mode(facts.mode) != binding.quantity;
 }
 
 std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& facts, const Binding& binding) {

@@ -121,6 +121,20 @@ TEST_P(CanMotion, AQuickStopStopsLatchesAndOnlyAnEnableLetsItStartAgain) {
   EXPECT_FALSE(rig.axis().has(AxisInput::moving)) << "an enable never moves it";
 }
 
+TEST_P(CanMotion, AnEnableRightAfterAQuickStopIsDoneAsSoonAsTheMotorStands) {
+  // Whether the drive stays in quick stop active or leaves it by itself, and although its speed is told later.
+  for (int i = 0; i < 5; ++i) {
+    write(Quantity::target_velocity, 300'000);
+    ASSERT_EQ(command(Command::run_velocity), Errc::ok);
+    rig.stage.run(1s + i * 3ms);
+    ASSERT_EQ(command(Command::quick_stop), Errc::ok);
+    const Instant asked = rig.stage.runtime().now();
+    ASSERT_EQ(command(Command::enable), Errc::ok);
+    EXPECT_LE(rig.stage.runtime().now() - asked, 500ms) << "it stands after a few of these";
+    ASSERT_TRUE(stands());
+  }
+}
+
 TEST_P(CanMotion, ADisableTakesTheTorqueAwayAndNothingStartsWithTheNextEnable) {
   write(Quantity::target_velocity, 300'000);
   ASSERT_EQ(command(Command::run_velocity), Errc::ok);

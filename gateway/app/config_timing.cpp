@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "gateway/app/bus_budget.hpp"
 #include "gateway/app/config_sections.hpp"
 
 namespace axisgate::app {
@@ -20,6 +21,11 @@ void settle_timeout(BusConfig& bus, const std::vector<drive::DriveModel>& drives
                            bus.timeout / milliseconds(1), takes, static_cast<double>(on_wire.count()) / 1e6,
                            on_wire / milliseconds(1) + kRoom));
   }
+}
+
+void settle_poll(BusConfig& bus, std::vector<drive::DriveModel>& drives) {
+  if (!bus.poll_given) bus.poll = comfortable_periods(plan_bus(timing_of(bus), drives));
+  for (drive::DriveModel& model : drives) model.poll_period = bus.poll;
 }
 
 }  // namespace axisgate::app
