@@ -18,10 +18,10 @@ std::string source_of(AxisNumber axis) { return axis == 0 ? std::string("gateway
 }  // namespace
 
 Gateway::Gateway(const Config& config, Models models, Runtime& runtime, const Log& log, const MakeWire& make_wire)
-    : runtime_(runtime),
-      log_(log),
-      models_(std::move(models)),
-      events_([this](const Event& e) { log_.write(level_of(e.kind), source_of(e.axis), e.text); }) {
+    : runtime_(runtime), log_(log), models_(std::move(models)), events_([this](const Event& e) {
+        log_.write(level_of(e.kind), source_of(e.axis), e.text);
+        image_.changes.mark(0);
+      }) {
   image_.buses.resize(config.buses.size());
   for (std::size_t i = 0; i < config.buses.size(); ++i) add_bus(config.buses[i], i, make_wire);
   image_.refresh = [this] { refresh(); };
@@ -158,6 +158,7 @@ std::uint16_t Gateway::gateway_alarms() const {
   }
   const bool slow = slow_loop_at_ != kLongAgo && runtime_.now() - slow_loop_at_ < kSlowLoopShown;
   set(GatewayAlarm::event_loop_slow, slow);
+  set(GatewayAlarm::dds_process_down, dds_down_);
   return out;
 }
 

@@ -47,6 +47,8 @@ class Gateway final : public CommandPort {
   [[nodiscard]] const drive::Drive* drive_of(AxisNumber axis) const;
   /// The loop was this late once (the shell measures it).
   void report_loop_delay(Duration delay);
+  /// The DDS face is configured and its process does not run: gateway alarm "DDS process down".
+  void report_dds_down(bool down) { dds_down_ = down; }
   /// An event of the gateway itself, and so a line of the log.
   void report(EventKind kind, std::string text) { events_.add(runtime_.now(), 0, kind, 0, std::move(text)); }
 
@@ -72,6 +74,7 @@ class Gateway final : public CommandPort {
   Instant started_ = kLongAgo;
   Instant slow_loop_at_ = kLongAgo;
   bool stopping_ = false;
+  bool dds_down_ = false;
 };
 
 }  // namespace axisgate::app

@@ -60,4 +60,20 @@ std::string_view text(Errc code) { return row(code).text; }
 ModbusException modbus_exception(Errc code) { return row(code).exception; }
 CommandResult command_result(Errc code) { return row(code).result; }
 
+std::uint8_t dds_result(Errc code) {
+  if (row(code).result != CommandResult::none) return static_cast<std::uint8_t>(row(code).result);
+  switch (row(code).exception) {
+    case illegal_data_address:
+      return 16;
+    case illegal_data_value:
+      return 17;
+    case illegal_function:
+      return 18;
+    case server_device_busy:
+      return 19;
+    default:
+      return 20;
+  }
+}
+
 }  // namespace axisgate

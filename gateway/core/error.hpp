@@ -79,5 +79,8 @@ struct Outcome {
 [[nodiscard]] std::string_view text(Errc code);
 [[nodiscard]] ModbusException modbus_exception(Errc code);
 [[nodiscard]] CommandResult command_result(Errc code);
+/// `result` of a DDS reply (schemas/axisgate.idl): the command_result where there is one, else 16 not supported, 17 bad
+/// value, 18 the role may not do this, 19 busy, 20 no such axis.
+[[nodiscard]] std::uint8_t dds_result(Errc code);
 
 }  // namespace axisgate

@@ -51,6 +51,7 @@ void Axis::publish(Instant now) {
         image_.level_coils | (jog_.direction() == Command::jog_forward ? kJogForward : kJogReverse));
   if (!shows_the_same(before, image_)) {
     ++image_.sequence;
+    if (image_.board != nullptr) image_.board->mark(image_.number);
     tell_changes(before);
   }
 }

@@ -5,6 +5,11 @@ namespace {
 
 bool same_hand(const ClientLife& a, const ClientLife& b) { return a.origin == b.origin && a.role == b.role; }
 
+// Both are DDS writers: a Modbus client has no strength, and loses nothing to one that has.
+bool stronger(const ClientLife& a, const ClientLife& b) {
+  return a.strength && b.strength && *a.strength > *b.strength;
+}
+
 }  // namespace
 
 // A returning PLC must not wait for the lease of its own lost connection. Where that has not ended yet (a cable was
@@ -12,10 +17,10 @@ bool same_hand(const ClientLife& a, const ClientLife& b) { return a.origin == b.
 Ownership::Taken Ownership::how(const ClientLife& client, Instant now) const {
   if (!lease_.running) return Taken::free;
   if (!lease_.owner) return Taken::open;
+  if (stronger(client, *lease_.owner)) return Taken::weaker;
   if (!same_hand(*lease_.owner, client)) return Taken::lower_rank;
-  return lease_.owner->connected && now - lease_.owner->last_request <= lease_.rules.timeout / 2 ? Taken::lower_rank
-         : lease_.owner->connected                                                               ? Taken::half_open
-                                                                                                 : Taken::orphan;
+  if (!lease_.owner->connected) return Taken::orphan;
+  return now - lease_.owner->last_request > lease_.rules.timeout / 2 ? Taken::half_open : Taken::lower_rank;
 }
 
 Errc Ownership::judge(const ClientPtr& client, bool claims, Instant now) const {
@@ -80,6 +85,8 @@ std::string text(Ownership::Taken taken, const ClientLife& client) {
       return client.name + " is back and goes on as the owner: its connection had ended";
     case Ownership::Taken::half_open:
       return client.name + " is back and goes on as the owner: its other connection had fallen silent";
+    case Ownership::Taken::weaker:
+      return client.name + " has taken the axis over from a weaker DDS writer";
     case Ownership::Taken::lower_rank:
       return client.name + " has taken the axis over from a lower rank";
   }

@@ -20,8 +20,8 @@ class Ownership {
   Ownership(Lease& lease, const LeaseRules& rules) : lease_(lease) { lease_.rules = rules; }
 
   /// Whether what this client asks may be carried out: ok, or not_owner. `claims`: a write that would make it the
-  /// owner, and so may take over an orphan of its own address and role, or a lease whose connection is half open.
-  /// No client: the gateway itself, which is always admitted.
+  /// owner, and so may take over an orphan of its own address and role, a lease whose connection is half open, or a
+  /// weaker DDS writer's. No client: the gateway itself, which is always admitted.
   [[nodiscard]] Errc judge(const ClientPtr& client, bool claims, Instant now) const;
 
   /// How a client became the owner.
@@ -31,6 +31,7 @@ class Ownership {
     open,        ///< of an axis that was enabled without an owner
     orphan,      ///< of its own address, whose connection had ended
     half_open,   ///< of its own address, which had been silent
+    weaker,      ///< of a DDS writer of less strength
     lower_rank,  ///< by command take_over
   };
   /// After judge() has admitted its claim. The lease runs anew from now.

@@ -10,13 +10,14 @@
 
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
+#include "gateway/image/changes.hpp"
 #include "gateway/image/lease.hpp"
 #include "gateway/image/quantity.hpp"
 
 namespace axisgate {
 
 using AxisNumber = std::uint16_t;
-inline constexpr AxisNumber kMaxAxisNumber = 499;
+inline constexpr AxisNumber kMaxAxisNumber = ChangeBoard::kPlaces - 1;
 
 enum class LinkState : std::uint8_t { unknown = 0, setup = 1, online = 2, suspect = 3, offline = 4, link_down = 5 };
 enum class AxisState : std::uint8_t {
@@ -91,7 +92,8 @@ struct AxisImage {
   // Fixed when the gateway starts.
   AxisNumber number = 0;
   std::string name;
-  std::uint8_t bus = 0;  ///< position of its bus in the configuration
+  std::uint8_t bus = 0;          ///< position of its bus in the configuration
+  ChangeBoard* board = nullptr;  ///< marked with each step of `sequence`; none: nobody wants to know
   std::uint32_t supported = 0;
   std::uint32_t writable = 0;  ///< quantities of `supported` that can be written on this drive
   std::uint32_t supported_commands = 0;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "gateway/core/clock.hpp"
@@ -31,6 +32,10 @@ struct ClientLife {
   Instant last_request = kLongAgo;  ///< any request, reads included
   Instant heartbeat = kLongAgo;     ///< gateway register 8 was written with another value than before
   bool connected = true;            ///< false: its connection has ended, its leases are orphans
+  /// Of a DDS writer: OWNERSHIP_STRENGTH (DDS 1.4, 2.2.3.10). A stronger one takes an axis from a weaker one.
+  std::optional<std::int32_t> strength{};
+  /// What its leases last longer: nobody can hear it at present, and that is not its fault.
+  Duration grace{};
 };
 
 /// What keeps a lease alive.
@@ -63,7 +68,7 @@ struct Lease {
     Instant from = renewed;
     if (owner && rules.renew == LeaseRenewal::any) from = std::max(from, owner->last_request);
     if (owner && rules.renew == LeaseRenewal::heartbeat) from = std::max(from, owner->heartbeat);
-    return from + rules.timeout;
+    return from + rules.timeout + (owner ? owner->grace : Duration{});
   }
   [[nodiscard]] bool owned_by(ClientId client) const { return owner && owner->id == client; }
 };

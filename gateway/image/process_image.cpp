@@ -11,6 +11,7 @@ AxisImage& ProcessImage::add_axis(AxisNumber number, std::string name, std::uint
   axis->number = number;
   axis->name = std::move(name);
   axis->bus = bus;
+  axis->board = &changes;
   by_number_[number] = axis.get();
   const auto place =
       std::find_if(axes_.begin(), axes_.end(), [number](const auto& other) { return other->number > number; });

@@ -71,6 +71,7 @@ class ProcessImage {
 
   std::vector<BusImage> buses;  ///< in configuration order, at most kMaxBuses
   GatewayImage gateway;
+  ChangeBoard changes;
 
   /// Bus and gateway rows are gathered only when somebody looks: the gateway installs how.
   std::function<void()> refresh = [] {};

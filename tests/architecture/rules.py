@@ -9,6 +9,12 @@ ARROWS = {
     "gateway/core": set(),
     "gateway/image": {"gateway/core"},
     "gateway/drive": {"gateway/image", "adapters/bus", "gateway/core"},
+    # The DDS face in two processes: what they say to each other, the gateway's half, the half with the DDS library, and whoever
+    # starts that one and carries packets between the two.
+    "gateway/upstream/dds_link": {"gateway/core"},
+    "gateway/upstream/dds": {"gateway/upstream/dds_link", "gateway/image", "gateway/core"},
+    "gateway/upstream/dds_process": {"gateway/upstream/dds_link", "gateway/core"},
+    "gateway/upstream/dds_host": {"gateway/upstream/dds", "gateway/upstream/dds_link", "gateway/image", "gateway/core"},
     "gateway/upstream/*": {"gateway/image", "gateway/core"},
     "adapters/bus": {"gateway/core"},
     "adapters/asio": {"gateway/core"},
@@ -28,14 +34,14 @@ EVERYTHING = ("gateway/app", "gateway/main.cpp", "tests")
 ONE_PLACE = {
     r"<modbus(/modbus)?\.h>": ("adapters/modbus_rtu/",),
     r"<linux/can": ("adapters/can/", "tests/axisgate_sim/", "tests/unit/can/", "tests/vcan/", "tests/bench/"),
-    r"<fastdds|<fastrtps": ("gateway/upstream/dds/",),
+    r"<fastdds|<fastrtps|PubSubTypes": ("gateway/upstream/dds_process/", "deploy/examples/"),
     r"<termios\.h>|<sys/inotify\.h>|<linux/serial\.h>": ("adapters/serial/",),
     r"<valijson/": ("gateway/drive/json_schema.cpp",),
-    r"<CLI/": ("gateway/app/command_line.cpp",),
+    r"<CLI/": ("gateway/app/command_line.cpp", "gateway/upstream/dds_process/options.cpp"),
 }
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
-DECIDING = ("gateway/core/", "gateway/image/", "gateway/drive/", "gateway/upstream/modbus_tcp/", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_", "adapters/canopen/", "adapters/keya/",
+DECIDING = ("gateway/core/", "gateway/image/", "gateway/drive/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/", "gateway/upstream/dds_host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_", "adapters/canopen/", "adapters/keya/",
             "adapters/can/can_", "adapters/can/lawicel", "gateway/app/config_", "gateway/app/bus_budget", "gateway/app/check.")
 SHELLS = tuple(f"gateway/upstream/modbus_tcp/{shell}" for shell in ("server", "listener", "connection"))
 IMPURE = re.compile(r'#include <(boost/asio|boost/beast|sys/socket|sys/epoll|poll\.h|thread|mutex|condition_variable|atomic|random)'

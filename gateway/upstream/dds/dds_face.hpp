@@ -1,0 +1,58 @@
+// The DDS face of the gateway: what axisgate-dds is told of the image, and what DDS clients ask of axes (design 4).
+// Promises that the newest state of an axis wins where the process is slow, that every request gets exactly one reply,
+// and that a DDS client is admitted, owns, leases and is refused as a Modbus client is. Never blocks, never knows a
+// socket, a process or a DDS type, and never sends what it was not asked for by next().
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "gateway/image/command_port.hpp"
+#include "gateway/image/events.hpp"
+#include "gateway/image/process_image.hpp"
+#include "gateway/upstream/dds/dds_settings.hpp"
+#include "gateway/upstream/dds_link/records.hpp"
+
+namespace axisgate::dds {
+
+/// Gateway state goes out this often.
+inline constexpr Duration kGatewayPeriod = std::chrono::seconds(1);
+/// DDS writers whose requests are taken at the same time; those of others are refused (queue_full).
+inline constexpr std::size_t kMaxWriters = kMaxBeats;
+/// What leases of DDS clients last longer once, when axisgate-dds has died (design 4).
+inline constexpr Duration kGrace = std::chrono::seconds(3);
+/// How long a request id is remembered, and how many of all writers together: beyond that new requests are refused.
+inline constexpr Duration kRequestsKept = std::chrono::seconds(10);
+inline constexpr std::size_t kMaxRequestsKept = 8192;
+/// Replies and events that wait for the socket.
+inline constexpr std::size_t kMaxRepliesWaiting = 256;
+inline constexpr std::size_t kMaxEventsWaiting = 64;
+
+class DdsFace {
+ public:
+  /// Takes image.changes for itself (its wake() calls `wake`, which arms a timer and no more). Axes, units and settings
+  /// stay as they are.
+  DdsFace(DdsSettings settings, ProcessImage& image, const EventRing& events, CommandPort& commands,
+          std::function<void()> wake);
+  ~DdsFace();
+  DdsFace(const DdsFace&) = delete;
+  DdsFace& operator=(const DdsFace&) = delete;
+
+  /// axisgate-dds is there and knows nothing yet: states of all axes and the newest events follow.
+  void on_link_up(Instant now);
+  /// It is gone: nothing is to be sent, and its clients' leases get their grace.
+  void on_link_down(Instant now);
+  /// What it has sent. Replies may be due at once: call next().
+  void on_record(const Record& record, Instant now);
+
+  /// What is to be sent now: replies before events before states. None: nothing before wake_at(), or the next wake().
+  /// The record counts as sent: call it only where the socket has room, or keep the record until it has.
+  [[nodiscard]] std::optional<Record> next(Instant now);
+  [[nodiscard]] Instant wake_at() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace axisgate::dds

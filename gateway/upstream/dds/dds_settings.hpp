@@ -1,0 +1,43 @@
+// The settings of the DDS face (configuration key "dds", design sections 4 and 5), with their defaults.
+// Promises values within their documented ranges: the configuration was checked before.
+// Never changes while the gateway runs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/core/clock.hpp"
+#include "gateway/core/rational.hpp"
+#include "gateway/image/axis_image.hpp"
+#include "gateway/image/lease.hpp"
+
+namespace axisgate::dds {
+
+/// How the values of one axis become SI (design 2).
+struct AxisUnits {
+  AxisNumber axis = 0;
+  Rational units_per_rev{10000};
+  std::optional<Rational> metres_per_rev{};  ///< "dds_unit": "m"; none: rad
+};
+
+struct DdsSettings {
+  std::uint32_t domain = 0;                      ///< 0..232
+  std::vector<std::string> interfaces{"lo"};     ///< by name or address; of a host with others, these alone are used
+  bool shared_memory = false;                    ///< the shared memory transport beside UDP
+  std::vector<std::string> peers{};              ///< addresses of participants to look for; then nothing is multicast
+  std::vector<std::string> discovery_servers{};  ///< "192.168.1.5:11811"
+  std::string qos_file{};                        ///< Fast DDS XML profiles; empty: none
+  bool commands = false;                         ///< axis_command and object_request are read
+  Role role = Role::engineer;                    ///< of every DDS writer
+  bool ros2 = false;                             ///< rt/joint_states
+  Duration min_period = std::chrono::milliseconds(10);
+  Duration max_period = std::chrono::milliseconds(1000);
+  Duration start_deadline = std::chrono::milliseconds(500);  ///< as start_deadline_ms of a listener
+  Duration reply_deadline = std::chrono::milliseconds(900);  ///< as reply_deadline_ms of a listener
+  std::uint32_t memory_limit_mib = 512;                      ///< of axisgate-dds, which is ended beyond it
+  std::vector<AxisUnits> units{};                            ///< one an axis
+};
+
+}  // namespace axisgate::dds

@@ -1,0 +1,200 @@
+// What the gateway and axisgate-dds say to each other over their socket pair (design 7 point 10): one record a packet.
+// Promises that every record has a bound (kMaxPacket) and that one of another version, an unknown kind or a wrong
+// length is refused whole. Never knows a DDS type, a socket or a clock.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "gateway/core/bytes.hpp"
+
+namespace axisgate::dds {
+
+/// First byte of each packet. Both ends are installed together: another version is another installation.
+inline constexpr std::uint8_t kLinkVersion = 1;
+inline constexpr std::size_t kMaxPacket = 16 * 1024;
+inline constexpr std::size_t kMaxName = 64;
+inline constexpr std::size_t kMaxText = 256;
+inline constexpr std::size_t kMaxBusesShown = 100;
+inline constexpr std::size_t kMaxBeats = 64;  ///< DDS writers that may command at the same time
+
+/// DDSI-RTPS GUID of a DataWriter: 12 bytes of its participant's prefix, 4 of the entity id.
+using Guid = std::array<std::uint8_t, 16>;
+/// On the steady clock, in nanoseconds: it is the same one in both processes. 0: unknown.
+using SteadyNs = std::int64_t;
+
+// --- From the gateway ------------------------------------------------------------------------------------------------
+
+/// One snapshot of one axis (IDL AxisState); doubles are SI, NaN where there is no value.
+struct StateRecord {
+  std::uint16_t axis = 0;
+  std::string name;
+  SteadyNs at = 0;  ///< when its newest value was received
+  std::uint32_t sequence = 0;
+  std::uint16_t statusword = 0;
+  std::int16_t mode = 0;
+  double position = 0;
+  double velocity = 0;
+  double torque = 0;
+  double current = 0;
+  double following_error = 0;
+  std::uint16_t error_code = 0;
+  std::uint32_t vendor_error = 0;
+  std::uint16_t inputs = 0;
+  std::uint16_t outputs = 0;
+  double drive_temperature = 0;
+  double motor_temperature = 0;
+  double voltage = 0;
+  std::uint8_t axis_state = 0;
+  std::uint8_t motion_state = 0;
+  std::uint16_t motion_id = 0;
+  std::uint32_t alarms = 0;
+  std::uint8_t link_state = 0;
+  std::uint32_t supported = 0;
+  std::uint32_t valid = 0;
+  friend bool operator==(const StateRecord&, const StateRecord&) = default;
+};
+
+struct EventRecord {
+  std::uint16_t axis = 0;
+  SteadyNs at = 0;
+  std::uint64_t number = 0;
+  std::uint8_t kind = 0;
+  std::uint32_t code = 0;
+  std::string text;
+  friend bool operator==(const EventRecord&, const EventRecord&) = default;
+};
+
+struct BusRecord {
+  std::string name;
+  std::uint8_t link = 0;
+  std::uint16_t load_permille = 0;
+  std::uint16_t cycle_ms = 0;
+  std::uint16_t queue_depth = 0;
+  /// requests, replies, timeouts, bad_frames, late_replies, dropped_bytes, refused, coalesced, superseded, reconnects
+  std::array<std::uint32_t, 10> counters{};
+  friend bool operator==(const BusRecord&, const BusRecord&) = default;
+};
+
+struct GatewayRecord {
+  std::uint8_t state = 0;
+  std::uint16_t axis_count = 0;
+  std::uint16_t axes_online = 0;
+  std::uint32_t uptime_s = 0;
+  std::uint16_t alarms = 0;
+  std::uint32_t events_lost = 0;
+  std::vector<BusRecord> buses;  ///< at most kMaxBusesShown
+  friend bool operator==(const GatewayRecord&, const GatewayRecord&) = default;
+};
+
+struct ReplyRecord {
+  std::uint16_t axis = 0;
+  std::uint64_t request_id = 0;
+  Guid writer{};
+  std::uint8_t result = 0;
+  std::uint32_t detail = 0;
+  friend bool operator==(const ReplyRecord&, const ReplyRecord&) = default;
+};
+
+struct ObjectReplyRecord {
+  std::uint16_t axis = 0;
+  std::uint64_t request_id = 0;
+  Guid writer{};
+  std::uint8_t result = 0;
+  std::uint32_t detail = 0;
+  std::uint32_t value = 0;
+  std::vector<Byte> data;  ///< at most kMaxObjectBytes
+  friend bool operator==(const ObjectReplyRecord&, const ObjectReplyRecord&) = default;
+};
+
+// --- From axisgate-dds -----------------------------------------------------------------------------------------------
+
+/// The participant is there and all topics are.
+struct ReadyRecord {
+  std::string version;  ///< of the program, for the log
+  friend bool operator==(const ReadyRecord&, const ReadyRecord&) = default;
+};
+
+/// A line for the gateway's log.
+struct LogRecord {
+  std::uint8_t level = 0;  ///< as LogLevel
+  std::string text;
+  friend bool operator==(const LogRecord&, const LogRecord&) = default;
+};
+
+/// A DataWriter of axis_command or object_request was matched, or is gone (deleted, its liveliness or its participant
+/// lost).
+struct WriterRecord {
+  Guid writer{};
+  std::int32_t strength = 0;
+  bool gone = false;
+  std::string where;  ///< its locator, for names in events: "192.168.1.7"; empty: not known
+  friend bool operator==(const WriterRecord&, const WriterRecord&) = default;
+};
+
+/// Writers whose liveliness was good when this was sent, each time at least every kBeatPeriod. Only those that have
+/// stated a finite lease: a writer with an endless one proves nothing by being silent.
+struct BeatRecord {
+  struct Beat {
+    Guid writer{};
+    bool manual = false;  ///< MANUAL_BY_TOPIC or MANUAL_BY_PARTICIPANT: its program says so, not its library
+    friend bool operator==(const Beat&, const Beat&) = default;
+  };
+  std::vector<Beat> beats;  ///< at most kMaxBeats
+  friend bool operator==(const BeatRecord&, const BeatRecord&) = default;
+};
+
+/// A sample of axis_command, as it came: nothing of it has been checked.
+struct CommandRecord {
+  Guid writer{};
+  std::uint16_t axis = 0;
+  std::uint64_t request_id = 0;
+  std::uint8_t command = 0;
+  std::int16_t mode = 0;
+  std::uint32_t mask = 0;
+  double target_position = 0;
+  double target_velocity = 0;
+  double target_torque = 0;
+  double max_torque = 0;
+  double profile_velocity = 0;
+  double profile_acceleration = 0;
+  double profile_deceleration = 0;
+  double jog_velocity = 0;
+  double set_position_value = 0;
+  std::int16_t homing_method = 0;
+  friend bool operator==(const CommandRecord&, const CommandRecord&) = default;
+};
+
+/// A sample of object_request, as it came.
+struct ObjectRequestRecord {
+  Guid writer{};
+  std::uint16_t axis = 0;
+  std::uint64_t request_id = 0;
+  bool write = false;
+  std::uint16_t index = 0;
+  std::uint8_t subindex = 0;
+  std::uint8_t size = 0;
+  std::uint32_t value = 0;
+  std::vector<Byte> data;  ///< at most kMaxObjectBytes
+  friend bool operator==(const ObjectRequestRecord&, const ObjectRequestRecord&) = default;
+};
+
+/// In the order of their kinds on the wire.
+using Record = std::variant<StateRecord, EventRecord, GatewayRecord, ReplyRecord, ObjectReplyRecord, ReadyRecord,
+                            LogRecord, WriterRecord, BeatRecord, CommandRecord, ObjectRequestRecord>;
+
+/// Texts and lists longer than their bound are cut.
+[[nodiscard]] std::vector<Byte> encode(const Record& record);
+
+enum class DecodeError : std::uint8_t { none, too_short, version, kind, length };
+struct Decoded {
+  Record record;
+  DecodeError error = DecodeError::none;
+};
+[[nodiscard]] Decoded decode(Bytes packet);
+[[nodiscard]] std::string_view text(DecodeError error);
+
+}  // namespace axisgate::dds
