@@ -9,6 +9,7 @@
 #include "gateway/app/adapter_names.hpp"
 #include "gateway/app/bus_budget.hpp"
 #include "gateway/app/check_can.hpp"
+#include "gateway/app/check_dds.hpp"
 #include "gateway/app/check_lines.hpp"
 #include "gateway/app/check_masters.hpp"
 
@@ -132,7 +133,7 @@ std::string units_text(const AxisConfig& config) {
 }
 
 void add_axis(std::string& out, const MasteredAxis& whole) {
-  const auto& [config, axis, drive, budget] = whole;
+  const auto& [config, axis, drive, budget, dds] = whole;
   out += fmt::format("\nAxis {} \"{}\": {}, registers {} to {}\n", config.number, config.name, drive.title,
                      config.number * 100, config.number * 100 + 99);
   add_line(out, "units", units_text(config) + counter_text(config, axis, drive));
@@ -167,8 +168,12 @@ CheckReport check(const LoadedConfig& loaded) {
     for (std::size_t d = 0; d < bus.drives.size(); ++d) {
       const drive::DriveModel& model = loaded.models[b][d];
       for (std::size_t a = 0; a < model.axes.size(); ++a)
-        add_axis(out, {bus.drives[d].axes[a], model.axes[a], model, budgets[b]});
+        add_axis(out, {bus.drives[d].axes[a], model.axes[a], model, budgets[b], config.dds});
     }
+  }
+  if (config.dds) {
+    out += fmt::format("\n{}\n", dds_title(*config.dds));
+    add_lines(out, dds_lines(*config.dds));
   }
   out += "\nNo function of this gateway is a safety function: emergency stop and STO are wired.\n";
   for (const std::string& warning : lease_warnings(loaded, budgets)) out += "warning: " + warning + "\n";

@@ -7,6 +7,7 @@
 #include "gateway/app/check.hpp"
 #include "gateway/app/descriptor_needs.hpp"
 #include "gateway/app/faults_told.hpp"
+#include "gateway/upstream/dds_host/program.hpp"
 #include "gateway/upstream/modbus_tcp/descriptors.hpp"
 
 namespace axisgate::app {
@@ -21,6 +22,13 @@ int run(const CheckOptions& options) {
       modbus_tcp::plan_descriptors(modbus_tcp::descriptor_limits(), descriptor_needs(loaded.config));
   // The limit belongs to a process, not to the file: a service may have another.
   if (descriptors.limited()) fmt::print("warning: started from here, {}\n", modbus_tcp::text(descriptors));
+  if (loaded.config.dds) {
+    const dds::Program program = dds::find_program();
+    if (program.path.empty())
+      fmt::print("warning: there will be no DDS topics, axisgate-dds is not installed: {}\n", program.why_not);
+    else
+      fmt::print("axisgate-dds, which publishes the topics: {}\n", program.path);
+  }
   if (!report.overloaded) return 0;
   std::fflush(stdout);
   fmt::print(stderr, "{}: a bus is planned over 100 %, see OVERLOADED above\n", options.config);

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "gateway/app/check_dds.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -163,7 +166,8 @@ void each_axis(const LoadedConfig& loaded, const std::vector<BusBudget>& budgets
     for (std::size_t d = 0; d < loaded.models[b].size(); ++d) {
       const drive::DriveModel& drive = loaded.models[b][d];
       for (std::size_t a = 0; a < drive.axes.size(); ++a)
-        function(MasteredAxis{loaded.config.buses[b].drives[d].axes[a], drive.axes[a], drive, budgets[b]});
+        function(MasteredAxis{loaded.config.buses[b].drives[d].axes[a], drive.axes[a], drive, budgets[b],
+                              loaded.config.dds});
     }
 }
 
@@ -250,6 +254,9 @@ ReportLines master_lines(const MasteredAxis& axis) {
     out.emplace_back("lease",
                      fmt::format("{:.0f} ms, kept by {}", in_ms(axis.config.lease.timeout), signs_of_life(axis)));
     add_program_dies(out, axis);
+    if (axis.dds) {
+      for (auto& line : dds_master_lines(*axis.dds, axis.config, axis.budget)) out.push_back(std::move(line));
+    }
   } else {
     out.emplace_back("lease", "null: nobody owns it");
     out.emplace_back("program dies", "THE AXIS GOES ON: nobody notices");

@@ -3,6 +3,7 @@
 // this drive, and what the drive does by itself. Never looks at a running gateway.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct MasteredAxis {
   const drive::AxisModel& model;
   const drive::DriveModel& drive;
   const BusBudget& budget;  ///< of its bus
+  const std::optional<dds::DdsSettings>& dds;
 };
 
 [[nodiscard]] ReportLines master_lines(const MasteredAxis& axis);

@@ -13,6 +13,7 @@
 #include "gateway/app/run_command.hpp"
 #include "gateway/app/scan_command.hpp"
 #include "gateway/app/top_command.hpp"
+#include "gateway/app/topics_command.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -26,6 +27,7 @@ struct Parsed {
   CheckOptions check;
   MapOptions map;
   TopOptions top;
+  TopicsOptions topics;
   ProfileCheckOptions profile;
   CommissionOptions commission;
   ScanOptions scan;
@@ -100,6 +102,25 @@ void add_top(CLI::App& app, Parsed& parsed) {
   command->add_flag("--plain", parsed.top.plain, "print one table after the other, for pipes and logs");
   command->footer("Example: axisgate top 127.0.0.1:1502");
   command->callback([&parsed] { parsed.exit_code = run(parsed.top); });
+}
+
+void add_topics(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = app.add_subcommand("topics", "Show all axes live, as DDS subscribers see them");
+  command->add_option("CONFIG", parsed.topics.config, "the gateway's configuration file: where it publishes");
+  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
+      ->type_name("DIR");
+  command->add_option("--domain", parsed.topics.domain, "DDS domain; goes before that of CONFIG")
+      ->check(CLI::Range(0, 232).description(""))
+      ->type_name("N");
+  command
+      ->add_option("--interface", parsed.topics.interfaces,
+                   "network interface, by name or IPv4 address; may be given more than once")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command->add_flag("--once", parsed.topics.once, "print what is there and end");
+  command->add_flag("--json", parsed.topics.json, "one JSON object a line for each sample");
+  command->footer("Example: axisgate topics /etc/axisgate/gateway.json");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.topics); });
 }
 
 void add_profile(CLI::App& app, Parsed& parsed) {
@@ -187,6 +208,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_check(app, parsed);
   add_map(app, parsed);
   add_top(app, parsed);
+  add_topics(app, parsed);
   add_profile(app, parsed);
   add_commission(app, parsed);
   add_scan(app, parsed);

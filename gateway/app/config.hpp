@@ -14,6 +14,7 @@
 #include "gateway/core/rational.hpp"
 #include "gateway/image/axis_image.hpp"
 #include "gateway/image/command.hpp"
+#include "gateway/upstream/dds/dds_settings.hpp"
 #include "gateway/upstream/modbus_tcp/listener_settings.hpp"
 
 namespace axisgate::app {
@@ -37,9 +38,10 @@ struct AxisConfig {
   Duration homing_timeout = std::chrono::seconds(60);
   LeaseRules lease;
   Duration jog_timeout = std::chrono::milliseconds(500);
-  std::string motor;      ///< "A", "B": which of the drive's motors; empty: as many as stand before it in the list
-  bool vertical = false;  ///< the load falls where the torque is taken away
-  std::string pointer;    ///< JSON pointer of the entry, for messages
+  std::string motor;  ///< "A", "B": which of the drive's motors; empty: as many as stand before it in the list
+  std::optional<Rational> metres_per_rev{};  ///< what DDS shows it in; none: rad
+  bool vertical = false;                     ///< the load falls where the torque is taken away
+  std::string pointer;                       ///< JSON pointer of the entry, for messages
   /// Not in the file: its profile says that a quick stop ends without torque.
   bool stop_without_torque = false;
 };
@@ -78,6 +80,7 @@ struct BusConfig {
 struct Config {
   std::string file;
   std::vector<modbus_tcp::ListenerSettings> modbus_tcp;
+  std::optional<dds::DdsSettings> dds;
   std::vector<BusConfig> buses;
 };
 

@@ -72,6 +72,7 @@ AxisConfig read_axis(const ConfigNode& node, ConfigFaults& faults) {
   axis.jog_timeout = node.milliseconds("jog_timeout_ms", axis.jog_timeout);
   axis.motor = node.string("motor").value_or("");
   axis.vertical = node.flag("vertical", false);
+  axis.metres_per_rev = read_metres_per_rev(node, faults);
   read_lease(node, axis, faults);
   return axis;
 }

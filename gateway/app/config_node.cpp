@@ -45,10 +45,14 @@ std::optional<std::int64_t> ConfigNode::integer(std::string_view key) const {
   return node ? node->integer() : std::nullopt;
 }
 
+std::optional<std::string> ConfigNode::string() const {
+  if (!json_->is_string()) return std::nullopt;
+  return json_->get<std::string>();
+}
+
 std::optional<std::string> ConfigNode::string(std::string_view key) const {
   const auto node = child(key);
-  if (!node || !node->json_->is_string()) return std::nullopt;
-  return node->json_->get<std::string>();
+  return node ? node->string() : std::nullopt;
 }
 
 bool ConfigNode::flag(std::string_view key, bool otherwise) const {

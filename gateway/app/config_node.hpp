@@ -35,6 +35,7 @@ class ConfigNode {
 
   [[nodiscard]] std::optional<std::int64_t> integer() const;
   [[nodiscard]] std::optional<std::int64_t> integer(std::string_view key) const;
+  [[nodiscard]] std::optional<std::string> string() const;
   [[nodiscard]] std::optional<std::string> string(std::string_view key) const;
   [[nodiscard]] bool flag(std::string_view key, bool otherwise) const;
   [[nodiscard]] Duration milliseconds(std::string_view key, Duration otherwise) const;

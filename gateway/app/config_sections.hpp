@@ -21,10 +21,15 @@ void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults);
 [[nodiscard]] std::vector<BusConfig> read_buses(const ConfigNode& root, ConfigFaults& faults);
 [[nodiscard]] DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
 [[nodiscard]] AxisConfig read_axis(const ConfigNode& node, ConfigFaults& faults);
+/// The section "dds", with the units of all axes.
+[[nodiscard]] std::optional<dds::DdsSettings> read_dds(const ConfigNode& root, const std::vector<BusConfig>& buses,
+                                                       ConfigFaults& faults);
+/// An axis's keys "dds_unit" and "metres_per_rev"; no value: rad.
+[[nodiscard]] std::optional<Rational> read_metres_per_rev(const ConfigNode& axis, ConfigFaults& faults);
 
 /// Names, numbers, devices and stations that may be there once only, over the whole file.
 void check_unique(const Config& config, ConfigFaults& faults);
-/// Keys that are right and have no effect in this version: one warning for each.
+/// Keys that are right and have no effect as things stand: one warning for each.
 void warn_without_effect(const ConfigNode& root, ConfigFaults& faults);
 
 /// The profiles of all drives, resolved for their axes. Drives with mistakes of their own are left out.

@@ -1,9 +1,11 @@
 // What a configuration asks of the limit on open files.
-// Promises to count every client that the listeners may let in, and every bus with a port of its own.
+// Promises to count every client that the listeners may let in, every bus with a port of its own, and what joins
+// axisgate-dds.
 // Never looks at the system.
 #pragma once
 
 #include "gateway/app/config.hpp"
+#include "gateway/upstream/dds_host/child_process.hpp"
 #include "gateway/upstream/modbus_tcp/descriptor_plan.hpp"
 
 namespace axisgate::app {
@@ -12,6 +14,7 @@ namespace axisgate::app {
   modbus_tcp::DescriptorNeeds needs;
   needs.listeners = config.modbus_tcp.size();
   needs.buses = config.buses.size();
+  needs.others = config.dds ? dds::kDescriptorsNeeded : 0;
   for (const auto& listener : config.modbus_tcp) needs.clients += listener.max_clients;
   return needs;
 }

@@ -8,6 +8,8 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <optional>
+#include <utility>
 
 #include "adapters/asio/asio_runtime.hpp"
 #include "gateway/app/config_loader.hpp"
@@ -17,6 +19,7 @@
 #include "gateway/app/gateway.hpp"
 #include "gateway/app/loop_watch.hpp"
 #include "gateway/app/stderr_log.hpp"
+#include "gateway/upstream/dds_host/dds_server.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
 #include "gateway/upstream/modbus_tcp/descriptors.hpp"
 #include "gateway/upstream/modbus_tcp/server.hpp"
@@ -43,10 +46,17 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   boost::asio::io_context io(1);
   AsioRuntime runtime(io);
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not
+  std::signal(SIGCHLD, SIG_DFL);  // inherited as ignored, it would hide how axisgate-dds ends
   const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(descriptor_needs(loaded.config));
   modbus_tcp::ClientRegistry clients;
   Gateway gateway(loaded.config, std::move(loaded.models), runtime, log, device_wires(io, runtime, log));
   modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log);
+  std::optional<dds::DdsServer> dds;
+  if (loaded.config.dds) {
+    dds.emplace(io, runtime, *loaded.config.dds, gateway.image(), gateway.events(), gateway, log,
+                dds::DdsReports{[&](EventKind kind, std::string text) { gateway.report(kind, std::move(text)); },
+                                [&](bool down) { gateway.report_dds_down(down); }});
+  }
   try {
     server.start(descriptors);
   } catch (const std::exception& error) {
@@ -55,6 +65,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   }
   if (descriptors.limited()) gateway.report(EventKind::warning, modbus_tcp::text(descriptors));
   gateway.start();
+  if (dds) dds->start();
   LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code& error, int signal) {
@@ -69,6 +80,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
     io.stop();
   });
   io.run();
+  if (dds) dds->stop();
   return 0;
 }
 

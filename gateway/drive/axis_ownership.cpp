@@ -17,6 +17,9 @@ bool asks_nothing(const Group& group) {
          !group.set_position_value && !group.object && !group.jog_velocity;
 }
 
+/// It has no connection that could end.
+bool is_dds(const ClientLife& client) { return client.strength.has_value(); }
+
 bool is_jog(Command command) { return command == Command::jog_forward || command == Command::jog_reverse; }
 
 std::string in_words(Command stop) { return stop == Command::quick_stop ? "quick stop" : std::string(text(stop)); }
@@ -182,14 +185,15 @@ void Axis::end_expired_lease() {
   std::string what = "nobody has taken over the enabled axis";
   if (expired->owner) {
     what = "the lease of " + expired->owner->name + " has run out";
-    if (!expired->owner->connected) what += " after its connection had ended";
+    if (!expired->owner->connected)
+      what += is_dds(*expired->owner) ? " after it had gone" : " after its connection had ended";
   }
   const bool acts = core_.facts().enabled() || writes_wait;
   if (!acts || action == Command::none) {
     host_.event(image_.number, EventKind::lease, 0, what + (acts ? ": nothing is done (on_expiry none)" : ""));
     return;
   }
-  if (expired->owner && !expired->owner->connected)
+  if (expired->owner && !expired->owner->connected && !is_dds(*expired->owner))
     what += " (one-shot tools need \"lease\": null or \"client\": \"address\")";
   host_.event(image_.number, EventKind::lease, static_cast<std::uint32_t>(action), what + ": " + in_words(action));
   stop_by_itself(action, true, [this](const GroupResult& result) { on_lease_action(result); });
@@ -220,7 +224,8 @@ void Axis::on_client_gone(ClientId client) {
   if (ownership_.rules().on) {
     if (ownership_.is_owner(client))
       host_.event(image_.number, EventKind::lease, 0,
-                  ownership_.owner()->name + " has closed its connection: its lease goes on until it runs out");
+                  ownership_.owner()->name + (is_dds(*ownership_.owner()) ? " is gone" : " has closed its connection") +
+                      ": its lease goes on until it runs out");
     return;
   }
   // Leases are off: others go on with what they were told. But where neither the drive nor anybody else would ever stop

@@ -82,7 +82,8 @@ std::string text(Ownership::Taken taken, const ClientLife& client) {
     case Ownership::Taken::open:
       return client.name + " owns the axis, which was enabled without an owner";
     case Ownership::Taken::orphan:
-      return client.name + " is back and goes on as the owner: its connection had ended";
+      return client.name + (client.strength ? " goes on as the owner, for another writer of its participant"
+                                            : " is back and goes on as the owner: its connection had ended");
     case Ownership::Taken::half_open:
       return client.name + " is back and goes on as the owner: its other connection had fallen silent";
     case Ownership::Taken::weaker:

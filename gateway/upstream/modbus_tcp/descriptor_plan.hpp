@@ -26,8 +26,11 @@ struct DescriptorNeeds {
   std::uint32_t clients = 0;  ///< max_clients of all listeners
   std::uint64_t listeners = 1;
   std::uint64_t buses = 0;
+  std::uint64_t others = 0;  ///< of other faces
   /// All but the clients.
-  [[nodiscard]] std::uint64_t reserve() const { return kBaseDescriptors + kDescriptorsPerBus * buses + listeners; }
+  [[nodiscard]] std::uint64_t reserve() const {
+    return kBaseDescriptors + kDescriptorsPerBus * buses + listeners + others;
+  }
   /// The limit under which every client finds room above 1023.
   [[nodiscard]] std::uint64_t limit() const { return kSelectLimit + clients + reserve(); }
 };

@@ -50,7 +50,7 @@ class Masters : public ::testing::Test {
 
   std::string said() {
     std::string out;
-    add_lines(out, master_lines({config(), drive().axes[0], drive(), budgets[0]}));
+    add_lines(out, master_lines({config(), drive().axes[0], drive(), budgets[0], loaded.config.dds}));
     return out;
   }
   std::string warned() {

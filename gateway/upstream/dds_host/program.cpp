@@ -1,0 +1,57 @@
+#include "gateway/upstream/dds_host/program.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace axisgate::dds {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool can_run(const fs::path& file) {
+  std::error_code error;
+  return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
+}
+
+}  // namespace
+
+Program find_program() {
+  if (const char* const named = std::getenv("AXISGATE_DDS_PROGRAM"); named != nullptr && *named != '\0') {
+    if (can_run(named)) return {named, {}};
+    return {{}, "AXISGATE_DDS_PROGRAM names " + std::string(named) + ", which is no program"};
+  }
+  std::error_code error;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  const fs::path beside = folder / "axisgate-dds";
+  const fs::path libexec = folder.parent_path() / "libexec/axisgate/axisgate-dds";
+  for (const fs::path& file : {beside, libexec})
+    if (can_run(file)) return {file.string(), {}};
+  return {{},
+          "there is neither " + beside.string() + " nor " + libexec.string() +
+              "; it is built with the CMake option AXISGATE_DDS=ON (Debian packages libfastrtps-dev, fastddsgen and "
+              "default-jre-headless)"};
+}
+
+std::vector<std::string> participant_arguments(const DdsSettings& settings) {
+  std::vector<std::string> out{"--domain=" + std::to_string(settings.domain)};
+  for (const auto& interface : settings.interfaces) out.push_back("--interface=" + interface);
+  if (settings.shared_memory) out.emplace_back("--shared-memory");
+  for (const auto& peer : settings.peers) out.push_back("--peer=" + peer);
+  for (const auto& server : settings.discovery_servers) out.push_back("--discovery-server=" + server);
+  if (!settings.qos_file.empty()) out.push_back("--qos-file=" + settings.qos_file);
+  return out;
+}
+
+std::vector<std::string> serve_arguments(const DdsSettings& settings, int link_descriptor) {
+  std::vector<std::string> out{"serve", "--link-fd=" + std::to_string(link_descriptor)};
+  const auto participant = participant_arguments(settings);
+  out.insert(out.end(), participant.begin(), participant.end());
+  if (settings.commands) out.emplace_back("--commands");
+  if (settings.ros2) out.emplace_back("--ros2");
+  out.push_back("--memory-limit-mib=" + std::to_string(settings.memory_limit_mib));
+  return out;
+}
+
+}  // namespace axisgate::dds

@@ -1,0 +1,40 @@
+#include "gateway/upstream/dds_host/restart_plan.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace axisgate::dds {
+namespace {
+
+std::string seconds_text(Duration time) {
+  const auto tenths = std::chrono::duration_cast<std::chrono::milliseconds>(time).count() / 100;
+  const std::string whole = std::to_string(tenths / 10);
+  return (tenths % 10 == 0 ? whole : whole + "." + std::to_string(tenths % 10)) + " s";
+}
+
+}  // namespace
+
+std::string RestartPlan::on_ready(const std::string& version, Instant now) {
+  ready_ = now;
+  told_.reset();
+  const std::uint32_t failed = std::exchange(failed_, 0);
+  std::string told = "axisgate-dds " + version + " runs";
+  if (failed > 1) told += ", after " + std::to_string(failed) + " ends";
+  return told;
+}
+
+RestartPlan::Next RestartPlan::on_end(const ProcessEnd& end, Instant now) {
+  if (ready_ && now - *ready_ >= kRanWell) pause_ = kFirstPause;
+  ready_.reset();
+  Next next;
+  next.pause = std::exchange(pause_, std::min(pause_ * 2, kLongestPause));
+  ++failed_;
+  if (told_ == end) return next;
+  told_ = end;
+  const bool missing = end.how == ProcessEnd::How::not_found;
+  next.told = text(end) + (missing ? "; it is looked for again from time to time"
+                                   : "; started again in " + seconds_text(next.pause));
+  return next;
+}
+
+}  // namespace axisgate::dds

@@ -1,0 +1,43 @@
+// When axisgate-dds is started again after an end, and what is told of it.
+// Promises a quick first restart, pauses that double while it fails, and one message a change: an end that only repeats
+// the one before is counted, not told. Never starts or ends a process itself.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "gateway/core/clock.hpp"
+#include "gateway/upstream/dds_host/restart_cause.hpp"
+
+namespace axisgate::dds {
+
+/// Topics are back within 2 s of a crash: this, and the time that a participant needs.
+inline constexpr Duration kFirstPause = std::chrono::milliseconds(200);
+inline constexpr Duration kLongestPause = std::chrono::seconds(30);
+/// So long after it was ready it counts as sound, and the next pause is the first again.
+inline constexpr Duration kRanWell = std::chrono::seconds(60);
+/// From its start to its ReadyRecord.
+inline constexpr Duration kReadyWithin = std::chrono::seconds(10);
+/// From the end of the connection to the end of the process.
+inline constexpr Duration kEndsWithin = std::chrono::seconds(2);
+
+class RestartPlan {
+ public:
+  /// What is told, once, when it is ready.
+  [[nodiscard]] std::string on_ready(const std::string& version, Instant now);
+
+  struct Next {
+    Duration pause{};
+    std::optional<std::string> told{};  ///< none: it repeats what was told last
+  };
+  [[nodiscard]] Next on_end(const ProcessEnd& end, Instant now);
+
+ private:
+  std::optional<Instant> ready_{};
+  Duration pause_ = kFirstPause;
+  std::optional<ProcessEnd> told_{};  ///< since it was ready last
+  std::uint32_t failed_ = 0;          ///< ends since it was ready last
+};
+
+}  // namespace axisgate::dds

@@ -1,0 +1,15 @@
+// With what axisgate-dds ends, so that the gateway can say why and try again as often as it makes sense.
+// Promises that the numbers never change within one installation; 64 and 70 are those of sysexits.h.
+// Never says more than the program knows: an end by a signal has no code.
+#pragma once
+
+namespace axisgate::dds {
+
+inline constexpr int kExitGatewayGone = 0;   ///< the socket was closed: nobody is left to work for
+inline constexpr int kExitUsage = 64;        ///< the command line: will be the same next time
+inline constexpr int kExitInternal = 70;     ///< what should not happen
+inline constexpr int kExitParticipant = 71;  ///< no participant or topic: an interface, a port, the QoS file
+inline constexpr int kExitProtocol = 72;     ///< a packet that is no record: two versions of the programs
+inline constexpr int kExitMemory = 73;       ///< its memory limit
+
+}  // namespace axisgate::dds
