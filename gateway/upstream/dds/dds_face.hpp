@@ -44,6 +44,9 @@ class DdsFace {
   void on_link_down(Instant now);
   /// What it has sent. Replies may be due at once: call next().
   void on_record(const Record& record, Instant now);
+  /// The reply to one more record has a place. Read nothing from the process before it has: of requests beyond that
+  /// nobody is told, and nothing in them but a stop is carried out.
+  [[nodiscard]] bool has_room() const;
 
   /// What is to be sent now: replies before events before states. None: nothing before wake_at(), or the next wake().
   /// The record counts as sent: call it only where the socket has room, or keep the record until it has.

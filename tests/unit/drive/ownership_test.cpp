@@ -143,6 +143,66 @@ TEST_F(Owned, ReleaseFreesADisabledAxisAndLeavesAnEnabledOneOpen) {
   EXPECT_TRUE(expired->was_open);
 }
 
+TEST_F(Owned, AStrongerDdsWriterTakesTheAxisFromAWeakerOneByAClaimAlone) {
+  const auto weak = client(11, "participant a");
+  const auto strong = client(12, "participant b");
+  weak->strength = 5;
+  strong->strength = 6;
+  weak->last_request = strong->last_request = kStart;
+  Ownership o = of(rules);
+  EXPECT_EQ(o.take(weak, kStart), Taken::free);
+  EXPECT_EQ(o.judge(strong, false, kStart), Errc::not_owner) << "not by what claims nothing";
+  EXPECT_EQ(o.judge(strong, true, kStart), Errc::ok);
+  EXPECT_EQ(o.take(strong, kStart + 1s), Taken::weaker);
+  EXPECT_EQ(o.until(), kStart + 3s) << "the lease runs anew";
+  EXPECT_EQ(o.judge(weak, true, kStart + 1s), Errc::not_owner);
+  weak->strength = 6;
+  EXPECT_EQ(o.judge(weak, true, kStart + 1s), Errc::not_owner) << "who is as strong is not stronger";
+  EXPECT_NE(text(Taken::weaker, *strong).find("weaker DDS writer"), std::string::npos);
+}
+
+TEST_F(Owned, StrengthIsNothingToAModbusClient) {
+  const auto strong = client(12, "participant b");
+  strong->strength = INT32_MAX;
+  Ownership o = owned(rules, kStart);
+  EXPECT_EQ(o.judge(strong, true, kStart), Errc::not_owner);
+  ASSERT_EQ(o.release(plc, false, kStart), Errc::ok);
+  strong->strength = INT32_MIN;
+  EXPECT_EQ(o.take(strong, kStart), Taken::free);
+  EXPECT_EQ(o.judge(plc, true, kStart), Errc::not_owner) << "nor does it make one strong";
+}
+
+TEST_F(Owned, GraceMakesALeaseLongerByItselfAndNotEachTime) {
+  Ownership o = owned(rules, kStart);
+  plc->grace = 3s;
+  EXPECT_EQ(o.until(), kStart + 5s);
+  EXPECT_FALSE(o.take_expired(kStart + 4999ms));
+  EXPECT_TRUE(o.live(kStart + 4999ms));
+  plc->grace = 3s;
+  EXPECT_EQ(o.until(), kStart + 5s);
+  const auto expired = o.take_expired(kStart + 5s);
+  ASSERT_TRUE(expired);
+  EXPECT_EQ(expired->owner, plc);
+  EXPECT_EQ(o.take(panel, kStart + 6s), Taken::free);
+  EXPECT_EQ(o.until(), kStart + 8s) << "another client's lease has none of it";
+}
+
+TEST_F(Owned, GraceOfAnyRenewalIsAddedToWhatRenewsIt) {
+  for (const LeaseRenewal renew : {LeaseRenewal::any, LeaseRenewal::write, LeaseRenewal::heartbeat}) {
+    lease = {};
+    rules.renew = renew;
+    Ownership o = owned(rules, kStart);
+    plc->grace = 3s;
+    EXPECT_EQ(o.until(), kStart + 5s);
+    plc->last_request = plc->heartbeat = kStart + 1s;
+    o.wrote(plc, true, kStart + 1s);
+    EXPECT_EQ(o.until(), kStart + 6s);
+    plc->grace = {};
+    plc->heartbeat = kLongAgo;
+    EXPECT_EQ(o.until(), kStart + 3s);
+  }
+}
+
 TEST_F(Owned, AnAxisFoundEnabledIsOpenUntilItsLeaseRunsOut) {
   Ownership o = of(rules);
   o.open(kStart);

@@ -1,0 +1,155 @@
+#include "gateway/upstream/dds/dds_clients.hpp"
+
+#include <algorithm>
+
+#include "gateway/upstream/dds/dds_face.hpp"
+
+namespace axisgate::dds {
+namespace {
+
+constexpr std::size_t kPrefix = 12;    // DDSI-RTPS 2.2, 9.3.1: GuidPrefix_t
+constexpr std::size_t kEntityKey = 3;  // 9.3.1.2; the last byte of the GUID is the entity's kind
+
+/// Where a writer comes from is its participant: a new writer of it takes an orphan of an old one over.
+Origin origin_of(const Guid& writer) {
+  Origin origin{};
+  std::copy_n(writer.begin(), kPrefix, origin.begin());
+  return origin;
+}
+
+std::string hex(const Guid& guid, std::size_t from, std::size_t count) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string out;
+  for (std::size_t i = from; i < from + count; ++i) {
+    out += kDigits[guid[i] >> 4U];
+    out += kDigits[guid[i] & 0xFU];
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string client_name(const Guid& writer, const std::string& where) {
+  const std::string guid = hex(writer, 0, kPrefix) + ":" + hex(writer, kPrefix, kEntityKey);
+  return where.empty() ? "dds " + guid : "dds " + where + " " + guid;
+}
+
+DdsClient* DdsClients::find(const Guid& writer) {
+  const auto found = clients_.find(writer);
+  return found == clients_.end() ? nullptr : &found->second;
+}
+
+std::shared_ptr<ClientLife> DdsClients::new_life(const Guid& writer) {
+  auto life = std::make_shared<ClientLife>();
+  life->id = next_id_++;
+  life->role = role_;
+  life->origin = origin_of(writer);
+  life->name = client_name(writer, {});
+  life->strength = 0;
+  return life;
+}
+
+DdsClient* DdsClients::known(const Guid& writer) {
+  if (DdsClient* const found = find(writer)) return found;
+  if (clients_.size() >= kMaxWriters) return nullptr;
+  DdsClient& added = clients_[writer];
+  added.life = new_life(writer);
+  return &added;
+}
+
+std::shared_ptr<ClientLife> DdsClients::stranger(const Guid& writer, Instant now) {
+  auto life = new_life(writer);
+  life->last_request = now;
+  return life;
+}
+
+// A grace ends where it is needed no longer. A lease that only a write renews may be kept by nothing else until its
+// owner, who is back, has had the time to write.
+void DdsClients::heard(ClientLife& life, Instant now) {
+  life.last_request = now;
+  if (life.grace == Duration{}) return;
+  const bool needed = std::any_of(image_.axes().begin(), image_.axes().end(), [&](const auto& axis) {
+    return axis->lease.owned_by(life.id) && axis->lease.until() - life.grace <= now;
+  });
+  if (!needed) life.grace = Duration{};
+}
+
+void DdsClients::on_writer(const WriterRecord& record, Instant now) {
+  if (record.gone) {
+    if (const auto found = clients_.find(record.writer); found != clients_.end()) forget(found);
+  } else if (DdsClient* const client = known(record.writer)) {
+    client->life->strength = record.strength;
+    client->life->name = client_name(record.writer, record.where);
+    client->returns_by = kNever;
+    heard(*client->life, now);
+  }
+  look_at_deadlines();
+}
+
+void DdsClients::on_beats(const BeatRecord& record, Instant now) {
+  for (const BeatRecord::Beat& beat : record.beats) {
+    DdsClient* const client = find(beat.writer);
+    if (client == nullptr) continue;
+    heard(*client->life, now);
+    if (beat.manual) client->life->heartbeat = now;
+    client->returns_by = kNever;
+  }
+  look_at_deadlines();
+}
+
+DdsClient* DdsClients::on_sample(const Guid& writer, Instant now) {
+  const bool is_new = find(writer) == nullptr;
+  DdsClient* const client = known(writer);
+  if (client == nullptr) return nullptr;
+  heard(*client->life, now);
+  if (is_new || client->returns_by != kNever) {
+    client->returns_by = now + kReturnsWithin;
+    look_at_deadlines();
+  }
+  return client;
+}
+
+std::shared_ptr<ClientLife> DdsClients::asks_for_objects(const ClientLife& owner, const ClientLife& other) const {
+  if (owner.id == other.id || owner.origin != other.origin) return nullptr;
+  for (const auto& [guid, client] : clients_)
+    if (client.life->id == owner.id && !client.commands) return client.life;
+  return nullptr;
+}
+
+void DdsClients::on_link_up(Instant now) {
+  link_up_ = true;
+  for (auto& [guid, client] : clients_) client.returns_by = now + kReturnsWithin;
+  look_at_deadlines();
+}
+
+// Once: it is a time added to when a client was last heard, so a second loss of the link before that adds nothing.
+void DdsClients::on_link_down() {
+  link_up_ = false;
+  for (auto& [guid, client] : clients_) client.life->grace = kGrace;
+  look_at_deadlines();
+}
+
+DdsClients::Clients::iterator DdsClients::forget(Clients::iterator client) {
+  const std::shared_ptr<ClientLife> life = client->second.life;
+  life->connected = false;
+  life->grace = Duration{};
+  const auto next = clients_.erase(client);
+  commands_.client_gone(life->id);
+  return next;
+}
+
+void DdsClients::on_time(Instant now) {
+  if (now < deadline_) return;
+  for (auto each = clients_.begin(); each != clients_.end();)
+    each = each->second.returns_by <= now ? forget(each) : std::next(each);
+  look_at_deadlines();
+}
+
+// While the link is down nobody can come back.
+void DdsClients::look_at_deadlines() {
+  deadline_ = kNever;
+  if (!link_up_) return;
+  for (const auto& [guid, client] : clients_) deadline_ = std::min(deadline_, client.returns_by);
+}
+
+}  // namespace axisgate::dds

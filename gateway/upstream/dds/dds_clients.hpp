@@ -1,0 +1,83 @@
+// The DDS writers as clients of the gateway: one ClientLife each, by which leases are judged (design 3.5 and 4).
+// Promises that their number is bounded, that a writer whose end is told or who does not come back is dead to its
+// leases, and that the silence of axisgate-dds itself is not taken for theirs for as long as their grace. Never speaks
+// to an axis, but to say that a client is gone.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "gateway/image/command_port.hpp"
+#include "gateway/image/process_image.hpp"
+#include "gateway/upstream/dds_link/records.hpp"
+
+namespace axisgate::dds {
+
+/// Ids of DDS writers are from here on: below are those of Modbus clients.
+inline constexpr ClientId kFirstDdsClient = ClientId{1} << 63U;
+/// Writers that were not told of (or not again, after axisgate-dds was started anew) for so long are gone: their grace,
+/// and the time in which a new participant finds the others.
+inline constexpr Duration kReturnsWithin = std::chrono::seconds(8);
+
+/// A jog command is a button that is pressed: the same one again is the button held, until command 33, or the other
+/// direction. So nothing that has ended the jog meanwhile is undone by a button that is still held (design 3.4).
+struct HeldJog {
+  Command direction = Command::none;
+  std::uint64_t request_id = 0;  ///< of the press
+  bool starting = true;          ///< it has no result yet
+};
+
+/// One writer. `life` is never null and outlives the client where it owns an axis.
+struct DdsClient {
+  std::shared_ptr<ClientLife> life;
+  std::map<AxisNumber, HeldJog> held{};
+  bool commands = false;        ///< it writes axis_command; else it may be one that asks for objects alone
+  Instant returns_by = kNever;  ///< kNever: it was told of since the link is up
+};
+
+class DdsClients {
+ public:
+  DdsClients(Role role, const ProcessImage& image, CommandPort& commands)
+      : role_(role), image_(image), commands_(commands) {}
+
+  void on_writer(const WriterRecord& record, Instant now);
+  void on_beats(const BeatRecord& record, Instant now);
+  /// Who sends this sample: known from now on, also where the record of it is still to come. nullptr: too many.
+  [[nodiscard]] DdsClient* on_sample(const Guid& writer, Instant now);
+  /// One of those that are too many, for a stop, which is open to everybody.
+  [[nodiscard]] std::shared_ptr<ClientLife> stranger(const Guid& writer, Instant now);
+  /// nullptr where it is unknown or gone.
+  [[nodiscard]] DdsClient* find(const Guid& writer);
+
+  /// This owner of an axis asks for objects alone, and `other` is of the same participant: one program with two
+  /// writers, since the topics are two. nullptr: it is not so.
+  [[nodiscard]] std::shared_ptr<ClientLife> asks_for_objects(const ClientLife& owner, const ClientLife& other) const;
+
+  void on_link_up(Instant now);
+  void on_link_down();
+  /// Forgets those that did not come back.
+  void on_time(Instant now);
+  [[nodiscard]] Instant deadline() const { return deadline_; }
+  [[nodiscard]] std::size_t size() const { return clients_.size(); }
+
+ private:
+  using Clients = std::map<Guid, DdsClient>;
+  [[nodiscard]] std::shared_ptr<ClientLife> new_life(const Guid& writer);
+  [[nodiscard]] DdsClient* known(const Guid& writer);
+  void heard(ClientLife& life, Instant now);
+  Clients::iterator forget(Clients::iterator client);
+  void look_at_deadlines();
+
+  Role role_;
+  const ProcessImage& image_;
+  CommandPort& commands_;
+  Clients clients_;
+  ClientId next_id_ = kFirstDdsClient;
+  bool link_up_ = false;
+  Instant deadline_ = kNever;
+};
+
+/// "dds 192.168.1.7 010f3c7a2b1d000001000000:000003".
+[[nodiscard]] std::string client_name(const Guid& writer, const std::string& where);
+
+}  // namespace axisgate::dds

@@ -1,0 +1,39 @@
+// One axis's units: registers on one side, SI on the other (design 2).
+// Promises that a double is the one nearest to the exact value, that a register value is the nearest, half away from
+// zero, and that what is shown and written back is the same register value again. Never wraps: what does not fit is no
+// value.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "gateway/image/quantity.hpp"
+#include "gateway/upstream/dds/dds_settings.hpp"
+#include "gateway/upstream/dds/double_double.hpp"
+
+namespace axisgate::dds {
+
+class DdsUnits {
+ public:
+  explicit DdsUnits(const AxisUnits& units = {});
+
+  /// `shown` as registers show it; NaN where that is the number that stands for no value.
+  [[nodiscard]] double to_si(Quantity quantity, std::int64_t shown) const;
+  /// No value: NaN, infinite, or outside what a register of this kind can hold.
+  [[nodiscard]] std::optional<std::int64_t> to_register(Quantity quantity, double si) const;
+  /// The same for rows that are no quantities (jog_velocity, set_position_value).
+  [[nodiscard]] std::optional<std::int64_t> to_register(Kind kind, RegisterType type, double si) const;
+
+ private:
+  /// SI = register * numerator / denominator.
+  struct Scale {
+    DoubleDouble numerator{1};
+    DoubleDouble denominator{1};
+  };
+  [[nodiscard]] const Scale& scale(Kind kind) const { return scales_[static_cast<std::size_t>(kind)]; }
+
+  std::array<Scale, static_cast<std::size_t>(Kind::voltage) + 1> scales_{};
+};
+
+}  // namespace axisgate::dds

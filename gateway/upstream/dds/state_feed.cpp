@@ -1,0 +1,41 @@
+#include "gateway/upstream/dds/state_feed.hpp"
+
+#include <algorithm>
+
+namespace axisgate::dds {
+
+void StateFeed::place(Place& place, Instant at) {
+  queue_.erase(place.turn);
+  place.turn.at = at;
+  place.turn.order = ++order_;
+  queue_.insert(place.turn);
+}
+
+void StateFeed::add(AxisNumber axis, Instant now) {
+  Place& added = places_[axis];
+  added.turn.axis = axis;
+  place(added, now);
+}
+
+void StateFeed::changed(AxisNumber axis, Instant now) {
+  const auto found = places_.find(axis);
+  if (found == places_.end()) return;
+  const Instant due = std::max(now, found->second.sent + min_period_);
+  // It keeps a turn that it has already.
+  if (due < found->second.turn.at) place(found->second, due);
+}
+
+void StateFeed::all_due(Instant now) {
+  for (auto& [axis, each] : places_) place(each, now);
+}
+
+std::optional<AxisNumber> StateFeed::next(Instant now) {
+  if (due() > now) return std::nullopt;
+  const AxisNumber axis = queue_.begin()->axis;
+  Place& sent = places_.at(axis);
+  sent.sent = now;
+  place(sent, now + max_period_);
+  return axis;
+}
+
+}  // namespace axisgate::dds

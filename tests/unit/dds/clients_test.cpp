@@ -1,0 +1,183 @@
+// DDS writers as clients: who they are, when they are heard, and when they are gone.
+#include "gateway/upstream/dds/dds_clients.hpp"
+
+#include <gmock/gmock.h>
+
+#include "gateway/upstream/dds/dds_face.hpp"
+#include "tests/unit/dds/fake_port.hpp"
+#include "tests/unit/dds/samples.hpp"
+
+namespace axisgate::dds {
+namespace {
+
+using namespace std::chrono_literals;
+using test::beat;
+using test::guid;
+using test::writer_gone;
+using test::writer_there;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
+
+struct Writers : testing::Test {
+  ProcessImage image;
+  test::FakePort port;
+  DdsClients clients{Role::operator_, image, port};
+  Writers() {
+    image.add_axis(1, "lift", 0);
+    clients.on_link_up(kStart);
+  }
+  std::shared_ptr<ClientLife> there(const Guid& writer, std::int32_t strength = 0, Instant now = kStart) {
+    clients.on_writer(writer_there(writer, strength), now);
+    return clients.find(writer)->life;
+  }
+};
+
+TEST_F(Writers, AreClientsOfTheirOwnWithTheSettingsRole) {
+  const auto a = there(guid(1), 5);
+  const auto b = there(guid(1, 2));
+  const auto c = there(guid(2));
+  EXPECT_GE(a->id, kFirstDdsClient) << "never a Modbus client's";
+  EXPECT_NE(a->id, b->id);
+  EXPECT_EQ(a->role, Role::operator_);
+  EXPECT_EQ(a->rank, 0);
+  EXPECT_EQ(a->strength, 5);
+  EXPECT_EQ(a->origin, b->origin) << "of one participant";
+  EXPECT_NE(a->origin, c->origin);
+  EXPECT_EQ(a->name, "dds 192.168.1.7 010f01000000000000000000:000001");
+  EXPECT_NE(a->name, b->name);
+  EXPECT_EQ(client_name(guid(1), ""), "dds 010f01000000000000000000:000001");
+}
+
+TEST_F(Writers, AreHeardByTheirBeatsAndAManualOneIsAHeartbeat) {
+  const auto life = there(guid(1));
+  clients.on_beats(beat(guid(1)), kStart + 1s);
+  EXPECT_EQ(life->last_request, kStart + 1s);
+  EXPECT_EQ(life->heartbeat, kLongAgo) << "its library lives, which says nothing of its program";
+  clients.on_beats(beat(guid(1), true), kStart + 2s);
+  EXPECT_EQ(life->heartbeat, kStart + 2s);
+}
+
+TEST_F(Writers, ABeatOfNobodyMakesNobody) {
+  clients.on_beats(beat(guid(9)), kStart);
+  EXPECT_EQ(clients.size(), 0U);
+}
+
+TEST_F(Writers, OneThatIsGoneIsDeadToItsLeasesAndItsAxesAreTold) {
+  const auto life = there(guid(1));
+  clients.on_writer(writer_gone(guid(1)), kStart + 1s);
+  EXPECT_FALSE(life->connected);
+  EXPECT_THAT(port.gone, ElementsAre(life->id));
+  clients.on_writer(writer_gone(guid(1)), kStart + 1s);
+  EXPECT_EQ(port.gone.size(), 1U);
+  EXPECT_NE(there(guid(1))->id, life->id) << "a dead client does not come back: another of its origin does";
+}
+
+TEST_F(Writers, ARecordOfAKnownOneIsTheSameClientAgain) {
+  const auto life = there(guid(1), 1);
+  clients.on_link_down();
+  clients.on_link_up(kStart + 2s);
+  EXPECT_EQ(there(guid(1), 9, kStart + 3s), life);
+  EXPECT_EQ(life->strength, 9);
+  EXPECT_TRUE(life->connected);
+  clients.on_time(kStart + 1h);
+  EXPECT_THAT(port.gone, IsEmpty());
+}
+
+TEST_F(Writers, ASampleBeforeItsRecordIsOfAWriterWithoutStrength) {
+  DdsClient* const client = clients.on_sample(guid(1), kStart);
+  ASSERT_NE(client, nullptr);
+  const auto life = client->life;
+  EXPECT_EQ(life->strength, 0);
+  EXPECT_EQ(life->last_request, kStart);
+  EXPECT_EQ(there(guid(1), 3), life);
+  EXPECT_EQ(life->strength, 3);
+  EXPECT_EQ(clients.deadline(), kNever);
+}
+
+TEST_F(Writers, ASampleOfOneThatIsNeverToldOfIsForgottenWithIt) {
+  const auto life = clients.on_sample(guid(1), kStart)->life;
+  EXPECT_EQ(clients.deadline(), kStart + kReturnsWithin);
+  clients.on_time(kStart + kReturnsWithin);
+  EXPECT_FALSE(life->connected);
+  EXPECT_EQ(clients.size(), 0U);
+}
+
+TEST_F(Writers, AreBoundedAndAGoneOneMakesRoom) {
+  for (std::uint8_t i = 1; i <= kMaxWriters; ++i) static_cast<void>(there(guid(i)));
+  EXPECT_EQ(clients.on_sample(guid(200), kStart), nullptr);
+  clients.on_writer(writer_there(guid(200)), kStart);
+  EXPECT_EQ(clients.size(), kMaxWriters);
+  clients.on_writer(writer_gone(guid(3)), kStart);
+  EXPECT_NE(clients.on_sample(guid(200), kStart), nullptr);
+}
+
+struct Grace : Writers {
+  std::shared_ptr<ClientLife> life = there(guid(1));
+  Lease& lease = image.find(1)->lease;
+  void own(LeaseRenewal renew) {
+    lease.rules.renew = renew;
+    lease.owner = life;
+    lease.running = true;
+    lease.renewed = kStart;
+  }
+};
+
+TEST_F(Grace, IsThreeSecondsExactlyOnceUntilTheClientIsHeard) {
+  own(LeaseRenewal::any);
+  EXPECT_EQ(lease.until(), kStart + 2s);
+  clients.on_link_down();
+  EXPECT_EQ(lease.until(), kStart + 5s);
+  clients.on_link_up(kStart + 1s);
+  clients.on_link_down();
+  EXPECT_EQ(lease.until(), kStart + 5s) << "a second death before it was heard adds nothing";
+  clients.on_link_up(kStart + 2s);
+  clients.on_beats(beat(guid(1)), kStart + 3s);
+  EXPECT_EQ(lease.until(), kStart + 5s) << "heard: its lease is as long as anybody's";
+  EXPECT_EQ(life->grace, Duration{});
+  clients.on_link_down();
+  EXPECT_EQ(lease.until(), kStart + 8s) << "and its grace is a new one";
+}
+
+TEST_F(Grace, OfALeaseThatOnlyWritesRenewLastsUntilItsOwnerCouldWrite) {
+  own(LeaseRenewal::write);
+  clients.on_link_down();
+  clients.on_link_up(kStart + 2500ms);
+  clients.on_beats(beat(guid(1)), kStart + 3s);
+  EXPECT_EQ(lease.until(), kStart + 5s) << "a beat is no write, and must not take away what was given";
+  lease.renewed = kStart + 4s;
+  clients.on_beats(beat(guid(1)), kStart + 4s);
+  EXPECT_EQ(lease.until(), kStart + 6s);
+}
+
+TEST_F(Grace, IsNotForOneThatIsKnownToBeDead) {
+  own(LeaseRenewal::any);
+  clients.on_writer(writer_gone(guid(1)), kStart + 1s);
+  clients.on_link_down();
+  EXPECT_EQ(lease.until(), kStart + 2s);
+}
+
+TEST_F(Grace, EndsForOneThatDoesNotComeBackWithTheLink) {
+  clients.on_link_down();
+  EXPECT_EQ(clients.deadline(), kNever) << "nobody can come back before";
+  clients.on_link_up(kStart + 2s);
+  clients.on_time(kStart + 2s + kReturnsWithin - 1ns);
+  EXPECT_TRUE(life->connected);
+  clients.on_time(kStart + 2s + kReturnsWithin);
+  EXPECT_FALSE(life->connected);
+  EXPECT_THAT(port.gone, ElementsAre(life->id));
+}
+
+TEST_F(Grace, OfOneThatIsWaitedForIsNotCutShortByASecondDeathOfTheProcess) {
+  clients.on_link_down();
+  clients.on_link_up(kStart + 1s);
+  clients.on_link_down();
+  clients.on_time(kStart + 1h);
+  EXPECT_TRUE(life->connected) << "nobody could come back";
+  clients.on_link_up(kStart + 1h);
+  EXPECT_EQ(clients.deadline(), kStart + 1h + kReturnsWithin);
+}
+
+}  // namespace
+}  // namespace axisgate::dds
