@@ -1,0 +1,37 @@
+// Readers that hear no more than whether writers are alive: one for each lease that a writer of commands states.
+// Promises the library's own verdict on each such writer; the readers of commands ask for no lease, since they would
+// not be matched with writers that state none, and the library then watches nobody for them. Never takes a sample for
+// use.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "gateway/upstream/dds_process/participant.hpp"
+#include "gateway/upstream/dds_process/wake.hpp"
+#include "gateway/upstream/dds_process/writer_watch.hpp"
+
+namespace axisgate::dds {
+
+/// Leases of different kind, length or topic at the same time. Of writers with others the samples alone count.
+inline constexpr std::size_t kMaxLeasesHeard = 24;
+
+class LivelinessReaders {
+ public:
+  LivelinessReaders(Participant& participant, WriterWatch& watch, Wake& wake);
+  ~LivelinessReaders();
+  LivelinessReaders(const LivelinessReaders&) = delete;
+  LivelinessReaders& operator=(const LivelinessReaders&) = delete;
+
+  /// Makes those that are missing and ends those that nobody needs any more.
+  void update();
+
+ private:
+  class Ear;
+  Participant& participant_;
+  WriterWatch& watch_;
+  Wake& wake_;
+  std::map<LivelinessLease, std::unique_ptr<Ear>> ears_;
+};
+
+}  // namespace axisgate::dds

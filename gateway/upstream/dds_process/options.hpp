@@ -1,0 +1,46 @@
+// The command line of axisgate-dds: what to serve or to show, and where on the network.
+// Promises options within their ranges, or a message that names the option and what to change.
+// Never opens anything.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace axisgate::dds {
+
+inline constexpr std::size_t kMaxInterfaces = 16;
+inline constexpr std::size_t kMaxPeers = 64;
+inline constexpr std::size_t kMaxDiscoveryServers = 16;
+/// DDSI-RTPS 9.6.1.1: above this the port numbers do not fit.
+inline constexpr std::uint32_t kMaxDomain = 232;
+
+struct ParticipantOptions {
+  std::uint32_t domain = 0;
+  std::vector<std::string> interfaces{"lo"};  ///< by name or IPv4 address
+  bool shared_memory = false;
+  std::vector<std::string> peers{};              ///< ADDRESS or ADDRESS:PORT; then nothing is multicast
+  std::vector<std::string> discovery_servers{};  ///< ADDRESS:PORT
+  std::string qos_file{};                        ///< Fast DDS XML profiles; empty: none
+};
+
+struct ServeOptions {
+  int link_fd = -1;
+  ParticipantOptions participant{};
+  bool commands = false;
+  bool ros2 = false;
+  std::uint32_t memory_limit_mib = 512;
+};
+
+struct TopicsOptions {
+  ParticipantOptions participant{};
+  bool once = false;
+  bool json = false;
+};
+
+/// An exit code where there is nothing to do: a message or the help was printed.
+[[nodiscard]] std::variant<int, ServeOptions, TopicsOptions> parse_command_line(int argc, char** argv);
+
+}  // namespace axisgate::dds

@@ -1,0 +1,185 @@
+#include "gateway/upstream/dds_process/serve_command.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <optional>
+#include <system_error>
+
+#include "gateway/core/log.hpp"
+#include "gateway/upstream/dds_link/exit_codes.hpp"
+#include "gateway/upstream/dds_process/command_readers.hpp"
+#include "gateway/upstream/dds_process/dds_log.hpp"
+#include "gateway/upstream/dds_process/link_socket.hpp"
+#include "gateway/upstream/dds_process/liveliness_readers.hpp"
+#include "gateway/upstream/dds_process/memory_limit.hpp"
+#include "gateway/upstream/dds_process/publishers.hpp"
+#include "gateway/upstream/dds_process/start_error.hpp"
+#include "gateway/upstream/dds_process/steady.hpp"
+
+namespace axisgate::dds {
+namespace {
+
+constexpr SteadyNs kMillisecond = 1'000'000;
+constexpr SteadyNs kBeatPeriod = 100 * kMillisecond;
+constexpr SteadyNs kMemoryPeriod = 250 * kMillisecond;
+/// In one turn of the loop, so that neither direction starves the other.
+constexpr int kRecordsPerTurn = 256;
+constexpr std::size_t kSamplesPerTurn = 64;
+
+void tell(LinkSocket& link, LogLevel level, const std::string& text) {
+  link.send(LogRecord{static_cast<std::uint8_t>(level), text});
+}
+
+/// From a participant that is there to the end of the socket.
+class Server {
+ public:
+  Server(const ServeOptions& options, LinkSocket& link, DdsLog& log, Wake& wake)
+      : link_(link),
+        log_(log),
+        wake_(wake),
+        discovery_(watch_, wake_),
+        participant_(options.participant, options.commands ? &discovery_ : nullptr),
+        publishers_(participant_, options.ros2) {
+    if (options.commands) {
+      readers_.emplace(participant_, watch_, wake_);
+      liveliness_.emplace(participant_, watch_, wake_);
+    }
+  }
+
+  int run() {
+    link_.send(ReadyRecord{AXISGATE_VERSION});
+    SteadyNs next_beat = steady_now();
+    SteadyNs next_memory_check = steady_now();
+    for (;;) {
+      wait(next_beat);
+      if (steady_now() >= next_memory_check) {
+        check_memory();
+        next_memory_check = steady_now() + kMemoryPeriod;
+      }
+      if (const std::optional<int> end = take_records()) return *end;
+      wake_.clear();
+      if (!link_.flush()) return kExitGatewayGone;
+      if (link_.idle() && readers_) take_samples();
+      const SteadyNs now = steady_now();
+      if (readers_ && now >= next_beat) {
+        // A socket that is full proves nothing of the writers to anybody: the next beat will.
+        if (link_.idle()) link_.send(watch_.beats(now));
+        next_beat = now + kBeatPeriod;
+      }
+      while (link_.idle()) {
+        const std::optional<LogRecord> line = log_.next(now);
+        if (!line) break;
+        link_.send(*line);
+      }
+    }
+  }
+
+ private:
+  void wait(SteadyNs next_beat) {
+    pollfd fds[] = {{link_.fd(), static_cast<short>(link_.idle() ? POLLIN : POLLIN | POLLOUT), 0},
+                    {wake_.fd(), POLLIN, 0}};
+    // Samples and changes wait while the gateway does not read: only its socket can change that.
+    const nfds_t count = link_.idle() ? 2 : 1;
+    int timeout_ms = static_cast<int>(kMemoryPeriod / kMillisecond);
+    if (more_) {
+      timeout_ms = 0;
+    } else if (readers_) {
+      timeout_ms =
+          static_cast<int>(std::max<SteadyNs>(0, (next_beat - steady_now() + kMillisecond - 1) / kMillisecond));
+    }
+    poll(fds, count, timeout_ms);
+  }
+
+  /// An exit code where this was the last.
+  std::optional<int> take_records() {
+    const ClockDifference difference = time_of_day_difference();
+    for (int taken = 0; taken < kRecordsPerTurn; ++taken) {
+      const LinkSocket::Packet packet = link_.receive();
+      if (packet.what == LinkSocket::Received::nothing) break;
+      if (packet.what == LinkSocket::Received::closed) return kExitGatewayGone;
+      if (packet.what == LinkSocket::Received::garbage) return protocol_error(packet.problem);
+      if (!publishers_.publish(packet.record, steady_now(), difference)) {
+        return protocol_error("a record that the gateway never sends");
+      }
+    }
+    publishers_.end_batch(difference);
+    return std::nullopt;
+  }
+
+  int protocol_error(const std::string& problem) {
+    tell(link_, LogLevel::error, "from the gateway: " + problem);
+    return kExitProtocol;
+  }
+
+  void take_samples() {
+    // First the samples, then what is known of writers: so no sample is older than what is told before it.
+    const std::vector<Record> samples = readers_->take(kSamplesPerTurn);
+    const WriterWatch::Changes changes = watch_.take_changes(steady_now());
+    for (const WriterRecord& record : changes.before) link_.send(record);
+    for (const Record& record : samples) link_.send(record);
+    for (const WriterRecord& record : changes.after) link_.send(record);
+    if (changes.refused > 0) {
+      tell(link_, LogLevel::warning,
+           "more than " + std::to_string(kMaxWritersKnown) + " writers of commands: some are not known");
+    }
+    more_ = samples.size() == kSamplesPerTurn;
+    liveliness_->update();
+    if (changes.owner_silent) owner_silent_ = true;
+    if (owner_silent_ && !more_) {
+      readers_->forget_owners();
+      owner_silent_ = false;
+    }
+  }
+
+  LinkSocket& link_;
+  DdsLog& log_;
+  Wake& wake_;
+  WriterWatch watch_;
+  WriterDiscovery discovery_;
+  Participant participant_;
+  Publishers publishers_;
+  std::optional<CommandReaders> readers_;
+  std::optional<LivelinessReaders> liveliness_;
+  bool owner_silent_ = false;
+  bool more_ = false;
+};
+
+int serve(const ServeOptions& options, LinkSocket& link) {
+  Wake wake;
+  DdsLog log(wake);
+  take_over_library_log(log);
+  int code = kExitInternal;
+  try {
+    Server server(options, link, log, wake);
+    code = server.run();
+  } catch (const StartError& error) {
+    release_library_log();
+    while (const std::optional<LogRecord> line = log.next(steady_now())) link.send(*line);
+    tell(link, LogLevel::error, error.what());
+    code = error.exit_code;
+  }
+  release_library_log();
+  return code;
+}
+
+}  // namespace
+
+int run(const ServeOptions& options) {
+  // Ctrl-C on the terminal means the gateway, which ends us by closing the socket.
+  std::signal(SIGINT, SIG_IGN);
+  limit_memory(options.memory_limit_mib);
+  LinkSocket link(options.link_fd);
+  try {
+    return serve(options, link);
+  } catch (const std::system_error& error) {
+    // How the library's attempt to start a thread ends where there is no room for its stack.
+    if (error.code() == std::errc::resource_unavailable_try_again) end_for_memory();
+    tell(link, LogLevel::error, error.what());
+    return kExitInternal;
+  }
+}
+
+}  // namespace axisgate::dds

@@ -1,0 +1,22 @@
+// The two clocks of this program: the steady one, which the gateway shares, and the time of day for samples.
+// Promises nanoseconds.
+// Never is looked at by what decides.
+#pragma once
+
+#include <ctime>
+
+#include "gateway/upstream/dds_link/records.hpp"
+
+namespace axisgate::dds {
+
+[[nodiscard]] inline SteadyNs clock_ns(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return SteadyNs{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+[[nodiscard]] inline SteadyNs steady_now() { return clock_ns(CLOCK_MONOTONIC); }
+/// What is to be added to a steady instant.
+[[nodiscard]] inline std::int64_t time_of_day_difference() { return clock_ns(CLOCK_REALTIME) - steady_now(); }
+
+}  // namespace axisgate::dds

@@ -1,0 +1,160 @@
+#include "gateway/upstream/dds_process/topics_command.hpp"
+
+#include <axisgatePubSubTypes.h>
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <optional>
+#include <string_view>
+
+#include "gateway/upstream/dds_process/participant.hpp"
+#include "gateway/upstream/dds_process/steady.hpp"
+#include "gateway/upstream/dds_process/topics_table.hpp"
+
+namespace axisgate::dds {
+namespace {
+
+using eprosima::fastrtps::Duration_t;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+constexpr SteadyNs kMillisecond = 1'000'000;
+constexpr SteadyNs kRedrawPeriod = 200 * kMillisecond;
+/// With --once: for the first axis, and then for one more.
+constexpr SteadyNs kFirstWithin = 5'000 * kMillisecond;
+constexpr SteadyNs kNextWithin = 500 * kMillisecond;
+constexpr std::int32_t kMostAxes = 500;
+constexpr int kNoAxisFound = 1;
+
+volatile std::sig_atomic_t ended = 0;
+void on_signal(int) { ended = 1; }
+
+// ECMA-48: the alternate screen keeps what the user had on the terminal; its cursor is hidden while we redraw.
+constexpr std::string_view kEnter = "\x1b[?1049h\x1b[?25l";
+constexpr std::string_view kLeave = "\x1b[?25h\x1b[?1049l";
+
+void put(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fflush(stdout);
+  // Whoever read our output has gone.
+  if (std::ferror(stdout) != 0) ended = 1;
+}
+
+class Terminal {
+ public:
+  Terminal() { put(kEnter); }
+  ~Terminal() { put(kLeave); }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  void draw(std::string_view text) {
+    winsize window{};
+    const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0 && window.ws_row > 0;
+    std::size_t rows = known ? window.ws_row : 50;
+    std::string frame = "\x1b[H";
+    for (bool first = true; !text.empty() && rows > 0; --rows, first = false) {
+      const std::size_t end = text.find('\n');
+      if (!first) frame += "\r\n";
+      frame += text.substr(0, end).substr(0, known ? window.ws_col : 160);
+      frame += "\x1b[K";
+      text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+    }
+    put(frame + "\x1b[J");
+  }
+};
+
+fastdds::DataReaderQos last_state() {
+  fastdds::DataReaderQos qos;
+  qos.reliability().kind = fastdds::RELIABLE_RELIABILITY_QOS;
+  qos.durability().kind = fastdds::TRANSIENT_LOCAL_DURABILITY_QOS;
+  qos.resource_limits().max_instances = kMostAxes;
+  qos.resource_limits().max_samples_per_instance = 1;
+  qos.resource_limits().max_samples = kMostAxes;
+  qos.data_sharing().off();
+  return qos;
+}
+
+class Topics {
+ public:
+  explicit Topics(const TopicsOptions& options)
+      : options_(options),
+        participant_(options.participant, nullptr),
+        reader_(participant_.make_reader("axisgate/axis_state", fastdds::TypeSupport(new AxisStatePubSubType()),
+                                         last_state(), nullptr)) {}
+
+  int run() {
+    const bool redraws = isatty(STDOUT_FILENO) == 1 && !options_.json && !options_.once;
+    std::optional<Terminal> terminal;
+    if (redraws) terminal.emplace();
+    const SteadyNs begun = steady_now();
+    SteadyNs newest = begun;
+    while (ended == 0) {
+      reader_.wait_for_unread_message(Duration_t(0, static_cast<std::uint32_t>(kRedrawPeriod)));
+      const SteadyNs now = steady_now();
+      if (take(!redraws)) newest = now;
+      if (terminal) {
+        terminal->draw(heading() + topics_table(axes_, clock_ns(CLOCK_REALTIME)));
+        usleep(static_cast<useconds_t>(kRedrawPeriod / 1000));
+      }
+      if (options_.once && now - newest > (axes_.empty() ? kFirstWithin : kNextWithin)) break;
+    }
+    if (options_.once && !options_.json) put(axes_.empty() ? "" : topics_table(axes_, clock_ns(CLOCK_REALTIME)));
+    if (options_.once && axes_.empty()) {
+      std::fprintf(stderr,
+                   "axisgate-dds: no axis in domain %u: is the gateway running with \"dds\" in its configuration, "
+                   "and are --domain and --interface the same?\n",
+                   options_.participant.domain);
+      return kNoAxisFound;
+    }
+    return 0;
+  }
+
+ private:
+  std::string heading() const {
+    return fmt::format("domain {}  {} axes  (rad or m, rad/s or m/s, torque in 0.1 % of rated; Ctrl-C ends)\n",
+                       options_.participant.domain, axes_.size());
+  }
+
+  /// True: a new axis, or anything at all where there are lines.
+  bool take(bool lines) {
+    bool any_new = false;
+    axisgate::AxisState sample;
+    fastdds::SampleInfo info;
+    while (ended == 0 && reader_.take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
+      if (!info.valid_data) continue;
+      const bool is_new = axes_.insert_or_assign(sample.axis(), sample).second;
+      any_new = any_new || is_new;
+      if (options_.json && (is_new || !options_.once)) {
+        put(topics_json(sample) + "\n");
+      } else if (lines && !options_.once) {
+        put(topics_line(sample) + "\n");
+      }
+    }
+    return any_new;
+  }
+
+  TopicsOptions options_;
+  Participant participant_;
+  fastdds::DataReader& reader_;
+  AxisSamples axes_;
+};
+
+}  // namespace
+
+int run(const TopicsOptions& options) {
+  struct sigaction action = {};
+  action.sa_handler = on_signal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  Topics topics(options);
+  // The library's own lines would tear the table.
+  eprosima::fastdds::dds::Log::ClearConsumers();
+  return topics.run();
+}
+
+}  // namespace axisgate::dds

@@ -1,0 +1,39 @@
+// A subscriber of axisgate/axis_state in a process of its own, and how the bench speaks to it.
+// Promises that each latency is from the stamp of a sample to the call of its listener, on this computer's clock.
+// Never counts samples that were published before it was asked to begin.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace axisgate::bench {
+
+/// The subscriber's side: runs until its standard input ends. Returns the exit code.
+int subscribe(std::uint32_t domain);
+
+/// The bench's side.
+class Subscriber {
+ public:
+  /// Starts /proc/self/exe as `subscribe DOMAIN`.
+  explicit Subscriber(std::uint32_t domain);
+  ~Subscriber();
+  Subscriber(const Subscriber&) = delete;
+  Subscriber& operator=(const Subscriber&) = delete;
+
+  /// Returns when a sample has been received: discovery is over.
+  void await_first_sample();
+  void forget();
+  /// Microseconds of each sample since forget().
+  [[nodiscard]] std::vector<double> latencies();
+
+ private:
+  std::string ask(const std::string& question);
+
+  pid_t pid_ = -1;
+  int socket_ = -1;
+};
+
+}  // namespace axisgate::bench

@@ -1,0 +1,322 @@
+// What DDS clients ask, and who they are, as the gateway is told of it.
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <set>
+#include <string>
+
+#include "tests/dds_process/child.hpp"
+#include "tests/dds_process/peer.hpp"
+
+namespace axisgate::dds::test {
+namespace {
+
+constexpr const char* kCommands = "axisgate/axis_command";
+constexpr const char* kObjects = "axisgate/object_request";
+constexpr std::chrono::milliseconds kShortLease{300};
+
+AxisCommand command(std::uint16_t axis, std::uint64_t request_id) {
+  AxisCommand sample;
+  sample.axis(axis);
+  sample.request_id(request_id);
+  return sample;
+}
+
+/// The next WriterRecord of this writer.
+std::optional<WriterRecord> next_of(Child& child, const Guid& writer) {
+  while (const std::optional<WriterRecord> record = child.next<WriterRecord>()) {
+    if (record->writer == writer) return record;
+  }
+  return std::nullopt;
+}
+
+TEST(Command, ReachesTheGatewayWithAllItsMembersAndItsWriter) {
+  Child child({"--commands"});
+  Peer peer;
+  auto writer = peer.writer<AxisCommand>(kCommands);
+  ASSERT_TRUE(writer->wait_matched());
+  AxisCommand sent = command(499, 0xFEDCBA9876543210);
+  sent.command(6);
+  sent.mode(-3);
+  sent.mask(0x7FF);
+  sent.target_position(1.5);
+  sent.target_velocity(-2.5);
+  sent.target_torque(3.5);
+  sent.max_torque(4.5);
+  sent.profile_velocity(5.5);
+  sent.profile_acceleration(6.5);
+  sent.profile_deceleration(7.5);
+  sent.jog_velocity(8.5);
+  sent.set_position_value(9.5);
+  sent.homing_method(-17);
+  ASSERT_TRUE(writer->write(sent));
+  EXPECT_EQ(child.next<CommandRecord>(), (CommandRecord{.writer = writer->guid(),
+                                                        .axis = 499,
+                                                        .request_id = 0xFEDCBA9876543210,
+                                                        .command = 6,
+                                                        .mode = -3,
+                                                        .mask = 0x7FF,
+                                                        .target_position = 1.5,
+                                                        .target_velocity = -2.5,
+                                                        .target_torque = 3.5,
+                                                        .max_torque = 4.5,
+                                                        .profile_velocity = 5.5,
+                                                        .profile_acceleration = 6.5,
+                                                        .profile_deceleration = 7.5,
+                                                        .jog_velocity = 8.5,
+                                                        .set_position_value = 9.5,
+                                                        .homing_method = -17}));
+}
+
+TEST(Command, ForAxesThatDoNotExistReachesTheGatewayAsWell) {
+  constexpr int kCommandsSent = 2000;
+  Child child({"--commands"});
+  Peer peer;
+  auto writer = peer.writer<AxisCommand>(kCommands);
+  ASSERT_TRUE(writer->wait_matched());
+  std::set<std::uint16_t> axes;
+  for (int i = 0; i < kCommandsSent; ++i) {
+    const auto axis = static_cast<std::uint16_t>(65535 - i);
+    ASSERT_TRUE(writer->write(command(axis, 1)));
+    if (i % 100 != 99) continue;
+    while (axes.size() <= static_cast<std::size_t>(i)) {
+      const std::optional<CommandRecord> got = child.next<CommandRecord>();
+      ASSERT_TRUE(got) << i;
+      axes.insert(got->axis);
+    }
+  }
+  EXPECT_EQ(axes.size(), static_cast<std::size_t>(kCommandsSent));
+}
+
+TEST(Command, WaitsInItsOrderWhileTheGatewayDoesNotRead) {
+  constexpr std::uint64_t kCommandsSent = 3000;
+  Child child({"--commands"});
+  Peer peer;
+  auto writer = peer.writer<AxisCommand>(kCommands);
+  ASSERT_TRUE(writer->wait_matched());
+  // More than the socket and the queues on the way take.
+  for (std::uint64_t id = 1; id <= kCommandsSent; ++id) ASSERT_TRUE(writer->write(command(7, id))) << id;
+  for (std::uint64_t id = 1; id <= kCommandsSent; ++id) {
+    const std::optional<CommandRecord> got = child.next<CommandRecord>();
+    ASSERT_TRUE(got) << id;
+    ASSERT_EQ(got->request_id, id);
+  }
+}
+
+TEST(Command, IsNotReadWhereCommandsAreOff) {
+  Child child;
+  Peer peer;
+  auto states = peer.reader<AxisState>("axisgate/axis_state", {.transient_local = true});
+  auto writer = peer.writer<AxisCommand>(kCommands);
+  child.send(StateRecord{.axis = 1, .name = "lift"});
+  ASSERT_TRUE(states->next());  // the two programs have found each other
+  EXPECT_FALSE(writer->matched());
+}
+
+TEST(ObjectRequests, AndTheirReplyTravelWithUpTo4096Bytes) {
+  Child child({"--commands"});
+  Peer peer;
+  auto writer = peer.writer<ObjectRequest>(kObjects, {.exclusive = false});
+  auto replies = peer.reader<ObjectReply>("axisgate/object_reply", {.depth = 10});
+  ASSERT_TRUE(writer->wait_matched());
+  std::vector<Byte> data(kMaxObjectBytes);
+  for (std::size_t i = 0; i < data.size(); ++i) data[i] = static_cast<Byte>(i * 7);
+  ObjectRequest sent;
+  sent.axis(4);
+  sent.request_id(11);
+  sent.write(true);
+  sent.index(0x1008);
+  sent.subindex(2);
+  sent.size(0);
+  sent.value(0xCAFEBABE);
+  sent.data(data);
+  ASSERT_TRUE(writer->write(sent));
+  const std::optional<ObjectRequestRecord> got = child.next<ObjectRequestRecord>();
+  EXPECT_EQ(got, (ObjectRequestRecord{.writer = writer->guid(),
+                                      .axis = 4,
+                                      .request_id = 11,
+                                      .write = true,
+                                      .index = 0x1008,
+                                      .subindex = 2,
+                                      .size = 0,
+                                      .value = 0xCAFEBABE,
+                                      .data = data}));
+
+  child.send(ObjectReplyRecord{.axis = 4,
+                               .request_id = 11,
+                               .writer = writer->guid(),
+                               .result = 3,
+                               .detail = 0x06020000,
+                               .value = 5,
+                               .data = data});
+  const std::optional<ObjectReply> reply = replies->next();
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->axis(), 4);
+  EXPECT_EQ(reply->request_id(), 11U);
+  EXPECT_EQ(reply->writer(), writer->guid());
+  EXPECT_EQ(reply->result(), 3);
+  EXPECT_EQ(reply->detail(), 0x06020000U);
+  EXPECT_EQ(reply->value(), 5U);
+  EXPECT_EQ(reply->data(), data);
+}
+
+TEST(CommandReplies, NameTheWriterThatAsked) {
+  Child child({"--commands"});
+  Peer peer;
+  auto writer = peer.writer<AxisCommand>(kCommands);
+  auto replies = peer.reader<CommandReply>("axisgate/command_reply", {.depth = 10});
+  ASSERT_TRUE(writer->wait_matched());
+  ASSERT_TRUE(writer->write(command(2, 5)));
+  const std::optional<CommandRecord> asked = child.next<CommandRecord>();
+  ASSERT_TRUE(asked);
+  child.send(ReplyRecord{.axis = 2, .request_id = 5, .writer = asked->writer, .result = 7, .detail = 9});
+  const std::optional<CommandReply> reply = replies->next();
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->axis(), 2);
+  EXPECT_EQ(reply->request_id(), 5U);
+  EXPECT_EQ(reply->writer(), writer->guid());
+  EXPECT_EQ(reply->result(), 7);
+  EXPECT_EQ(reply->detail(), 9U);
+}
+
+TEST(CommandWriter, AppearsWithItsStrengthAndAddressAndIsGoneWhenItIsDeleted) {
+  Child child({"--commands"});
+  Peer peer;
+  auto writer = peer.writer<AxisCommand>(kCommands, {.strength = 42});
+  const Guid guid = writer->guid();
+  EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 42, false, "127.0.0.1"}));
+  writer.reset();
+  EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 42, true, "127.0.0.1"}));
+}
+
+TEST(CommandWriter, WithAnEndlessLeaseIsNotInTheBeats) {
+  Child child({"--commands"});
+  Peer peer;
+  auto endless = peer.writer<AxisCommand>(kCommands);
+  ASSERT_TRUE(next_of(child, endless->guid()));
+  auto finite = peer.writer<AxisCommand>(kCommands, {.lease = std::chrono::seconds(20)});
+  std::optional<BeatRecord> beat;
+  do {
+    beat = child.next<BeatRecord>();
+    ASSERT_TRUE(beat);
+  } while (beat->beats.empty());
+  EXPECT_THAT(beat->beats, testing::ElementsAre(BeatRecord::Beat{finite->guid(), false}));
+}
+
+TEST(CommandWriter, ThatAssertsByTopicIsGoneWhenItStopsAndBackWhenItWritesAgain) {
+  Child child({"--commands"});
+  Peer peer;
+  auto writer = peer.writer<AxisCommand>(
+      kCommands, {.strength = 3, .liveliness = Liveliness::manual_by_topic, .lease = kShortLease});
+  const Guid guid = writer->guid();
+  EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 3, false, "127.0.0.1"}));
+  ASSERT_TRUE(writer->wait_matched());
+  ASSERT_TRUE(writer->write(command(1, 1)));
+  ASSERT_TRUE(child.next<CommandRecord>());
+  const std::optional<BeatRecord> beat = child.next<BeatRecord>();
+  ASSERT_TRUE(beat);
+  EXPECT_THAT(beat->beats, testing::ElementsAre(BeatRecord::Beat{guid, true}));
+
+  EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 3, true, "127.0.0.1"}));
+  const std::optional<BeatRecord> silent = child.next<BeatRecord>();
+  ASSERT_TRUE(silent);
+  EXPECT_THAT(silent->beats, testing::IsEmpty());
+
+  ASSERT_TRUE(writer->write(command(1, 2)));
+  EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 3, false, "127.0.0.1"}));
+}
+
+/// Another process with a writer, which a test can end as a crash would.
+class Client {
+ public:
+  Client(int strength, std::chrono::milliseconds lease) {
+    // Before the fork: the domain comes from the number of this process.
+    const std::string domain = std::to_string(test_domain());
+    const std::string arguments[] = {std::to_string(strength), std::to_string(lease.count())};
+    pid_ = fork();
+    if (pid_ != 0) return;
+    execl(AXISGATE_DDS_CLIENT, AXISGATE_DDS_CLIENT, domain.c_str(), arguments[0].c_str(), arguments[1].c_str(),
+          nullptr);
+    _exit(127);
+  }
+  ~Client() { end(); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+  void end() {
+    if (pid_ > 0) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+    pid_ = -1;
+  }
+
+ private:
+  pid_t pid_ = -1;
+};
+
+TEST(CommandWriter, WhoseProcessIsKilledIsGoneWhenItsLeaseIsOver) {
+  Child child({"--commands"});
+  Client client(8, kShortLease);
+  const std::optional<WriterRecord> there = child.next<WriterRecord>();
+  ASSERT_TRUE(there);
+  EXPECT_FALSE(there->gone);
+  EXPECT_EQ(there->strength, 8);
+  ASSERT_TRUE(child.next<CommandRecord>());
+  client.end();
+  EXPECT_EQ(next_of(child, there->writer), (WriterRecord{there->writer, 8, true, "127.0.0.1"}));
+}
+
+TEST(Ownership, IsTheStrongerWritersUntilItIsDeleted) {
+  Child child({"--commands"});
+  Peer peer;
+  auto weak = peer.writer<AxisCommand>(kCommands, {.strength = 1});
+  auto strong = peer.writer<AxisCommand>(kCommands, {.strength = 9});
+  ASSERT_TRUE(weak->wait_matched() && strong->wait_matched());
+  ASSERT_TRUE(strong->write(command(1, 1)));
+  std::optional<CommandRecord> got = child.next<CommandRecord>();
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->writer, strong->guid());
+  // The weak one is heard on an axis that the strong one has not commanded, and there only.
+  ASSERT_TRUE(weak->write(command(1, 2)) && weak->write(command(2, 3)));
+  got = child.next<CommandRecord>();
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->writer, weak->guid());
+  EXPECT_EQ(got->request_id, 3U);
+
+  const Guid guid = strong->guid();
+  strong.reset();
+  const std::optional<WriterRecord> gone = next_of(child, guid);
+  ASSERT_TRUE(gone && gone->gone);
+  ASSERT_TRUE(weak->write(command(1, 4)));
+  got = child.next<CommandRecord>();
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->request_id, 4U);
+}
+
+TEST(Ownership, GoesToTheWeakerWriterWhenTheStrongerIsSilentForItsLease) {
+  Child child({"--commands"});
+  Client client(9, kShortLease);
+  const std::optional<CommandRecord> first = child.next<CommandRecord>();
+  ASSERT_TRUE(first);
+  Peer peer;
+  auto weak = peer.writer<AxisCommand>(kCommands, {.strength = 1});
+  const std::optional<WriterRecord> there = next_of(child, weak->guid());
+  ASSERT_TRUE(there && weak->wait_matched());
+  client.end();
+  const std::optional<WriterRecord> gone = next_of(child, first->writer);
+  ASSERT_TRUE(gone && gone->gone);
+  // Long before the dead process's participant is given up. Until its reader is there again, its commands are nobody's.
+  std::optional<CommandRecord> got;
+  for (std::uint64_t id = 1; !got; ++id) {
+    ASSERT_LT(id, 1000U);
+    weak->write(command(1, id));
+    const std::optional<Record> record = child.receive(std::chrono::milliseconds(20));
+    if (record && std::holds_alternative<CommandRecord>(*record)) got = std::get<CommandRecord>(*record);
+  }
+  EXPECT_EQ(got->writer, weak->guid());
+}
+
+}  // namespace
+}  // namespace axisgate::dds::test

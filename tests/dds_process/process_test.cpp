@@ -1,0 +1,172 @@
+// How axisgate-dds begins and ends.
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <ostream>
+
+#include "gateway/upstream/dds_link/exit_codes.hpp"
+#include "tests/dds_process/child.hpp"
+#include "tests/dds_process/peer.hpp"
+
+namespace axisgate::dds::test {
+namespace {
+
+using testing::HasSubstr;
+
+std::string last_line(Child& child) {
+  std::string text;
+  while (const std::optional<LogRecord> line = child.next<LogRecord>()) text = line->text;
+  return text;
+}
+
+TEST(Process, EndsWithZeroWhenTheGatewayIsGone) {
+  Child child({"--commands", "--ros2"});
+  child.close_link();
+  EXPECT_EQ(child.exit_code(), kExitGatewayGone);
+}
+
+TEST(Process, SaysOnceThatItIsReady) {
+  Child child({}, false);
+  const std::optional<Record> first = child.receive();
+  ASSERT_TRUE(first);
+  ASSERT_TRUE(std::holds_alternative<ReadyRecord>(*first));
+  EXPECT_THAT(std::get<ReadyRecord>(*first).version, HasSubstr("."));
+}
+
+TEST(Process, LeavesCtrlCOfTheTerminalToTheGateway) {
+  Child child;
+  kill(child.pid(), SIGINT);
+  Peer peer;
+  auto states = peer.reader<AxisState>("axisgate/axis_state", {.transient_local = true});
+  child.send(StateRecord{.axis = 1, .name = "lift"});
+  EXPECT_TRUE(states->next());
+}
+
+TEST(Process, EndsAtAPacketThatIsNoRecord) {
+  Child child;
+  child.send_bytes({1, 0, 7});
+  EXPECT_THAT(last_line(child), HasSubstr("another length"));
+  EXPECT_EQ(child.exit_code(), kExitProtocol);
+}
+
+TEST(Process, EndsAtARecordOfAnotherVersion) {
+  Child child;
+  std::vector<Byte> packet = encode(StateRecord{});
+  packet[0] = kLinkVersion + 1;
+  child.send_bytes(packet);
+  EXPECT_THAT(last_line(child), HasSubstr("not of one installation"));
+  EXPECT_EQ(child.exit_code(), kExitProtocol);
+}
+
+TEST(Process, EndsAtARecordThatOnlyItselfSends) {
+  Child child;
+  child.send(BeatRecord{});
+  EXPECT_THAT(last_line(child), HasSubstr("never sends"));
+  EXPECT_EQ(child.exit_code(), kExitProtocol);
+}
+
+TEST(Process, NamesTheInterfaceThatIsNotThereAndThoseThatAre) {
+  Child child({"--interface", "nosuch0"}, false);
+  const std::string line = last_line(child);
+  EXPECT_THAT(line, HasSubstr("--interface nosuch0"));
+  EXPECT_THAT(line, HasSubstr("lo (127.0.0.1)"));
+  EXPECT_EQ(child.exit_code(), kExitParticipant);
+}
+
+TEST(Process, EndsAtItsMemoryLimit) {
+  Child child({"--commands", "--memory-limit-mib", "16"});
+  Peer peer;
+  auto writer = peer.writer<ObjectRequest>("axisgate/object_request", {.exclusive = false});
+  ASSERT_TRUE(writer->wait_matched());
+  // The gateway does not read: what it does not take stays with axisgate-dds, 64 samples an axis.
+  constexpr int kRequests = 6400;
+  ObjectRequest sample;
+  sample.data(std::vector<Byte>(kMaxObjectBytes));
+  for (int i = 0; i < kRequests && !child.hung_up(); ++i) {
+    sample.axis(static_cast<std::uint16_t>(i / 50));
+    sample.request_id(static_cast<std::uint64_t>(i) + 1);
+    writer->write(sample);
+  }
+  EXPECT_EQ(child.exit_code(), kExitMemory);
+  EXPECT_THAT(child.error_output(), HasSubstr("--memory-limit-mib"));
+}
+
+TEST(Process, TakesQosFromAFile) {
+  const std::string path = testing::TempDir() + "axisgate_dds_qos_" + std::to_string(getpid()) + ".xml";
+  std::ofstream(path) << R"(<?xml version="1.0"?><profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+    <data_writer profile_name="axisgate_axis_state"><topic><historyQos><kind>KEEP_LAST</kind><depth>1</depth></historyQos></topic>
+    <qos><durability><kind>VOLATILE</kind></durability><reliability><kind>RELIABLE</kind></reliability></qos></data_writer></profiles>)";
+  Child child({"--qos-file", path});
+  Peer peer;
+  auto states = peer.reader<AxisState>("axisgate/axis_state", {.transient_local = true});
+  auto gateway = peer.reader<GatewayState>("axisgate/gateway_state", {.transient_local = true});
+  child.send(StateRecord{.axis = 1, .name = "lift"});
+  child.send(GatewayRecord{});
+  ASSERT_TRUE(gateway->next());
+  // A writer that keeps nothing for late joiners is not matched by a reader that asks for that.
+  EXPECT_FALSE(states->matched());
+  std::remove(path.c_str());
+}
+
+TEST(Process, SaysWhatIsWrongWithAQosFile) {
+  const std::string path = testing::TempDir() + "axisgate_dds_bad_" + std::to_string(getpid()) + ".xml";
+  std::ofstream(path) << "<profiles><data_writer";
+  Child child({"--qos-file", path}, false);
+  EXPECT_THAT(last_line(child), HasSubstr("--qos-file " + path));
+  EXPECT_EQ(child.exit_code(), kExitParticipant);
+  std::remove(path.c_str());
+}
+
+struct BadLine {
+  std::vector<std::string> arguments;
+  std::string says;
+};
+
+void PrintTo(const BadLine& line, std::ostream* to) { *to << line.says; }
+
+class CommandLine : public testing::TestWithParam<BadLine> {};
+
+TEST_P(CommandLine, ThatIsWrongIsToldByItsOption) {
+  const auto [code, text] = Child::run(GetParam().arguments);
+  EXPECT_EQ(code, kExitUsage);
+  EXPECT_THAT(text, HasSubstr(GetParam().says));
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, CommandLine,
+                         testing::Values(BadLine{{}, "subcommand"}, BadLine{{"serve"}, "--link-fd"},
+                                         BadLine{{"serve", "--link-fd", "0"}, "axisgate-dds topics"},
+                                         BadLine{{"topics", "--domain", "233"}, "--domain"},
+                                         BadLine{{"topics", "--once", "--peer", "host"}, "--peer host"},
+                                         BadLine{{"topics", "--once", "--discovery-server", "127.0.0.1"},
+                                                 "127.0.0.1"}));
+
+TEST(Topics, PrintsWhatIsThereOnce) {
+  Child child;
+  child.send(
+      StateRecord{.axis = 12, .name = "turntable", .position = 1.5, .link_state = 2, .supported = 7, .valid = 3});
+  const auto [code, text] = Child::run({"topics", "--once", "--domain", std::to_string(test_domain())});
+  EXPECT_EQ(code, 0);
+  EXPECT_THAT(text, HasSubstr("turntable"));
+  EXPECT_THAT(text, HasSubstr("online"));
+  EXPECT_THAT(text, HasSubstr("1.500?"));
+}
+
+TEST(Topics, PrintsJsonForPrograms) {
+  Child child;
+  child.send(StateRecord{.axis = 12, .name = "turntable", .position = 1.5});
+  const auto [code, text] = Child::run({"topics", "--once", "--json", "--domain", std::to_string(test_domain())});
+  EXPECT_EQ(code, 0);
+  EXPECT_THAT(text, HasSubstr(R"({"axis":12,"name":"turntable",)"));
+}
+
+TEST(Topics, SaysWhereToLookIfNoAxisIsThere) {
+  const auto [code, text] = Child::run({"topics", "--once", "--domain", std::to_string(test_domain())});
+  EXPECT_EQ(code, 1);
+  EXPECT_THAT(text, HasSubstr("--domain"));
+}
+
+}  // namespace
+}  // namespace axisgate::dds::test
