@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sched.h>
-#include <spawn.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
@@ -25,57 +24,45 @@ namespace {
 int open_pidfd(pid_t pid) { return static_cast<int>(::syscall(SYS_pidfd_open, pid, 0)); }
 void send_signal(int pidfd, int signal) { ::syscall(SYS_pidfd_send_signal, pidfd, signal, nullptr, 0); }
 
-/// posix_spawn's two objects, with all that the program must not inherit from us.
-class SpawnSettings {
- public:
-  explicit SpawnSettings(int link) {
-    posix_spawn_file_actions_init(&files_);
-    posix_spawn_file_actions_adddup2(&files_, link, kLinkDescriptor);
-    posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addclosefrom_np(&files_, kLinkDescriptor + 1);
-    posix_spawnattr_init(&attributes_);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes_, &none);
-    sigset_t ignored_by_us;
-    sigemptyset(&ignored_by_us);
-    sigaddset(&ignored_by_us, SIGPIPE);
-    posix_spawnattr_setsigdefault(&attributes_, &ignored_by_us);
-    // A group of its own: Ctrl-C goes to the gateway, which ends it. And no real-time priority of a service's.
-    posix_spawnattr_setpgroup(&attributes_, 0);
-    posix_spawnattr_setschedpolicy(&attributes_, SCHED_OTHER);
-    const sched_param usual{};
-    posix_spawnattr_setschedparam(&attributes_, &usual);
-    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP |
-                                               POSIX_SPAWN_SETSCHEDULER);
-  }
-  ~SpawnSettings() {
-    posix_spawn_file_actions_destroy(&files_);
-    posix_spawnattr_destroy(&attributes_);
-  }
-  SpawnSettings(const SpawnSettings&) = delete;
-  SpawnSettings& operator=(const SpawnSettings&) = delete;
+/// What a shell's exit code is where a program cannot be executed.
+constexpr int kCannotExecute = 127;
 
-  /// errno's words for a failure; 0: started.
-  int spawn(pid_t& pid, const std::string& program, const std::vector<std::string>& arguments) {
-    std::vector<std::string> words{program};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    std::vector<char*> argv;
-    argv.reserve(words.size() + 1);
-    for (auto& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    return posix_spawn(&pid, program.c_str(), &files_, &attributes_, argv.data(), environ);
-  }
+/// In the new process, before it is the program: async-signal-safe calls alone, since threads of ours may have held any
+/// lock when it was made.
+[[noreturn]] void become(const char* program, char* const* argv, int link) {
+  // A group of its own: Ctrl-C goes to the gateway, which ends it.
+  ::setpgid(0, 0);
+  // No real-time priority of a service's; and below the gateway. A refusal changes nothing but who is served first.
+  const sched_param usual{};
+  ::sched_setscheduler(0, SCHED_OTHER, &usual);
+  ::setpriority(PRIO_PROCESS, 0, ::getpriority(PRIO_PROCESS, 0) + kNicer);
+  ::signal(SIGPIPE, SIG_DFL);
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  // Where it is that number already, dup2() would leave it to be closed by exec.
+  if (link == kLinkDescriptor)
+    ::fcntl(link, F_SETFD, 0);
+  else
+    ::dup2(link, kLinkDescriptor);
+  ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
+  ::close_range(kLinkDescriptor + 1, ~0U, 0);
+  ::execve(program, argv, environ);
+  ::_exit(kCannotExecute);
+}
 
- private:
-  posix_spawn_file_actions_t files_{};
-  posix_spawnattr_t attributes_{};
-};
-
-void lower_priority(pid_t pid) {
-  const auto who = static_cast<id_t>(pid);
-  // A refusal changes nothing but who gets the processor first.
-  static_cast<void>(setpriority(PRIO_PROCESS, who, getpriority(PRIO_PROCESS, 0) + kNicer));
+/// Not posix_spawn(): that waits until the program runs, tens of milliseconds on a busy machine. -1: errno.
+pid_t begin_process(const std::string& program, const std::vector<std::string>& arguments, int link) {
+  if (::access(program.c_str(), X_OK) != 0) return -1;
+  std::vector<std::string> words{program};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
+  for (auto& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const pid_t pid = ::_Fork();
+  if (pid == 0) become(program.c_str(), argv.data(), link);
+  return pid;
 }
 
 ProcessEnd not_started(int error) { return {ProcessEnd::How::not_started, error}; }
@@ -92,14 +79,13 @@ std::variant<std::unique_ptr<ChildProcess>, ProcessEnd> ChildProcess::start(
   std::array<int, 2> ends{};
   // Ours never blocks by the flag of each call; the program's is as it expects a descriptor to be.
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) return not_started(errno);
-  pid_t pid = 0;
-  int error = SpawnSettings(ends[1]).spawn(pid, program, arguments);
+  const pid_t pid = begin_process(program, arguments, ends[1]);
+  int error = errno;
   ::close(ends[1]);
-  if (error != 0) {
+  if (pid < 0) {
     ::close(ends[0]);
     return not_started(error);
   }
-  lower_priority(pid);
   // It is not waited for yet, so its number cannot be another's.
   const int pidfd = open_pidfd(pid);
   if (pidfd < 0) {

@@ -21,7 +21,7 @@ namespace axisgate::dds {
 
 /// The socket's number in the program.
 inline constexpr int kLinkDescriptor = 3;
-/// Of ours: both ends of the pair while it starts, its pidfd, and what posix_spawn may need.
+/// Of ours: both ends of the pair while it starts, its pidfd, and one more.
 inline constexpr std::uint64_t kDescriptorsNeeded = 4;
 /// Below the gateway's own priority, so that the core gets the processor first.
 inline constexpr int kNicer = 5;

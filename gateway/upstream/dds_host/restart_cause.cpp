@@ -23,6 +23,8 @@ std::string exit_text(int code) {
       return "was sent what is no record: axisgate and axisgate-dds are not of one installation";
     case kExitMemory:
       return "reached its memory limit (memory_limit_mb)";
+    case 127:  // as a shell tells it
+      return "is no program that this system can execute";
     default:
       return "ended with exit code " + std::to_string(code);
   }
