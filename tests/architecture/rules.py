@@ -34,7 +34,7 @@ EVERYTHING = ("gateway/app", "gateway/main.cpp", "tests")
 ONE_PLACE = {
     r"<modbus(/modbus)?\.h>": ("adapters/modbus_rtu/",),
     r"<linux/can": ("adapters/can/", "tests/axisgate_sim/", "tests/unit/can/", "tests/vcan/", "tests/bench/"),
-    r"<fastdds|<fastrtps|PubSubTypes": ("gateway/upstream/dds_process/", "deploy/examples/"),
+    r"<fastdds|<fastrtps|PubSubTypes": ("gateway/upstream/dds_process/", "deploy/examples/", "tests/dds_peers/"),
     r"<termios\.h>|<sys/inotify\.h>|<linux/serial\.h>": ("adapters/serial/",),
     r"<valijson/": ("gateway/drive/json_schema.cpp",),
     r"<CLI/": ("gateway/app/command_line.cpp", "gateway/upstream/dds_process/options.cpp"),

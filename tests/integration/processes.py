@@ -28,8 +28,8 @@ class Program:
     def __init__(self, name, command, **options):
         self.name = name
         self.lines = []
-        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                        text=True, errors="replace", **options)
+        options.setdefault("stdin", subprocess.DEVNULL)
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", **options)
         self.reader = threading.Thread(target=self._read, daemon=True)
         self.reader.start()
 

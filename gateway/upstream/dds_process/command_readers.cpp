@@ -45,17 +45,19 @@ SteadyNs to_length(const eprosima::fastrtps::Duration_t& lease) {
 
 void WriterDiscovery::on_publisher_discovery(fastdds::DomainParticipant*, WriterDiscoveryInfo&& info) {
   const auto& data = info.info;
-  const bool command = data.topicName() == kCommandTopicName;
-  if (!command && data.topicName() != kObjectTopicName) return;
   const Guid writer = to_guid(data.guid());
-  if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) {
+  const auto& stated = data.m_qos.m_liveliness;
+  const bool removed = info.status == WriterDiscoveryInfo::REMOVED_WRITER;
+  if (!removed && to_length(stated.lease_duration) != 0 && stated.kind != fastdds::MANUAL_BY_TOPIC_LIVELINESS_QOS)
+    watch_.on_asserted(writer, to_kind(stated.kind));
+  const bool command = data.topicName() == kCommandTopicName;
+  if (removed) {
     watch_.on_removed(writer);
-  } else {
-    const auto& liveliness = data.m_qos.m_liveliness;
+  } else if (command || data.topicName() == kObjectTopicName) {
     watch_.on_discovered(writer, {.strength = static_cast<std::int32_t>(data.m_qos.m_ownershipStrength.value),
                                   .lease = {.topic = command ? CommandTopic::command : CommandTopic::object,
-                                            .kind = to_kind(liveliness.kind),
-                                            .length = to_length(liveliness.lease_duration)},
+                                            .kind = to_kind(stated.kind),
+                                            .length = to_length(stated.lease_duration)},
                                   .where = where(data)});
   }
   wake_.set();

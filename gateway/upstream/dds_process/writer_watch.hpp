@@ -15,6 +15,8 @@
 namespace axisgate::dds {
 
 inline constexpr std::size_t kMaxWritersKnown = 256;
+/// Writers of any topic whose participants assert them. With more, no such assertion is believed.
+inline constexpr std::size_t kMaxAssertedKnown = 1024;
 /// What a writer with a lease gets beside it when it appears: until its assertions are heard.
 inline constexpr SteadyNs kFirstGrace = 1'000'000'000;
 
@@ -43,8 +45,12 @@ class WriterWatch {
   void on_discovered(const Guid& writer, const WriterStatement& statement);
   void on_matched(const Guid& writer, SteadyNs now);
   void on_unmatched(const Guid& writer);
-  /// Removed by its participant, or that is gone.
+  /// Removed by its participant, or that is gone. Of any topic.
   void on_removed(const Guid& writer);
+  /// A writer of any topic with a finite lease, which its participant asserts together with all of that kind.
+  /// Fast DDS 2.9.1 takes such an assertion for one of all participants' writers, so that one program that lives would
+  /// keep the leases of those that have died. Where more than one participant asserts a kind, none is believed.
+  void on_asserted(const Guid& writer, LivelinessKind kind);
   /// By a reader that asks for this lease. Of writers with another one it says nothing.
   void on_liveliness(const Guid& writer, const LivelinessLease& asked, bool alive);
   /// A sample of it was taken, which is an assertion of its liveliness.
@@ -53,9 +59,11 @@ class WriterWatch {
   struct Changes {
     std::vector<WriterRecord> before{};  ///< to be told before the samples that were taken
     std::vector<WriterRecord> after{};   ///< losses: after them
-    /// A writer is silent that the library, which does not know of its lease, still prefers to a weaker one.
+    /// A writer is silent that the library, which does not know of its lease, still prefers to those that are not
+    /// stronger, whether they are there or still to come.
     bool owner_silent = false;
     std::size_t refused = 0;  ///< writers not taken in since the last call, for want of room
+    bool doubted = false;     ///< since the last call it has begun that assertions are not believed
   };
   [[nodiscard]] Changes take_changes(SteadyNs now);
   /// Of those with a lease that is good now.
@@ -78,10 +86,14 @@ class WriterWatch {
   };
   Writer* find(const Guid& writer);
   Writer* find_or_add(const Guid& writer);
-  [[nodiscard]] bool has_weaker(const Writer& than, SteadyNs now) const;
+  [[nodiscard]] bool believed(const Guid& writer, LivelinessKind kind) const;
+  [[nodiscard]] bool holds_others_back(const Writer& silent, SteadyNs now) const;
 
   mutable std::mutex mutex_;
   std::map<Guid, Writer> writers_;
+  std::map<Guid, LivelinessKind> asserted_;
+  bool too_many_asserted_ = false;
+  bool doubted_ = false;
   std::size_t refused_ = 0;
 };
 

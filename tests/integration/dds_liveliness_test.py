@@ -1,0 +1,158 @@
+"""A DDS master that is gone: its process is killed, its writer deleted, or it says nothing any more. Its motor stops."""
+import signal
+import time
+
+from dds_stage import CYCLONE, FAST, LEASE, RPM, VENDORS, DdsStory, main
+from lease_stage import ANOTHER
+from modbus import Axis
+from processes import until
+
+
+class Masters(DdsStory):
+    """A master of each vendor with a motor of its own; both go in the same way."""
+
+    lines_of = ("serial", "modbus")
+    lease = {"timeout_ms": 3000}
+    vendors = VENDORS
+    lives_by = ("automatic", 2000)
+
+    def setUp(self):
+        super().setUp()
+        self.begin()
+        self.events = self.peer_of(FAST).read("axis_event")
+        self.masters = {}
+        for number, vendor in zip(self.numbers, self.vendors):
+            self.at = vendor
+            self.masters[number] = self.commander(vendor, "strength", 1, *self.lives_by)
+            self.run_by_dds(self.masters[number], number)
+        self.at = None
+
+    def go_on(self, keep_alive=lambda number, master: None):
+        """For longer than any lease, though nothing is asked for."""
+        end = time.monotonic() + 1.5 * self.lease["timeout_ms"] / 1000
+        while time.monotonic() < end:
+            for number, master in self.masters.items():
+                self.at = master.name
+                keep_alive(number, master)
+                self.assertEqual(self.watched(number).get("owner"), ANOTHER)
+                self.assertNotEqual(self.speed(number), 0)
+        self.at = None
+
+    def each_goes(self, leave):
+        place = self.events.now()
+        for master in self.masters.values():
+            leave(master)
+        self.assert_stopped(place)
+
+    def assert_stopped(self, place):
+        for number, master in self.masters.items():
+            self.at = master.name
+            self.assert_stopped_for_good(number)
+            self.events.sample("axis_event", lambda event: "has run out" in event["text"], since=place, axis=number, kind=LEASE)
+        self.at = None
+
+    def assert_another_may(self):
+        for number, vendor in zip(self.masters, reversed(VENDORS)):
+            self.at = vendor
+            peer = self.commander(vendor, "strength", 1, *self.lives_by)
+            self.run_by_dds(peer, number, rpm=-200)
+            self.let_go(peer, number)
+        self.at = None
+
+
+class Gone(Masters):
+    vendors = (FAST,)
+
+    def test_their_processes_are_killed(self):
+        self.go_on()
+        self.each_goes(lambda master: master.process.kill())
+        self.assert_another_may()
+
+    def test_their_processes_stand_still(self):
+        for master in self.masters.values():
+            self.addCleanup(master.send, signal.SIGCONT)
+        self.each_goes(lambda master: master.send(signal.SIGSTOP))
+
+    def test_their_writers_are_deleted(self):
+        self.each_goes(lambda master: master.delete())
+        self.assert_another_may()
+
+    def test_they_leave_in_good_order(self):
+        self.each_goes(lambda master: master.leave())
+
+
+class GoneCyclone(Gone):
+    vendors = (CYCLONE,)
+
+    def test_their_processes_are_killed(self):  # a class is run where it has a test of its own; the others are inherited
+        super().test_their_processes_are_killed()
+
+
+class ByHand(Masters):
+    """MANUAL_BY_TOPIC: the program says that it lives, not its library."""
+
+    lives_by = ("manual", 2000)
+
+    def test_they_assert_their_liveliness_and_then_do_not(self):
+        self.go_on(lambda number, master: master.say("assert", "axis_command"))
+        self.each_goes(lambda master: self.assertIsNone(master.process.poll(), "the process itself is well"))
+        for master in self.masters.values():
+            master.wait("liveliness_lost", "axis_command")
+
+    def test_one_that_goes_takes_no_other_with_it(self):
+        def stopped():
+            self.masters[2].say("assert", "axis_command")
+            self.assertNotEqual(self.speed(2), 0)
+            return self.speed(1) == 0
+
+        self.masters[1].process.kill()
+        until("motor 1 is stopped", stopped)
+        self.assertIn("stop_latched", self.watched(1).inputs())
+        self.assertNotIn("stop_latched", self.watched(2).inputs())
+        self.enable(Axis(self.peer(), 1))
+        self.let_go(self.masters[2], 2)
+
+
+class Doubted(Masters):
+    """Two programs with automatic liveliness: the library hears one and takes it for both, so neither is believed."""
+
+    def test_a_dead_one_is_not_kept_by_one_that_lives(self):
+        self.gateway.wait_for("several programs state an automatic liveliness lease")
+        self.masters[1].process.kill()
+        self.until_it_stands(1)
+        self.watched(1).until_input("stop_latched")
+
+    def test_samples_keep_an_axis_all_the_same(self):
+        self.go_on(lambda number, master: master.do(number, target_velocity=300 * RPM))
+
+
+class Endless(Masters):
+    """Writers with an infinite lease: silent, they might as well be dead. Only samples keep their axes."""
+
+    lives_by = ()
+
+    def test_they_write_samples_and_then_do_not(self):
+        self.go_on(lambda number, master: master.do(number, target_velocity=300 * RPM))
+        self.each_goes(lambda master: self.assertIsNone(master.process.poll(), "the process itself is well"))
+
+
+class Short(Masters):
+    """A lease of a second, the shortest that is worth anything where a library may be late."""
+
+    vendors = (FAST,)
+    lives_by = ("automatic", 1000)
+
+    def test_it_is_kept_by_the_library_alone(self):
+        self.go_on()
+        self.each_goes(lambda master: master.process.kill())
+
+
+class ShortCyclone(Short):
+    vendors = (CYCLONE,)
+
+    def test_it_is_kept_by_the_library_alone(self):
+        super().test_it_is_kept_by_the_library_alone()
+
+
+if __name__ == "__main__":
+    main()
