@@ -5,11 +5,13 @@
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <cstddef>
 #include <stdexcept>
 
 namespace axisgate::dds::test {
@@ -48,9 +50,28 @@ std::string all_of(int file) {
   return text;
 }
 
+/// Claimed by a name in the kernel, as the stories do, for as long as this program runs.
+std::uint32_t reserve_domain() {
+  constexpr std::uint32_t kDomains = 100;
+  const int claim = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  for (std::uint32_t i = 0; i < kDomains; ++i) {
+    const std::uint32_t domain = 1 + (static_cast<std::uint32_t>(getpid()) + i) % kDomains;
+    const std::string name = "axisgate-dds-domain-" + std::to_string(domain);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    name.copy(address.sun_path + 1, sizeof address.sun_path - 1);
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+    if (bind(claim, reinterpret_cast<const sockaddr*>(&address), size) == 0) return domain;
+  }
+  throw std::runtime_error("all DDS domains of the tests are taken");
+}
+
 }  // namespace
 
-std::uint32_t test_domain() { return 1 + static_cast<std::uint32_t>(getpid()) % 100; }
+std::uint32_t test_domain() {
+  static const std::uint32_t domain = reserve_domain();
+  return domain;
+}
 
 Child::Child(const std::vector<std::string>& more, bool ready) {
   int ends[2] = {-1, -1};

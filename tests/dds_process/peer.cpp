@@ -197,7 +197,8 @@ std::unique_ptr<Writer<Sample>> Peer::writer(const std::string& topic, const Wri
     qos.ownership_strength().value = settings.strength;
   }
   qos.history().kind = fastdds::KEEP_ALL_HISTORY_QOS;
-  qos.reliable_writer_qos().times.heartbeatPeriod = Duration_t(0, 20'000'000);
+  qos.reliable_writer_qos().times.heartbeatPeriod =
+      settings.heartbeats ? Duration_t(0, 20'000'000) : eprosima::fastrtps::c_TimeInfinite;
   qos.resource_limits().max_samples = 0;
   qos.resource_limits().max_instances = 0;
   qos.resource_limits().max_samples_per_instance = 0;

@@ -27,6 +27,9 @@ struct WriterSettings {
   bool exclusive = true;
   Liveliness liveliness = Liveliness::automatic;
   std::chrono::milliseconds lease{0};  ///< 0: endless
+  /// Off for a writer that is deleted while much of it is unacknowledged: Fast DDS 2.9.1 can run for ever in a
+  /// heartbeat then (StatefulWriter::add_gaps_for_holes_in_history_). Samples carry heartbeats of their own.
+  bool heartbeats = true;
 };
 
 template <typename Sample>

@@ -1,6 +1,7 @@
 #include "gateway/upstream/dds_process/serve_command.hpp"
 
 #include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -158,6 +159,14 @@ class Server {
   bool more_ = false;
 };
 
+/// Taking leave of the other participants is a courtesy. Fast DDS 2.9.1 can run for ever in the heartbeat of a writer
+/// that is being deleted, and no gateway would be there any more to end that.
+void leave_soon() {
+  constexpr unsigned kSecondsToLeave = 1;
+  std::signal(SIGALRM, [](int) { ::_exit(kExitGatewayGone); });
+  ::alarm(kSecondsToLeave);
+}
+
 int serve(const ServeOptions& options, LinkSocket& link) {
   Wake wake;
   DdsLog log(wake);
@@ -166,6 +175,7 @@ int serve(const ServeOptions& options, LinkSocket& link) {
   try {
     Server server(options, link, log, wake);
     code = server.run();
+    leave_soon();
   } catch (const StartError& error) {
     release_library_log();
     while (const std::optional<LogRecord> line = log.next(steady_now())) link.send(*line);

@@ -25,7 +25,7 @@ using std::chrono::milliseconds;
 constexpr std::chrono::microseconds kEvery{2000};
 
 /// A domain of its own for each run and each half of it, so that runs side by side do not meet.
-std::uint32_t domain_of(std::uint32_t half) { return 2 * (static_cast<std::uint32_t>(::getpid()) % 100) + half; }
+std::uint32_t domain_of(std::uint32_t half) { return 1 + 2 * (static_cast<std::uint32_t>(::getpid()) % 50) + half; }
 
 /// What a program of Fast DDS alone does: the same type, QoS and network.
 class BareWriter {
