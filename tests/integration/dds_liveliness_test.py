@@ -91,7 +91,8 @@ class GoneCyclone(Gone):
 class ByHand(Masters):
     """MANUAL_BY_TOPIC: the program says that it lives, not its library."""
 
-    lives_by = ("manual", 2000)
+    lease = {"timeout_ms": 10000}  # the first master waits for the second to be there
+    lives_by = ("manual", 6000)
 
     def test_they_assert_their_liveliness_and_then_do_not(self):
         self.go_on(lambda number, master: master.say("assert", "axis_command"))
@@ -116,6 +117,8 @@ class ByHand(Masters):
 class Doubted(Masters):
     """Two programs with automatic liveliness: the library hears one and takes it for both, so neither is believed."""
 
+    lease = {"timeout_ms": 10000}
+
     def test_a_dead_one_is_not_kept_by_one_that_lives(self):
         self.gateway.wait_for("several programs state an automatic liveliness lease")
         self.masters[1].process.kill()
@@ -129,6 +132,7 @@ class Doubted(Masters):
 class Endless(Masters):
     """Writers with an infinite lease: silent, they might as well be dead. Only samples keep their axes."""
 
+    lease = {"timeout_ms": 10000}  # the first master waits for the second to be there
     lives_by = ()
 
     def test_they_write_samples_and_then_do_not(self):
