@@ -92,6 +92,11 @@ int subscribe(std::uint32_t domain) {
   Latencies latencies;
   dds::fastdds::DataReaderQos qos = dds::fastdds::DATAREADER_QOS_DEFAULT;
   qos.reliability().kind = dds::fastdds::RELIABLE_RELIABILITY_QOS;
+  // By default a Fast DDS reader takes ten instances, and rejects the samples of all others again and again.
+  constexpr std::int32_t kMostAxes = 500;
+  qos.resource_limits().max_instances = kMostAxes;
+  qos.resource_limits().max_samples_per_instance = 1;
+  qos.resource_limits().max_samples = kMostAxes;
   static_cast<void>(participant.make_reader(
       "axisgate/axis_state", dds::fastdds::TypeSupport(new axisgate::AxisStatePubSubType), qos, &latencies));
   for (char question = 0; ::read(kSocketOfSubscriber, &question, 1) == 1;) {
