@@ -104,9 +104,7 @@ void read_qos_file(const ConfigNode& node, DdsSettings& settings, ConfigFaults& 
 void read_role(const ConfigNode& node, DdsSettings& settings, ConfigFaults& faults) {
   settings.commands = node.flag("commands", settings.commands);
   settings.role = loopback_only(settings) ? Role::engineer : Role::operator_;
-  const std::string given = node.string("role").value_or("");
-  for (const Role role : {Role::viewer, Role::operator_, Role::engineer})
-    if (given == axisgate::text(role)) settings.role = role;
+  if (const Role given = role_named(node.string("role").value_or("")); given != Role::none) settings.role = given;
   if (!settings.commands) {
     for (const std::string_view key : {"role", "start_deadline_ms", "reply_deadline_ms"})
       if (node.has(key)) faults.warn(node.pointer(key), "without \"commands\": true this has no effect");

@@ -11,13 +11,6 @@ namespace {
 using modbus_tcp::AllowEntry;
 using modbus_tcp::ListenerSettings;
 
-Role role_named(std::string_view name) {
-  for (const Role role : {Role::viewer, Role::operator_, Role::engineer}) {
-    if (name == axisgate::text(role)) return role;
-  }
-  return Role::none;
-}
-
 AllowEntry read_allow_entry(const ConfigNode& node, ConfigFaults& faults) {
   AllowEntry entry;
   entry.role = role_named(node.string("role").value_or(""));
@@ -110,6 +103,13 @@ bool collide(const ListenerSettings& a, const ListenerSettings& b) {
 }
 
 }  // namespace
+
+Role role_named(std::string_view name) {
+  for (const Role role : {Role::viewer, Role::operator_, Role::engineer}) {
+    if (name == axisgate::text(role)) return role;
+  }
+  return Role::none;
+}
 
 std::vector<ListenerSettings> read_listeners(const ConfigNode& root, ConfigFaults& faults) {
   std::vector<ListenerSettings> listeners;

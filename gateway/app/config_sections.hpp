@@ -17,6 +17,8 @@ namespace axisgate::app {
 /// What the schema knows and this version has not: refused by name, never ignored.
 void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults);
 
+/// none: no role has this name.
+[[nodiscard]] Role role_named(std::string_view name);
 [[nodiscard]] std::vector<modbus_tcp::ListenerSettings> read_listeners(const ConfigNode& root, ConfigFaults& faults);
 [[nodiscard]] std::vector<BusConfig> read_buses(const ConfigNode& root, ConfigFaults& faults);
 [[nodiscard]] DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
