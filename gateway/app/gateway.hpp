@@ -38,6 +38,7 @@ class Gateway final : public CommandPort {
                                                   GroupCallback on_result) override;
   void client_gone(ClientId client) override;
   [[nodiscard]] bool holds(AxisNumber axis, Quantity quantity, std::int64_t value) const override;
+  [[nodiscard]] bool owner_asks(AxisNumber axis, ClientId client, Quantity quantity, std::int64_t value) const override;
   [[nodiscard]] std::int32_t set_position_value(AxisNumber axis) const override;
 
   [[nodiscard]] ProcessImage& image() { return image_; }

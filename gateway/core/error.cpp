@@ -39,6 +39,7 @@ constexpr std::array<Row, kErrcCount> kRows{{
     {Errc::bad_reply, "reply does not fit the request", gateway_target_failed, CommandResult::outcome_unknown},
     {Errc::not_reached, "acknowledged, but the state was not reached", gateway_target_failed,
      CommandResult::outcome_unknown},
+    {Errc::not_new, "not new: write 0 first", server_device_busy, CommandResult::not_new},
 }};
 
 constexpr bool rows_in_order() {

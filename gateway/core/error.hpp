@@ -33,8 +33,10 @@ enum class Errc : std::uint8_t {
   link_lost,         ///< sent, then the link or the drive was lost: outcome unknown
   bad_reply,         ///< the reply does not fit the request (width, form)
   not_reached,       ///< acknowledged, but the drive never showed the state that was asked for
+  // What the rules of edges did not let act.
+  not_new,  ///< it repeats what was written before and does nothing: another value must come first
 };
-inline constexpr int kErrcCount = static_cast<int>(Errc::not_reached) + 1;
+inline constexpr int kErrcCount = static_cast<int>(Errc::not_new) + 1;
 
 /// Register 25 (design 3.1).
 enum class CommandResult : std::uint8_t {
@@ -48,6 +50,7 @@ enum class CommandResult : std::uint8_t {
   not_owner = 7,
   stopped_by_other = 8,
   state_unsuitable = 9,
+  not_new = 10,
 };
 
 /// Modbus application protocol V1.1b3 section 7; 0 is no exception.

@@ -58,6 +58,7 @@ void Axis::on_bring_up() {
   if (core_.model.homing_method) core_.homing_method = *core_.model.homing_method;
   core_.offset_owed.reset();
   core_.mode_chosen = false;
+  accepted_.forget_parameters();
   core_.emergency = 0;
   reference_doubted_ = false;
   core_.homed = false;
@@ -111,6 +112,7 @@ bool Axis::join_stop(const Group& group, GroupCallback& on_result) {
 
 void Axis::accept_stop(const Group& group) {
   core_.motion.stop(stop_latches(core_, group), core_.now);
+  image_.endings.stopped(group.client);
   for (Pending& p : pending_)
     if (!p.stopped_by) p.stopped_by = group.client;
 }
@@ -152,6 +154,7 @@ std::optional<GroupResult> Axis::carry_out(const Group& asked, Errc refusal, Gro
   }
   if (pending_.empty() && nothing_to_send(core_, group)) {
     // The wire is not needed: a PLC that writes the same block for ever is answered at once.
+    accept(group);
     remember_setpoints(core_, group);
     core_.mode_chosen = core_.mode_chosen || group.mode.has_value();
     show_latest(group, {});
@@ -193,6 +196,7 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<GroupResult>& refus
     return;
   }
   pending.id = queued.id;
+  accept(group);
   const bool drives = std::any_of(group.setpoints.begin(), group.setpoints.end(), [](const Setpoint& sp) {
     return sp.quantity == Quantity::target_velocity || sp.quantity == Quantity::target_torque;
   });
@@ -322,6 +326,7 @@ void Axis::complete(bus::OrderId id, const GroupResult& result) {
   if (!motion_pending()) core_.motion.unmask_target_reached();
   GroupResult told = result;
   if (told.outcome.code == Errc::ok && pending.refusal != Errc::ok) told.outcome = {pending.refusal, 0};
+  if (told.outcome.code != Errc::ok && !pending.conversation->begun()) forget_accepted(pending.conversation->group());
   if (!pending.by_mailbox) show_latest(pending.conversation->group(), told.outcome);
   if (!pending.callbacks.empty()) due_.push_back({told, std::move(pending.callbacks)});
 }

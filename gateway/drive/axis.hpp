@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gateway/drive/accepted.hpp"
 #include "gateway/drive/conversation.hpp"
 #include "gateway/drive/jog.hpp"
 #include "gateway/drive/ownership.hpp"
@@ -45,6 +46,8 @@ class Axis {
 
   [[nodiscard]] std::optional<GroupResult> submit(const Group& group, GroupCallback on_result);
   [[nodiscard]] bool holds(Quantity quantity, std::int64_t value) const;
+  /// A row that a block repeats asks all the same: its client owns the axis, and another value was accepted last.
+  [[nodiscard]] bool owner_asks(ClientId client, Quantity quantity, std::int64_t value) const;
   [[nodiscard]] std::int32_t set_position_value() const { return core_.set_position_value; }
 
   /// The drive comes up anew: nothing is known, nothing survives.
@@ -118,6 +121,10 @@ class Axis {
   // What comes before a group is carried out: who asks, and for what besides (axis_ownership.cpp).
   [[nodiscard]] Errc judge_owner(const Group& group) const;
   void claim(const Group& group);
+  [[nodiscard]] GroupResult nothing_asked(const Group& group);
+  [[nodiscard]] bool run_pending() const;
+  void accept(const Group& group);
+  void forget_accepted(const Group& group);
   [[nodiscard]] std::optional<GroupResult> release(const Group& group, GroupCallback on_result);
   [[nodiscard]] GroupResult released(const Group& group);
   [[nodiscard]] std::optional<GroupResult> take_over(const Group& group, GroupCallback on_result);
@@ -139,6 +146,7 @@ class Axis {
   void enqueue(Pending pending, bool stop, std::optional<GroupResult>& refused);
   void carry_on(Pending& pending);
   void complete(bus::OrderId id, const GroupResult& result);
+  void tell_endings();
   void tell_changes(const AxisImage& before);
   [[nodiscard]] Pending* find(bus::OrderId id);
   [[nodiscard]] const Pending* find(bus::OrderId id) const { return const_cast<Axis*>(this)->find(id); }
@@ -155,6 +163,9 @@ class Axis {
   Instant last_statusword_ = kLongAgo;
   std::optional<ClientId> motion_by_{};  ///< who commanded the motion that runs
   Ownership ownership_;
+  Accepted accepted_;
+  std::uint64_t faults_told_ = 0;
+  std::uint64_t losses_told_ = 0;
   Jog jog_;
 };
 

@@ -42,6 +42,7 @@ void Axis::publish(Instant now) {
   core_.now = now;
   core_.link = host_.link_state();
   core_.motion.observe(core_.facts(), core_.model.homing_timeout);
+  tell_endings();
   const AxisImage before = image_;
   image_.link_state = host_.link_state();
   show_state(core_, image_, now);
@@ -54,6 +55,16 @@ void Axis::publish(Instant now) {
     if (image_.board != nullptr) image_.board->mark(image_.number);
     tell_changes(before);
   }
+}
+
+// What the faces must know of it: what was commanded before is over, and its client must ask anew.
+void Axis::tell_endings() {
+  if (core_.motion.faults() != faults_told_) image_.endings.faulted();
+  if (core_.motion.losses() != losses_told_) image_.endings.lost();
+  faults_told_ = core_.motion.faults();
+  losses_told_ = core_.motion.losses();
+  const AxisFacts facts = core_.facts();
+  ownership_.set_armed(!facts.reachable || holds_motor(facts.state));
 }
 
 void Axis::tell_changes(const AxisImage& before) {

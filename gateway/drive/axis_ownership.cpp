@@ -12,11 +12,6 @@
 namespace axisgate::drive {
 namespace {
 
-bool asks_nothing(const Group& group) {
-  return group.setpoints.empty() && !group.mode && !group.controlword && group.command == Command::none &&
-         !group.set_position_value && !group.object && !group.jog_velocity;
-}
-
 /// It has no connection that could end.
 bool is_dds(const ClientLife& client) { return client.strength.has_value(); }
 
@@ -34,14 +29,14 @@ Errc Axis::judge_owner(const Group& group) const {
   const bool stops_alone = holds_stop(group) && !group.claims;
   if (stops_alone || group.command == Command::jog_end) return Errc::ok;
   if (group.command == Command::take_over) return ownership_.may_take_over(group.life);
-  if (asks_nothing(group) && !group.claims && !group.jog_again) return Errc::ok;
-  return ownership_.judge(group.life, group.claims, core_.now);
+  if (asks_nothing(group) && !group.jog_again) return Errc::ok;
+  return ownership_.judge(group.life, group.claims);
 }
 
-// What was accepted from a client makes it the owner.
+// What was accepted from a client makes it the owner; so does any write where the axis waits for this client.
 void Axis::claim(const Group& group) {
   if (group.jog_velocity) image_.jog_velocity = *group.jog_velocity;
-  if (!group.claims) return;
+  if (!group.claims && !(group.is_write && ownership_.waits_for(group.life, group.all_zero))) return;
   const Ownership::Taken taken = ownership_.take(group.life, core_.now);
   if (taken == Ownership::Taken::nothing) return;
   jog_.end();
@@ -55,14 +50,16 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   Group group = asked;
   // Bits 0..3 = 6 or 7 are a stop of the owner's in a block of registers as well.
   if (group.controlword && ownership_.is_owner(group.client)) group.single_controlword = true;
+  // A coil that is held although its jog has ended asks for nothing until it was 0.
+  const bool holds_in_vain = group.jog_again && !jog_.again(*group.jog_again, group.client, core_.now);
+  if (holds_in_vain) group.jog_again.reset();
   Errc refusal = judge_owner(group);
-  ownership_.wrote(group.life, group.beats, core_.now);
+  ownership_.wrote(group.life, group.beats, !asks_nothing(group) || group.jog_again, core_.now);
   if (refusal != Errc::ok) {
     if (!holds_stop(group)) return refuse(asked, refusal);
     group = stop_alone(group);
     group.claims = false;
   }
-  if (group.jog_again) jog_.again(*group.jog_again, group.client, core_.now);
   switch (group.command) {
     case Command::release:
       return release(group, std::move(on_result));
@@ -73,17 +70,20 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
       if (const Errc code = begin_jog(group); code != Errc::ok) return refuse(asked, code);
       break;
     case Command::jog_end:
-      if (!jog_.active() || jog_.client() != group.client) return GroupResult{};
+      if (!jog_.active() || jog_.client() != group.client) return nothing_asked(group);
       jog_.end();
+      group.command = Command::halt;
+      break;
+    case Command::end_run:
+      if (core_.motion.running() != MotionKind::velocity && !run_pending()) return nothing_asked(group);
       group.command = Command::halt;
       break;
     default:
       break;
   }
   if (asks_nothing(group)) {
-    claim(group);
-    publish(core_.now);
-    return GroupResult{};
+    const GroupResult result = nothing_asked(group);
+    return holds_in_vain ? GroupResult{{Errc::not_new, 0}} : result;
   }
   const bool stop = holds_stop(group);
   const auto owner = ownership_.owner();
@@ -94,6 +94,43 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   auto result = carry_out(group, refusal, std::move(on_result));
   if (result && is_jog(asked.command)) jog_.end();
   return result;
+}
+
+// It may take over an axis that waits for its client all the same.
+GroupResult Axis::nothing_asked(const Group& group) {
+  claim(group);
+  publish(core_.now);
+  return {};
+}
+
+bool Axis::run_pending() const {
+  return std::any_of(pending_.begin(), pending_.end(),
+                     [](const Pending& p) { return p.conversation->group().command == Command::run_velocity; });
+}
+
+// --- What was accepted last ------------------------------------------------------------------------------------------
+
+void Axis::accept(const Group& group) {
+  for (const Setpoint& sp : group.setpoints) accepted_.note(sp.quantity, sp.value, core_.motion.ends());
+  if (group.mode) accepted_.note(Quantity::mode, *group.mode, core_.motion.ends());
+  const bool acts = group.controlword || (group.command != Command::none && !is_stop(group.command));
+  if (acts) image_.endings.commanded(group.client);
+}
+
+// It was dropped before anything of it was begun: a scanner that goes on writing it asks for it anew.
+void Axis::forget_accepted(const Group& group) {
+  for (const Setpoint& sp : group.setpoints) accepted_.forget(sp.quantity);
+  if (group.mode) accepted_.forget(Quantity::mode);
+}
+
+bool Axis::owner_asks(ClientId client, Quantity quantity, std::int64_t value) const {
+  if (!ownership_.rules().on || !ownership_.is_owner(client) || !image_.reachable()) return false;
+  const auto last = accepted_.value(quantity, core_.motion.ends());
+  if (last) return *last != value;
+  // Nobody has asked for anything since the drive came up: what it holds is what counts; but a velocity or torque that
+  // has lapsed is needed anew.
+  const bool lapses = quantity == Quantity::target_velocity || quantity == Quantity::target_torque;
+  return lapses || !holds(quantity, value);
 }
 
 // Command 13. What else stands in the request comes before it, while its client owns the axis.

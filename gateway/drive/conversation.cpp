@@ -62,8 +62,26 @@ Plan Conversation::plan_of(Phase phase) {
   return {};
 }
 
+// "Set-points beside a command that is refused are accepted only if they would be without it."
+void Conversation::drop_setpoints_of_a_refused_command() {
+  const Command command = group_.command;
+  const bool starts = command >= Command::move_absolute && command <= Command::set_position;
+  const bool needs_rest = command == Command::move_relative || command == Command::set_position;
+  const AxisFacts facts = core_.facts();
+  // A controlword beside it may be what makes the axis ready.
+  if (!starts || group_.controlword || (core_.motion.may_start(facts) && (!needs_rest || core_.motion.at_rest(facts))))
+    return;
+  auto& setpoints = group_.setpoints;
+  setpoints.erase(
+      std::remove_if(setpoints.begin(), setpoints.end(), [](const Setpoint& sp) { return sp.with_command; }),
+      setpoints.end());
+}
+
 void Conversation::plan_phase() {
-  if (phase_ == Phase::setpoints) remember_setpoints(core_, group_);
+  if (phase_ == Phase::setpoints) {
+    drop_setpoints_of_a_refused_command();
+    remember_setpoints(core_, group_);
+  }
   Plan plan = plan_of(phase_);
   // A mode that a client asks for is its choice, also where it is in force already.
   if (phase_ == Phase::mode && group_.mode && !plan.refused()) core_.mode_chosen = true;

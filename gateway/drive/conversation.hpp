@@ -68,6 +68,7 @@ class Conversation {
   };
   static constexpr int kStopAttempts = 3;  // design 3.4
 
+  void drop_setpoints_of_a_refused_command();
   void plan_phase();
   void next_phase();
   [[nodiscard]] Plan plan_of(Phase phase);

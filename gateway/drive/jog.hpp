@@ -19,9 +19,11 @@ class Jog {
     until_ = now + timeout;
     timeout_ = timeout;
   }
-  /// Its coil was written 1 once more.
-  void again(Command direction, ClientId client, Instant now) {
-    if (active() && direction == direction_ && client == client_) until_ = now + timeout_;
+  /// Its coil was written 1 once more; false: it is no jog of this client's, or has ended.
+  [[nodiscard]] bool again(Command direction, ClientId client, Instant now) {
+    const bool mine = active() && direction == direction_ && client == client_;
+    if (mine) until_ = now + timeout_;
+    return mine;
   }
   void end() { direction_ = Command::none; }
 

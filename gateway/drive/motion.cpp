@@ -96,6 +96,7 @@ void Motion::end(MotionState how) {
   raw_run_ = false;
   wanted_[kVelocity].reset();
   wanted_[kTorque].reset();
+  ++ends_;
 }
 
 void Motion::complete(Instant now) {
@@ -116,9 +117,12 @@ void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
   was_faulted_ = facts.faulted();
   was_reachable_ = facts.reachable;
   was_enabled_ = facts.enabled();
+  if (newly_faulted) ++faults_;
+  if (newly_lost) ++losses_;
   if (!facts.enabled()) {
-    if (newly_faulted || newly_lost || newly_disabled || kind_ != MotionKind::none || raw_run_)
-      end(MotionState::failed);
+    // A start is given to an enabled axis alone. A raw 15 is what enables it: the statusword from before it, and those
+    // of the time that the drive needs, end nothing.
+    if (newly_faulted || newly_lost || newly_disabled || kind_ != MotionKind::none) end(MotionState::failed);
     return;
   }
   const bool seen_after_start = facts.statusword_exchange > started_by_ && !target_reached_masked_;

@@ -55,6 +55,7 @@ class Motion {
   [[nodiscard]] std::uint64_t stops() const { return stops_; }
   /// An enable accepted after the stop has been carried out (command 1, coil 0).
   void enabled() {
+    raw_run_ = false;
     latched_ = false;
     unlatch_armed_ = false;
   }
@@ -80,10 +81,16 @@ class Motion {
 
   /// The drive has acknowledged a start in this exchange; a motion under way is aborted by it.
   void start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t exchange);
-  /// A raw enable or mode write that lets set-points act at once (raw modes 3, 4, 9, 10).
+  /// A raw enable or mode write that lets set-points act at once (raw modes 3, 4, 9, 10). A drive may take its time to
+  /// become enabled after it: only leaving that state ends the run, not that it is not reached yet.
   void run_raw() { raw_run_ = true; }
   /// The mode was changed: what ran in the mode before is over.
   void mode_changed();
+  /// How often velocity and torque were made void until now.
+  [[nodiscard]] std::uint64_t ends() const { return ends_; }
+  /// How often a fault, and the loss of the drive, were seen.
+  [[nodiscard]] std::uint64_t faults() const { return faults_; }
+  [[nodiscard]] std::uint64_t losses() const { return losses_; }
   /// New samples. Ends the motion where they show its end.
   void observe(const AxisFacts& facts, Duration homing_timeout);
   /// Homing has run longer than its timeout: the axis must be halted (once).
@@ -115,6 +122,9 @@ class Motion {
   bool latched_ = false;
   bool unlatch_armed_ = false;
   std::uint64_t stops_ = 0;
+  std::uint64_t ends_ = 0;
+  std::uint64_t faults_ = 0;
+  std::uint64_t losses_ = 0;
   bool raw_run_ = false;
   bool stopping_ = false;
   bool target_reached_masked_ = false;

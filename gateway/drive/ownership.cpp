@@ -3,8 +3,6 @@
 namespace axisgate::drive {
 namespace {
 
-bool same_hand(const ClientLife& a, const ClientLife& b) { return a.origin == b.origin && a.role == b.role; }
-
 // Both are DDS writers: a Modbus client has no strength, and loses nothing to one that has.
 bool stronger(const ClientLife& a, const ClientLife& b) {
   return a.strength && b.strength && *a.strength > *b.strength;
@@ -12,40 +10,55 @@ bool stronger(const ClientLife& a, const ClientLife& b) {
 
 }  // namespace
 
-// A returning PLC must not wait for the lease of its own lost connection. Where that has not ended yet (a cable was
-// pulled, nobody has sent a reset) its silence tells: a client that is there asks more often than that.
-Ownership::Taken Ownership::how(const ClientLife& client, Instant now) const {
+// A returning PLC must not wait for the lease of its own connection that has ended. One that has not ended yet (a cable
+// was pulled, nobody has sent a reset) is somebody's until its lease runs out, or until command take_over.
+Ownership::Taken Ownership::how(const ClientLife& client) const {
   if (!lease_.running) return Taken::free;
   if (!lease_.owner) return Taken::open;
   if (stronger(client, *lease_.owner)) return Taken::weaker;
   if (!same_hand(*lease_.owner, client)) return Taken::lower_rank;
-  if (!lease_.owner->connected) return Taken::orphan;
-  return now - lease_.owner->last_request > lease_.rules.timeout / 2 ? Taken::half_open : Taken::lower_rank;
+  return lease_.owner->connected ? Taken::same_hand : Taken::orphan;
 }
 
-Errc Ownership::judge(const ClientPtr& client, bool claims, Instant now) const {
+Errc Ownership::judge(const ClientPtr& client, bool claims) const {
   if (!lease_.rules.on || !client || !lease_.owner || lease_.owner->id == client->id) return Errc::ok;
-  return claims && how(*client, now) != Taken::lower_rank ? Errc::ok : Errc::not_owner;
+  const Taken taken = how(*client);
+  return taken == Taken::orphan || (claims && taken == Taken::weaker) ? Errc::ok : Errc::not_owner;
+}
+
+bool Ownership::waits_for(const ClientPtr& client, bool all_zero) const {
+  if (!lease_.rules.on || !client || !lease_.running) return false;
+  return lease_.owner ? how(*client) == Taken::orphan : !all_zero;
 }
 
 Ownership::Taken Ownership::take(const ClientPtr& client, Instant now) {
   if (!lease_.rules.on || !client || lease_.owned_by(client->id)) return Taken::nothing;
-  const Taken taken = how(*client, now);
+  const Taken taken = how(*client);
   lease_.owner = client;
   lease_.running = true;
   lease_.renewed = now;
   return taken;
 }
 
-void Ownership::wrote(const ClientPtr& client, bool beats, Instant now) {
+void Ownership::wrote(const ClientPtr& client, bool beats, bool asks, Instant now) {
   if (!client || !lease_.owned_by(client->id)) return;
-  if (beats || lease_.rules.renew != LeaseRenewal::heartbeat) lease_.renewed = now;
+  const bool is_sign = beats || lease_.rules.renew != LeaseRenewal::heartbeat;
+  if (lease_.any_sign ? is_sign : asks) lease_.renewed = now;
+}
+
+void Ownership::set_armed(bool armed) {
+  if (armed == lease_.any_sign) return;
+  // What kept the lease alive until now goes on counting from its own time.
+  lease_.renewed = lease_.last_sign();
+  lease_.any_sign = armed;
 }
 
 Errc Ownership::may_take_over(const ClientPtr& client) const {
   if (!lease_.rules.on) return Errc::not_supported;
   if (!client || !lease_.owner || lease_.owner->id == client->id) return Errc::ok;
-  return lease_.owner->rank < client->rank ? Errc::ok : Errc::not_owner;
+  // Strength, not the hand, decides between DDS writers.
+  const bool own_hand = !client->strength && same_hand(*lease_.owner, *client);
+  return own_hand || lease_.owner->rank < client->rank ? Errc::ok : Errc::not_owner;
 }
 
 Errc Ownership::release(const ClientPtr& client, bool enabled, Instant now) {
@@ -84,8 +97,8 @@ std::string text(Ownership::Taken taken, const ClientLife& client) {
     case Ownership::Taken::orphan:
       return client.name + (client.strength ? " goes on as the owner, for another writer of its participant"
                                             : " is back and goes on as the owner: its connection had ended");
-    case Ownership::Taken::half_open:
-      return client.name + " is back and goes on as the owner: its other connection had fallen silent";
+    case Ownership::Taken::same_hand:
+      return client.name + " has taken the axis over from another connection of its address";
     case Ownership::Taken::weaker:
       return client.name + " has taken the axis over from a weaker DDS writer";
     case Ownership::Taken::lower_rank:

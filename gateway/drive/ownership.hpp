@@ -20,9 +20,9 @@ class Ownership {
   Ownership(Lease& lease, const LeaseRules& rules) : lease_(lease) { lease_.rules = rules; }
 
   /// Whether what this client asks may be carried out: ok, or not_owner. `claims`: a write that would make it the
-  /// owner, and so may take over an orphan of its own address and role, a lease whose connection is half open, or a
-  /// weaker DDS writer's. No client: the gateway itself, which is always admitted.
-  [[nodiscard]] Errc judge(const ClientPtr& client, bool claims, Instant now) const;
+  /// owner, and so may take over a weaker DDS writer's lease. An orphan of its own address and role hinders nobody.
+  /// No client: the gateway itself, which is always admitted.
+  [[nodiscard]] Errc judge(const ClientPtr& client, bool claims) const;
 
   /// How a client became the owner.
   enum class Taken : std::uint8_t {
@@ -30,16 +30,23 @@ class Ownership {
     free,        ///< nobody owned the axis
     open,        ///< of an axis that was enabled without an owner
     orphan,      ///< of its own address, whose connection had ended
-    half_open,   ///< of its own address, which had been silent
+    same_hand,   ///< of its own address, by command take_over
     weaker,      ///< of a DDS writer of less strength
     lower_rank,  ///< by command take_over
   };
   /// After judge() has admitted its claim. The lease runs anew from now.
   Taken take(const ClientPtr& client, Instant now);
-  /// A write of this client to the axis. `beats`: register 56 has changed. Others' writes renew nothing.
-  void wrote(const ClientPtr& client, bool beats, Instant now);
+  /// A write of any kind takes this lease over: an orphan of the client's own hand, or, unless it is nothing but zeros,
+  /// that of an axis which was found enabled.
+  [[nodiscard]] bool waits_for(const ClientPtr& client, bool all_zero) const;
+  /// A write of this client to the axis. `beats`: register 56 has changed; `asks`: it asks for something. Others'
+  /// writes renew nothing, and while the axis is disabled only what asks does.
+  void wrote(const ClientPtr& client, bool beats, bool asks, Instant now);
+  /// Whether the axis may hold torque, or nobody knows: all signs of life of the owner count then.
+  void set_armed(bool armed);
 
-  /// Command take_over: ok where nobody owns the axis, this client does, or a client of a lower rank.
+  /// Command take_over: ok where nobody owns the axis, this client does, another connection of the same address and
+  /// role, or a client of a lower rank.
   [[nodiscard]] Errc may_take_over(const ClientPtr& client) const;
   /// Command release: ok for the owner, and where nobody owns the axis. `enabled`: the lease stays open to others.
   [[nodiscard]] Errc release(const ClientPtr& client, bool enabled, Instant now);
@@ -60,7 +67,7 @@ class Ownership {
   [[nodiscard]] const LeaseRules& rules() const { return lease_.rules; }
 
  private:
-  [[nodiscard]] Taken how(const ClientLife& client, Instant now) const;
+  [[nodiscard]] Taken how(const ClientLife& client) const;
 
   Lease& lease_;
 };

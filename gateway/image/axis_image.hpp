@@ -11,6 +11,7 @@
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
 #include "gateway/image/changes.hpp"
+#include "gateway/image/endings.hpp"
 #include "gateway/image/lease.hpp"
 #include "gateway/image/quantity.hpp"
 
@@ -113,6 +114,7 @@ struct AxisImage {
   std::uint16_t level_coils = 0;
   std::uint32_t jog_velocity = 0;  ///< row 58, 0.001 rpm: the gateway's own
   Lease lease{};
+  Endings endings{};                 ///< what has ended motions: the faces' rules of edges look at it
   Instant oldest_cyclic = kLongAgo;  ///< when the oldest cyclic value was confirmed
   LatestResult latest;
   std::uint32_t sequence = 0;

@@ -42,8 +42,15 @@ std::string_view text(Command command) {
       return "jog_reverse";
     case Command::jog_end:
       return "jog_end";
+    case Command::end_run:
+      return "end_run";
   }
   return "?";
+}
+
+bool asks_nothing(const Group& group) {
+  return group.setpoints.empty() && !group.mode && !group.controlword && group.command == Command::none &&
+         !group.set_position_value && !group.jog_velocity && !group.object;
 }
 
 std::string_view text(Role role) {

@@ -38,6 +38,7 @@ enum class Command : std::uint8_t {
   jog_forward = 31,  ///< coil 8 going 0 -> 1
   jog_reverse = 32,  ///< coil 9 going 0 -> 1
   jog_end = 33,      ///< coil 8 or 9 going 1 -> 0, or both at 1: a halt where the axis jogs, else nothing
+  end_run = 34,      ///< coil 7 going 1 -> 0: a halt where run_velocity runs, else nothing
 };
 inline constexpr std::uint16_t kLastCommand = 14;
 [[nodiscard]] std::string_view text(Command command);
@@ -63,6 +64,8 @@ struct Setpoint {
   Quantity quantity;
   std::int64_t value;                   ///< in register units
   std::optional<std::int64_t> exact{};  ///< as the drive counts, where the object mailbox gave it so
+  /// It asks only because a command acts in the same request: where that is refused, it is not accepted either.
+  bool with_command = false;
 };
 
 /// All writes of one request to one axis. Run in this order: setpoints, mode, controlword, command, object.
@@ -71,10 +74,14 @@ struct Group {
   Role role = Role::viewer;
   /// Who asks; none: the gateway itself, which owns nothing and is refused nothing.
   std::shared_ptr<const ClientLife> life{};
-  /// The request writes what makes its client the owner (design 3.5: offsets 40..79, coils 4..9, coil 0 = 1, a mailbox
-  /// or 43/13 write). A group that asks for nothing is submitted for this alone.
+  /// The request asks for something that makes its client the owner (design 3.5: offsets 40..79, coils 4..9, coil 0 =
+  /// 1, a mailbox or 43/13 write).
   bool claims = false;
-  bool beats = false;  ///< register 56 was written with another value than before
+  /// A write of any kind, for an axis that waits for its client: an orphan lease of its own hand is taken over by it,
+  /// whatever it asks. A group that asks for nothing is submitted for this, and for its sign of life, alone.
+  bool is_write = false;
+  bool all_zero = false;  ///< a block of nothing but zeros: it takes over no adopted axis
+  bool beats = false;     ///< register 56 was written with another value than before
   /// In register order; quantities but mode and controlword, each at most once.
   boost::container::static_vector<Setpoint, kQuantityCount> setpoints;
   std::optional<std::int16_t> mode;
@@ -93,6 +100,10 @@ struct Group {
   Instant start_by = kNever;   ///< not begun by then: never_started
   Instant answer_by = kNever;  ///< begun, not acknowledged by then: timed_out
 };
+
+/// The group asks for nothing to be done: it is submitted for its client's ownership alone, and leaves the client's
+/// result registers as they are.
+[[nodiscard]] bool asks_nothing(const Group& group);
 
 /// The stop that a lease's action is; none: nothing is done.
 [[nodiscard]] constexpr Command command_of(LeaseAction action) {

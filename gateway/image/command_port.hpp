@@ -26,6 +26,10 @@ class CommandPort {
   virtual void client_gone(ClientId client) = 0;
   /// The drive is known to hold exactly this value (a row that a block write may skip without asking the role).
   [[nodiscard]] virtual bool holds(AxisNumber axis, Quantity quantity, std::int64_t value) const = 0;
+  /// The client owns the axis, and the value accepted last for this quantity is another one: a block that repeats its
+  /// rows asks for this row all the same. False while leases are off, and while the drive is out of reach.
+  [[nodiscard]] virtual bool owner_asks(AxisNumber axis, ClientId client, Quantity quantity,
+                                        std::int64_t value) const = 0;
   [[nodiscard]] virtual std::int32_t set_position_value(AxisNumber axis) const = 0;
 };
 

@@ -29,7 +29,7 @@ struct ClientLife {
   std::uint8_t rank = 0;  ///< 0..9: command take_over takes an axis from a lower one
   Origin origin{};
   std::string name;                 ///< "192.168.1.7:51234", for events
-  Instant last_request = kLongAgo;  ///< any request, reads included
+  Instant last_request = kLongAgo;  ///< any request, reads included; of a client that is an address, writes alone
   Instant heartbeat = kLongAgo;     ///< gateway register 8 was written with another value than before
   bool connected = true;            ///< false: its connection has ended, its leases are orphans
   /// Of a DDS writer: OWNERSHIP_STRENGTH (DDS 1.4, 2.2.3.10). A stronger one takes an axis from a weaker one.
@@ -37,6 +37,11 @@ struct ClientLife {
   /// What its leases last longer: nobody can hear it at present, and that is not its fault.
   Duration grace{};
 };
+
+/// The same program, as far as anybody can tell: a connection that goes on where another one of it has ended.
+[[nodiscard]] inline bool same_hand(const ClientLife& a, const ClientLife& b) {
+  return a.origin == b.origin && a.role == b.role;
+}
 
 /// What keeps a lease alive.
 enum class LeaseRenewal : std::uint8_t {
@@ -60,15 +65,20 @@ struct LeaseRules {
 struct Lease {
   std::shared_ptr<const ClientLife> owner{};  ///< none: nobody owns the axis
   bool running = false;        ///< without an owner: open to every operator, and on_expiry waits at its end
-  Instant renewed = kLongAgo;  ///< taken, or renewed by a write or by register 56
+  bool any_sign = false;       ///< the axis may hold torque: its owner's signs of life count, not what it asks alone
+  Instant renewed = kLongAgo;  ///< taken, or renewed by what was asked of this axis
   LeaseRules rules{};
   /// When it runs out as things stand; kNever where nothing does.
   [[nodiscard]] Instant until() const {
     if (!running) return kNever;
-    Instant from = renewed;
-    if (owner && rules.renew == LeaseRenewal::any) from = std::max(from, owner->last_request);
-    if (owner && rules.renew == LeaseRenewal::heartbeat) from = std::max(from, owner->heartbeat);
-    return from + rules.timeout + (owner ? owner->grace : Duration{});
+    return last_sign() + rules.timeout + (owner ? owner->grace : Duration{});
+  }
+  /// The owner's newest sign of life that counts: while the axis is disabled, only what asks for something does, so
+  /// that an idle program that scans and a panel share it.
+  [[nodiscard]] Instant last_sign() const {
+    if (!owner || !any_sign) return renewed;
+    if (rules.renew == LeaseRenewal::any) return std::max(renewed, owner->last_request);
+    return rules.renew == LeaseRenewal::heartbeat ? std::max(renewed, owner->heartbeat) : renewed;
   }
   [[nodiscard]] bool owned_by(ClientId client) const { return owner && owner->id == client; }
 };

@@ -17,7 +17,8 @@ constexpr std::array<CoilRow, kCoils> kCoilRows{{
     {4, "start_absolute", false, Command::move_absolute, Command::none, "acts on 0 to 1"},
     {5, "start_relative", false, Command::move_relative, Command::none, "acts on 0 to 1"},
     {6, "home", false, Command::home, Command::none, "acts on 0 to 1"},
-    {7, "run_velocity", true, Command::run_velocity, Command::halt, "1 runs, 0 halts; reads: velocity running"},
+    {7, "run_velocity", true, Command::run_velocity, Command::end_run,
+     "1 runs, after a 0 was written; 0 halts while it runs; reads: velocity running"},
     {8, "jog_forward", true, Command::jog_forward, Command::jog_end,
      "0 to 1 runs at jog_velocity for as long as 1 is written again within jog_timeout_ms; 0, or both jog coils at 1, "
      "halts; reads: jogging"},

@@ -62,7 +62,7 @@ std::vector<RegisterRow> axis_register_rows() {
       shows(24, "sequence", u16, Source::sequence, "steps when anything of the axis changes but ages"),
       shows(25, "command_result", u16, Source::command_result,
             "0 none, 1 pending, 2 done, 3 refused by drive, 4 outcome unknown, 5 superseded, 6 never started, "
-            "7 not owner, 8 stopped by another client, 9 state unsuitable"),
+            "7 not owner, 8 stopped by another client, 9 state unsuitable, 10 not new: nothing was done"),
       shows(26, "command_detail", u32, Source::command_detail,
             "SDO abort code, Modbus exception or the drive's own code"),
       shows(28, "owner", u16, Source::owner, "0 nobody, 1 this client, 2 another"),

@@ -16,6 +16,11 @@ std::optional<std::uint16_t> Client::last_id(AxisNumber axis) const {
   return found == host->ids.end() ? std::nullopt : found->second.last;
 }
 
+std::optional<std::uint16_t> Client::seen_id(AxisNumber axis) const {
+  const auto found = host->ids.find(axis);
+  return found == host->ids.end() ? std::nullopt : found->second.seen;
+}
+
 Group Client::new_group(Role role) const {
   Group group;
   group.client = id;

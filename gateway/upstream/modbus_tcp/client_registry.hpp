@@ -15,6 +15,7 @@
 #include "gateway/upstream/modbus_tcp/listener_settings.hpp"
 #include "gateway/upstream/modbus_tcp/object_buffers.hpp"
 #include "gateway/upstream/modbus_tcp/peer.hpp"
+#include "gateway/upstream/modbus_tcp/row_memory.hpp"
 
 namespace axisgate::modbus_tcp {
 
@@ -44,6 +45,8 @@ struct ClientAxis {
   LatestResult result;
   std::uint64_t submission = 0;  ///< counts its groups: an older one's result does not replace a newer one's
   EdgeMemory edges;
+  RowMemory rows;
+  bool told_not_new = false;  ///< in the log, since something of it acted last
   std::uint16_t command_id = 0;
   std::optional<std::uint16_t> heartbeat{};  ///< none written yet: the first one is a change
   Mailbox mailbox;
@@ -71,8 +74,10 @@ struct Client {
   /// nullptr where it has written nothing to this axis yet.
   [[nodiscard]] const ClientAxis* find(AxisNumber axis) const;
   [[nodiscard]] ClientAxis& at(AxisNumber axis) { return axes[axis]; }
-  /// The last command_id from its address for this axis, if one is known.
+  /// The last command_id other than 0 from its address for this axis, if one is kept.
   [[nodiscard]] std::optional<std::uint16_t> last_id(AxisNumber axis) const;
+  /// Register 30: the last that acted, or came with command 0.
+  [[nodiscard]] std::optional<std::uint16_t> seen_id(AxisNumber axis) const;
 };
 
 class ClientRegistry {

@@ -9,10 +9,10 @@ namespace axisgate::modbus_tcp {
 namespace {
 
 /// Coils that act in one request run in this order, whatever their numbers: stops first, starts last.
-constexpr std::array kOrder{Command::quick_stop,    Command::disable,       Command::halt,         Command::jog_end,
-                            Command::fault_reset,   Command::enable,        Command::end_halt,     Command::home,
-                            Command::move_absolute, Command::move_relative, Command::run_velocity, Command::jog_forward,
-                            Command::jog_reverse};
+constexpr std::array kOrder{Command::quick_stop,  Command::disable,       Command::halt,          Command::end_run,
+                            Command::jog_end,     Command::fault_reset,   Command::enable,        Command::end_halt,
+                            Command::home,        Command::move_absolute, Command::move_relative, Command::run_velocity,
+                            Command::jog_forward, Command::jog_reverse};
 
 /// Both sides of a jog coil, and each of the others, ask for one thing at most.
 using Acting = boost::container::static_vector<Command, kCoils + 1>;
@@ -35,7 +35,8 @@ bool any_of(const Acting& acting, bool (*is)(Command)) { return std::any_of(acti
 bool dropped_by_stop(Command command, const Acting& acting) {
   const bool off = has(acting, Command::quick_stop) || has(acting, Command::disable);
   if (command == Command::enable) return off;
-  return starts_motion(command) && (off || has(acting, Command::halt) || has(acting, Command::jog_end));
+  return starts_motion(command) &&
+         (off || has(acting, Command::halt) || has(acting, Command::jog_end) || has(acting, Command::end_run));
 }
 
 /// Reserved coils take a 0. Coils that this drive cannot do take a 0 in a longer write, which asks for nothing: a
@@ -48,10 +49,11 @@ bool takes(const AxisImage& axis, std::uint16_t offset, bool value, bool single)
 struct Asked {
   Acting acting;
   std::optional<Command> jog_again{};
+  bool not_new = false;
 };
 
 /// What the coils of the request ask for, by the edge rules.
-Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, const Writing& writing,
+Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, Writing writing, const RowMemory& rows,
           EdgeMemory& edges) {
   Asked asked;
   JogWrite jog;
@@ -63,13 +65,17 @@ Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, co
       (coil.offset == kJogForward ? jog.forward : jog.reverse) = value;
       continue;
     }
-    const auto command = edges.coil(coil, value, writing);
-    if (command && !has(asked.acting, *command)) asked.acting.push_back(*command);
+    writing.targets = rows.targets_of(coil.on);
+    const CoilAsks coil_asks = edges.coil(coil, value, writing);
+    asked.not_new = asked.not_new || coil_asks.verdict == Verdict::not_new;
+    if (coil_asks.command != Command::none && !has(asked.acting, coil_asks.command))
+      asked.acting.push_back(coil_asks.command);
   }
   const JogAsks jogs = edges.jog(jog, writing);
   if (jogs.ends) asked.acting.push_back(Command::jog_end);
   if (jogs.start) asked.acting.push_back(*jogs.start);
-  const bool stops = any_of(asked.acting, is_stop) || jogs.ends;
+  asked.not_new = asked.not_new || jogs.not_new;
+  const bool stops = any_of(asked.acting, is_stop) || jogs.ends || has(asked.acting, Command::end_run);
   if (!stops && !any_of(asked.acting, starts_motion)) asked.jog_again = jogs.again;
   return asked;
 }
@@ -85,10 +91,17 @@ void add_groups(const Asked& asked, const Group& empty, WritePlan& plan) {
     }
     plan.groups.push_back(empty);
     plan.groups.back().command = command;
+    plan.groups.back().claims = coil_claims(command);
   }
   if (plan.groups.empty()) plan.groups.push_back(empty);
   // With the first: what the others wait for must not let the jog run out of time.
   plan.groups.front().jog_again = asked.jog_again;
+}
+
+bool is_all_zero(const Request& request) {
+  for (std::uint16_t i = 0; i < request.write_count; ++i)
+    if (request.written_coil(i)) return false;
+  return true;
 }
 
 }  // namespace
@@ -106,16 +119,21 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
 
   const ClientAxis* before = client.find(axis.number);
   EdgeMemory edges = before == nullptr ? EdgeMemory{} : before->edges;
-  const Writing writing{single ? WriteForm::single : WriteForm::block, onlooker.now, onlooker.settings.rearm};
-  const Asked asked = ask(request, first->offset, axis, writing, edges);
+  const RowMemory rows = before == nullptr ? RowMemory{} : before->rows;
+  const Writing writing = writing_to(axis, onlooker, single ? WriteForm::single : WriteForm::block);
+  const Asked asked = ask(request, first->offset, axis, writing, rows, edges);
   // Two starts at once: no one can say which motion was meant.
   if (std::count_if(asked.acting.begin(), asked.acting.end(), starts_motion) > 1) return Errc::bad_value;
 
-  client.at(axis.number).edges = edges;
   WritePlan plan;
   plan.axis = axis.number;
+  plan.single = single;
+  plan.not_new = asked.not_new;
+  plan.before = memory_of(client, axis.number);
+  client.at(axis.number).edges = edges;
   Group empty = client.new_group(onlooker.role);
-  empty.claims = claims(request, first->offset);
+  empty.is_write = true;
+  empty.all_zero = !single && is_all_zero(request);
   add_groups(asked, empty, plan);
   return plan;
 }

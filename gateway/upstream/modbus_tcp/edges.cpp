@@ -3,8 +3,12 @@
 namespace axisgate::modbus_tcp {
 namespace {
 
-constexpr std::size_t kJogForward = 8;  // offsets of the coils
+constexpr std::size_t kEnable = 0;  // offsets of the coils
+constexpr std::size_t kRunVelocity = 7;
+constexpr std::size_t kJogForward = 8;
 constexpr std::size_t kJogReverse = 9;
+
+bool is_start(Command command) { return command >= Command::move_absolute && command <= Command::home; }
 
 }  // namespace
 
@@ -13,70 +17,125 @@ bool is_stop_controlword(std::uint16_t controlword) {
   return (controlword & 0x02U) == 0 || (controlword & 0x04U) == 0 || steps == 6 || steps == 7;
 }
 
-/// `is_stop`: a stop by itself (commands 2 to 4, coils 2 and 3 = 1). Coils 0 and 7 going 1 -> 0 and a controlword are
-/// stops only where they act by the edge rule, so they are no exception to it here.
-bool EdgeMemory::acts(const Item& item, std::uint16_t value, bool is_stop, const Writing& writing) {
-  const bool differs = value != item.value;
-  if (writing.form == WriteForm::block) {
-    // "The item acts if its memory is not empty and the value differs; with an empty memory it is only remembered,
-    // except a stop that is asserted, which acts."
-    return item.written ? differs : is_stop;
-  }
-  // "Acts if the memory is empty, or the value differs, or this client has not written the item for rearm_ms." A stop
-  // is idempotent: pressed twice it counts once either way, and a press is never swallowed because of one that came
-  // before.
+// --- Values --------------------------------------------------------------------------------------------------------
+
+/// A single write of what was written before: new again after rearm_ms, unless what it asked for then was ended by
+/// somebody or something else: then 0 or another value must come first. Whoever could believe that it has acted is
+/// told.
+Verdict EdgeMemory::judge_single(const Item& item, const Kind& kind, const Writing& writing) {
   const bool rearmed = item.at == kLongAgo || writing.now - item.at >= writing.rearm;
-  return !item.written || differs || rearmed || is_stop;
+  const Endings nothing;
+  const Endings& endings = writing.endings == nullptr ? nothing : *writing.endings;
+  const Endings::Point since = item.acted.value_or(0);
+  const bool interrupted = item.acted && endings.interrupted(since, writing.client);
+  if (rearmed && !interrupted) return Verdict::acts;
+  // A stop too many is the smaller harm.
+  if (kind.stop_word) return interrupted ? Verdict::acts : Verdict::nothing;
+  const bool changed = item.targets != writing.targets;
+  const bool over = !item.acted || endings.ended(since, writing.client);
+  return kind.relative || changed || over ? Verdict::not_new : Verdict::nothing;
+}
+
+Verdict EdgeMemory::judge(Item& item, std::uint16_t value, const Kind& kind, const Writing& writing) {
+  const bool same = item.written && value == item.value;
+  if (writing.form == WriteForm::single) {
+    if (kind.stop || !same) return Verdict::acts;
+    return judge_single(item, kind, writing);
+  }
+  if (!item.written) {
+    // Remembered alone. A 0 asks for nothing, so there is nothing to tell of it.
+    if (kind.stop) return Verdict::acts;
+    return value == 0 ? Verdict::nothing : Verdict::not_new;
+  }
+  if (!same) return Verdict::acts;
+  if (!kind.held_start || item.told || item.targets == writing.targets) return Verdict::nothing;
+  item.told = true;
+  return Verdict::not_new;
 }
 
 void EdgeMemory::remember(Item& item, std::uint16_t value, Instant now) {
-  if (!item.written || item.value != value) item = {.written = true, .value = value, .since = now};
+  if (!item.written || item.value != value) item = {.written = true, .value = value, .since = now, .acted = {}};
   item.at = now;
 }
 
-bool EdgeMemory::swallows_fall(const Item& item, bool value) { return !value && item.is_on() && item.disowned; }
-
-bool EdgeMemory::controlword(std::uint16_t value, const Writing& writing) {
-  const bool acting = acts(controlword_, value, false, writing);
-  remember(controlword_, value, writing.now);
-  return acting;
+Verdict EdgeMemory::conclude(Item& item, std::uint16_t value, Verdict verdict, const Writing& writing) {
+  remember(item, value, writing.now);
+  if (verdict != Verdict::acts) return verdict;
+  item.acted = writing.endings == nullptr ? Endings::Point{0} : writing.endings->now();
+  item.targets = writing.targets;
+  item.told = false;
+  return verdict;
 }
 
-bool EdgeMemory::command(Command value, const Writing& writing) {
+Verdict EdgeMemory::controlword(std::uint16_t value, const Writing& writing) {
+  const Kind kind{.stop_word = is_stop_controlword(value)};
+  return conclude(controlword_, value, judge(controlword_, value, kind, writing), writing);
+}
+
+Verdict EdgeMemory::command(Command value, const Writing& writing) {
   const auto number = static_cast<std::uint16_t>(value);
+  const Kind kind{
+      .stop = axisgate::is_stop(value), .relative = value == Command::move_relative, .held_start = is_start(value)};
   // "0 in `command` does nothing and arms it."
-  const bool acting = value != Command::none && acts(command_, number, axisgate::is_stop(value), writing);
-  remember(command_, number, writing.now);
-  return acting;
+  const Verdict verdict = value == Command::none ? Verdict::nothing : judge(command_, number, kind, writing);
+  return conclude(command_, number, verdict, writing);
 }
 
-bool EdgeMemory::command_with_id(Command value, std::uint16_t id, CommandIds& ids, Instant now) {
-  // "`command` acts if the id differs from the last one for this axis from the same address; the first id is only
-  // remembered, unless id 0 was written before it." A stop acts with the first id too, as it does with an empty memory:
-  // nothing is known yet of this client, and a stop too many is the smaller harm.
-  const bool first = !ids.last.has_value();
-  const bool counts = first ? ids.zero_written || axisgate::is_stop(value) : id != *ids.last;
+Verdict EdgeMemory::command_with_id(Command value, std::uint16_t id, CommandIds& ids, const Writing& writing) {
+  const auto number = static_cast<std::uint16_t>(value);
+  const bool kept = ids.last.has_value();
+  const bool differs = !kept || id != *ids.last;
+  Verdict verdict = Verdict::nothing;
+  if (axisgate::is_stop(value)) {
+    const bool other_command = !command_.written || command_.value != number;
+    if (differs || other_command || writing.form == WriteForm::single) verdict = Verdict::acts;
+  } else if (value != Command::none && differs) {
+    // The first id of an address is only remembered: nobody knows whether it is one from before a restart.
+    verdict = kept ? Verdict::acts : Verdict::not_new;
+  }
   ids.last = id;
-  remember(command_, static_cast<std::uint16_t>(value), now);
-  return counts && value != Command::none;
+  if (verdict == Verdict::acts || value == Command::none) ids.seen = id;
+  return conclude(command_, number, verdict, writing);
 }
 
-std::optional<Command> EdgeMemory::coil(const CoilRow& coil, bool value, const Writing& writing) {
+bool EdgeMemory::zeros(Instant now) {
+  const bool stops = controlword_.written && controlword_.value != 0;
+  remember(controlword_, 0, now);
+  remember(command_, 0, now);
+  return stops;
+}
+
+// --- Coils ---------------------------------------------------------------------------------------------------------
+
+/// Level coils: rearm_ms never applies to them, and a 1 is no standing right. Coil 3 = 1 is a stop and not judged here.
+Verdict EdgeMemory::judge_level(const Item& item, const CoilRow& coil, bool value, const Writing& writing) {
+  const bool single = writing.form == WriteForm::single;
+  if (!value) return single || item.is_on() ? Verdict::acts : Verdict::nothing;
+  const bool was_zero = item.written && item.value == 0;
+  if (was_zero) return Verdict::acts;
+  if (!item.written) {
+    const bool first_enable = coil.offset == kEnable && single && !writing.needs_zero;
+    return first_enable ? Verdict::acts : Verdict::not_new;
+  }
+  // Held. A scanner repeats itself; a single write is told, unless what it asks for is so.
+  const bool is_so = coil.offset == kEnable ? writing.enabled : coil.offset == kRunVelocity && writing.runs_velocity;
+  return single && !is_so ? Verdict::not_new : Verdict::nothing;
+}
+
+CoilAsks EdgeMemory::coil(const CoilRow& coil, bool value, const Writing& writing) {
   Item& item = coils_.at(coil.offset);
   const Command asked = value ? coil.on : coil.off;
-  bool acting = acts(item, value ? 1 : 0, value && axisgate::is_stop(coil.on), writing);
-  if (coil.level && !axisgate::is_stop(asked)) {
-    // "A level of 1 is no standing right: after a stop, a fault, a link loss or another client's command it acts only
-    // after 0 -> 1." So writing the same level again never starts anything, however long ago the last write was.
-    acting = acting && (!item.written || item.value != (value ? 1 : 0));
+  Verdict verdict = Verdict::nothing;
+  if (coil.level && !axisgate::is_stop(asked == Command::disable ? Command::none : asked)) {
+    verdict = judge_level(item, coil, value, writing);
+  } else if (asked != Command::none) {
+    const Kind kind{.stop = axisgate::is_stop(asked), .relative = asked == Command::move_relative};
+    verdict = judge(item, value ? 1 : 0, kind, writing);
   }
-  // "Edge coils act on 0 -> 1": a 0 does nothing and arms it.
-  if (asked == Command::none) acting = false;
-  const bool swallowed = swallows_fall(item, value);
-  remember(item, value ? 1 : 0, writing.now);
-  // Whoever meant it as a stop writes the 0 again, and that one acts at once.
-  if (swallowed) item.at = kLongAgo;
-  return acting && !swallowed ? std::optional(asked) : std::nullopt;
+  const bool swallowed = !value && writing.form == WriteForm::block && item.is_on() && item.disowned;
+  if (swallowed) verdict = Verdict::nothing;
+  static_cast<void>(conclude(item, value ? 1 : 0, verdict, writing));
+  return {verdict, verdict == Verdict::acts ? asked : Command::none};
 }
 
 JogAsks EdgeMemory::jog(const JogWrite& write, const Writing& writing) {
@@ -85,37 +144,39 @@ JogAsks EdgeMemory::jog(const JogWrite& write, const Writing& writing) {
     std::optional<bool> value;
     Command start;
     bool was_on;
-    bool counts;  // not only remembered
+    bool single;
     [[nodiscard]] bool on() const { return value.value_or(was_on); }
-    [[nodiscard]] bool rises() const { return counts && *value && !was_on; }
-    /// A single 0 from a connection that has written nothing yet is a button that is let go after a reconnect.
-    [[nodiscard]] bool falls() const { return counts && !*value && (was_on || !item.written) && !item.disowned; }
+    [[nodiscard]] bool rises() const { return value.value_or(false) && item.written && !was_on; }
+    [[nodiscard]] bool first() const { return value.value_or(false) && !item.written; }
+    [[nodiscard]] bool held() const { return value.value_or(false) && was_on && !item.disowned; }
+    /// A single 0 always ends: it may be a button that is let go after a reconnect.
+    [[nodiscard]] bool falls() const { return value && !*value && (single || (was_on && !item.disowned)); }
   };
-  const auto side_of = [&](std::size_t coil, std::optional<bool> value, Command start) {
-    Item& item = coils_.at(coil);
-    return Side{item, value, start, item.is_on(), value && (item.written || writing.form == WriteForm::single)};
-  };
-  const std::array sides{side_of(kJogForward, write.forward, Command::jog_forward),
-                         side_of(kJogReverse, write.reverse, Command::jog_reverse)};
+  const bool single = writing.form == WriteForm::single;
+  const std::array sides{
+      Side{coils_.at(kJogForward), write.forward, Command::jog_forward, coils_.at(kJogForward).is_on(), single},
+      Side{coils_.at(kJogReverse), write.reverse, Command::jog_reverse, coils_.at(kJogReverse).is_on(), single}};
 
   JogAsks asks;
   const bool both = sides[0].on() && sides[1].on();
   for (const Side& side : sides) {
-    if (side.falls() || (both && side.counts && *side.value)) asks.ends = true;
-    const bool held = side.value.value_or(false) && side.was_on && !side.item.disowned && !side.item.spent;
+    if (side.falls() || (both && side.value.value_or(false))) asks.ends = true;
     if (!both && side.rises()) asks.start = side.start;
-    if (!both && held) asks.again = side.start;
+    if (!both && side.held()) asks.again = side.start;
+    if (side.first()) asks.not_new = true;
   }
-  for (const Side& side : sides) {
+  for (const Side& side : sides)
     if (side.value) remember(side.item, *side.value ? 1 : 0, writing.now);
-    if (both) side.item.spent = true;
-  }
   return asks;
 }
 
+// --- What became of it ---------------------------------------------------------------------------------------------
+
 void EdgeMemory::forget_presses(Instant when) {
   const auto forget = [when](Item& item) {
-    if (item.at == when) item.at = kLongAgo;
+    if (item.at != when) return;
+    item.at = kLongAgo;
+    item.acted.reset();
   };
   forget(controlword_);
   forget(command_);

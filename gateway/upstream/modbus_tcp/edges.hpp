@@ -1,34 +1,49 @@
 // Edges: the client's memory of what it wrote to controlword, command and the coils, and the rules by which a write of
 // them acts (design 3.3, "Edges", and 3.4, "Jog"). Promises that a scanner that writes the same block for ever starts
-// nothing twice, and nothing by a press that was refused because another client owned the axis. Never asks what state
-// the axis is in: a write that acts may still be refused by the axis.
+// nothing twice, that nothing starts by a connection's first block, and that what does not act says so wherever its
+// client could believe that it had. Never asks what state the axis is in but for the level coils, whose 1 is no
+// standing right: a write that acts may still be refused by the axis.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 
 #include "gateway/core/clock.hpp"
 #include "gateway/image/command.hpp"
+#include "gateway/image/endings.hpp"
 #include "gateway/image/register_map.hpp"
 
 namespace axisgate::modbus_tcp {
 
-/// "A request that writes one of them and nothing else is a single write, any other a block write."
+/// A single write is FC 5, 6, 22, or FC 15 or 16 with exactly one row; everything else, and every FC 23, is a block
+/// write.
 enum class WriteForm : std::uint8_t { single, block };
 
-/// How and when an item is written.
+/// How and when an item is written, by whom, and what the axis is like.
 struct Writing {
   WriteForm form = WriteForm::single;
   Instant now;
   Duration rearm;  ///< listener option rearm_ms
+  ClientId client = 0;
+  const Endings* endings = nullptr;  ///< of the axis; none: nothing has ever ended
+  bool enabled = false;              ///< coil 0 reads 1
+  bool runs_velocity = false;        ///< coil 7 reads 1
+  bool needs_zero = false;           ///< stop-latched or faulted: coil 0 = 1 acts only after a 0
+  /// RowMemory's count of changes of what the item goes by.
+  std::uint64_t targets = 0;
 };
 
-/// command_id of one axis as one address has used it; outlives its connections by kIdsKept.
+enum class Verdict : std::uint8_t {
+  nothing,  ///< it asks for nothing, or for what it has asked for already
+  acts,
+  not_new,  ///< it does not act, and its client must be told (command_result 10)
+};
+
+/// command_id of one axis as one address has used it; outlives its connections by kHostKept.
 struct CommandIds {
-  std::optional<std::uint16_t> last;
-  bool zero_written = false;
+  std::optional<std::uint16_t> last;  ///< the last that was not 0
+  std::optional<std::uint16_t> seen;  ///< the last that acted, or came with command 0: register 30
 };
 
 /// Bit 1 = 0, bit 2 = 0, or bits 0..3 = 6 or 7: a stop, where it acts (design 3.4, "Stops").
@@ -43,30 +58,41 @@ struct JogAsks {
   bool ends = false;
   std::optional<Command> start{};  ///< jog_forward or jog_reverse
   std::optional<Command> again{};  ///< jog_forward or jog_reverse: its coil, which was 1, is written 1 once more
+  bool not_new = false;            ///< a 1 before this client has written a 0
+};
+
+struct CoilAsks {
+  Verdict verdict = Verdict::nothing;
+  Command command = Command::none;  ///< where it acts
 };
 
 class EdgeMemory {
  public:
   // Each remembers what is written and says whether it acts.
-  [[nodiscard]] bool controlword(std::uint16_t value, const Writing& writing);
+  [[nodiscard]] Verdict controlword(std::uint16_t value, const Writing& writing);
   /// In a request without a command_id, or with command_id 0.
-  [[nodiscard]] bool command(Command value, const Writing& writing);
-  /// In a request with a command_id other than 0.
-  [[nodiscard]] bool command_with_id(Command value, std::uint16_t id, CommandIds& ids, Instant now);
-  /// What the write asks for; no value where it does not act. Not of the jog coils.
-  [[nodiscard]] std::optional<Command> coil(const CoilRow& coil, bool value, const Writing& writing);
+  [[nodiscard]] Verdict command(Command value, const Writing& writing);
+  /// In a request with a command_id other than 0: only the id decides.
+  [[nodiscard]] Verdict command_with_id(Command value, std::uint16_t id, CommandIds& ids, const Writing& writing);
+  /// Not of the jog coils.
+  [[nodiscard]] CoilAsks coil(const CoilRow& coil, bool value, const Writing& writing);
   /// Both jog coils at once, since each looks at the other: 0 -> 1 starts, 1 -> 0 and both at 1 end. No time makes a
   /// held coil start anew.
   [[nodiscard]] JogAsks jog(const JogWrite& write, const Writing& writing);
+  /// A block of nothing but zeros: remembered; true where controlword goes from another value to 0, which is a stop.
+  [[nodiscard]] bool zeros(Instant now);
 
+  /// Nothing was written to `command`, or to `controlword`, yet.
+  [[nodiscard]] bool command_empty() const { return !command_.written; }
+  [[nodiscard]] bool controlword_empty() const { return !controlword_.written; }
   /// Register 54 as this client reads it.
   [[nodiscard]] std::uint16_t last_command() const { return command_.value; }
   /// What acted in the request at `when` was refused and did nothing: the next single write of it is no second press.
   void forget_presses(Instant when);
   /// The request at `when` was refused because another client owns the axis. What it wrote stays remembered, so that a
   /// level that is written on and on starts nothing on the day on which the axis is free: 0 and then 1 does. But a
-  /// level that rose in it was never taken, so its fall asks for nothing: a button that was pressed in vain must not
-  /// stop the owner's motion when it is let go.
+  /// level that rose in it was never taken, so its fall in a block asks for nothing: a panel's row of coils must not
+  /// stop the owner's motion when a button that was pressed in vain is let go.
   void disown(Instant when);
   /// The request at `when` was accepted: levels in it are this client's now, and their fall acts.
   void own(Instant when);
@@ -75,15 +101,26 @@ class EdgeMemory {
   struct Item {
     bool written = false;  ///< false: the memory is empty
     std::uint16_t value = 0;
-    Instant at = kLongAgo;
-    Instant since = kLongAgo;  ///< when it was first written with this value
-    bool disowned = false;     ///< a 1 that another client's ownership has refused
-    bool spent = false;        ///< a jog coil's 1 that has ended with both coils at 1
+    Instant at = kLongAgo;                ///< written last
+    Instant since = kLongAgo;             ///< when it was first written with this value
+    std::optional<Endings::Point> acted;  ///< when it acted last with this value
+    std::uint64_t targets = 0;            ///< Writing::targets then
+    bool told = false;                    ///< its client was told once that it is not new
+    bool disowned = false;                ///< a 1 that another client's ownership has refused
     [[nodiscard]] bool is_on() const { return written && value != 0; }
   };
-  [[nodiscard]] static bool acts(const Item& item, std::uint16_t value, bool is_stop, const Writing& writing);
+  /// What kind of item it is, as far as the rules differ.
+  struct Kind {
+    bool stop = false;        ///< asserted: commands 2 to 4, coils 2 and 3 = 1
+    bool stop_word = false;   ///< a controlword that is a stop where it acts
+    bool relative = false;    ///< a relative move: one that is not new always says so
+    bool held_start = false;  ///< commands 6 to 10: a target beside it asks for a start that does not come
+  };
+  [[nodiscard]] static Verdict judge(Item& item, std::uint16_t value, const Kind& kind, const Writing& writing);
+  [[nodiscard]] static Verdict judge_single(const Item& item, const Kind& kind, const Writing& writing);
+  [[nodiscard]] static Verdict judge_level(const Item& item, const CoilRow& coil, bool value, const Writing& writing);
   static void remember(Item& item, std::uint16_t value, Instant now);
-  [[nodiscard]] static bool swallows_fall(const Item& item, bool value);
+  static Verdict conclude(Item& item, std::uint16_t value, Verdict verdict, const Writing& writing);
 
   Item controlword_;
   Item command_;

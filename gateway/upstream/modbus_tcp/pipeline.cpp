@@ -37,10 +37,12 @@ Onlooker Pipeline::onlooker(Instant now) const {
 void Pipeline::accept(const Frame& frame, Instant now) {
   assert(entries_.size() < kMaxPipelined);
   ++context_.clients.counters.messages;
-  client_->life->last_request = now;
   const auto view = UnitView::of(frame.unit, context_.settings, context_.image);
   std::variant<Request, ModbusException> decoded = decode_request(frame.pdu);
   Request* const request = std::get_if<Request>(&decoded);
+  // A client that is an address has programs that only look: their reads are no sign of the one that commands.
+  const bool writes = request != nullptr && (request->writes() || (request->reference && request->reference->write));
+  if (writes || !context_.settings.client_is_address) client_->life->last_request = now;
   // The common case, and the only one that must be quick: a read with nothing before it.
   if (entries_.empty() && view && request != nullptr && !is_carried_out(*request)) {
     return send(frame.transaction, frame.unit, answer(*request, *view, now));
@@ -158,6 +160,7 @@ void Pipeline::finish_object(Entry& entry, const GroupResult& result) {
 void Pipeline::finish(Entry& entry, const Outcome& outcome) {
   entry.run = nullptr;
   log_failure(entry.request, outcome);
+  if (outcome.code == Errc::not_new) log_not_new(entry);
   if (outcome.code != Errc::ok) return refuse(entry, modbus_exception(outcome.code));
   if (entry.request.reads()) {
     entry.stage = Stage::at_turn;
@@ -175,6 +178,18 @@ void Pipeline::log_failure(const Request& request, const Outcome& outcome) const
   context_.log.write(
       LogLevel::debug, "modbus",
       what + " ended: " + std::string(text(outcome.code)) + ", detail " + std::to_string(outcome.detail));
+}
+
+/// Once, until something of this client's acts again: a tool in a loop must not fill the log.
+void Pipeline::log_not_new(const Entry& entry) {
+  const AxisNumber axis = axis_of_write(entry.request, *entry.view, context_.image);
+  if (axis == 0) return;
+  ClientAxis& own = client_->at(axis);
+  if (own.told_not_new) return;
+  own.told_not_new = true;
+  context_.log.write(LogLevel::info, "modbus",
+                     client_->life->name + ": a write to " + std::to_string(entry.request.write_address) + " (axis " +
+                         std::to_string(axis) + ") is not new and does nothing: write 0 first");
 }
 
 void Pipeline::refuse(Entry& entry, ModbusException exception) {

@@ -70,6 +70,7 @@ class Pipeline {
   void start_object(Entry& entry, Instant now);
   void finish(Entry& entry, const Outcome& outcome);
   void finish_object(Entry& entry, const GroupResult& result);
+  void log_not_new(const Entry& entry);
   void log_failure(const Request& request, const Outcome& outcome) const;
   void refuse(Entry& entry, ModbusException exception);
   void flush(Instant now);

@@ -93,7 +93,7 @@ ReferencePlan plan_reference(const Request& request, const UnitView& view, const
     object.count = reference.count;
   }
   Group& group = plan.group.emplace(client.new_group(onlooker.role));
-  group.claims = reference.write;
+  group.claims = group.is_write = reference.write;
   group.object = std::move(object);
   group.start_by = onlooker.now + onlooker.settings.start_deadline;
   group.answer_by = onlooker.now + onlooker.settings.reply_deadline;

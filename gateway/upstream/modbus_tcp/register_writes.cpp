@@ -1,3 +1,5 @@
+#include <boost/container/static_vector.hpp>
+
 #include "gateway/upstream/modbus_tcp/claims.hpp"
 #include "gateway/upstream/modbus_tcp/row_writes.hpp"
 #include "gateway/upstream/modbus_tcp/write_plan.hpp"
@@ -51,75 +53,189 @@ MailboxWrite write_mailbox(const RowWrites& found, const Mailbox& before) {
   return write;
 }
 
-void put_command(const RowWrite& command, const RowWrite* id, Host& host, AxisNumber axis, ClientAxis& own,
-                 const Writing& writing, Group& group) {
-  const auto asked = Command{static_cast<std::uint8_t>(command.value)};
-  const bool has_id = id != nullptr && id->value != 0;
-  const bool acts =
-      has_id ? own.edges.command_with_id(asked, static_cast<std::uint16_t>(id->value), host.ids[axis], writing.now)
-             : own.edges.command(asked, writing);
-  if (acts) group.command = asked;
-}
+/// One register write on its way to a group: the client's memory is brought up to date, and what asks is put into it.
+class GroupMaker {
+ public:
+  GroupMaker(const RowWrites& found, const Onlooker& onlooker, Client& client)
+      : found_(found),
+        onlooker_(onlooker),
+        client_(client),
+        axis_(found.axis->number),
+        own_(client.at(axis_)),
+        single_(!found.block),
+        writing_(writing_to(*found.axis, onlooker, single_ ? WriteForm::single : WriteForm::block)),
+        group_(client.new_group(onlooker.role)) {}
 
-/// Everything was checked: remembers what is the client's own and makes the group of what is the axis's.
-Group make_group(const RowWrites& found, const Onlooker& onlooker, Client& client) {
-  const AxisNumber axis = found.axis->number;
-  ClientAxis& own = client.at(axis);
-  const bool single = found.rows.size() == 1;
-  const Writing writing{single ? WriteForm::single : WriteForm::block, onlooker.now, onlooker.settings.rearm};
-  const RowWrite* id = found.of(Source::command_id);
-  Group group = client.new_group(onlooker.role);
-  for (const RowWrite& each : found.rows) {
-    if (each.skipped) continue;
-    const auto word = static_cast<std::uint16_t>(each.value);
-    switch (each.row->source) {
-      case Source::quantity:
-        if (is_quantity(*each.row, Quantity::mode)) {
-          group.mode = static_cast<std::int16_t>(each.value);
-        } else if (!is_quantity(*each.row, Quantity::controlword)) {
-          group.setpoints.push_back({each.row->quantity, each.value});
-        } else if (own.edges.controlword(word, writing)) {
-          group.controlword = word;
-          group.single_controlword = single;
-        }
-        break;
-      case Source::set_position_value:
-        group.set_position_value = static_cast<std::int32_t>(each.value);
-        break;
-      case Source::command:
-        put_command(each, id, *client.host, axis, own, writing, group);
-        break;
-      case Source::command_id:
-        own.command_id = word;
-        group.command_id = word;
-        if (word == 0) client.host->ids[axis].zero_written = true;
-        break;
-      case Source::jog_velocity:
-        group.jog_velocity = static_cast<std::uint32_t>(each.value);
-        break;
-      case Source::heartbeat:
-        group.beats = own.heartbeat != word;
-        own.heartbeat = word;
-        break;
-      default:
-        break;  // the mailbox is written as a whole
+  struct Made {
+    Group group;
+    bool not_new = false;  ///< something in it was remembered, or repeated, and did not act: its client is told
+  };
+  [[nodiscard]] Made make() {
+    // A viewer comes this far with the mailbox alone, which it may ask to read.
+    group_.is_write = onlooker_.role >= Role::operator_;
+    group_.all_zero = found_.zeros;
+    // Judged before anything is remembered.
+    const bool only_remembered = found_.block && first_block();
+    // A command goes by its targets, and what acts in the request lets its set-points ask: so in this order.
+    for (const RowWrite& each : found_.rows)
+      if (is_remembered(*each.row)) changed_.push_back(own_.rows.write(each.row->offset, each.value));
+    if (found_.zeros)
+      put_zeros();
+    else
+      put_words();
+    put_heartbeat();
+    if (!found_.zeros && !only_remembered) put_rows();
+    group_.claims = register_claims(group_);
+    return {group_, not_new_};
+  }
+
+ private:
+  /// Rows 41 to 79 that are values; not controlword, command, its id and the heartbeat, which have rules of their own.
+  [[nodiscard]] static bool is_remembered(const RegisterRow& row) {
+    return row.source == Source::jog_velocity || row.source == Source::set_position_value ||
+           (row.source == Source::quantity && row.quantity != Quantity::controlword);
+  }
+
+  [[nodiscard]] const RowWrite* controlword_row() const {
+    for (const RowWrite& each : found_.rows)
+      if (is_quantity(*each.row, Quantity::controlword)) return &each;
+    return nullptr;
+  }
+  [[nodiscard]] std::uint16_t id() const {
+    const RowWrite* const row = found_.of(Source::command_id);
+    return row == nullptr ? std::uint16_t{0} : static_cast<std::uint16_t>(row->value);
+  }
+
+  /// "On an empty memory a block that carries 40 or 54 only remembers its set-points." The memory of a command with an
+  /// id is that of its address.
+  [[nodiscard]] bool first_block() const {
+    if (found_.of(Source::command) != nullptr)
+      return id() != 0 ? !client_.last_id(axis_).has_value() : own_.edges.command_empty();
+    return controlword_row() != nullptr && own_.edges.controlword_empty();
+  }
+
+  void note(Verdict verdict) { not_new_ = not_new_ || verdict == Verdict::not_new; }
+
+  void put_words() {
+    if (const RowWrite* const row = controlword_row(); row != nullptr && !row->ignored) {
+      const auto word = static_cast<std::uint16_t>(row->value);
+      writing_.targets = own_.rows.targets();
+      const Verdict verdict = own_.edges.controlword(word, writing_);
+      note(verdict);
+      if (verdict == Verdict::acts) {
+        group_.controlword = word;
+        group_.single_controlword = single_;
+        acting_ = acting_ || !is_stop_controlword(word);
+      }
+    }
+    if (const RowWrite* const row = found_.of(Source::command)) {
+      const auto asked = Command{static_cast<std::uint8_t>(row->value)};
+      writing_.targets = own_.rows.targets_of(asked);
+      const Verdict verdict = id() != 0 ? own_.edges.command_with_id(asked, id(), client_.host->ids[axis_], writing_)
+                                        : own_.edges.command(asked, writing_);
+      note(verdict);
+      if (verdict == Verdict::acts) group_.command = asked;
+      acting_ = acting_ || (verdict == Verdict::acts && !is_stop(asked));
+    }
+    if (found_.of(Source::command_id) != nullptr) own_.command_id = group_.command_id = id();
+  }
+
+  /// A scanner's image before its program runs asks for nothing. Two zeros stop all the same.
+  void put_zeros() {
+    if (own_.edges.zeros(onlooker_.now)) {
+      group_.controlword = 0;
+      group_.single_controlword = false;
+    }
+    if (found_.of(Source::command_id) != nullptr) own_.command_id = 0;
+    const AxisImage& axis = *found_.axis;
+    const bool runs = axis.axis_state == AxisState::continuous_motion && axis.lease.owned_by(client_.id);
+    for (const Quantity target : {Quantity::target_velocity, Quantity::target_torque})
+      if (runs && (axis.supported & axis.writable & bit(target)) != 0) group_.setpoints.push_back({target, 0});
+  }
+
+  void put_heartbeat() {
+    const RowWrite* const row = found_.of(Source::heartbeat);
+    if (row == nullptr) return;
+    const auto word = static_cast<std::uint16_t>(row->value);
+    group_.beats = !found_.zeros && own_.heartbeat != word;
+    own_.heartbeat = word;
+  }
+
+  /// Whether a value asks: a single write always; in a block where it changed, where the owner's is no longer the one
+  /// accepted last, or where something acts beside it.
+  enum class Asks : std::uint8_t { no, by_itself, with_command };
+  [[nodiscard]] Asks asks(const RowWrite& write, bool changed) const {
+    if (single_ || changed || owner_asks(write)) return Asks::by_itself;
+    return acting_ ? Asks::with_command : Asks::no;
+  }
+  [[nodiscard]] bool owner_asks(const RowWrite& write) const {
+    const AxisImage& axis = *found_.axis;
+    if (write.row->source == Source::quantity)
+      return onlooker_.commands.owner_asks(axis_, client_.id, write.row->quantity, write.value);
+    return !write.held && axis.reachable() && axis.lease.owned_by(client_.id);
+  }
+
+  void put_rows() {
+    std::size_t remembered = 0;
+    for (const RowWrite& each : found_.rows) {
+      if (!is_remembered(*each.row)) continue;
+      const bool changed = changed_[remembered++];
+      // What the drive holds and this role may not write is nobody's question.
+      if (each.ignored || (each.held && onlooker_.role < each.row->may_write)) continue;
+      const Asks how = asks(each, changed);
+      if (how != Asks::no) put(each, how == Asks::with_command);
     }
   }
-  group.claims = claims(found, group, onlooker.role);
-  return group;
-}
+
+  void put(const RowWrite& write, bool with_command) {
+    const RegisterRow& row = *write.row;
+    if (row.source == Source::set_position_value) {
+      group_.set_position_value = static_cast<std::int32_t>(write.value);
+    } else if (row.source == Source::jog_velocity) {
+      group_.jog_velocity = static_cast<std::uint32_t>(write.value);
+    } else if (row.quantity != Quantity::mode) {
+      group_.setpoints.push_back({.quantity = row.quantity, .value = write.value, .with_command = with_command});
+    } else if (!with_command || group_.controlword) {
+      // Commands 6 to 11 select the mode they need: one that merely stands beside them would only be left again.
+      group_.mode = static_cast<std::int16_t>(write.value);
+    }
+  }
+
+  const RowWrites& found_;
+  const Onlooker& onlooker_;
+  Client& client_;
+  AxisNumber axis_;
+  ClientAxis& own_;
+  bool single_;
+  Writing writing_;
+  Group group_;
+  boost::container::static_vector<bool, kMaxWriteRegisters> changed_{};
+  bool acting_ = false;
+  bool not_new_ = false;
+};
 
 Group object_group(const Mailbox& box, const Client& client, Role role) {
   Group group = client.new_group(role);
-  group.claims = box.request == 2;
+  group.claims = group.is_write = box.request == 2;
   group.object = ObjectRequest{box.request == 2, box.index, static_cast<std::uint8_t>(box.subindex),
                                static_cast<std::uint8_t>(box.size), box.data};
   return group;
 }
 
-void beat(Client& client, std::uint16_t value, Instant now) {
-  if (client.heartbeat != value) client.life->heartbeat = now;
+/// Gateway register 8. Changed, it is a sign of life for every axis, and takes over what an ended connection of the
+/// same program has left.
+std::vector<AxisNumber> beat(Client& client, std::uint16_t value, const Onlooker& onlooker) {
+  std::vector<AxisNumber> orphans;
+  if (client.heartbeat == value) return orphans;
   client.heartbeat = value;
+  client.life->heartbeat = onlooker.now;
+  if (onlooker.role < Role::operator_) return orphans;
+  for (const auto& axis : onlooker.image.axes()) {
+    const auto& owner = axis->lease.owner;
+    if (owner && !owner->connected && owner->id != client.id && same_hand(*owner, *client.life))
+      orphans.push_back(axis->number);
+  }
+  return orphans;
 }
 
 }  // namespace
@@ -130,7 +246,7 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
 
   WritePlan plan;
   if (found.axis == nullptr) {
-    beat(client, static_cast<std::uint16_t>(found.rows.front().value), onlooker.now);
+    plan.reclaims = beat(client, static_cast<std::uint16_t>(found.rows.front().value), onlooker);
     return plan;
   }
   plan.axis = found.axis->number;
@@ -138,8 +254,9 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
   const MailboxWrite box = write_mailbox(found, before == nullptr ? Mailbox{} : before->mailbox);
   if (box.refused != Errc::ok) return box.refused;
 
-  Group group = make_group(found, onlooker, client);
   ClientAxis& own = client.at(plan.axis);
+  plan.before = memory_of(client, plan.axis);
+  const GroupMaker::Made made = GroupMaker(found, onlooker, client).make();
   own.mailbox = box.mailbox;
   if (box.requested) {
     own.used = true;
@@ -147,9 +264,9 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
     own.mailbox.detail = 0;
     plan.object = object_group(box.mailbox, client, onlooker.role);
   }
-  // A group that asks for nothing is submitted for its client's ownership: but where the mailbox's request stands for
-  // it, that is told by one of them.
-  if (!asks_nothing(group) || group.claims || !box.requested) plan.groups.push_back(group);
+  plan.not_new = made.not_new;
+  plan.single = !found.block;
+  plan.groups.push_back(made.group);
   return plan;
 }
 

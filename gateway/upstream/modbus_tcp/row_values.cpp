@@ -18,9 +18,9 @@ std::uint32_t client_value(const RegisterRow& row, const AxisImage& axis, const 
       return static_cast<std::uint32_t>(result.result);
     case Source::command_detail:
       return result.detail;
-    // A program counts on from it, so it is the id that the next one must differ from, where one is known.
+    // A program counts on from it. An id that was only remembered is not among those seen.
     case Source::command_id_seen:
-      return onlooker.client.last_id(axis.number).value_or(result.command_id);
+      return onlooker.client.seen_id(axis.number).value_or(result.command_id);
     case Source::command:
       return own.edges.last_command();
     case Source::command_id:

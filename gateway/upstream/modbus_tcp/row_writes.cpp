@@ -58,22 +58,54 @@ bool exists(const RegisterRow& row, const AxisImage* axis) {
   return true;
 }
 
-/// "In a block write a row whose value the drive already holds is skipped without asking the role." So is a row that
-/// this drive does not have, written with what it reads as or with 0: one function block serves all axes, and a scanner
-/// may write back the block that it has read. Mode 0 is CiA 402's "no mode change" (402-2, 6060h): a scanner that
-/// leaves the mode to the commands writes it.
+/// In a block, 0 in these rows means "leave as it is" (mode: CiA 402-2, 6060h, "no mode change"); alone it is refused.
+bool leaves_as_it_is(const RegisterRow& row, std::int64_t value) {
+  if (value != 0) return false;
+  switch (row.offset) {
+    case 41:  // mode
+    case 47:  // max_torque
+    case 48:  // profile_velocity
+    case 50:  // profile_acceleration
+    case 52:  // profile_deceleration
+    case 58:  // jog_velocity
+    case 62:  // homing_speed_switch
+    case 64:  // homing_speed_zero
+    case 66:  // homing_acceleration
+    case 70:  // quick_stop_deceleration
+    case 76:  // max_velocity
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// A row that this drive does not have, written in a block with what it reads as or with 0: one function block serves
+/// all axes, and a scanner may write back the block that it has read.
+bool is_ignored(const RowWrite& write, const AxisImage& axis, const Onlooker& onlooker) {
+  const RegisterRow& row = *write.row;
+  if (leaves_as_it_is(row, write.value)) return true;
+  return !exists(row, &axis) &&
+         (write.value == 0 || number_of(axis_value(row, axis, onlooker), row.type) == write.value);
+}
+
+/// "In a block write a row whose value the drive already holds is skipped without asking the role."
 bool is_held(const RowWrite& write, const AxisImage& axis, const Onlooker& onlooker) {
   const RegisterRow& row = *write.row;
-  if (!exists(row, &axis)) {
-    return write.value == 0 || number_of(axis_value(row, axis, onlooker), row.type) == write.value;
-  }
-  if (row.source == Source::quantity && row.quantity == Quantity::mode && write.value == 0) return true;
   if (row.source == Source::set_position_value) {
     return onlooker.commands.set_position_value(axis.number) == write.value;
   }
   if (row.source == Source::jog_velocity) return axis.jog_velocity == write.value;
   return row.source == Source::quantity && row.quantity != Quantity::controlword &&
          onlooker.commands.holds(axis.number, row.quantity, write.value);
+}
+
+bool is_all_zero(const Request& request, const UnitView& view, const Onlooker& onlooker) {
+  constexpr std::uint16_t kFirst = 40, kLast = 54;
+  const auto place = view.place_register(request.write_address, onlooker.image);
+  if (!place || place->offset > kFirst || place->offset + request.write_count <= kLast) return false;
+  for (std::size_t i = 0; i < request.write_count; ++i)
+    if (request.written_register(i) != 0) return false;
+  return true;
 }
 
 Role needed_role(const RowWrite& write) {
@@ -85,16 +117,16 @@ Role needed_role(const RowWrite& write) {
 }
 
 Errc check_role(const RowWrites& found, Role role) {
-  if (found.outside && role < Role::operator_) return Errc::role_forbidden;
+  if ((found.outside || found.zeros) && role < Role::operator_) return Errc::role_forbidden;
   for (const RowWrite& each : found.rows)
-    if (!each.skipped && role < needed_role(each)) return Errc::role_forbidden;
+    if (!each.skipped() && role < needed_role(each)) return Errc::role_forbidden;
   return Errc::ok;
 }
 
 Errc check_addresses(const RowWrites& found) {
   if (found.outside) return Errc::not_supported;
   for (const RowWrite& each : found.rows) {
-    if (each.skipped) continue;
+    if (each.skipped()) continue;
     if (!exists(*each.row, found.axis)) return Errc::not_supported;
     const bool known_command = each.row->source == Source::command && each.value >= 1 && each.value <= kLastCommand;
     if (known_command && (found.axis->supported_commands >> each.value & 1U) == 0) return Errc::not_supported;
@@ -105,8 +137,9 @@ Errc check_addresses(const RowWrites& found) {
 /// What the table alone knows: unknown commands and requests, and the number that means "no value".
 Errc check_values(const RowWrites& found) {
   for (const RowWrite& each : found.rows) {
-    if (each.skipped) continue;
+    if (each.skipped()) continue;
     const RegisterRow& row = *each.row;
+    if (!found.block && leaves_as_it_is(row, each.value)) return Errc::bad_value;
     if (row.source == Source::command && each.value > kLastCommand) return Errc::bad_value;
     if (row.source == Source::object_request && each.value > 2) return Errc::bad_value;
     if (row.kind != Kind::code && each.value == no_value(row.type)) return Errc::bad_value;
@@ -128,8 +161,14 @@ const RowWrite* RowWrites::of(Source source) const {
 RowWrites resolve_rows(const Request& request, const UnitView& view, const Onlooker& onlooker) {
   RowWrites writes = gather(request, view, onlooker);
   writes.masks = request.function == Function::mask_write_register && request.and_mask != 0;
-  if (writes.axis != nullptr && writes.rows.size() > 1) {
-    for (RowWrite& each : writes.rows) each.skipped = is_held(each, *writes.axis, onlooker);
+  // A single write is FC 5, 6, 22, or FC 15 or 16 with exactly one row.
+  writes.block = writes.rows.size() > 1 || request.function == Function::read_write_registers;
+  if (writes.axis != nullptr && writes.block) {
+    writes.zeros = !writes.outside && is_all_zero(request, view, onlooker);
+    for (RowWrite& each : writes.rows) {
+      each.ignored = writes.zeros || is_ignored(each, *writes.axis, onlooker);
+      each.held = !each.ignored && is_held(each, *writes.axis, onlooker);
+    }
   }
   return writes;
 }

@@ -14,7 +14,9 @@ namespace axisgate::modbus_tcp {
 struct RowWrite {
   const RegisterRow* row;
   std::int64_t value;
-  bool skipped = false;  ///< in a block: already held
+  bool ignored = false;  ///< in a block: this drive does not have it, or its 0 means "leave as it is"
+  bool held = false;     ///< in a block: the drive holds it already, so no role and no range is asked
+  [[nodiscard]] bool skipped() const { return ignored || held; }
 };
 
 struct RowWrites {
@@ -22,6 +24,9 @@ struct RowWrites {
   const AxisImage* axis = nullptr;  ///< nullptr: the gateway block
   bool outside = false;             ///< something in it is no whole writable row
   bool masks = false;               ///< FC 22 with bits that stay as they are
+  bool block = false;               ///< more than one row, or FC 23
+  bool zeros = false;               ///< a block that covers 40..54 and is 0 in all of it: a scanner's image before its
+                                    ///< program runs
   [[nodiscard]] const RowWrite* of(Source source) const;
 };
 

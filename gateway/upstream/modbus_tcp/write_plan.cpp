@@ -1,5 +1,7 @@
 #include "gateway/upstream/modbus_tcp/write_plan.hpp"
 
+#include "gateway/image/shown.hpp"
+
 namespace axisgate::modbus_tcp {
 namespace {
 
@@ -18,6 +20,40 @@ bool stops_through(const RegisterRow& row, const Request& request) {
 }
 
 }  // namespace
+
+WriteMemory memory_of(const Client& client, AxisNumber axis) {
+  WriteMemory memory;
+  if (const ClientAxis* const own = client.find(axis)) {
+    memory.edges = own->edges;
+    memory.rows = own->rows;
+  }
+  if (const auto ids = client.host->ids.find(axis); ids != client.host->ids.end()) memory.ids = ids->second;
+  return memory;
+}
+
+void restore(const WriteMemory& memory, Client& client, AxisNumber axis) {
+  ClientAxis& own = client.at(axis);
+  own.edges = memory.edges;
+  own.rows = memory.rows;
+  if (memory.ids)
+    client.host->ids[axis] = *memory.ids;
+  else
+    client.host->ids.erase(axis);
+}
+
+Writing writing_to(const AxisImage& axis, const Onlooker& onlooker, WriteForm form) {
+  constexpr std::uint16_t kEnabled = 1U << 0, kRunsVelocity = 1U << 7;
+  Writing writing;
+  writing.form = form;
+  writing.now = onlooker.now;
+  writing.rearm = onlooker.settings.rearm;
+  writing.client = onlooker.client.id;
+  writing.endings = &axis.endings;
+  writing.enabled = (shown_level_coils(axis) & kEnabled) != 0;
+  writing.runs_velocity = (shown_level_coils(axis) & kRunsVelocity) != 0;
+  writing.needs_zero = axis.has(AxisInput::stop_latched) || axis.has(AxisInput::fault);
+  return writing;
+}
 
 Planned plan_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
   return request.writes_coils() ? plan_coil_write(request, view, onlooker, client)

@@ -15,12 +15,29 @@
 
 namespace axisgate::modbus_tcp {
 
+/// What a client remembers of its writes to one axis: restored where a request turns out to be refused as a whole.
+struct WriteMemory {
+  EdgeMemory edges;
+  RowMemory rows;
+  std::optional<CommandIds> ids;
+};
+[[nodiscard]] WriteMemory memory_of(const Client& client, AxisNumber axis);
+void restore(const WriteMemory& memory, Client& client, AxisNumber axis);
+
+/// How the rules of edges see a write to this axis. `Writing::targets` is left to whoever knows the item.
+[[nodiscard]] Writing writing_to(const AxisImage& axis, const Onlooker& onlooker, WriteForm form);
+
 /// One request writes to one axis at most: offsets 90 to 99 of a block, and coils 16 to 99, take no write.
 struct WritePlan {
   AxisNumber axis = 0;          ///< 0: nothing is asked of an axis (gateway register 8)
   std::vector<Group> groups;    ///< one after another; more than one only where several coils act at once
   Errc afterwards = Errc::ok;   ///< how the request ends when all groups are done: starts that its own stop has dropped
   std::optional<Group> object;  ///< the mailbox's request, after the groups; not waited for
+  /// Axes whose orphan leases a changed heartbeat of the gateway (register 8) takes over.
+  std::vector<AxisNumber> reclaims;
+  bool single = false;   ///< a single write: where it is not new, its answer is an exception
+  bool not_new = false;  ///< something in it did not act, and its client is told: result 10
+  WriteMemory before{};  ///< of the client, before this request
 };
 
 /// `client` is the one that writes: what is its own is stored there. Errors: role_forbidden, not_supported, bad_value

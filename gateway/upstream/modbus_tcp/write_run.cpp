@@ -2,16 +2,19 @@
 
 #include <utility>
 
-#include "gateway/upstream/modbus_tcp/claims.hpp"
-
 namespace axisgate::modbus_tcp {
 namespace {
 
 /// The axis is as it was before the press: pressing again is a new press, not the same one twice. After an unknown
 /// outcome the drive may have acted, so there a repetition within rearm_ms stays one press.
 bool did_nothing(Errc code) {
-  return code != Errc::ok && code != Errc::stopped_by_other && code != Errc::not_reached &&
+  return code != Errc::ok && code != Errc::stopped_by_other && code != Errc::not_reached && code != Errc::not_new &&
          command_result(code) != CommandResult::outcome_unknown;
+}
+
+/// The request itself was wrong: what it wrote is not even remembered, so that the same block is refused again.
+bool is_wrong(Errc code) {
+  return code == Errc::bad_value || code == Errc::not_supported || code == Errc::role_forbidden;
 }
 
 /// Of a group that asks for nothing: its client's result registers go on telling of what was asked last.
@@ -48,7 +51,17 @@ ClientAxis* WriteRun::own() const {
 
 std::optional<Outcome> WriteRun::start(OnDone on_done) {
   on_done_ = std::move(on_done);
+  if (const std::shared_ptr<Client> client = client_.lock()) reclaim(*client);
   return carry_on();
+}
+
+/// Nobody is told: a lease that runs out all the same is an event of its own.
+void WriteRun::reclaim(const Client& client) {
+  for (const AxisNumber axis : plan_.reclaims) {
+    Group sign = client.new_group(client.life->role);
+    sign.is_write = sign.beats = true;
+    static_cast<void>(commands_.submit(axis, sign, [](const GroupResult&) {}));
+  }
 }
 
 void WriteRun::abandon() {
@@ -65,8 +78,14 @@ std::optional<Outcome> WriteRun::carry_on() {
         plan_.axis, group,
         [self = shared_from_this(), submission](const GroupResult& result) { self->on_result(submission, result); });
     if (!at_once) return std::nullopt;
-    settle(submission, at_once->outcome);
-    if (at_once->outcome.code != Errc::ok) return end(at_once->outcome);
+    const Outcome outcome = told(at_once->outcome);
+    if (is_wrong(outcome.code)) forget();
+    settle(submission, outcome);
+    if (outcome.code != Errc::ok) return end(outcome);
+  }
+  if (plan_.not_new) {
+    tell_not_new();
+    if (plan_.single) return end({Errc::not_new, 0});
   }
   if (plan_.afterwards != Errc::ok) {
     const Outcome dropped{plan_.afterwards, 0};
@@ -74,6 +93,11 @@ std::optional<Outcome> WriteRun::carry_on() {
     return end(dropped);
   }
   return submit_object();
+}
+
+/// A scanner that holds what has ended repeats itself, and its own result stands.
+Outcome WriteRun::told(const Outcome& outcome) const {
+  return outcome.code == Errc::not_new && !plan_.single ? Outcome{} : outcome;
 }
 
 void WriteRun::on_result(std::uint64_t submission, const GroupResult& result) {
@@ -88,10 +112,25 @@ void WriteRun::on_result(std::uint64_t submission, const GroupResult& result) {
   if (outcome && on_done_) std::exchange(on_done_, nullptr)(*outcome);
 }
 
+void WriteRun::forget() {
+  if (const std::shared_ptr<Client> client = client_.lock()) restore(plan_.before, *client, plan_.axis);
+}
+
+/// Its id and its motion stay what they were: nothing new was seen, and nothing has moved.
+void WriteRun::tell_not_new() {
+  ClientAxis* const axis = own();
+  if (axis == nullptr) return;
+  axis->used = true;
+  axis->result.result = CommandResult::not_new;
+  axis->result.detail = 0;
+  ++axis->submission;
+}
+
 std::uint64_t WriteRun::begin(std::uint16_t command_id) {
   ClientAxis* const axis = own();
   if (axis == nullptr) return 0;
   axis->used = true;
+  axis->told_not_new = false;
   axis->result = {CommandResult::pending, 0, command_id};
   return ++axis->submission;
 }
@@ -105,6 +144,7 @@ void WriteRun::settle(std::uint64_t submission, const Outcome& outcome) {
   if (submission == kNoSubmission) {
     // It asked for nothing, so there is nothing to tell of but a refusal.
     if (outcome.code == Errc::ok) return;
+    if (outcome.code == Errc::not_new) return tell_not_new();
     submission = begin(0);
   }
   if (axis->submission != submission) return;

@@ -28,9 +28,13 @@ class WriteRun : public std::enable_shared_from_this<WriteRun> {
 
  private:
   [[nodiscard]] std::optional<Outcome> carry_on();
+  void reclaim(const Client& client);
   void on_result(std::uint64_t submission, const GroupResult& result);
   /// The client's result reads "pending"; gives the number by which settle() knows whether it is still the newest.
   std::uint64_t begin(std::uint16_t command_id);
+  [[nodiscard]] Outcome told(const Outcome& outcome) const;
+  void forget();
+  void tell_not_new();
   void settle(std::uint64_t submission, const Outcome& outcome);
   [[nodiscard]] Outcome submit_object();
   void settle_object(const GroupResult& result);

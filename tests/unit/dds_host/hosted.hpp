@@ -53,6 +53,7 @@ class Axes final : public CommandPort {
   }
   void client_gone(ClientId) override {}
   [[nodiscard]] bool holds(AxisNumber, Quantity, std::int64_t) const override { return false; }
+  [[nodiscard]] bool owner_asks(AxisNumber, ClientId, Quantity, std::int64_t) const override { return false; }
   [[nodiscard]] std::int32_t set_position_value(AxisNumber) const override { return 0; }
   int submitted = 0;
 };

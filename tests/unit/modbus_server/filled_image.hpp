@@ -30,6 +30,7 @@ class RememberingPort final : public CommandPort {
   }
   void client_gone(ClientId client) override { gone.push_back(client); }
   [[nodiscard]] bool holds(AxisNumber, Quantity, std::int64_t) const override { return false; }
+  [[nodiscard]] bool owner_asks(AxisNumber, ClientId, Quantity, std::int64_t) const override { return false; }
   [[nodiscard]] std::int32_t set_position_value(AxisNumber) const override { return 0; }
 
   bool answers_at_once = true;

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "gateway/image/command_port.hpp"
-#include "gateway/upstream/modbus_tcp/claims.hpp"
 
 namespace axisgate::modbus_tcp::test {
 
@@ -38,6 +37,10 @@ class FakeCommandPort : public CommandPort {
   bool holds(AxisNumber axis, Quantity quantity, std::int64_t value) const override {
     return held.contains({axis, quantity, value});
   }
+  bool owner_asks(AxisNumber axis, ClientId client, Quantity quantity, std::int64_t value) const override {
+    const auto found = accepted.find({axis, quantity});
+    return owner == client && found != accepted.end() && found->second != value;
+  }
   std::int32_t set_position_value(AxisNumber axis) const override {
     const auto found = set_positions.find(axis);
     return found == set_positions.end() ? 0 : found->second;
@@ -62,6 +65,8 @@ class FakeCommandPort : public CommandPort {
   std::vector<ClientId> gone;
   std::set<std::tuple<AxisNumber, Quantity, std::int64_t>> held;
   std::map<AxisNumber, std::int32_t> set_positions;
+  std::optional<ClientId> owner;                                     ///< for owner_asks(): who owns every axis
+  std::map<std::pair<AxisNumber, Quantity>, std::int64_t> accepted;  ///< the value accepted last; none: as asked
 };
 
 }  // namespace axisgate::modbus_tcp::test
