@@ -246,6 +246,23 @@ void hint_at_tools(std::vector<std::string>& out, const LoadedConfig& loaded, co
                   fmt::join(listeners, ", ")));
 }
 
+/// A client by address is kept alive by whatever writes from that computer.
+void warn_about_shared_addresses(std::vector<std::string>& out, const LoadedConfig& loaded,
+                                 const std::vector<BusBudget>& budgets) {
+  std::vector<AxisNumber> axes;
+  each_axis(loaded, budgets, [&](const MasteredAxis& axis) {
+    if (axis.config.lease.on && axis.config.lease.renew != LeaseRenewal::heartbeat) axes.push_back(axis.config.number);
+  });
+  std::vector<std::string> listeners;
+  for (const auto& listener : loaded.config.modbus_tcp)
+    if (listener.client_is_address) listeners.push_back(fmt::format("{}:{}", listener.host, listener.port));
+  if (axes.empty() || listeners.empty()) return;
+  out.push_back(
+      fmt::format("on {} all programs of one computer are one client (\"client\": \"address\"): an HMI that writes from "
+                  "the PLC's computer keeps {} alive when the PLC's program is dead; write \"renew\": \"heartbeat\"",
+                  fmt::join(listeners, ", "), axes_text(axes)));
+}
+
 }  // namespace
 
 ReportLines master_lines(const MasteredAxis& axis) {
@@ -274,6 +291,7 @@ std::vector<std::string> lease_warnings(const LoadedConfig& loaded, const std::v
   warn_about_no_lease(out, loaded, budgets);
   warn_about_short_leases(out, loaded, budgets);
   warn_about_late_keep_alives(out, loaded, budgets);
+  warn_about_shared_addresses(out, loaded, budgets);
   hint_at_tools(out, loaded, budgets);
   return out;
 }

@@ -59,10 +59,11 @@ void EdgeMemory::remember(Item& item, std::uint16_t value, Instant now) {
 }
 
 Verdict EdgeMemory::conclude(Item& item, std::uint16_t value, Verdict verdict, const Writing& writing) {
+  const bool fresh = !item.written || item.value != value;
   remember(item, value, writing.now);
+  if (fresh || verdict == Verdict::acts) item.targets = writing.targets;
   if (verdict != Verdict::acts) return verdict;
   item.acted = writing.endings == nullptr ? Endings::Point{0} : writing.endings->now();
-  item.targets = writing.targets;
   item.told = false;
   return verdict;
 }
@@ -148,7 +149,7 @@ JogAsks EdgeMemory::jog(const JogWrite& write, const Writing& writing) {
     [[nodiscard]] bool on() const { return value.value_or(was_on); }
     [[nodiscard]] bool rises() const { return value.value_or(false) && item.written && !was_on; }
     [[nodiscard]] bool first() const { return value.value_or(false) && !item.written; }
-    [[nodiscard]] bool held() const { return value.value_or(false) && was_on && !item.disowned; }
+    [[nodiscard]] bool held() const { return value.value_or(false) && was_on; }
     /// A single 0 always ends: it may be a button that is let go after a reconnect.
     [[nodiscard]] bool falls() const { return value && !*value && (single || (was_on && !item.disowned)); }
   };

@@ -16,7 +16,9 @@ bool is_carried_out(const Request& request) { return request.writes() || request
 
 /// "writes": "posted": what range, role, owner and queue checks found is the answer; what became of the write otherwise
 /// is told by registers 25, 26 and 30, so that FC 23 never loses its read to a link.
-bool found_by_checks(Errc code) { return command_result(code) == CommandResult::none || code == Errc::not_owner; }
+bool found_by_checks(Errc code) {
+  return command_result(code) == CommandResult::none || code == Errc::not_owner || code == Errc::not_new;
+}
 
 }  // namespace
 

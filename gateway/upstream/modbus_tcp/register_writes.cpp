@@ -266,7 +266,8 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
   }
   plan.not_new = made.not_new;
   plan.single = !found.block;
-  plan.groups.push_back(made.group);
+  // The mailbox's own request stands for a group that asks for nothing beside it.
+  if (!box.requested || made.group.beats || !asks_nothing(made.group)) plan.groups.push_back(made.group);
   return plan;
 }
 

@@ -24,6 +24,7 @@ struct Owned : testing::Test {
   Ownership owned(LeaseRules with, Instant at) {
     Ownership out = of(with);
     plc->last_request = at;
+    out.set_armed(true);
     EXPECT_EQ(out.take(plc, at), Taken::free);
     return out;
   }
@@ -32,21 +33,21 @@ struct Owned : testing::Test {
 TEST_F(Owned, TheFirstClaimMakesAnOwnerAndOthersAreRefused) {
   Ownership o = owned(rules, kStart);
   EXPECT_TRUE(lease.owned_by(1));
-  EXPECT_EQ(o.judge(plc, true, kStart), Errc::ok);
-  EXPECT_EQ(o.judge(panel, true, kStart), Errc::not_owner);
-  EXPECT_EQ(o.judge(panel, false, kStart), Errc::not_owner);
+  EXPECT_EQ(o.judge(plc, true), Errc::ok);
+  EXPECT_EQ(o.judge(panel, true), Errc::not_owner);
+  EXPECT_EQ(o.judge(panel, false), Errc::not_owner);
 }
 
 TEST_F(Owned, TheGatewayItselfIsNeverRefused) {
   const Ownership o = owned(rules, kStart);
-  EXPECT_EQ(o.judge(nullptr, false, kStart), Errc::ok);
+  EXPECT_EQ(o.judge(nullptr, false), Errc::ok);
 }
 
 TEST_F(Owned, NobodyIsRefusedAndNothingRunsOutWhereLeasesAreOff) {
   rules.on = false;
   Ownership o = of(rules);
   EXPECT_EQ(o.take(plc, kStart), Taken::nothing);
-  EXPECT_EQ(o.judge(panel, true, kStart), Errc::ok);
+  EXPECT_EQ(o.judge(panel, true), Errc::ok);
   EXPECT_EQ(o.until(), kNever);
   EXPECT_TRUE(o.live(kStart + 1h));
   EXPECT_EQ(o.may_take_over(panel), Errc::not_supported);
@@ -71,9 +72,9 @@ TEST_F(Owned, OnlyAWriteRenewsALeaseThatWritesRenew) {
   rules.renew = LeaseRenewal::write;
   Ownership o = owned(rules, kStart);
   plc->last_request = plc->heartbeat = kStart + 1900ms;
-  o.wrote(panel, true, kStart + 1900ms);
+  o.wrote(panel, true, true, kStart + 1900ms);
   EXPECT_EQ(o.until(), kStart + 2000ms);
-  o.wrote(plc, false, kStart + 1000ms);
+  o.wrote(plc, false, true, kStart + 1000ms);
   EXPECT_EQ(o.until(), kStart + 3000ms);
 }
 
@@ -81,9 +82,9 @@ TEST_F(Owned, OnlyAChangedHeartbeatRenewsALeaseThatHeartbeatsRenew) {
   rules.renew = LeaseRenewal::heartbeat;
   Ownership o = owned(rules, kStart);
   plc->last_request = kStart + 1900ms;
-  o.wrote(plc, false, kStart + 1900ms);
+  o.wrote(plc, false, true, kStart + 1900ms);
   EXPECT_EQ(o.until(), kStart + 2000ms) << "a PLC in STOP goes on scanning the same block";
-  o.wrote(plc, true, kStart + 1000ms);
+  o.wrote(plc, true, true, kStart + 1000ms);
   EXPECT_EQ(o.until(), kStart + 3000ms) << "register 56";
   plc->heartbeat = kStart + 1800ms;
   EXPECT_EQ(o.until(), kStart + 3800ms) << "register 8 of the gateway";
@@ -94,10 +95,12 @@ TEST_F(Owned, AnOrphanIsTakenOverByItsOwnAddressAndRoleAlone) {
   plc->connected = false;
   const auto again = client(7, "10.0.0.1");
   const auto viewer = client(8, "10.0.0.1", Role::engineer);
-  EXPECT_EQ(o.judge(panel, true, kStart + 1s), Errc::not_owner);
-  EXPECT_EQ(o.judge(viewer, true, kStart + 1s), Errc::not_owner) << "another role";
-  EXPECT_EQ(o.judge(again, false, kStart + 1s), Errc::not_owner) << "not by a read or a fault reset";
-  ASSERT_EQ(o.judge(again, true, kStart + 1s), Errc::ok);
+  EXPECT_EQ(o.judge(panel, true), Errc::not_owner);
+  EXPECT_EQ(o.judge(viewer, true), Errc::not_owner) << "another role";
+  EXPECT_EQ(o.judge(again, false), Errc::ok) << "whatever it asks";
+  EXPECT_TRUE(o.waits_for(again, true)) << "zeros are a write as well";
+  EXPECT_FALSE(o.waits_for(panel, false));
+  ASSERT_EQ(o.judge(again, true), Errc::ok);
   EXPECT_EQ(o.take(again, kStart + 1s), Taken::orphan);
   EXPECT_TRUE(lease.owned_by(7));
   EXPECT_EQ(o.until(), kStart + 3s);
@@ -110,12 +113,53 @@ TEST_F(Owned, AnOrphanRunsOutLikeAnyLease) {
   EXPECT_TRUE(o.take_expired(kStart + 2s));
 }
 
-TEST_F(Owned, AHalfOpenConnectionsLeaseIsTakenOverOnceItWasSilentForHalfTheTimeout) {
+TEST_F(Owned, ASilentOwnersLeaseRunsOutAndIsNotTakenBefore) {
   Ownership o = owned(rules, kStart);
   const auto again = client(7, "10.0.0.1");
-  EXPECT_EQ(o.judge(again, true, kStart + 1000ms), Errc::not_owner);
-  EXPECT_EQ(o.judge(again, true, kStart + 1001ms), Errc::ok);
-  EXPECT_EQ(o.take(again, kStart + 1001ms), Taken::half_open);
+  EXPECT_EQ(o.judge(again, true), Errc::not_owner);
+  EXPECT_FALSE(o.waits_for(again, false));
+}
+
+TEST_F(Owned, TakeOverBetweenConnectionsOfOneAddressAndRoleNeedsNoRank) {
+  Ownership o = owned(rules, kStart);
+  const auto again = client(7, "10.0.0.1");
+  EXPECT_EQ(o.may_take_over(client(8, "10.0.0.1", Role::engineer)), Errc::not_owner) << "another role";
+  EXPECT_EQ(o.may_take_over(again), Errc::ok);
+  EXPECT_EQ(o.take(again, kStart + 10ms), Taken::same_hand);
+  EXPECT_EQ(o.judge(plc, true), Errc::not_owner);
+}
+
+TEST_F(Owned, WhileDisabledOnlyWhatAsksRenewsWhicheverSignCountsElse) {
+  for (const LeaseRenewal renew : {LeaseRenewal::any, LeaseRenewal::write, LeaseRenewal::heartbeat}) {
+    rules.renew = renew;
+    lease = {};
+    Ownership o = owned(rules, kStart);
+    o.set_armed(false);
+    plc->last_request = plc->heartbeat = kStart + 1900ms;
+    o.wrote(plc, true, false, kStart + 1900ms);
+    EXPECT_EQ(o.until(), kStart + 2000ms) << "a scanner's block with a heartbeat asks for nothing";
+    o.wrote(plc, false, true, kStart + 1000ms);
+    EXPECT_EQ(o.until(), kStart + 3000ms);
+  }
+}
+
+TEST_F(Owned, ALeaseThatReadsHaveKeptGoesOnFromTheLastWhenTheAxisIsDisabled) {
+  Ownership o = owned(rules, kStart);
+  plc->last_request = kStart + 60s;
+  o.set_armed(false);
+  EXPECT_EQ(o.until(), kStart + 62s);
+  plc->last_request = kStart + 61s;
+  EXPECT_EQ(o.until(), kStart + 62s);
+  o.set_armed(true);
+  EXPECT_EQ(o.until(), kStart + 63s);
+}
+
+TEST_F(Owned, AnAdoptedAxisWaitsForAnyWriteButABlockOfZeros) {
+  Ownership o = of(rules);
+  o.open(kStart);
+  EXPECT_TRUE(o.waits_for(panel, false));
+  EXPECT_FALSE(o.waits_for(panel, true));
+  EXPECT_FALSE(o.waits_for(nullptr, false));
 }
 
 TEST_F(Owned, TakeOverNeedsAHigherRank) {
@@ -137,7 +181,7 @@ TEST_F(Owned, ReleaseFreesADisabledAxisAndLeavesAnEnabledOneOpen) {
   EXPECT_EQ(o.release(panel, true, kStart + 2s), Errc::ok);
   EXPECT_FALSE(lease.owner);
   EXPECT_EQ(o.until(), kStart + 4s);
-  EXPECT_EQ(o.judge(plc, true, kStart + 3s), Errc::ok) << "open to every operator";
+  EXPECT_EQ(o.judge(plc, true), Errc::ok) << "open to every operator";
   const auto expired = o.take_expired(kStart + 4s);
   ASSERT_TRUE(expired);
   EXPECT_TRUE(expired->was_open);
@@ -151,13 +195,13 @@ TEST_F(Owned, AStrongerDdsWriterTakesTheAxisFromAWeakerOneByAClaimAlone) {
   weak->last_request = strong->last_request = kStart;
   Ownership o = of(rules);
   EXPECT_EQ(o.take(weak, kStart), Taken::free);
-  EXPECT_EQ(o.judge(strong, false, kStart), Errc::not_owner) << "not by what claims nothing";
-  EXPECT_EQ(o.judge(strong, true, kStart), Errc::ok);
+  EXPECT_EQ(o.judge(strong, false), Errc::not_owner) << "not by what claims nothing";
+  EXPECT_EQ(o.judge(strong, true), Errc::ok);
   EXPECT_EQ(o.take(strong, kStart + 1s), Taken::weaker);
   EXPECT_EQ(o.until(), kStart + 3s) << "the lease runs anew";
-  EXPECT_EQ(o.judge(weak, true, kStart + 1s), Errc::not_owner);
+  EXPECT_EQ(o.judge(weak, true), Errc::not_owner);
   weak->strength = 6;
-  EXPECT_EQ(o.judge(weak, true, kStart + 1s), Errc::not_owner) << "who is as strong is not stronger";
+  EXPECT_EQ(o.judge(weak, true), Errc::not_owner) << "who is as strong is not stronger";
   EXPECT_NE(text(Taken::weaker, *strong).find("weaker DDS writer"), std::string::npos);
 }
 
@@ -165,11 +209,11 @@ TEST_F(Owned, StrengthIsNothingToAModbusClient) {
   const auto strong = client(12, "participant b");
   strong->strength = INT32_MAX;
   Ownership o = owned(rules, kStart);
-  EXPECT_EQ(o.judge(strong, true, kStart), Errc::not_owner);
+  EXPECT_EQ(o.judge(strong, true), Errc::not_owner);
   ASSERT_EQ(o.release(plc, false, kStart), Errc::ok);
   strong->strength = INT32_MIN;
   EXPECT_EQ(o.take(strong, kStart), Taken::free);
-  EXPECT_EQ(o.judge(plc, true, kStart), Errc::not_owner) << "nor does it make one strong";
+  EXPECT_EQ(o.judge(plc, true), Errc::not_owner) << "nor does it make one strong";
 }
 
 TEST_F(Owned, GraceMakesALeaseLongerByItselfAndNotEachTime) {
@@ -195,7 +239,7 @@ TEST_F(Owned, GraceOfAnyRenewalIsAddedToWhatRenewsIt) {
     plc->grace = 3s;
     EXPECT_EQ(o.until(), kStart + 5s);
     plc->last_request = plc->heartbeat = kStart + 1s;
-    o.wrote(plc, true, kStart + 1s);
+    o.wrote(plc, true, true, kStart + 1s);
     EXPECT_EQ(o.until(), kStart + 6s);
     plc->grace = {};
     plc->heartbeat = kLongAgo;
@@ -206,7 +250,7 @@ TEST_F(Owned, GraceOfAnyRenewalIsAddedToWhatRenewsIt) {
 TEST_F(Owned, AnAxisFoundEnabledIsOpenUntilItsLeaseRunsOut) {
   Ownership o = of(rules);
   o.open(kStart);
-  EXPECT_EQ(o.judge(panel, true, kStart + 1s), Errc::ok);
+  EXPECT_EQ(o.judge(panel, true), Errc::ok);
   EXPECT_EQ(o.take(panel, kStart + 1s), Taken::open);
   o.open(kStart + 2s);
   EXPECT_TRUE(lease.owned_by(2)) << "an owned axis is not opened";
@@ -219,10 +263,10 @@ TEST(Jog, EndsUnlessItsCoilIsWrittenAgainInTime) {
   Jog jog;
   jog.start(Command::jog_forward, 1, kStart, 500ms);
   EXPECT_FALSE(jog.expired(kStart + 499ms));
-  jog.again(Command::jog_forward, 1, kStart + 400ms);
+  static_cast<void>(jog.again(Command::jog_forward, 1, kStart + 400ms));
   EXPECT_FALSE(jog.expired(kStart + 899ms));
-  jog.again(Command::jog_reverse, 1, kStart + 800ms);
-  jog.again(Command::jog_forward, 2, kStart + 800ms);
+  static_cast<void>(jog.again(Command::jog_reverse, 1, kStart + 800ms));
+  static_cast<void>(jog.again(Command::jog_forward, 2, kStart + 800ms));
   EXPECT_TRUE(jog.expired(kStart + 900ms)) << "neither another coil nor another client holds it";
 }
 
@@ -230,7 +274,7 @@ TEST(Jog, IsNotBegunAnewByAButtonThatIsStillHeld) {
   Jog jog;
   jog.start(Command::jog_forward, 1, kStart, 500ms);
   jog.end();
-  jog.again(Command::jog_forward, 1, kStart + 100ms);
+  static_cast<void>(jog.again(Command::jog_forward, 1, kStart + 100ms));
   EXPECT_FALSE(jog.active());
   EXPECT_EQ(jog.until(), kNever);
 }

@@ -21,6 +21,8 @@ class CoilWrites : public ::testing::Test {
 TEST_F(CoilWrites, EachCoilAsksForItsCommand) {
   const std::pair<int, Command> on[] = {{0, enable},        {1, fault_reset},   {2, quick_stop}, {3, halt},
                                         {4, move_absolute}, {5, move_relative}, {6, home},       {7, run_velocity}};
+  EXPECT_TRUE(is_done(plc.write_coil(107, false))) << "run_velocity acts after a 0 alone";
+  EXPECT_EQ(commands(desk), std::vector{end_run});
   for (const auto& [coil, command] : on) {
     EXPECT_EQ(plc.write_coil(static_cast<std::uint16_t>(100 + coil), true),
               "05 00 " + word(100 + coil).substr(3) + " FF 00");
@@ -31,7 +33,7 @@ TEST_F(CoilWrites, EachCoilAsksForItsCommand) {
   EXPECT_TRUE(is_done(plc.write_coil(103, false)));
   EXPECT_EQ(commands(desk), std::vector{end_halt});
   EXPECT_TRUE(is_done(plc.write_coil(107, false)));
-  EXPECT_EQ(commands(desk), std::vector{halt});
+  EXPECT_EQ(commands(desk), std::vector{end_run});
   for (const int edge : {1, 2, 4, 5, 6})
     EXPECT_TRUE(is_done(plc.write_coil(static_cast<std::uint16_t>(100 + edge), false)));
   EXPECT_TRUE(commands(desk).empty());

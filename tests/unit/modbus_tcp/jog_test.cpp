@@ -34,16 +34,20 @@ class Jog : public ::testing::Test {
 };
 
 TEST_F(Jog, AButtonStartsHoldsAndEnds) {
-  EXPECT_EQ(forward(true), "jog_forward") << "a single write of 1 with an empty memory";
+  EXPECT_EQ(forward(true), "refused, ") << "a 1 before any 0: perhaps a panel that reconnects and rewrites its buttons";
+  EXPECT_EQ(plc.read(125), "00 0A");
+  EXPECT_EQ(forward(false), "jog_end");
+  EXPECT_EQ(forward(true), "jog_forward");
   EXPECT_EQ(forward(true), "again jog_forward");
   EXPECT_EQ(forward(true), "again jog_forward");
   EXPECT_EQ(forward(false), "jog_end");
-  EXPECT_EQ(forward(false), "") << "let go already";
+  EXPECT_EQ(forward(false), "jog_end") << "a single 0 always acts";
   EXPECT_EQ(forward(true), "jog_forward") << "0 -> 1";
   EXPECT_EQ(reverse(false), "jog_end") << "of a memory that is empty: a button let go after a reconnect";
 }
 
 TEST_F(Jog, HoldingNeverStartsAnewHoweverLongAgo) {
+  EXPECT_EQ(reverse(false), "jog_end");
   EXPECT_EQ(reverse(true), "jog_reverse");
   for (const Duration pause : {Duration(100ms), Duration(999ms), Duration(1s), Duration(60s)}) {
     desk.runtime.advance_by(pause);
@@ -62,18 +66,20 @@ TEST_F(Jog, BothAt1InOneRequestHaltAndStartNothing) {
   EXPECT_EQ(both(false, false), "");
   EXPECT_EQ(both(true, true), "jog_end") << "both rising: one end";
   EXPECT_EQ(both(true, false), "jog_end") << "reverse is let go";
-  EXPECT_EQ(both(true, false), "") << "forward acts only after its own 0 -> 1";
+  EXPECT_EQ(both(true, false), "again jog_forward") << "which starts nothing: its own 0 -> 1 does";
   EXPECT_EQ(both(false, false), "jog_end");
   EXPECT_EQ(both(true, false), "jog_forward");
 }
 
 TEST_F(Jog, TheOtherCoilBesideAHeldOneEnds) {
+  EXPECT_EQ(forward(false), "jog_end");
+  EXPECT_EQ(reverse(false), "jog_end");
   EXPECT_EQ(forward(true), "jog_forward");
   EXPECT_EQ(reverse(true), "jog_end");
   EXPECT_EQ(reverse(true), "jog_end") << "still both";
   EXPECT_EQ(forward(true), "jog_end");
   EXPECT_EQ(reverse(false), "jog_end");
-  EXPECT_EQ(forward(true), "") << "spent";
+  EXPECT_EQ(forward(true), "again jog_forward") << "of a jog that has ended";
   EXPECT_EQ(reverse(true), "jog_end") << "forward's memory is 1 all the same";
   EXPECT_EQ(reverse(false), "jog_end");
   EXPECT_EQ(forward(false), "jog_end");
@@ -81,7 +87,7 @@ TEST_F(Jog, TheOtherCoilBesideAHeldOneEnds) {
 }
 
 TEST_F(Jog, BothInAFirstBlockAreOnlyRemembered) {
-  EXPECT_EQ(both(true, true), "");
+  EXPECT_EQ(both(true, true), "jog_end") << "which ends what this client jogs: nothing";
   EXPECT_EQ(both(true, true), "jog_end");
 }
 
@@ -111,6 +117,7 @@ TEST_F(Jog, IsDroppedByAStopInItsOwnRequest) {
 }
 
 TEST_F(Jog, AnEndDropsOtherStartsAndGoesFirst) {
+  EXPECT_EQ(forward(false), "jog_end");
   EXPECT_EQ(forward(true), "jog_forward");
   EXPECT_TRUE(is_done(plc.ask("0F 00 64 00 0A 02 00 01")));
   static_cast<void>(asked());
@@ -119,6 +126,7 @@ TEST_F(Jog, AnEndDropsOtherStartsAndGoesFirst) {
 }
 
 TEST_F(Jog, HoldingTravelsWithTheFirstOfOtherCommands) {
+  EXPECT_EQ(forward(false), "jog_end");
   EXPECT_EQ(forward(true), "jog_forward");
   EXPECT_TRUE(is_done(plc.ask("0F 00 64 00 0A 02 00 01")));
   EXPECT_EQ(asked(), "again jog_forward");
@@ -133,7 +141,20 @@ TEST_F(Jog, BesideAnotherStartIsNoPossibleValue) {
   EXPECT_EQ(asked(), "");
 }
 
+TEST_F(Jog, HoldingWhatHasEndedIsRefusedEachTime) {
+  EXPECT_EQ(forward(false), "jog_end");
+  EXPECT_EQ(forward(true), "jog_forward");
+  for (int i = 0; i < 2; ++i) {
+    desk.port.at_once = {{{Errc::not_new, 0}, 0, 0}};  // as the axis says it: its time was over
+    EXPECT_EQ(plc.write_coil(108, true), "85 06");
+    EXPECT_EQ(plc.read(125), "00 0A");
+  }
+  desk.port.at_once = {{{Errc::not_new, 0}, 0, 0}};
+  EXPECT_TRUE(is_done(write_both(true, false))) << "a scanner's row is answered";
+}
+
 TEST_F(Jog, HoldingLeavesTheResultRegistersAsTheyAre) {
+  EXPECT_EQ(forward(false), "jog_end");
   desk.port.at_once = {{{Errc::state_unsuitable, kDetailDeviceState}, 0, 0}};
   EXPECT_EQ(plc.write_coil(108, true), "85 04");
   EXPECT_TRUE(is_done(plc.write_coil(108, true)));
@@ -170,6 +191,7 @@ TEST_F(Jog, VelocityIsTheAxissOwn) {
 TEST_F(Jog, ABlockSkipsTheVelocityThatTheAxisHas) {
   desk.axis(1).jog_velocity = 250'000;
   EXPECT_TRUE(is_done(plc.write_block(156, "00 01 00 00" + words(250'000))));
+  EXPECT_TRUE(is_done(plc.write_block(156, "00 02 00 00" + words(250'000))));
   EXPECT_FALSE(desk.port.submitted.back().group.jog_velocity.has_value());
   EXPECT_TRUE(is_done(plc.write_block(156, "00 01 00 00" + words(260'000))));
   EXPECT_EQ(desk.port.submitted.back().group.jog_velocity, 260'000U);

@@ -80,7 +80,7 @@ class PostedWrites : public ::testing::Test {
 };
 
 TEST_F(PostedWrites, AreAnsweredAfterTheChecksAndTellTheRestInRegisters) {
-  static_cast<void>(plc.write(155, 0));
+  static_cast<void>(plc.write_block(154, "00 00 00 06"));
   EXPECT_TRUE(is_done(plc.write_block(154, "00 01 00 07")));
   EXPECT_EQ(plc.read(125), "00 01") << "pending";
   EXPECT_EQ(plc.read(130), "00 07");

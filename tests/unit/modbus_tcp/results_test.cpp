@@ -81,8 +81,9 @@ class CommandIdRule : public Results {
   std::string command(int value, int id) { return plc.write_block(154, word(value) + word(id)); }
 };
 
-TEST_F(CommandIdRule, AProgramStartsWithId0AndCountsOn) {
-  EXPECT_TRUE(is_done(command(0, 0)));
+TEST_F(CommandIdRule, AProgramStartsWithCommand0AndAnIdThatItWillNotUseNext) {
+  EXPECT_TRUE(is_done(command(0, 99)));
+  EXPECT_EQ(plc.read(130), "00 63");
   EXPECT_TRUE(is_done(command(7, 1)));
   EXPECT_TRUE(is_done(command(7, 2)));
   EXPECT_TRUE(is_done(command(7, 2)));
@@ -93,14 +94,17 @@ TEST_F(CommandIdRule, AProgramStartsWithId0AndCountsOn) {
 TEST_F(CommandIdRule, TheFirstIdIsOnlyRemembered) {
   EXPECT_TRUE(is_done(command(7, 5)));
   EXPECT_TRUE(commands(desk).empty());
-  EXPECT_EQ(plc.read(130), "00 05") << "seen, so the program counts on from it";
+  EXPECT_EQ(plc.read(125), "00 0A") << "not new: nothing was done";
+  EXPECT_EQ(plc.read(130), "00 00") << "and nothing seen";
   EXPECT_TRUE(is_done(command(7, 6)));
   EXPECT_EQ(commands(desk), std::vector{Command::move_relative});
 }
 
 TEST_F(CommandIdRule, OutlivesTheConnectionFor60s) {
-  EXPECT_TRUE(is_done(command(0, 0)));
+  EXPECT_TRUE(is_done(command(0, 99)));
   EXPECT_TRUE(is_done(command(7, 1)));
+  EXPECT_TRUE(is_done(command(0, 0))) << "zeros never erase it";
+  EXPECT_TRUE(is_done(plc.write(155, 55))) << "nor does an id alone";
   plc.session().on_closed(desk.runtime.now());
   static_cast<void>(desk.port.taken());
   desk.runtime.advance_by(59s);
@@ -118,7 +122,7 @@ TEST_F(CommandIdRule, OutlivesTheConnectionFor60s) {
 }
 
 TEST_F(CommandIdRule, TheIdTravelsWithTheGroup) {
-  EXPECT_TRUE(is_done(command(0, 0)));
+  EXPECT_TRUE(is_done(command(0, 99)));
   EXPECT_TRUE(is_done(command(6, 33)));
   EXPECT_EQ(desk.port.submitted.back().group.command_id, 33);
   EXPECT_TRUE(is_done(plc.write(154, 7)));
@@ -126,7 +130,7 @@ TEST_F(CommandIdRule, TheIdTravelsWithTheGroup) {
 }
 
 TEST_F(CommandIdRule, AnotherAddressCountsForItself) {
-  EXPECT_TRUE(is_done(command(0, 0)));
+  EXPECT_TRUE(is_done(command(0, 99)));
   EXPECT_TRUE(is_done(command(6, 1)));
   static_cast<void>(desk.port.taken());
   Line panel(desk, Role::operator_, kPanel);
@@ -146,7 +150,8 @@ TEST_F(Results, APressOfUnknownOutcomeIsNotRepeatedWithinRearm) {
   desk.port.at_once = {{{Errc::timed_out, 0}, 0, 0}};
   EXPECT_EQ(plc.write(154, 7), "86 0B");
   desk.runtime.advance_by(100ms);
-  EXPECT_TRUE(is_done(plc.write(154, 7)));
+  EXPECT_EQ(plc.write(154, 7), "86 06") << "no tool prints success for nothing";
+  EXPECT_EQ(plc.read(125), "00 0A");
   EXPECT_EQ(commands(desk).size(), 1U);
 }
 

@@ -178,19 +178,35 @@ TEST_F(Writes, ARefusedRequestChangesNothing) {
   EXPECT_EQ(commands(desk), std::vector{Command::enable}) << "the memory is still empty";
 }
 
-TEST_F(Writes, ABlockSkipsRowsThatTheDriveHolds) {
+TEST_F(Writes, ABlockAsksForWhatItsClientHasChangedWhateverTheDriveHolds) {
   desk.port.held = {{1, Quantity::target_position, 7}, {1, Quantity::mode, 1}};
   EXPECT_TRUE(is_done(plc.write_block(141, "00 01 00 00 00 07 00 00 00 08")));
+  EXPECT_EQ(last().setpoints.size(), 2U) << "another target may have been accepted that the drive does not hold yet";
+  EXPECT_EQ(last().mode, 1);
+  EXPECT_TRUE(is_done(plc.write_block(141, "00 01 00 00 00 07 00 00 00 09")));
   ASSERT_EQ(last().setpoints.size(), 1U);
   EXPECT_EQ(last().setpoints[0].quantity, Quantity::target_velocity);
   EXPECT_FALSE(last().mode.has_value());
 }
 
 TEST_F(Writes, ABlockInWhichNothingIsNewAsksNothing) {
-  desk.port.held = {{1, Quantity::target_position, 7}, {1, Quantity::mode, 1}};
   EXPECT_EQ(plc.write_block(141, "00 01 00 00 00 07"), "10 00 8D 00 03");
-  ASSERT_EQ(desk.port.submitted.size(), 1U) << "for its client's ownership alone";
+  EXPECT_EQ(plc.write_block(141, "00 01 00 00 00 07"), "10 00 8D 00 03");
+  ASSERT_EQ(desk.port.submitted.size(), 2U) << "for its client's ownership alone";
   EXPECT_TRUE(asks_nothing(last()));
+}
+
+TEST_F(Writes, AnOwnersBlockAsksForWhatIsNoLongerTheValueAcceptedLast) {
+  EXPECT_TRUE(is_done(plc.write_block(141, "00 01 00 00 00 07")));
+  desk.port.owner = last().client;
+  desk.port.accepted[{1, Quantity::target_position}] = 9;
+  EXPECT_TRUE(is_done(plc.write_block(141, "00 01 00 00 00 07")));
+  ASSERT_EQ(last().setpoints.size(), 1U);
+  EXPECT_EQ(last().setpoints[0].value, 7);
+  Line panel(desk, Role::operator_, kPanel);
+  static_cast<void>(panel.write_block(141, "00 01 00 00 00 07"));
+  EXPECT_TRUE(is_done(panel.write_block(141, "00 01 00 00 00 07")));
+  EXPECT_TRUE(asks_nothing(last())) << "nobody else's does";
 }
 
 TEST_F(Writes, ASingleRowIsAlwaysAskedOfThePort) {
@@ -206,9 +222,12 @@ TEST_F(Writes, AScannersWholeBlockIsOneGroup) {
   ASSERT_EQ(desk.port.submitted.size(), 1U);
   EXPECT_EQ(last().command, Command::none);
   EXPECT_FALSE(last().controlword.has_value()) << "an empty memory is only filled";
-  EXPECT_EQ(last().setpoints.size(), 7U);
+  EXPECT_TRUE(last().setpoints.empty()) << "so are the set-points";
   EXPECT_TRUE(is_done(plc.write_block(140, idle + "00 06 00 00 00 02")));
   EXPECT_EQ(last().command, Command::move_absolute);
+  ASSERT_EQ(last().setpoints.size(), 7U) << "beside a command that acts they ask";
+  EXPECT_TRUE(last().setpoints[0].with_command);
+  EXPECT_FALSE(last().mode.has_value()) << "the command selects the mode that it needs";
   EXPECT_TRUE(is_done(plc.write_block(140, idle + "00 06 00 00 00 03")));
   EXPECT_EQ(last().command, Command::none);
 }
