@@ -33,10 +33,12 @@ void check_mode_constant(Reading& reading, const std::string& name, const std::s
   const std::string at = pointer_to("/constants", name);
   if (found.from_drive || (!found.standard && !found.required))
     return reading.fault(at, "decides the mode: the configuration gives it, so it needs \"default\" or \"required\"");
-  const auto low = found.min ? found.min->scale(1) : std::nullopt;
-  const auto high = found.max ? found.max->scale(1) : std::nullopt;
-  if (!low || !high || *high - *low > kMostModes)
-    return reading.fault(at, "decides the mode: it needs a \"range\" of what the drive calls its modes");
+  const auto needs_range = [&] {
+    reading.fault(at, "decides the mode: it needs a \"range\" of what the drive calls its modes");
+  };
+  if (!found.min || !found.max) return needs_range();
+  const std::optional<std::int64_t> low = found.min->scale(1), high = found.max->scale(1);
+  if (!low || !high || *high - *low > kMostModes) return needs_range();
   const auto& modes = reading.profile.modes;
   for (std::int64_t raw = *low; raw <= *high; ++raw)
     if (std::none_of(modes.begin(), modes.end(), [&](const auto& mode) { return mode.second == raw; }))

@@ -43,10 +43,7 @@ class CanopenProfile : public ::testing::Test {
     std::ofstream(path_) << profile_.dump();
     return load_profile(path_);
   }
-  DriveModel model() {
-    static_cast<void>(load());
-    return resolved(path_, one_axis("canopen"));
-  }
+  DriveModel model() { return resolved(load(), one_axis("canopen")); }
   nlohmann::json& canopen() { return profile_["protocols"]["canopen"]; }
 
   /// Of this test alone: others run beside it. The file has the profile's own name.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "gateway/drive/profile_loader.hpp"
+#include "tests/stage/profile_once.hpp"
 
 namespace axisgate::drive {
 
@@ -37,8 +38,7 @@ inline ResolveInput kinco_axis() {
   return input;
 }
 
-inline DriveModel resolved(const std::string& path, const ResolveInput& input) {
-  const LoadedProfile loaded = load_profile(path);
+inline DriveModel resolved(const LoadedProfile& loaded, const ResolveInput& input) {
   EXPECT_EQ(text(loaded.faults), "");
   auto result = resolve(loaded, input);
   if (const auto* faults = std::get_if<std::vector<Fault>>(&result)) {
@@ -48,8 +48,13 @@ inline DriveModel resolved(const std::string& path, const ResolveInput& input) {
   return std::get<DriveModel>(std::move(result));
 }
 
+/// Of a profile in the source folder.
+inline DriveModel resolved(const std::string& path, const ResolveInput& input) {
+  return resolved(test::profile_once(path), input);
+}
+
 inline std::vector<Fault> refused(const std::string& path, const ResolveInput& input) {
-  auto result = resolve(load_profile(path), input);
+  auto result = resolve(test::profile_once(path), input);
   const auto* faults = std::get_if<std::vector<Fault>>(&result);
   EXPECT_NE(faults, nullptr) << "was resolved";
   return faults == nullptr ? std::vector<Fault>{} : *faults;

@@ -7,6 +7,7 @@
 #include "gateway/app/adapter_names.hpp"
 #include "gateway/app/config_sections.hpp"
 #include "tests/simulated/keya_drive.hpp"
+#include "tests/stage/profile_once.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -22,8 +23,7 @@ struct Entry {
 };
 
 drive::DriveModel resolved(Entry entry, const GatewayStage::Line& line) {
-  const drive::LoadedProfile loaded =
-      drive::load_profile(std::string(AXISGATE_SOURCE_DIR "/schemas/drives/") + entry.profile + ".json");
+  const drive::LoadedProfile& loaded = shipped_profile(entry.profile);
   if (!loaded.faults.empty()) throw std::runtime_error(text(loaded.faults.front()));
   drive::ResolveInput input;
   input.protocol = entry.protocol;

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "gateway/app/scan_table.hpp"
-#include "gateway/drive/profile_loader.hpp"
+#include "tests/stage/profile_once.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -18,9 +18,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-drive::Profile profile(const std::string& name) {
-  return drive::load_profile(AXISGATE_SOURCE_DIR "/schemas/drives/" + name + ".json").profile;
-}
+drive::Profile profile(const std::string& name) { return test::shipped_profile(name).profile; }
 
 /// A node that has these objects.
 struct Node {
