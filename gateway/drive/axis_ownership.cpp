@@ -44,7 +44,7 @@ void Axis::claim(const Group& group) {
   if (!group.claims) return;
   const Ownership::Taken taken = ownership_.take(group.life, core_.now);
   if (taken == Ownership::Taken::nothing) return;
-  jog_.end();
+  if (jog_.client() != group.client) halt_jog("another client has taken the axis");
   host_.event(image_.number, EventKind::lease, 0, drive::text(taken, *group.life));
 }
 
@@ -57,12 +57,14 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   if (group.controlword && ownership_.is_owner(group.client)) group.single_controlword = true;
   Errc refusal = judge_owner(group);
   ownership_.wrote(group.life, group.beats, core_.now);
+  if (refusal == Errc::ok && !asks_nothing(group) && stop_comes_first(group)) refusal = Errc::stop_owed;
   if (refusal != Errc::ok) {
     if (!holds_stop(group)) return refuse(asked, refusal);
     group = stop_alone(group);
     group.claims = false;
   }
   if (group.jog_again) jog_.again(*group.jog_again, group.client, core_.now);
+  const Jog before = jog_;
   switch (group.command) {
     case Command::release:
       return release(group, std::move(on_result));
@@ -74,7 +76,6 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
       break;
     case Command::jog_end:
       if (!jog_.active() || jog_.client() != group.client) return GroupResult{};
-      jog_.end();
       group.command = Command::halt;
       break;
     default:
@@ -90,9 +91,8 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   if (stop && group.life && owner && owner->id != group.client)
     host_.event(image_.number, EventKind::command, 0,
                 fmt::format("stopped by {}, which does not own the axis", group.life->name));
-  if (stop || (!is_jog(asked.command) && starts_motion(core_, group))) jog_.end();
   auto result = carry_out(group, refusal, std::move(on_result));
-  if (result && is_jog(asked.command)) jog_.end();
+  if (result && is_jog(asked.command)) jog_ = before;  // what ran before needs its button as before
   return result;
 }
 
@@ -110,9 +110,9 @@ std::optional<GroupResult> Axis::release(const Group& group, GroupCallback on_re
 GroupResult Axis::released(const Group& group) {
   core_.now = host_.now();
   const auto owner = ownership_.owner();
-  const Errc code = ownership_.release(group.life, core_.facts().enabled(), core_.now);
+  const Errc code = ownership_.release(group.life, may_be_enabled(), core_.now);
   if (code != Errc::ok) return refuse(group, code);
-  jog_.end();
+  halt_jog("its owner has released the axis");
   if (owner) {
     const bool enabled = ownership_.until() != kNever;
     host_.event(image_.number, EventKind::lease, 0,
@@ -128,7 +128,7 @@ GroupResult Axis::released(const Group& group) {
 std::optional<GroupResult> Axis::take_over(const Group& group, GroupCallback on_result) {
   const auto owner = ownership_.owner();
   const bool from_another = owner && group.life && owner->id != group.life->id;
-  if (!from_another || !core_.facts().enabled()) return taken_over(group, std::move(on_result));
+  if (!from_another || !may_be_enabled()) return taken_over(group, std::move(on_result));
   Group halt;
   halt.client = group.client;
   halt.role = group.role;
@@ -152,7 +152,7 @@ std::optional<GroupResult> Axis::taken_over(const Group& group, GroupCallback on
   core_.now = host_.now();
   const auto before = ownership_.owner();
   if (const Ownership::Taken taken = ownership_.take(group.life, core_.now); taken != Ownership::Taken::nothing) {
-    jog_.end();
+    halt_jog("another client has taken the axis");
     host_.event(image_.number, EventKind::lease, 0,
                 drive::text(taken, *group.life) + (before ? " (before: " + before->name + ")" : std::string()));
   }
@@ -177,7 +177,6 @@ void Axis::stop_by_itself(Command command, bool latches, GroupCallback on_result
 void Axis::end_expired_lease() {
   const auto expired = ownership_.take_expired(core_.now);
   if (!expired) return;
-  jog_.end();
   const bool writes_wait = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
     return !p.conversation->is_stop() && !reads_alone(p.conversation->group());
   });
@@ -188,8 +187,9 @@ void Axis::end_expired_lease() {
     if (!expired->owner->connected)
       what += is_dds(*expired->owner) ? " after it had gone" : " after its connection had ended";
   }
-  const bool acts = core_.facts().enabled() || writes_wait;
+  const bool acts = may_be_enabled() || writes_wait;
   if (!acts || action == Command::none) {
+    halt_jog("its owner's lease has run out");
     host_.event(image_.number, EventKind::lease, 0, what + (acts ? ": nothing is done (on_expiry none)" : ""));
     return;
   }
@@ -199,11 +199,10 @@ void Axis::end_expired_lease() {
   stop_by_itself(action, true, [this](const GroupResult& result) { on_lease_action(result); });
 }
 
-// A stop that the drive did not carry out is not given up while the axis is enabled: one lease later it is tried again.
+// It is owed on: what the drive shows decides when it is sent again.
 void Axis::on_lease_action(const GroupResult& result) {
   if (result.outcome.code == Errc::ok || !core_.facts().enabled()) return;
   host_.event(image_.number, EventKind::lease, 0, "the stop that the lease asked for has failed: it is tried again");
-  ownership_.open(host_.now());
 }
 
 void Axis::on_adopted() {
@@ -275,15 +274,19 @@ bool Axis::jog_must_stop(Command direction, std::int64_t velocity) const {
 
 void Axis::observe_jog() {
   if (!jog_.active()) return;
+  if (!core_.reachable()) {
+    jog_.carry();
+    return;
+  }
   const bool starting = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) { return p.jogs; });
-  if (!starting && core_.motion.running() != MotionKind::velocity) {
-    jog_.end();  // a fault, a stop, a loss, or another command: only a new press jogs again
+  const bool goes_on = jog_.carried() && core_.facts().enabled();
+  if (!starting && !goes_on && core_.motion.running() != MotionKind::velocity) {
+    jog_.end();  // a fault, a stop, or another command: only a new press jogs again
     return;
   }
   const std::int64_t shown = std::llabs(core_.value(Quantity::velocity_actual).value_or(0));
   const std::int64_t speed = std::max<std::int64_t>(shown, image_.jog_velocity);
   if (starting || !jog_must_stop(jog_.direction(), speed)) return;
-  jog_.end();
   host_.event(image_.number, EventKind::warning, 0, "jog: halted at the position limit");
   stop_by_itself(Command::halt, false, [](const GroupResult&) {});
 }
