@@ -22,6 +22,7 @@ constexpr std::array<Row, kErrcCount> kRows{{
     {Errc::bad_value, "value outside limits", illegal_data_value, CommandResult::none},
     {Errc::role_forbidden, "role may not do this", illegal_function, CommandResult::none},
     {Errc::state_unsuitable, "axis state unsuitable", server_device_failure, CommandResult::state_unsuitable},
+    {Errc::stop_owed, "a stop is owed first", server_device_busy, CommandResult::state_unsuitable},
     {Errc::busy, "not possible now", server_device_busy, CommandResult::none},
     {Errc::queue_full, "queue full", server_device_busy, CommandResult::none},
     {Errc::superseded, "superseded before it was sent", server_device_busy, CommandResult::superseded},

@@ -16,6 +16,7 @@ enum class Errc : std::uint8_t {
   bad_value,          ///< outside limits, not representable, unknown command
   role_forbidden,     ///< the client's role may not do this
   state_unsuitable,   ///< the axis is in no state for it
+  stop_owed,          ///< after a loss: a stop comes first, and was not seen to act yet
   busy,               ///< not now: moving where standstill is needed, mailbox busy, only while disabled
   queue_full,         ///< a bound of the bus or of the axis is reached
   superseded,         ///< replaced by a newer setpoint before it was sent
@@ -65,7 +66,8 @@ enum class ModbusException : std::uint8_t {
   gateway_target_failed = 0x0B,
 };
 
-/// `state_unsuitable` always carries this detail: CiA 301 abort code "because of the present device state".
+/// `state_unsuitable` and `stop_owed` always carry this detail: CiA 301 abort code "because of the present device
+/// state".
 inline constexpr std::uint32_t kDetailDeviceState = 0x08000022;
 
 struct Outcome {
@@ -76,7 +78,8 @@ struct Outcome {
 
 /// Refused before anything was sent: the code, with the detail that belongs to it.
 [[nodiscard]] constexpr Outcome refusal(Errc code) {
-  return {code, code == Errc::state_unsuitable ? kDetailDeviceState : 0};
+  const bool by_state = code == Errc::state_unsuitable || code == Errc::stop_owed;
+  return {code, by_state ? kDetailDeviceState : 0};
 }
 
 [[nodiscard]] std::string_view text(Errc code);

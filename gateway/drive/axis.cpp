@@ -62,6 +62,7 @@ void Axis::on_bring_up() {
   core_.emergency = 0;
   reference_doubted_ = false;
   core_.homed = false;
+  lose_sight();
   if (!core_.is_virtual()) return;
   core_.machine.reset();
   core_.store.forget(core_.model.statusword);
@@ -115,6 +116,8 @@ void Axis::accept_stop(const Group& group) {
   image_.endings.stopped(group.client);
   for (Pending& p : pending_)
     if (!p.stopped_by) p.stopped_by = group.client;
+  jog_.end();
+  owe(group);
 }
 
 void Axis::show_latest(const Group& group, const Outcome& outcome) {
@@ -170,6 +173,7 @@ std::optional<GroupResult> Axis::carry_out(const Group& asked, Errc refusal, Gro
   pending.by_mailbox = asked.object.has_value();
   pending.conversation = std::make_unique<Conversation>(core_, group, stop, asked.object && !group.object);
   pending.starts_motion = starts_motion(core_, group);
+  if (pending.starts_motion && !pending.jogs) pending.ends_jog = jog_.press();
   pending.callbacks.push_back(std::move(on_result));
   std::optional<GroupResult> refused;
   enqueue(std::move(pending), stop, refused);
@@ -203,6 +207,7 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<GroupResult>& refus
   if (pending.starts_motion || drives) motion_by_ = group.client;
   if (!pending.by_mailbox) image_.latest = {CommandResult::pending, 0, group.command_id};
   if (pending.starts_motion) core_.motion.mask_target_reached();
+  if (!stop) note_accepted(group);
   pending_.push_back(std::move(pending));
   publish(core_.now);
 }
@@ -284,6 +289,7 @@ void Axis::carry_on(Pending& pending) {
   }
   if (move.kind == Conversation::Move::Kind::wait) host_.order_waits(pending.id, move.until);
   if (!pending.conversation->stop_is_over()) return;
+  note_stop(pending, false);
   // The stop is done; the rest of its group waits its turn like any other.
   bus::Order rest = order_for(core_, pending.conversation->group(), false);
   rest.axis = slot_;
@@ -323,6 +329,8 @@ void Axis::complete(bus::OrderId id, const GroupResult& result) {
   Pending pending = std::move(*found);
   pending_.erase(found);
   host_.order_done(id);
+  note_stop(pending, true);
+  note_jog(pending, result.outcome.code);
   if (!motion_pending()) core_.motion.unmask_target_reached();
   GroupResult told = result;
   if (told.outcome.code == Errc::ok && pending.refusal != Errc::ok) told.outcome = {pending.refusal, 0};
@@ -351,14 +359,11 @@ void Axis::on_time(Instant now) {
   core_.now = now;
   core_.link = host_.link_state();
   end_expired_lease();
-  if (!jog_.expired(now)) return;
-  jog_.end();
-  host_.event(image_.number, EventKind::warning, 0, "jog: its coil was not written 1 again in time: halted");
-  stop_by_itself(Command::halt, false, [](const GroupResult&) {});
+  if (jog_.expired(now)) halt_jog("its coil was not written 1 again in time");
 }
 
 Instant Axis::next_deadline() const {
-  Instant next = std::min({core_.motion.deadline(), ownership_.until(), jog_.until()});
+  Instant next = std::min({core_.motion.deadline(), ownership_.until(), jog_.until(), owed_.next_deadline()});
   for (const Pending& p : pending_)
     if (!p.callbacks.empty()) next = std::min(next, p.conversation->group().answer_by);
   return next;

@@ -11,6 +11,7 @@
 #include "gateway/drive/accepted.hpp"
 #include "gateway/drive/conversation.hpp"
 #include "gateway/drive/jog.hpp"
+#include "gateway/drive/owed_stop.hpp"
 #include "gateway/drive/ownership.hpp"
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/events.hpp"
@@ -54,6 +55,8 @@ class Axis {
   void on_bring_up();
   /// The drive has sent an emergency code; 0: what it told of is over.
   void on_emergency(std::uint16_t code) { core_.emergency = code; }
+  /// It says that it has started anew: no motor of it has torque.
+  void on_restarted();
   /// It was suspect: it may have restarted unseen.
   void on_doubt() { reference_doubted_ = true; }
   void set_alarm(AxisAlarm alarm, bool on);
@@ -111,6 +114,7 @@ class Axis {
     bool starts_motion = false;
     bool by_mailbox = false;
     bool jogs = false;                     ///< it starts a jog
+    std::uint64_t ends_jog = 0;            ///< once it has started what it starts, this jog is over
     Errc refusal = Errc::ok;               ///< of what stood beside the stop; the answer once the stop is done
     std::optional<ClientId> stopped_by{};  ///< whose stop came first after it
   };
@@ -122,7 +126,7 @@ class Axis {
   [[nodiscard]] Errc judge_owner(const Group& group) const;
   void claim(const Group& group);
   [[nodiscard]] GroupResult nothing_asked(const Group& group);
-  [[nodiscard]] bool run_pending() const;
+  [[nodiscard]] bool may_run() const;
   void accept(const Group& group);
   void forget_accepted(const Group& group);
   [[nodiscard]] std::optional<GroupResult> release(const Group& group, GroupCallback on_result);
@@ -135,6 +139,18 @@ class Axis {
   [[nodiscard]] bool jog_must_stop(Command direction, std::int64_t velocity) const;
   void observe_jog();
   void stop_by_itself(Command command, bool latches, GroupCallback on_result);
+  // What is owed until the drive shows it (axis_owed.cpp).
+  void owe(const Group& stop);
+  void observe_owed();
+  void lose_sight();
+  void send_owed(StopKind stop);
+  void note_stop(const Pending& pending, bool ended);
+  void note_accepted(const Group& group);
+  void tell_end(OwedStop::End end);
+  void note_jog(const Pending& pending, Errc code);
+  void halt_jog(std::string why);
+  [[nodiscard]] bool stop_comes_first(const Group& group) const;
+  [[nodiscard]] bool may_be_enabled() const;
   /// `refusal`: of what stood beside the stop that the group is.
   [[nodiscard]] std::optional<GroupResult> carry_out(const Group& asked, Errc refusal, GroupCallback on_result);
 
@@ -167,6 +183,9 @@ class Axis {
   std::uint64_t faults_told_ = 0;
   std::uint64_t losses_told_ = 0;
   Jog jog_;
+  OwedStop owed_;
+  bool owed_told_ = false;    ///< an event has told of it: its end is told as well
+  bool was_enabled_ = false;  ///< by the newest read, also while the drive is out of sight
 };
 
 }  // namespace axisgate::drive

@@ -26,6 +26,7 @@ void Axis::observe(Instant now) {
       clamped = clamped || core_.store[binding.object].clamped;
   set_alarm(AxisAlarm::clamped, clamped);
   observe_jog();
+  observe_owed();
   if (!core_.motion.take_homing_timeout()) return;
   host_.event(image_.number, EventKind::warning, 0, "homing took longer than its timeout: halted");
   stop_by_itself(Command::halt, false, [](const GroupResult&) {});

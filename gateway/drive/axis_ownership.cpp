@@ -39,7 +39,7 @@ void Axis::claim(const Group& group) {
   if (!group.claims && !(group.is_write && ownership_.waits_for(group.life, group.all_zero))) return;
   const Ownership::Taken taken = ownership_.take(group.life, core_.now);
   if (taken == Ownership::Taken::nothing) return;
-  jog_.end();
+  if (jog_.client() != group.client) halt_jog("another client has taken the axis");
   host_.event(image_.number, EventKind::lease, 0, drive::text(taken, *group.life));
 }
 
@@ -55,11 +55,13 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   if (holds_in_vain) group.jog_again.reset();
   Errc refusal = judge_owner(group);
   ownership_.wrote(group.life, group.beats, !asks_nothing(group) || group.jog_again, core_.now);
+  if (refusal == Errc::ok && !asks_nothing(group) && stop_comes_first(group)) refusal = Errc::stop_owed;
   if (refusal != Errc::ok) {
     if (!holds_stop(group)) return refuse(asked, refusal);
     group = stop_alone(group);
     group.claims = false;
   }
+  const Jog before = jog_;
   switch (group.command) {
     case Command::release:
       return release(group, std::move(on_result));
@@ -71,11 +73,10 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
       break;
     case Command::jog_end:
       if (!jog_.active() || jog_.client() != group.client) return nothing_asked(group);
-      jog_.end();
       group.command = Command::halt;
       break;
     case Command::end_run:
-      if (core_.motion.running() != MotionKind::velocity && !run_pending()) return nothing_asked(group);
+      if (!may_run()) return nothing_asked(group);
       group.command = Command::halt;
       break;
     default:
@@ -90,9 +91,8 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   if (stop && group.life && owner && owner->id != group.client)
     host_.event(image_.number, EventKind::command, 0,
                 fmt::format("stopped by {}, which does not own the axis", group.life->name));
-  if (stop || (!is_jog(asked.command) && starts_motion(core_, group))) jog_.end();
   auto result = carry_out(group, refusal, std::move(on_result));
-  if (result && is_jog(asked.command)) jog_.end();
+  if (result && is_jog(asked.command)) jog_ = before;  // what ran before needs its button as before
   return result;
 }
 
@@ -103,9 +103,15 @@ GroupResult Axis::nothing_asked(const Group& group) {
   return {};
 }
 
-bool Axis::run_pending() const {
-  return std::any_of(pending_.begin(), pending_.end(),
-                     [](const Pending& p) { return p.conversation->group().command == Command::run_velocity; });
+// Out of sight, or found running, nobody knows whether it is a run of ours that goes on: a stop too many is the smaller
+// harm.
+bool Axis::may_run() const {
+  const bool waits = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
+    return p.conversation->group().command == Command::run_velocity;
+  });
+  if (waits || core_.motion.running() == MotionKind::velocity) return true;
+  const AxisFacts facts = core_.facts();
+  return core_.reachable() ? facts.enabled() && facts.moving && is_continuous(facts.mode) : may_be_enabled();
 }
 
 // --- What was accepted last ------------------------------------------------------------------------------------------
@@ -147,9 +153,9 @@ std::optional<GroupResult> Axis::release(const Group& group, GroupCallback on_re
 GroupResult Axis::released(const Group& group) {
   core_.now = host_.now();
   const auto owner = ownership_.owner();
-  const Errc code = ownership_.release(group.life, core_.facts().enabled(), core_.now);
+  const Errc code = ownership_.release(group.life, may_be_enabled(), core_.now);
   if (code != Errc::ok) return refuse(group, code);
-  jog_.end();
+  halt_jog("its owner has released the axis");
   if (owner) {
     const bool enabled = ownership_.until() != kNever;
     host_.event(image_.number, EventKind::lease, 0,
@@ -165,7 +171,7 @@ GroupResult Axis::released(const Group& group) {
 std::optional<GroupResult> Axis::take_over(const Group& group, GroupCallback on_result) {
   const auto owner = ownership_.owner();
   const bool from_another = owner && group.life && owner->id != group.life->id;
-  if (!from_another || !core_.facts().enabled()) return taken_over(group, std::move(on_result));
+  if (!from_another || !may_be_enabled()) return taken_over(group, std::move(on_result));
   Group halt;
   halt.client = group.client;
   halt.role = group.role;
@@ -189,7 +195,7 @@ std::optional<GroupResult> Axis::taken_over(const Group& group, GroupCallback on
   core_.now = host_.now();
   const auto before = ownership_.owner();
   if (const Ownership::Taken taken = ownership_.take(group.life, core_.now); taken != Ownership::Taken::nothing) {
-    jog_.end();
+    halt_jog("another client has taken the axis");
     host_.event(image_.number, EventKind::lease, 0,
                 drive::text(taken, *group.life) + (before ? " (before: " + before->name + ")" : std::string()));
   }
@@ -214,7 +220,6 @@ void Axis::stop_by_itself(Command command, bool latches, GroupCallback on_result
 void Axis::end_expired_lease() {
   const auto expired = ownership_.take_expired(core_.now);
   if (!expired) return;
-  jog_.end();
   const bool writes_wait = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
     return !p.conversation->is_stop() && !reads_alone(p.conversation->group());
   });
@@ -225,8 +230,9 @@ void Axis::end_expired_lease() {
     if (!expired->owner->connected)
       what += is_dds(*expired->owner) ? " after it had gone" : " after its connection had ended";
   }
-  const bool acts = core_.facts().enabled() || writes_wait;
+  const bool acts = may_be_enabled() || writes_wait;
   if (!acts || action == Command::none) {
+    halt_jog("its owner's lease has run out");
     host_.event(image_.number, EventKind::lease, 0, what + (acts ? ": nothing is done (on_expiry none)" : ""));
     return;
   }
@@ -236,11 +242,10 @@ void Axis::end_expired_lease() {
   stop_by_itself(action, true, [this](const GroupResult& result) { on_lease_action(result); });
 }
 
-// A stop that the drive did not carry out is not given up while the axis is enabled: one lease later it is tried again.
+// It is owed on: what the drive shows decides when it is sent again.
 void Axis::on_lease_action(const GroupResult& result) {
   if (result.outcome.code == Errc::ok || !core_.facts().enabled()) return;
   host_.event(image_.number, EventKind::lease, 0, "the stop that the lease asked for has failed: it is tried again");
-  ownership_.open(host_.now());
 }
 
 void Axis::on_adopted() {
@@ -312,15 +317,19 @@ bool Axis::jog_must_stop(Command direction, std::int64_t velocity) const {
 
 void Axis::observe_jog() {
   if (!jog_.active()) return;
+  if (!core_.reachable()) {
+    jog_.carry();
+    return;
+  }
   const bool starting = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) { return p.jogs; });
-  if (!starting && core_.motion.running() != MotionKind::velocity) {
-    jog_.end();  // a fault, a stop, a loss, or another command: only a new press jogs again
+  const bool goes_on = jog_.carried() && core_.facts().enabled();
+  if (!starting && !goes_on && core_.motion.running() != MotionKind::velocity) {
+    jog_.end();  // a fault, a stop, or another command: only a new press jogs again
     return;
   }
   const std::int64_t shown = std::llabs(core_.value(Quantity::velocity_actual).value_or(0));
   const std::int64_t speed = std::max<std::int64_t>(shown, image_.jog_velocity);
   if (starting || !jog_must_stop(jog_.direction(), speed)) return;
-  jog_.end();
   host_.event(image_.number, EventKind::warning, 0, "jog: halted at the position limit");
   stop_by_itself(Command::halt, false, [](const GroupResult&) {});
 }

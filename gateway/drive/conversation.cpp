@@ -170,6 +170,7 @@ Conversation::Move Conversation::advance(Instant now) {
   while (!finished()) {
     if (phase_ == Phase::settle_stop || phase_ == Phase::settle) {
       if (const auto move = advance_settle()) return *move;
+      stop_confirmed_ = stop_confirmed_ || (phase_ == Phase::settle_stop && !stop_withheld_);
       if (phase_ == Phase::settle && has_lost_torque())
         fail(Errc::state_unsuitable, kDetailDeviceState);
       else
@@ -205,6 +206,7 @@ Conversation::Move Conversation::advance(Instant now) {
         core_.make(made.object, made.number);
     } else if (would_enable(action)) {
       // It was enabled when this was planned. The same word would now take it back there, which nobody asked for.
+      stop_withheld_ = stop_withheld_ || phase_ == Phase::stop;
       if (phase_ == Phase::stop)
         pop();
       else

@@ -45,6 +45,8 @@ class Conversation {
   [[nodiscard]] bool chain_open() const { return chain_open_ && !finished(); }
   /// The stop itself is over: what is left of the group has no claim to go first.
   [[nodiscard]] bool stop_is_over() const { return stop_ && !handed_over_ && phase_ > Phase::settle_stop; }
+  /// A state read after the stop's last sending has confirmed it.
+  [[nodiscard]] bool stop_confirmed() const { return stop_confirmed_; }
   /// The rest of the group was queued anew, without the stop's precedence.
   void stop_was_handed_over() { handed_over_ = true; }
   [[nodiscard]] const Group& group() const { return group_; }
@@ -104,6 +106,8 @@ class Conversation {
   bool sent_of_plan_ = false;  ///< something of this plan was sent: it is carried to its end
   bool begun_ = false;
   bool handed_over_ = false;
+  bool stop_confirmed_ = false;
+  bool stop_withheld_ = false;  ///< it could have enabled, and was not sent
   bool verifying_ = false;          ///< a write was not acknowledged: its object is read back
   int attempts_ = 0;                ///< of a stop, beyond the first
   std::optional<int> mode_before_;  ///< in force before the first preparation

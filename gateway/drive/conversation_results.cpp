@@ -14,7 +14,7 @@ void Conversation::on_result(const bus::ExchangeResult& result, Instant sent_at,
   } else if (phase_ == Phase::object) {
     on_object(result);
   } else if (phase_ == Phase::settle || phase_ == Phase::settle_stop) {
-    if (result.code == Errc::refused_by_drive) next_phase();
+    if (result.code == Errc::refused_by_drive) next_phase();  // what a drive never shows nothing can confirm
   } else if (at_ < todo_.size()) {
     const Action& action = todo_[at_];
     if (action.kind == Action::Kind::write && !verifying_) {

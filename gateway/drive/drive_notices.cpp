@@ -57,6 +57,7 @@ void Drive::on_started() {
   setup_order_ = 0;
   bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
   begin_bring_up(true);
+  for (auto& axis : axes_) axis->on_restarted();
 }
 
 void Drive::on_present(bus::NodeState state) {

@@ -18,6 +18,8 @@ class Jog {
     client_ = client;
     until_ = now + timeout;
     timeout_ = timeout;
+    carried_ = false;
+    ++presses_;
   }
   /// Its coil was written 1 once more; false: it is no jog of this client's, or has ended.
   [[nodiscard]] bool again(Command direction, ClientId client, Instant now) {
@@ -26,6 +28,11 @@ class Jog {
     return mine;
   }
   void end() { direction_ = Command::none; }
+  /// The drive is out of sight, or its answer was lost: the axis may run all the same, so its button counts on.
+  void carry() { carried_ = true; }
+  [[nodiscard]] bool carried() const { return active() && carried_; }
+  /// The number of this jog; 0: none runs.
+  [[nodiscard]] std::uint64_t press() const { return active() ? presses_ : 0; }
 
   [[nodiscard]] bool active() const { return direction_ != Command::none; }
   /// jog_forward, jog_reverse, or none.
@@ -39,6 +46,8 @@ class Jog {
   ClientId client_ = 0;
   Instant until_ = kNever;
   Duration timeout_{};
+  bool carried_ = false;
+  std::uint64_t presses_ = 0;
 };
 
 /// What a jog near a position limit is judged by. All in register units.

@@ -30,7 +30,9 @@ simulated::Id286proOptions id286pro_options() {
   return options;
 }
 
-bool is_md(Subject subject) { return subject == Subject::md_rtu || subject == Subject::md_can; }
+bool is_md(Subject subject) {
+  return subject == Subject::md_rtu || subject == Subject::md_can || subject == Subject::md_serial;
+}
 
 simulated::DriveOptions kinco_options(Subject subject) {
   simulated::DriveOptions options;
@@ -50,6 +52,9 @@ GatewayStage::Line plain_line_of(Subject subject) {
     case Subject::jd_can:
     case Subject::md_can:
       return can_line_of({simulated::KincoCanDrive{kinco_options(subject), {}}}, 1);
+    case Subject::jd_serial:
+    case Subject::md_serial:
+      return line_of(is_md(subject) ? KincoType::md : KincoType::jd, 1);
     case Subject::keya_can_speed:
     case Subject::keya_can_position:
       return can_line_of({simulated::KeyaCanDrive{keya_options(subject)}}, 1);
@@ -76,12 +81,14 @@ std::vector<GatewayStage::Line> lines(Subject subject, const std::optional<Lease
   };
   if (subject == Subject::jd_rtu || subject == Subject::md_rtu) name_torque(line.rtu_drives.front());
   if (subject == Subject::jd_can || subject == Subject::md_can) name_torque(line.can_drives.front());
+  if (subject == Subject::jd_serial || subject == Subject::md_serial) name_torque(line.drives.front());
   std::vector<GatewayStage::Line> out;
   out.push_back(std::move(line));
   return out;
 }
 
 bool on_rtu(Subject s) { return s == Subject::id286pro || s == Subject::jd_rtu || s == Subject::md_rtu; }
+bool on_kinco_serial(Subject s) { return s == Subject::jd_serial || s == Subject::md_serial; }
 bool on_keya_serial(Subject s) {
   return s == Subject::keya_rs232_speed || s == Subject::keya_rs485_speed || s == Subject::keya_rs232_position ||
          s == Subject::keya_rs485_position;
@@ -100,8 +107,9 @@ bool commands_by_sdo(const can::CanFrame& frame, bool keya) {
 
 std::string name(Subject subject) {
   static const std::vector<std::string> names{
-      "Id286proRtu",     "KincoJdRtu",        "KincoMdRtu",        "LeadshineCan",       "KincoJdCan",
-      "KincoMdCan",      "KeyaCanSpeed",      "KeyaRs232Speed",    "KeyaRs485Speed",     "KeyaCanopenSpeed",
+      "Id286proRtu",     "KincoJdRtu",        "KincoMdRtu",        "LeadshineCan",
+      "KincoJdCan",      "KincoMdCan",        "KincoJdSerial",     "KincoMdSerial",
+      "KeyaCanSpeed",    "KeyaRs232Speed",    "KeyaRs485Speed",    "KeyaCanopenSpeed",
       "KeyaCanPosition", "KeyaRs232Position", "KeyaRs485Position", "KeyaCanopenPosition"};
   return names.at(static_cast<std::size_t>(subject));
 }
@@ -174,13 +182,43 @@ void TableRig::fail_the_drive() {
   }
 }
 
-void TableRig::silence_the_drive() {
+void TableRig::hush(double rate) {
+  using simulated::DriveFault;
   if (on_rtu(subject_)) {
-    stage.rtu_link(0).line().faults(0).set_rate(simulated::DriveFault::mute, 1);
+    stage.rtu_link(0).line().faults(0).set_rate(DriveFault::mute, rate);
   } else if (on_keya_serial(subject_)) {
-    stage.keya_link(0).line().faults(0).set_rate(simulated::DriveFault::mute, 1);
+    stage.keya_link(0).line().faults(0).set_rate(DriveFault::mute, rate);
+  } else if (on_kinco_serial(subject_)) {
+    stage.link(0).line().faults(0).set_rate(DriveFault::mute, rate);
   } else {
-    stage.can_link(0).line().connect(0, false);
+    stage.can_link(0).line().connect(0, rate == 0);
+  }
+}
+
+void TableRig::silence_the_drive() { hush(1); }
+
+void TableRig::unplug() {
+  if (on_rtu(subject_)) {
+    stage.rtu_link(0).unplug();
+  } else if (on_keya_serial(subject_)) {
+    stage.keya_link(0).unplug();
+  } else if (on_kinco_serial(subject_)) {
+    stage.link(0).unplug();
+  } else {
+    stage.can_link(0).unplug();
+  }
+}
+
+void TableRig::mend() {
+  hush(0);
+  if (on_rtu(subject_)) {
+    stage.rtu_link(0).plug();
+  } else if (on_keya_serial(subject_)) {
+    stage.keya_link(0).plug();
+  } else if (on_kinco_serial(subject_)) {
+    stage.link(0).plug();
+  } else {
+    stage.can_link(0).plug();
   }
 }
 
@@ -190,6 +228,8 @@ void TableRig::restart_the_drive() {
     stage.rtu_link(0).line().restart(0, stage.rtu_link(0).time_of(now));
   } else if (on_keya_serial(subject_)) {
     stage.keya_link(0).line().restart(0, stage.keya_link(0).time_of(now));
+  } else if (on_kinco_serial(subject_)) {
+    stage.link(0).line().restart(0, stage.link(0).time_of(now));
   } else {
     stage.can_link(0).line().restart(0, stage.can_link(0).time_of(now));
   }
@@ -225,12 +265,14 @@ std::uint64_t TableRig::stores() {
 std::size_t TableRig::frames() {
   if (on_rtu(subject_)) return stage.rtu_link(0).sent.size();
   if (on_keya_serial(subject_)) return stage.keya_link(0).sent.size();
+  if (on_kinco_serial(subject_)) return stage.link(0).sent.size();
   return stage.can_link(0).sent.size();
 }
 
 Instant TableRig::sent_at(std::size_t frame) {
   if (on_rtu(subject_)) return stage.rtu_link(0).sent[frame].at;
   if (on_keya_serial(subject_)) return stage.keya_link(0).sent[frame].at;
+  if (on_kinco_serial(subject_)) return stage.link(0).sent[frame].at;
   return stage.can_link(0).sent[frame].at;
 }
 
@@ -246,6 +288,11 @@ std::string TableRig::commanding(std::size_t frame) {
   if (on_keya_serial(subject_)) {
     const auto& bytes = stage.keya_link(0).sent[frame].bytes;
     return bytes.front() == kKeyaControl ? hex_text(bytes) : "";
+  }
+  if (on_kinco_serial(subject_)) {
+    const auto& sent = stage.link(0).sent[frame];
+    const WireRequest request = decoded(sent.at, sent.bytes);
+    return request.write && request.index == kControlword ? hex_text(sent.bytes) : "";
   }
   const can::CanFrame& sent = stage.can_link(0).sent[frame].frame;
   const bool is = on_keya_can(subject_) ? sent.data[0] == kKeyaWrite : commands_by_sdo(sent, is_keya(subject_));

@@ -19,6 +19,8 @@ enum class Subject : std::uint8_t {
   leadshine,
   jd_can,
   md_can,
+  jd_serial,
+  md_serial,
   keya_can_speed,
   keya_rs232_speed,
   keya_rs485_speed,
@@ -28,6 +30,7 @@ enum class Subject : std::uint8_t {
   keya_rs485_position,
   keya_canopen_position,
 };
+/// All but Kinco's own serial protocol, which the other tests of this folder speak throughout.
 inline constexpr std::array kSubjects{
     Subject::id286pro,
     Subject::jd_rtu,
@@ -73,6 +76,11 @@ class TableRig {
   void fail_the_drive();
   /// Its power goes and comes back.
   void restart_the_drive();
+  /// It neither hears nor is heard, and nobody is told; until mend().
+  void silence_the_drive();
+  /// The adapter is pulled, and the gateway sees it; until mend().
+  void unplug();
+  void mend();
   /// What makes it turn for many seconds: a velocity, or a far target where that is all it can.
   [[nodiscard]] Group motion() const;
   /// The same by a far target.
@@ -97,7 +105,7 @@ class TableRig {
   [[nodiscard]] std::size_t frames();
   [[nodiscard]] std::string commanding(std::size_t frame);  ///< empty: it is none
   [[nodiscard]] Instant sent_at(std::size_t frame);
-  void silence_the_drive();
+  void hush(double rate);
 
   Subject subject_;
   std::size_t marked_ = 0;

@@ -1,0 +1,170 @@
+// A stop is owed by the axis until the drive has shown it, through every loss of it (design 3.4, "Owed stops"); and a
+// jog needs its button, also while nobody can see whether it runs.
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "gateway/drive/admission.hpp"
+#include "gateway/drive/axis.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+std::optional<StopKind> kind_of(const Group& group) {
+  std::optional<StopKind> kind;
+  if (group.command == Command::halt) kind = StopKind::halt;
+  if (group.command == Command::quick_stop) kind = StopKind::quick_stop;
+  if (group.command == Command::disable) kind = StopKind::disable;
+  if (!group.controlword || !is_stop(*group.controlword, group.single_controlword)) return kind;
+  const bool quick = request_of(*group.controlword) == Request402::quick_stop;
+  return std::max(kind.value_or(StopKind::halt), quick ? StopKind::quick_stop : StopKind::disable);
+}
+
+Command command_of(StopKind stop) {
+  switch (stop) {
+    case StopKind::halt:
+      return Command::halt;
+    case StopKind::quick_stop:
+      return Command::quick_stop;
+    case StopKind::disable:
+      break;
+  }
+  return Command::disable;
+}
+
+bool stops_alone(const Group& group) {
+  return holds_stop(group) && group.setpoints.empty() && !group.mode && !group.object && !group.set_position_value &&
+         !group.jog_velocity && (group.command == Command::none || is_stop(group.command)) &&
+         (!group.controlword || is_stop(*group.controlword, group.single_controlword));
+}
+
+bool outcome_unknown(Errc code) { return command_result(code) == CommandResult::outcome_unknown; }
+
+bool asks_to_enable(const Group& group) {
+  return group.command == Command::enable ||
+         (group.controlword && request_of(*group.controlword) == Request402::enable_operation);
+}
+
+}  // namespace
+
+// --- What is owed
+// ------------------------------------------------------------------------------------------------------
+
+void Axis::owe(const Group& stop) {
+  const auto kind = kind_of(stop);
+  if (!kind) return;
+  owed_.accepted(*kind, core_.store.exchange());
+  observe_owed();
+}
+
+// Whatever was asked while a stop is owed by a loss would act on an axis of which nobody knows what it does.
+bool Axis::stop_comes_first(const Group& group) const {
+  const LinkState link = host_.link_state();
+  const bool back = link != LinkState::offline && link != LinkState::link_down;
+  return owed_.gates() && back && !reads_alone(group) && !stops_alone(group) && group.command != Command::jog_end;
+}
+
+// Out of sight it counts as what it was when it was read last.
+bool Axis::may_be_enabled() const { return core_.reachable() ? core_.facts().enabled() : was_enabled_; }
+
+void Axis::on_restarted() {
+  was_enabled_ = false;
+  jog_.end();
+  owed_.restarted();
+}
+
+void Axis::lose_sight() {
+  owed_.link_lost(last_statusword_, core_.store.exchange());
+  if (owed_.gates() && !std::exchange(owed_told_, true))
+    host_.event(image_.number, EventKind::command, 0, "the drive is out of reach: a stop is owed until it is back");
+}
+
+void Axis::observe_owed() {
+  const LinkState link = host_.link_state();
+  const ObjectState& status = core_.store[core_.model.statusword];
+  const bool gone = link == LinkState::unknown || link == LinkState::offline || link == LinkState::link_down;
+  if (gone) {
+    lose_sight();
+    return;
+  }
+  if (!status.known) return;
+  core_.link = link;
+  owed_.link_back(host_.now());
+  const auto state = state_of(static_cast<std::uint16_t>(status.number));
+  was_enabled_ = state == State402::operation_enabled;
+  if (!owed_.owed() || stopping()) return;
+  tell_end(owed_.state_read(state, status.exchange));
+  if (const auto stop = owed_.due(host_.now())) send_owed(*stop);
+}
+
+void Axis::tell_end(OwedStop::End end) {
+  if (end == OwedStop::End::none || !std::exchange(owed_told_, false)) return;
+  std::string how = "the drive has shown it";
+  if (end == OwedStop::End::disabled) how = "the axis is read disabled";
+  if (end == OwedStop::End::enabled) how = "an enable came later";
+  host_.event(image_.number, EventKind::command, 0, "the stop is owed no more: " + how);
+}
+
+// Its client has its answer; the latch was set when it was accepted. Planned anew from what is known by now.
+void Axis::send_owed(StopKind stop) {
+  const ObjectState& status = core_.store[core_.model.statusword];
+  const ObjectState& word = core_.store[core_.model.controlword];
+  const bool certain = core_.is_virtual() || (core_.link == LinkState::online && status.known && word.known);
+  if (stop == StopKind::halt && !certain) stop = StopKind::quick_stop;
+  Group group;
+  group.role = Role::engineer;
+  group.command = command_of(stop);
+  owed_.sending();
+  Pending pending;
+  pending.by_mailbox = true;  // it shows in no client's result
+  pending.conversation = std::make_unique<Conversation>(core_, group, true);
+  bus::Order order = order_for(core_, group, true);
+  order.axis = slot_;
+  const AxisHost::Queued queued = host_.queue(std::move(order));
+  if (queued.code != Errc::ok) {
+    tell_end(owed_.attempted(stop, false, core_.store.exchange(), host_.now()));
+    return;
+  }
+  host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(group.command),
+              "found enabled, and a stop is owed: " + std::string(text(group.command)));
+  pending.id = queued.id;
+  pending_.push_back(std::move(pending));
+}
+
+// --- What becomes of it
+// ------------------------------------------------------------------------------------------------
+
+void Axis::note_stop(const Pending& pending, bool ended) {
+  const Conversation& conversation = *pending.conversation;
+  const auto kind = kind_of(conversation.group());
+  if (!conversation.is_stop() || !kind) return;
+  if (conversation.begun()) owed_.sending();
+  if (ended || conversation.stop_confirmed())
+    tell_end(owed_.attempted(*kind, conversation.stop_confirmed(), core_.store.exchange(), host_.now()));
+}
+
+void Axis::note_accepted(const Group& group) {
+  if (asks_to_enable(group)) tell_end(owed_.enable_accepted());
+  if (group.command >= Command::move_absolute && group.command <= Command::home) tell_end(owed_.start_accepted());
+}
+
+// --- Jog
+// ---------------------------------------------------------------------------------------------------------------
+
+void Axis::note_jog(const Pending& pending, Errc code) {
+  if (pending.jogs && outcome_unknown(code))
+    jog_.carry();
+  else if (pending.jogs && code != Errc::ok && !pending.conversation->begun() && !core_.reachable())
+    jog_.end();
+  if (code == Errc::ok && pending.ends_jog != 0 && pending.ends_jog == jog_.press()) jog_.end();
+}
+
+// Its motor has no other dead man.
+void Axis::halt_jog(std::string why) {
+  if (!jog_.active()) return;
+  jog_.end();
+  host_.event(image_.number, EventKind::warning, 0, "jog: " + why + ": halted");
+  stop_by_itself(Command::halt, false, [](const GroupResult&) {});
+}
+
+}  // namespace axisgate::drive
