@@ -113,9 +113,15 @@ TEST_F(ArbiterAdmission, a_read_joins_none_of_another_drive_or_object) {
   EXPECT_FALSE(arbiter.submit(reading(0, kTargetPosition), now).joined);
 }
 
+TEST_F(ArbiterAdmission, a_read_joins_none_of_another_width) {
+  submit(reading(0, kTargetPosition, 4));
+  const OrderId narrow = submit(reading(0, kTargetPosition, 2));
+  EXPECT_EQ(arbiter.submit(reading(0, kTargetPosition, 2), now).id, narrow) << "each joins its like";
+}
+
 TEST_F(ArbiterAdmission, an_urgent_read_joins_none_that_is_less_urgent) {
   Order slow = setup(0);
-  slow.read = kStatusword;
+  slow.read = {kStatusword, 2};
   submit(slow);
   Order urgent = slow;
   urgent.priority = Priority::interactive;
