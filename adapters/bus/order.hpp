@@ -41,7 +41,7 @@ struct Order {
   Priority priority = Priority::command;
   DriveSlot drive = 0;
   AxisSlot axis = kNoAxis;
-  Instant start_by = kNever;    ///< not granted by then: ends never_started
+  Instant start_by = kNever;    ///< not granted by then: ends never_started; of joined reads: the latest of theirs
   bool setpoints_only = false;  ///< a newer order with the same `writes` may supersede it while it waits
   bool survives_stop = false;   ///< parameters alone: a stop of its axis does not drop it
   boost::container::static_vector<ObjectAddress, kMaxWritesPerOrder> writes;  ///< sorted
