@@ -54,8 +54,9 @@ Arbiter::Admission Arbiter::submit(const Order& order, Instant now) {
   expire_starts(now);
   if (order.priority == Priority::stop) {
     drop_for_stop(order);
-  } else if (const Entry* waiting = joinable(order)) {
+  } else if (Entry* waiting = joinable(order)) {
     ++statistics_.coalesced;
+    waiting->order.start_by = std::max(waiting->order.start_by, order.start_by);
     return {Errc::ok, waiting->id, true};
   }
   Entry entry{.id = last_id_ + 1, .place = last_id_ + 1, .order = order};
@@ -159,7 +160,7 @@ void Arbiter::set_poll_due(DriveSlot drive, Instant due) {
   drives_[drive].poll_due = due;
 }
 
-const Arbiter::Entry* Arbiter::joinable(const Order& order) const {
+Arbiter::Entry* Arbiter::joinable(const Order& order) {
   if (!is_plain_read(order)) return nullptr;
   // From the newest back: beyond the first write of the drive, a waiting read could be answered with what was before
   // it.

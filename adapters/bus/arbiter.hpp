@@ -40,7 +40,8 @@ class Arbiter {
   /// do not survive one, and a started one of class command; it does not count against the bounds. A setpoints-only
   /// order supersedes a waiting one of the same axis that writes the same objects if nothing of that axis was accepted
   /// between; it takes that one's place in the queue. A read joins an identical waiting one, at least as urgent, unless
-  /// something other than a read was accepted for the drive between; it shares that one's start deadline. Bounds:
+  /// something other than a read was accepted for the drive between; that one then waits for the later of their start
+  /// deadlines, and who has the earlier one must keep it himself. Bounds:
   /// kMaxOrdersPerBus, and kMaxOrdersPerAxis of class command.
   [[nodiscard]] Admission submit(const Order& order, Instant now);
 
@@ -107,7 +108,7 @@ class Arbiter {
   [[nodiscard]] Candidate poll_candidate(DriveSlot drive) const;
   [[nodiscard]] std::optional<Candidate> choose(Instant now) const;
   [[nodiscard]] bool blocked(const Entry& entry) const;
-  [[nodiscard]] const Entry* joinable(const Order& order) const;
+  [[nodiscard]] Entry* joinable(const Order& order);
   [[nodiscard]] const Entry* supersedable(const Order& order) const;
   [[nodiscard]] bool full(const Order& order) const;
   [[nodiscard]] Entry* find(OrderId id);

@@ -29,15 +29,23 @@ inline constexpr std::size_t kMaxWritesPerOrder = 24;
 /// 0 is no order (a poll).
 using OrderId = std::uint64_t;
 
+/// What a plain read asks for. The same object in another width is another question: where replies carry no width
+/// (Modbus RTU) it has another answer, and elsewhere the width asked for decides what its client is told.
+struct PlainRead {
+  ObjectAddress object;
+  std::uint8_t size = 0;  ///< bytes
+  friend bool operator==(const PlainRead&, const PlainRead&) = default;
+};
+
 struct Order {
   Priority priority = Priority::command;
   DriveSlot drive = 0;
   AxisSlot axis = kNoAxis;
-  Instant start_by = kNever;    ///< not granted by then: ends never_started
+  Instant start_by = kNever;    ///< not granted by then: ends never_started; of joined reads: the latest of theirs
   bool setpoints_only = false;  ///< a newer order with the same `writes` may supersede it while it waits
   bool survives_stop = false;   ///< parameters alone: a stop of its axis does not drop it
   boost::container::static_vector<ObjectAddress, kMaxWritesPerOrder> writes;  ///< sorted
-  std::optional<ObjectAddress> read;  ///< a plain read: an identical one may join while it waits
+  std::optional<PlainRead> read;  ///< a plain read: an identical one may join while it waits
 };
 
 }  // namespace axisgate::bus

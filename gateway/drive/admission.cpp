@@ -218,7 +218,7 @@ bus::Order order_for(const AxisCore& core, const Group& group, bool stop) {
     order.survives_stop = true;
     // Reads of one object may be one, where both want it in the same width.
     if (!group.object->write && group.object->size != 0)
-      order.read = bus::ObjectAddress{group.object->index, group.object->subindex};
+      order.read = bus::PlainRead{{group.object->index, group.object->subindex}, group.object->size};
     return order;
   }
   order.setpoints_only = plain && !group.object && !group.set_position_value;

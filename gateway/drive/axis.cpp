@@ -1,6 +1,8 @@
 #include "gateway/drive/axis.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -14,6 +16,10 @@ namespace {
 bool asks_to_enable(const Group& group) {
   return group.command == Command::enable ||
          (group.controlword && request_of(*group.controlword) == Request402::enable_operation);
+}
+
+bool stops_alone(const Group& group) {
+  return group.setpoints.empty() && !group.mode && !group.object && !group.set_position_value;
 }
 
 bool begins_anything(const Group& group) {
@@ -98,14 +104,16 @@ Errc Axis::link_admits(bool stop, bool reads_alone) const {
   return Errc::offline;
 }
 
-// Two panels pressing the same stop need it on the wire once.
+// Two panels pressing the same stop need it on the wire once. What else stands beside one is not the other's result.
 bool Axis::join_stop(const Group& group, GroupCallback& on_result) {
-  if (!group.setpoints.empty() || group.mode || group.object || group.set_position_value) return false;
+  if (!stops_alone(group)) return false;
   for (Pending& p : pending_) {
     const Group& waiting = p.conversation->group();
     if (!p.conversation->is_stop() || p.conversation->begun() || p.callbacks.size() >= kMaxJoined) continue;
-    if (p.refusal != Errc::ok || waiting.command != group.command || waiting.controlword != group.controlword) continue;
-    p.callbacks.push_back(std::move(on_result));
+    if (p.refusal != Errc::ok || !stops_alone(waiting) || waiting.command != group.command ||
+        waiting.controlword != group.controlword)
+      continue;
+    p.callbacks.push_back({std::move(on_result), kNever, group.answer_by});
     return true;
   }
   return false;
@@ -174,7 +182,8 @@ std::optional<GroupResult> Axis::carry_out(const Group& asked, Errc refusal, Gro
   pending.conversation = std::make_unique<Conversation>(core_, group, stop, asked.object && !group.object);
   pending.starts_motion = starts_motion(core_, group);
   if (pending.starts_motion && !pending.jogs) pending.ends_jog = jog_.press();
-  pending.callbacks.push_back(std::move(on_result));
+  pending.start_by = stop ? kNever : group.start_by;
+  pending.callbacks.push_back({std::move(on_result), pending.start_by, group.answer_by});
   std::optional<GroupResult> refused;
   enqueue(std::move(pending), stop, refused);
   return refused;
@@ -195,6 +204,7 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<GroupResult>& refus
     if (twin == nullptr || twin->callbacks.size() >= kMaxJoined) {
       refused = refuse(group, Errc::queue_full);
     } else {
+      twin->start_by = std::max(twin->start_by, pending.start_by);
       twin->callbacks.push_back(std::move(pending.callbacks.front()));
     }
     return;
@@ -341,13 +351,32 @@ void Axis::complete(bus::OrderId id, const GroupResult& result) {
 
 // --- Time ----------------------------------------------------------------------------------------------------------
 
+// The latest start is the bus's to judge; who joined with an earlier one must not have it stretched.
+Instant Axis::deadline_of(const Pending& pending, const Waiting& client) {
+  const bool may_expire = client.start_by < pending.start_by && !pending.conversation->begun();
+  return may_expire ? std::min(client.start_by, client.answer_by) : client.answer_by;
+}
+
 void Axis::on_time(Instant now) {
   std::vector<bus::OrderId> late;
+  const auto is_late = [now](const Pending& p) {
+    return [now, &p](const Waiting& client) { return now >= deadline_of(p, client); };
+  };
   for (const Pending& p : pending_)
-    if (now >= p.conversation->group().answer_by && !p.callbacks.empty()) late.push_back(p.id);
+    if (std::any_of(p.callbacks.begin(), p.callbacks.end(), is_late(p))) late.push_back(p.id);
   for (const bus::OrderId id : late) {
     Pending* pending = find(id);
     Conversation& conversation = *pending->conversation;
+    auto& clients = pending->callbacks;
+    const auto first = std::stable_partition(clients.begin(), clients.end(), std::not_fn(is_late(*pending)));
+    if (first != clients.begin()) {
+      // Others still wait for it.
+      const bool sent = conversation.begun() || conversation.is_stop();
+      due_.push_back({{{sent ? Errc::timed_out : Errc::never_started, 0}, 0, 0},
+                      {std::make_move_iterator(first), std::make_move_iterator(clients.end())}});
+      clients.erase(first, clients.end());
+      continue;
+    }
     if (conversation.is_stop() && !conversation.stop_is_over()) {
       // Its client has its answer; the stop goes on until it shows, or was repeated as often as it may.
       due_.push_back({{{Errc::timed_out, 0}, 0, 0}, std::exchange(pending->callbacks, {})});
@@ -365,7 +394,7 @@ void Axis::on_time(Instant now) {
 Instant Axis::next_deadline() const {
   Instant next = std::min({core_.motion.deadline(), ownership_.until(), jog_.until(), owed_.next_deadline()});
   for (const Pending& p : pending_)
-    if (!p.callbacks.empty()) next = std::min(next, p.conversation->group().answer_by);
+    for (const Waiting& client : p.callbacks) next = std::min(next, deadline_of(p, client));
   return next;
 }
 
@@ -373,7 +402,7 @@ void Axis::call_back() {
   std::vector<Due> due;
   due.swap(due_);
   for (Due& d : due)
-    for (GroupCallback& callback : d.callbacks) callback(d.result);
+    for (const Waiting& client : d.callbacks) client.tell(d.result);
 }
 
 }  // namespace axisgate::drive

@@ -107,10 +107,17 @@ class Axis {
   [[nodiscard]] Duration cycle() const { return cycle_; }
 
  private:
+  /// A client that waits for a result. Those that share an order keep a deadline each.
+  struct Waiting {
+    GroupCallback tell;
+    Instant start_by = kNever;   ///< nothing sent by then: never_started; of a stop: kNever
+    Instant answer_by = kNever;  ///< no result by then: timed_out
+  };
   struct Pending {
     bus::OrderId id = 0;
     std::unique_ptr<Conversation> conversation;
-    std::vector<GroupCallback> callbacks;
+    std::vector<Waiting> callbacks;
+    Instant start_by = kNever;  ///< the latest of theirs: the bus ends the order then
     bool starts_motion = false;
     bool by_mailbox = false;
     bool jogs = false;                     ///< it starts a jog
@@ -120,7 +127,7 @@ class Axis {
   };
   struct Due {
     GroupResult result;
-    std::vector<GroupCallback> callbacks;
+    std::vector<Waiting> callbacks;
   };
   // What comes before a group is carried out: who asks, and for what besides (axis_ownership.cpp).
   [[nodiscard]] Errc judge_owner(const Group& group) const;
@@ -155,6 +162,7 @@ class Axis {
   [[nodiscard]] std::optional<GroupResult> carry_out(const Group& asked, Errc refusal, GroupCallback on_result);
 
   [[nodiscard]] Errc link_admits(bool stop, bool reads_alone) const;
+  [[nodiscard]] static Instant deadline_of(const Pending& pending, const Waiting& client);
   [[nodiscard]] bool join_stop(const Group& group, GroupCallback& on_result);
   void accept_stop(const Group& group);
   [[nodiscard]] GroupResult refuse(const Group& group, Errc code);

@@ -113,9 +113,30 @@ TEST_F(ArbiterAdmission, a_read_joins_none_of_another_drive_or_object) {
   EXPECT_FALSE(arbiter.submit(reading(0, kTargetPosition), now).joined);
 }
 
+TEST_F(ArbiterAdmission, a_read_joins_none_of_another_width) {
+  submit(reading(0, kTargetPosition, 4));
+  const OrderId narrow = submit(reading(0, kTargetPosition, 2));
+  EXPECT_EQ(arbiter.submit(reading(0, kTargetPosition, 2), now).id, narrow) << "each joins its like";
+}
+
+TEST_F(ArbiterAdmission, a_joined_read_waits_as_long_as_the_one_that_waits_longest) {
+  for (const bool hasty_first : {true, false}) {
+    Order hasty = reading(0), patient = reading(0);
+    hasty.start_by = now + 10ms;
+    patient.start_by = now + 500ms;
+    const OrderId id = submit(hasty_first ? hasty : patient);
+    ASSERT_EQ(arbiter.submit(hasty_first ? patient : hasty, now).id, id);
+    now += 499ms;
+    EXPECT_THAT(endings(), IsEmpty()) << hasty_first;
+    EXPECT_EQ(arbiter.waiting(), 1U) << hasty_first;
+    now += 1ms;
+    EXPECT_THAT(endings(), ElementsAre(Arbiter::Ending{id, 0, Errc::never_started})) << hasty_first;
+  }
+}
+
 TEST_F(ArbiterAdmission, an_urgent_read_joins_none_that_is_less_urgent) {
   Order slow = setup(0);
-  slow.read = kStatusword;
+  slow.read = {kStatusword, 2};
   submit(slow);
   Order urgent = slow;
   urgent.priority = Priority::interactive;

@@ -83,7 +83,8 @@ class RandomRun {
       o.setpoints_only = true;
       o.writes.push_back(random_.chance(1, 2) ? kTargetPosition : kProfileVelocity);
     } else if (random_.chance(1, 2)) {
-      o.read = random_.chance(1, 2) ? kStatusword : kTargetPosition;
+      o.read = {random_.chance(1, 2) ? kStatusword : kTargetPosition,
+                static_cast<std::uint8_t>(random_.chance(1, 2) ? 2 : 4)};
     }
     const auto admission = arbiter_.submit(o, now_);
     reference_.on_submit(o, admission, now_);

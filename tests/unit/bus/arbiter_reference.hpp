@@ -140,6 +140,7 @@ class ArbiterReference {
     EXPECT_FALSE(known_[id].started) << "never one on the wire";
     EXPECT_EQ(known_[id].order.read, order.read);
     EXPECT_TRUE(same_axis(known_[id].order, order));
+    known_[id].order.start_by = std::max(known_[id].order.start_by, order.start_by);
     for (const auto& [other, known] : known_) {
       if (other > id && known.order.drive == order.drive) {
         EXPECT_TRUE(known.order.read && known.order.writes.empty()) << "joined across a write";

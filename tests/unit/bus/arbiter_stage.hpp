@@ -46,9 +46,9 @@ inline Order setpoint(DriveSlot drive, bus::ObjectAddress object = kTargetPositi
   o.writes.push_back(object);
   return o;
 }
-inline Order reading(DriveSlot drive, bus::ObjectAddress object = kStatusword) {
+inline Order reading(DriveSlot drive, bus::ObjectAddress object = kStatusword, std::uint8_t size = 2) {
   Order o = interactive(drive);
-  o.read = object;
+  o.read = {object, size};
   return o;
 }
 
