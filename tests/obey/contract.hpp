@@ -31,6 +31,7 @@ struct Item {
   bool spoilt = false;   ///< another client's stop since it acted
   bool changed = false;  ///< this client has changed one of its targets since it acted
   bool ended = false;    ///< a stop or another client since it acted
+  bool refused = false;  ///< it was not carried out
   bool operator==(const Item&) const = default;
 };
 

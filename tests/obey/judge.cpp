@@ -1,10 +1,12 @@
 #include "tests/obey/judge.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace axisgate::test::obey {
 namespace {
 
+constexpr std::int64_t kClose = 8;  // counts of a coarse encoder, in 1/10000 turn
 constexpr std::int64_t kRearmMs = 1000, kRearmUnsureMs = 150;
 constexpr std::array<std::uint16_t, 11> kZeroLeaves{41, 47, 48, 50, 52, 58, 62, 64, 66, 70, 76};  // A6
 
@@ -130,7 +132,8 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
     return true;
   }
   // 3.4, command 7: "at standstill; while moving 0x06".
-  if (command == 7 && (!seen_.stands || world_.motor == Motor::runs || !seen_.clear)) {
+  const bool under_way = world_.motor == Motor::moves && std::abs(world_.target - seen_.position) > kClose;
+  if (command == 7 && (!seen_.stands || world_.motor == Motor::runs || !seen_.clear || under_way)) {
     const bool unsure = seen_.stands || !seen_.clear;
     if (!unsure || readings_.other()) {
       verdict = {"refused: relative while moving", {6}};
@@ -154,7 +157,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
       world_.clients[c].command.ended = true;
       for (Item& coil : world_.clients[c].coils) coil.ended = true;
     }
-    item.changed = item.ended = item.spoilt = false;
+    item.changed = item.ended = item.spoilt = item.refused = false;
     world_.raw_mode.reset();
     world_.start_bit = true;
     // A7: "the last accepted set-point is the one that every start uses".
@@ -180,7 +183,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     world_.latched = false;
     world_.held = world_.held && readings_.other();
     world_.ladder = 15;
-    item.changed = item.ended = item.spoilt = false;
+    item.changed = item.ended = item.spoilt = item.refused = false;
     verdict = {"acts: enable", {0}};
     return;
   }
@@ -199,6 +202,10 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
 void Judge::answer_not_new(std::int64_t number, const Item& item, Verdict& verdict) {
   verdict = {"not new", {0}};
   if (!is_start(number) && number != 1) return;
+  if (item.refused) {
+    verdict.answers = {0, 4, 6};  // what a repeated refusal is answered with is not said
+    return;
+  }
   // "A single write that asks for what is so already ... is answered normally."
   const bool same_target = number == 6 && world_.motor == Motor::moves &&
                            world_.accepted.contains(row::target_position) &&
@@ -307,10 +314,17 @@ Verdict Judge::registers(const Write& write) {
   if (verdict.says.empty())
     verdict.says = command == Edge::remembered || word == Edge::remembered ? "only remembered" : "set-points";
   if (word == Edge::acts) controlword(rows[row::controlword], verdict);
+  if (command != Edge::absent && number != was.value.value_or(0)) me().command.refused = false;
+  if (refused) me().command.refused = true;
+  // Of a controlword that is not new nothing is said but that the motor does nothing.
+  if (word != Edge::absent && word != Edge::acts && single) verdict.any_answer = true;
   if (command == Edge::acts && !refused) {
     if (word == Edge::acts && is_start(number)) {
       // Two that act in one request: what the first does decides.
-      if (start_refused(number, verdict)) return verdict;
+      if (start_refused(number, verdict)) {
+        me().command.refused = true;
+        return verdict;
+      }
     }
     this->command(number, me().command, verdict);
     if (word == Edge::acts) verdict.any_answer = true;
@@ -376,7 +390,8 @@ Verdict Judge::coils(const Write& write) {
       if (number != coil::enable) verdict.says = "coil " + std::to_string(number) + " = 0";
       continue;
     }
-    if (is_start(command) && start_refused(command, verdict)) continue;
+    item.refused = is_start(command) && start_refused(command, verdict);
+    if (item.refused) continue;
     if (number == coil::halt) world_.held = true;
     this->command(command, item, verdict);
   }

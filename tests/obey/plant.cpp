@@ -39,16 +39,10 @@ Plant::Plant(Subject which, PlantOptions options)
 
 void Plant::ready_but_disabled() {
   expect(stage.come_online(), "the axis never came online");
-  const auto supported = static_cast<std::uint32_t>(fitter_.wide(shown::supported));
-  constexpr unsigned kBitOfProfileVelocity = 20, kBitOfAcceleration = 21, kBitOfDeceleration = 22;
-  const auto set = [&](unsigned bit, std::uint16_t offset, std::int64_t value) {
-    if ((supported >> bit & 1U) == 0) return;
+  for (const auto& [offset, value] : profile_rows()) {
     const Answer answer = fitter_.row(offset, value);
     expect(answer.ok(), "row " + std::to_string(offset) + " was refused: " + std::to_string(answer.exception));
-  };
-  set(kBitOfProfileVelocity, row::profile_velocity, kProfileVelocity);
-  set(kBitOfAcceleration, row::profile_acceleration, kRamp);
-  set(kBitOfDeceleration, row::profile_deceleration, kRamp);
+  }
   fitter_.command(kRelease);
   run(100ms);
 }
@@ -65,6 +59,41 @@ void Plant::scan(Client& client, const Write& request, Duration time) {
     client.write(request);
     run(50ms);
   }
+}
+
+Rows Plant::profile_rows() {
+  constexpr unsigned kBitOfProfileVelocity = 20, kBitOfAcceleration = 21, kBitOfDeceleration = 22;
+  Rows rows;
+  if (has(kBitOfProfileVelocity)) rows[row::profile_velocity] = kProfileVelocity;
+  if (has(kBitOfAcceleration)) rows[row::profile_acceleration] = kRamp;
+  if (has(kBitOfDeceleration)) rows[row::profile_deceleration] = kRamp;
+  return rows;
+}
+
+Rows Plant::endless_target() const {
+  if (has_speeds(subject)) return {{row::target_velocity, kSpeed}};
+  return {{row::target_position, kEndless}};
+}
+
+Answer Plant::set_endless(Client& client) {
+  const Rows target = endless_target();
+  return client.row(target.begin()->first, target.begin()->second);
+}
+
+bool Plant::turns_within(Duration limit) {
+  return stage.run_until([&] { return velocity() != 0; }, limit);
+}
+
+bool Plant::keeps_turning() {
+  if (!turns_within(1s)) return false;
+  run(1s);
+  return velocity() != 0;
+}
+
+bool Plant::comes_to_stand(Duration limit) {
+  for (const Instant end = stage.runtime().now() + limit; stage.runtime().now() < end; run(5ms))
+    if (stands()) return true;
+  return false;
 }
 
 bool Plant::stands() {

@@ -40,7 +40,18 @@ class Plant {
   std::int64_t comes_to_rest_at(Duration limit = std::chrono::seconds(30));
   /// Waits until it has this speed, within one part in fifty.
   bool reaches(std::int64_t velocity, Duration limit = std::chrono::seconds(5));
+  [[nodiscard]] bool turns_within(Duration limit);
+  /// It turns now, and still does a second later.
+  [[nodiscard]] bool keeps_turning();
+  [[nodiscard]] bool comes_to_stand(Duration limit = std::chrono::seconds(3));
   [[nodiscard]] bool logged(const std::string& part);
+
+  // A motion without an end of its own in the time of a test: a speed, or a very far target where the drive has none.
+  [[nodiscard]] std::int64_t endless_command() const { return has_speeds(subject) ? 8 : 6; }
+  [[nodiscard]] Rows endless_target() const;
+  Answer set_endless(Client& client);
+  /// The rows 48 to 52 that the drive has, as ready() set them: for blocks that cover them.
+  [[nodiscard]] Rows profile_rows();
 
   Subject subject;
   GatewayStage stage;
@@ -59,11 +70,13 @@ class Plant {
   [[nodiscard]] std::unique_ptr<Client> connection_from(std::uint8_t host) {
     return std::make_unique<Client>(context_, stage.runtime(), host);
   }
+  [[nodiscard]] bool has(unsigned bit) { return (static_cast<std::uint32_t>(fitter_.wide(shown::supported)) >> bit & 1U) != 0; }
   static constexpr std::uint8_t kHostOfA = 10, kHostOfB = 20, kHostOfFitter = 30;
 };
 
 /// Far enough to take a second or more, at the speed that ready() sets.
 inline constexpr std::int64_t kFar = 150'000, kNear = 20'000, kAway = -60'000;
+inline constexpr std::int64_t kEndless = 20'000'000;
 inline constexpr std::int64_t kSpeed = 150'000, kOtherSpeed = -90'000;
 /// Of positions, in 1/10000 turn: a count of the coarsest encoder, and rounding.
 inline constexpr std::int64_t kClose = 8;

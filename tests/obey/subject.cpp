@@ -28,6 +28,15 @@ simulated::DriveOptions kinco_options(Subject subject) {
   return options;
 }
 
+/// With an origin signal on an input (5), as homing needs it.
+simulated::Id286proOptions id286pro_options() {
+  constexpr std::uint16_t kFunctionOfAnInput = 400;
+  constexpr std::int64_t kOriginSignal = 11;
+  simulated::Id286proOptions options;
+  options.stored = {{kFunctionOfAnInput, kOriginSignal}};
+  return options;
+}
+
 GatewayStage::Line plain_line(Subject subject) {
   switch (subject) {
     case Subject::jd_serial:
@@ -42,7 +51,7 @@ GatewayStage::Line plain_line(Subject subject) {
     case Subject::leadshine:
       return can_line_of({simulated::LeadshineOptions{}}, 1);
     case Subject::id286pro:
-      return rtu_line_of({simulated::Id286proOptions{}}, 1);
+      return rtu_line_of({id286pro_options()}, 1);
     case Subject::keya_can_speed:
     case Subject::keya_can_position:
       return can_line_of({simulated::KeyaCanDrive{keya_options(subject)}}, 1);

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tests/stage/gateway_stage.hpp"
 
@@ -63,6 +64,15 @@ void PrintTo(Subject subject, std::ostream* out);
 [[nodiscard]] constexpr bool has_homing(Subject s) { return !is_keya(s); }
 /// The drive is a CiA 402 drive; the others' machine is the gateway's.
 [[nodiscard]] constexpr bool is_cia402(Subject s) { return is_kinco(s) || s == Subject::leadshine; }
+
+/// Those of them that `which` is true of, for testing::ValuesIn.
+template <class Predicate>
+std::vector<Subject> subjects(Predicate which) {
+  std::vector<Subject> out;
+  for (const Subject subject : kSubjects)
+    if (which(subject)) out.push_back(subject);
+  return out;
+}
 
 /// A commissioned drive of it, alone on its line. `lease`: none where leases are off.
 [[nodiscard]] GatewayStage::Line line_with(Subject subject, std::optional<LeaseRules> lease);
