@@ -1,0 +1,171 @@
+// What asks, and what claims (A7): an idle PLC that scans and a panel share an axis.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::obey {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kDisable = 2, kNotOwner = 7;
+
+PlantOptions with_leases() {
+  PlantOptions options;
+  options.lease = LeaseRules{};
+  return options;
+}
+
+/// A target of the axis's kind, and the command that goes there; each ends within a test's time or is a speed.
+struct Aim {
+  std::uint16_t row;
+  std::int64_t value;
+  std::int64_t command;
+};
+Aim aim(Subject subject, bool first) {
+  if (has_positions(subject)) return {row::target_position, first ? kNear : kAway, 6};
+  return {row::target_velocity, first ? kSpeed : kOtherSpeed, 8};
+}
+
+void arrives(Plant& plant, const Aim& aim) {
+  if (aim.command == 8) {
+    EXPECT_TRUE(plant.reaches(aim.value)) << plant.velocity() << " instead of " << aim.value;
+    return;
+  }
+  EXPECT_TRUE(plant.stage.run_until([&] { return std::abs(plant.position() - aim.value) <= kClose; }, 10s))
+      << plant.position() << " instead of " << aim.value;
+}
+
+Write idle_block(Plant& plant, const Aim& aim) {
+  Rows rows = plant.profile_rows();
+  rows[aim.row] = aim.value;
+  return block(row::controlword, row::heartbeat, rows);
+}
+
+class Claims : public testing::TestWithParam<Subject> {
+ protected:
+  Claims() { plant_.ready(); }
+  Plant plant_{GetParam(), with_leases()};
+  Client& a_ = plant_.a;
+  Client& b_ = plant_.b;
+  Aim here_ = aim(GetParam(), true), there_ = aim(GetParam(), false);
+};
+
+TEST_P(Claims, AreNotMadeByAnIdleScanner) {
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(a_.write(idle_block(plant_, here_)), kOk);
+    plant_.run(50ms);
+  }
+  EXPECT_EQ(b_.word(shown::owner), kNobody);
+}
+
+TEST_P(Claims, OfAPanelStandBesideAnIdleScanner) {
+  plant_.scan(a_, idle_block(plant_, here_), 300ms);
+  EXPECT_EQ(b_.row(there_.row, there_.value), kOk);
+  EXPECT_EQ(b_.word(shown::owner), kMe);
+  EXPECT_EQ(b_.command(there_.command), kOk);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(a_.write(idle_block(plant_, here_)), kOk);
+    EXPECT_EQ(b_.word(shown::owner), kMe);  // the panel looks on
+    plant_.run(50ms);
+  }
+  arrives(plant_, there_);
+}
+
+TEST_P(Claims, OfAPanelAreRefusedToAScannerThatAsks) {
+  plant_.scan(a_, idle_block(plant_, here_), 300ms);
+  ASSERT_EQ(b_.row(there_.row, there_.value), kOk);
+  ASSERT_EQ(b_.command(there_.command), kOk);
+  Aim other = here_;
+  other.value += 1000;
+  EXPECT_EQ(a_.write(idle_block(plant_, other)), kNotNow);
+  EXPECT_EQ(a_.result(), kNotOwner);
+  arrives(plant_, there_);
+}
+
+TEST_P(Claims, ThatAreMissingKeepSetpointsBesideARefusedCommandAway) {
+  ASSERT_EQ(b_.command(0, 1), kOk);
+  ASSERT_EQ(a_.row(here_.row, here_.value), kOk);
+  ASSERT_EQ(a_.word(shown::owner), kMe);
+  Rows rows = plant_.profile_rows();
+  rows[there_.row] = there_.value;
+  rows[row::command] = there_.command;
+  rows[row::command_id] = 2;
+  EXPECT_EQ(b_.rows(row::target_position, row::command_id, rows), kNotNow);
+  EXPECT_EQ(b_.result(), kNotOwner);
+  EXPECT_EQ(a_.command(here_.command), kOk);
+  arrives(plant_, here_);
+}
+
+class WithoutLeases : public testing::TestWithParam<Subject> {
+ protected:
+  WithoutLeases() { plant_.ready(); }
+  Plant plant_{GetParam()};
+  Client& a_ = plant_.a;
+  Client& b_ = plant_.b;
+  Aim here_ = aim(GetParam(), true), there_ = aim(GetParam(), false);
+};
+
+TEST_P(WithoutLeases, AnIdleScannerDoesNotUndoAPanelsTarget) {
+  // Without 40 and 54: its first block asks, the later ones do not.
+  const auto last = static_cast<std::uint16_t>(here_.row + 1);
+  const Write scanned = block(here_.row, last, {{here_.row, here_.value}}, fc::read_write);
+  plant_.scan(a_, scanned, 300ms);
+  ASSERT_EQ(b_.row(there_.row, there_.value), kOk);
+  plant_.scan(a_, scanned, 300ms);
+  ASSERT_EQ(b_.command(there_.command), kOk);
+  plant_.scan(a_, scanned, 200ms);
+  arrives(plant_, there_);
+}
+
+TEST_P(WithoutLeases, AScannedBlockThatOnlyRemembersIsNoTarget) {
+  ASSERT_EQ(b_.row(there_.row, there_.value), kOk);
+  plant_.scan(a_, idle_block(plant_, here_), 300ms);
+  ASSERT_EQ(b_.command(there_.command), kOk);
+  plant_.scan(a_, idle_block(plant_, here_), 200ms);
+  arrives(plant_, there_);
+}
+
+TEST_P(WithoutLeases, TargetsThatChangeAreTakenFromEveryone) {
+  ASSERT_EQ(b_.row(there_.row, there_.value), kOk);
+  ASSERT_EQ(a_.row(here_.row, here_.value), kOk);
+  ASSERT_EQ(b_.command(there_.command), kOk);
+  arrives(plant_, here_);
+}
+
+TEST_P(WithoutLeases, SetpointsBesideACommandThatIsRefusedAreTakenOnlyIfTheyWouldBeWithoutIt) {
+  constexpr std::int64_t kEnable = 1;
+  ASSERT_EQ(b_.command(0, 1), kOk);
+  Rows rows = plant_.profile_rows();
+  rows[there_.row] = there_.value;
+  ASSERT_EQ(b_.rows(there_.row, 53, [&] {
+    Rows few;
+    for (const auto& [offset, value] : rows)
+      if (offset >= there_.row) few.emplace(offset, value);
+    return few;
+  }()), kOk);
+  ASSERT_EQ(a_.row(here_.row, here_.value), kOk);
+  ASSERT_EQ(a_.command(kDisable), kOk);
+  // The same row as b wrote last, beside a start that the disabled axis refuses.
+  rows[row::command] = there_.command;
+  rows[row::command_id] = 2;
+  EXPECT_EQ(b_.rows(row::target_position, row::command_id, rows), kFailed);
+  ASSERT_EQ(a_.command(0), kOk);
+  ASSERT_EQ(a_.command(kEnable), kOk);
+  ASSERT_EQ(a_.command(here_.command), kOk);
+  if (here_.command == 8) {
+    // 3.4: "velocity ... needed anew" after a disable: at the panel's speed it must not run.
+    plant_.run(1s);
+    EXPECT_TRUE(plant_.velocity() == 0 || plant_.reaches(here_.value)) << plant_.velocity();
+  } else {
+    arrives(plant_, here_);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Claims, testing::ValuesIn(kSubjects), named);
+INSTANTIATE_TEST_SUITE_P(Every, WithoutLeases, testing::ValuesIn(kSubjects), named);
+
+}  // namespace
+}  // namespace axisgate::test::obey

@@ -1,0 +1,75 @@
+// A Modbus-TCP client of these tests: one connection from one address to the shipped session, bytes in memory, manual
+// time. Promises to return when the answer is there. Never looks into the gateway.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gateway/upstream/modbus_tcp/session.hpp"
+#include "tests/obey/write.hpp"
+#include "tests/unit/support/manual_runtime.hpp"
+
+namespace axisgate::test::obey {
+
+struct Answer {
+  std::uint8_t exception = 0;  ///< 0: none
+  std::vector<std::uint16_t> words{};
+  [[nodiscard]] bool ok() const { return exception == 0; }
+  friend bool operator==(const Answer& answer, std::uint8_t exception) { return answer.exception == exception; }
+};
+void PrintTo(const Answer& answer, std::ostream* out);
+
+inline constexpr std::uint8_t kOk = 0, kNoSuchRow = 2, kBadValue = 3, kFailed = 4, kNotNow = 6;
+
+/// Offsets to read.
+namespace shown {
+inline constexpr std::uint16_t statusword = 0, position = 2, supported = 20, result = 25, detail = 26, owner = 28,
+                               lease_remaining = 29, id_seen = 30, axis_state = 31, motion_state = 32, motion_id = 33,
+                               supported_commands = 36, supported_modes = 38;
+}  // namespace shown
+inline constexpr std::int64_t kNotNew = 10, kNobody = 0, kMe = 1, kAnother = 2;
+
+class Client {
+ public:
+  /// `host`: the last byte of its address.
+  Client(const modbus_tcp::SessionContext& context, ManualRuntime& runtime, std::uint8_t host);
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  Answer write(const Write& write);
+  Answer row(std::uint16_t offset, std::int64_t value) { return write(one(offset, value)); }
+  Answer rows(std::uint16_t first, std::uint16_t last, const Rows& values) { return write(block(first, last, values)); }
+  Answer command(std::int64_t number) { return row(row::command, number); }
+  /// 54 and 55 in one request.
+  Answer command(std::int64_t number, std::int64_t id) {
+    return rows(row::command, row::command_id, {{row::command, number}, {row::command_id, id}});
+  }
+  Answer coil(std::uint16_t number, bool on) { return write(one_coil(number, on)); }
+  /// Registers of the axis, function 3.
+  std::vector<std::uint16_t> read(std::uint16_t first, std::uint16_t count);
+  std::uint16_t word(std::uint16_t offset) { return read(offset, 1).front(); }
+  std::int32_t wide(std::uint16_t offset);
+  std::int64_t result() { return word(shown::result); }
+  /// Any object of the drive, by registers 80 to 86; when it is done. False: it failed.
+  bool mailbox_write(std::uint16_t index, std::uint16_t subindex, std::uint16_t size, std::int64_t data);
+
+  void disconnect();
+  void connect();
+
+ private:
+  Answer ask(const std::vector<std::uint8_t>& pdu);
+  void receive();
+
+  modbus_tcp::SessionContext context_;
+  ManualRuntime& runtime_;
+  modbus_tcp::Peer peer_;
+  std::unique_ptr<modbus_tcp::Session> session_;
+  std::unique_ptr<Timer> timer_;
+  std::vector<std::uint8_t> incoming_;
+  std::uint16_t transaction_ = 0;
+  bool in_session_ = false;
+};
+
+}  // namespace axisgate::test::obey

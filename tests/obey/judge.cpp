@@ -1,0 +1,403 @@
+#include "tests/obey/judge.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace axisgate::test::obey {
+namespace {
+
+constexpr std::int64_t kClose = 8;  // counts of a coarse encoder, in 1/10000 turn
+constexpr std::int64_t kRearmMs = 1000, kRearmUnsureMs = 150;
+constexpr std::array<std::uint16_t, 11> kZeroLeaves{41, 47, 48, 50, 52, 58, 62, 64, 66, 70, 76};  // A6
+
+bool is_stop(std::int64_t command) { return command >= 2 && command <= 4; }  // A2
+bool is_start(std::int64_t command) { return command >= 6 && command <= 8; }
+
+}  // namespace
+
+// A1, A2: what is new, of a command without id, a controlword or an edge coil.
+Judge::Edge Judge::edge(Item& item, std::int64_t value, bool single, bool stop) {
+  const std::optional<std::int64_t> before = item.value;
+  const std::int64_t quiet = seen_.now_ms - item.written_ms;
+  item.value = value;
+  item.written_ms = seen_.now_ms;
+  // A2: "One acts if the command or the id differs from what is remembered, on an empty memory too, and in a single
+  // write always."
+  if (stop) return single || before != value ? Edge::acts : Edge::not_new;
+  // A1: "new if it differs from the command remembered; a single write also on an empty memory ... A block write on an
+  // empty memory only remembers."
+  if (!before) return single ? Edge::acts : Edge::remembered;
+  if (*before != value) return Edge::acts;
+  // A1: "and when this client has not written it for rearm_ms, but not after another client's stop ... since it acted".
+  if (!single || item.spoilt || quiet < kRearmMs - kRearmUnsureMs) return Edge::not_new;
+  if (quiet < kRearmMs + kRearmUnsureMs && readings_.other()) return Edge::not_new;
+  return Edge::acts;
+}
+
+Judge::Edge Judge::command_edge(const Rows& rows, bool single) {
+  if (!rows.contains(row::command)) return Edge::absent;  // A1: "Register 55 alone asks for nothing"
+  const std::int64_t value = rows.at(row::command);
+  const std::int64_t id = rows.contains(row::command_id) ? rows.at(row::command_id) : 0;
+  ClientMemory& mine = me();
+  const std::optional<std::int64_t> before = mine.command.value;
+  const std::optional<std::int64_t> last_id = mine.id;
+  Edge edge = Edge::not_new;
+  if (id == 0) {
+    edge = this->edge(mine.command, value, single, is_stop(value));
+  } else {
+    mine.id = id;  // A1: "zeros never erase it", "Command 0 with an id sets the last id"
+    mine.command.value = value;
+    mine.command.written_ms = seen_.now_ms;
+    if (is_stop(value))
+      edge = before != value || last_id != id ? Edge::acts : Edge::not_new;  // A2
+    else if (!last_id)
+      edge = Edge::remembered;  // A1: "Where none is kept, the pair is only remembered"
+    else
+      edge = *last_id != id ? Edge::acts : Edge::not_new;  // A1: "only the id decides"
+  }
+  return value == 0 && edge != Edge::remembered ? Edge::nothing : edge;
+}
+
+// 3.5, A7: "A write claims an axis only if it asks for something."
+void Judge::claim() {
+  if (options_.leases) world_.owner = client_;
+}
+
+void Judge::accept(std::uint16_t offset, std::int64_t value) {
+  claim();
+  const auto old = world_.accepted.find(offset);
+  const bool differs = old == world_.accepted.end() || old->second != value;
+  world_.accepted[offset] = value;
+  if (differs && (offset == row::target_position || offset == row::target_velocity)) {
+    me().command.changed = true;
+    for (Item& coil : me().coils) coil.changed = true;
+  }
+  // 3.3: a mode that changes under a motion; 3.4 does not say what becomes of that.
+  if (offset == row::mode) {
+    world_.raw_mode = value;
+    if (world_.motor != Motor::stands) world_.motor = Motor::unknown;
+  }
+  // 3.4: "target_velocity acts at once only while commands 8, 9 or raw modes 3 ... run". Whether an axis enabled in
+  // mode 3 by command 1, or halted in it, is one that runs is not said.
+  const bool could_run = world_.enabled && !world_.latched && world_.raw_mode == 3;
+  const bool speed = world_.accepted.contains(row::target_velocity) && world_.accepted[row::target_velocity] != 0;
+  if (could_run && speed && world_.motor == Motor::stands && readings_.other()) world_.motor = Motor::runs;
+}
+
+// A7.
+void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlword, bool refused) {
+  const int carried = (command != Edge::absent ? 1 : 0) + (controlword != Edge::absent ? 1 : 0);
+  const int empty = (command == Edge::remembered ? 1 : 0) + (controlword == Edge::remembered ? 1 : 0);
+  // "On an empty memory a block that carries 40 or 54 only remembers its set-points." Where one of the two is empty and
+  // the other is not, the sentence can be read both ways.
+  const bool only_remembers = !single && empty > 0 && (empty == carried || readings_.other());
+  const bool acts = (command == Edge::acts && !refused) || controlword == Edge::acts;
+  for (const auto& [offset, value] : rows) {
+    if (offset == row::controlword || offset == row::command || offset == row::command_id) continue;
+    if (!options_.rows.contains(offset)) continue;
+    const auto last = me().rows.find(offset);
+    const bool differs = last == me().rows.end() || last->second != value;
+    me().rows[offset] = value;
+    const auto now = world_.accepted.find(offset);
+    const bool other_value = now == world_.accepted.end() || now->second != value;
+    bool asks = single || differs || acts;
+    // "or if this client owns the axis and the value last accepted differs"; not with "lease": null. A lease may have
+    // run out while the axis was disabled (A8).
+    if (!asks && options_.leases && world_.owner == client_ && other_value) asks = world_.enabled || !readings_.other();
+    if (only_remembers) asks = false;
+    if (asks) accept(offset, value);
+  }
+}
+
+void Judge::stopped(bool asserted) {
+  world_.motor = Motor::stands;  // 3.4: "a stop end[s] every motion for good"
+  for (std::size_t c = 0; c < world_.clients.size(); ++c) {
+    // A1 speaks of "another client's stop"; whether a disabling coil or controlword is one (A2: "nothing else") is
+    // open.
+    const bool spoils = c != client_ && (asserted || readings_.other());
+    const auto mark = [&](Item& item) {
+      item.ended = true;
+      item.spoilt = item.spoilt || spoils;
+    };
+    mark(world_.clients[c].command);
+    mark(world_.clients[c].controlword);
+    for (Item& coil : world_.clients[c].coils) mark(coil);
+  }
+}
+
+bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
+  // 3.4: "they need an axis that is enabled, not faulted and not stop-latched".
+  if (!world_.enabled || world_.latched) {
+    verdict = {"refused: not enabled, or latched", {4}};
+    return true;
+  }
+  // 3.4, command 7: "at standstill; while moving 0x06".
+  const bool under_way = world_.motor == Motor::moves && std::abs(world_.target - seen_.position) > kClose;
+  if (command == 7 && (!seen_.stands || world_.motor == Motor::runs || !seen_.clear || under_way)) {
+    const bool unsure = seen_.stands || !seen_.clear;
+    if (!unsure || readings_.other()) {
+      verdict = {"refused: relative while moving", {6}};
+      return true;
+    }
+  }
+  // 3.4, command 4: whether a halt that is held by coil 3 keeps starts away is not said.
+  if (world_.held && readings_.other()) {
+    verdict = {"refused: held by coil 3", {4, 6}};
+    return true;
+  }
+  return false;
+}
+
+void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
+  if (is_start(number)) {
+    claim();
+    // A3: "or another client".
+    for (std::size_t c = 0; c < world_.clients.size(); ++c) {
+      if (c == client_) continue;
+      world_.clients[c].command.ended = true;
+      for (Item& coil : world_.clients[c].coils) coil.ended = true;
+    }
+    item.changed = item.ended = item.spoilt = item.refused = false;
+    world_.raw_mode.reset();
+    world_.start_bit = true;
+    // A7: "the last accepted set-point is the one that every start uses".
+    const auto of = [&](std::uint16_t offset) {
+      return world_.accepted.contains(offset) ? world_.accepted[offset] : std::int64_t{0};
+    };
+    world_.motor = number == 8 ? Motor::runs : Motor::moves;
+    if (number == 6) world_.target = of(row::target_position);
+    if (number == 7) world_.target = seen_.position + of(row::target_position);
+    verdict = {"acts: command " + std::to_string(number), {0}};
+    return;
+  }
+  if (number == 1) {
+    claim();
+    // 3.4, command 1: "Already enabled: nothing is sent. Clears the stop latch".
+    const bool was = world_.enabled && !world_.latched;
+    if (!was && (!seen_.stands || !seen_.clear) && readings_.other()) {
+      verdict = {"enable while it still turns: not reached", {4, 6, 11}};
+      return;
+    }
+    if (!was) world_.motor = Motor::stands;
+    world_.enabled = true;
+    world_.latched = false;
+    world_.held = world_.held && readings_.other();
+    world_.ladder = 15;
+    item.changed = item.ended = item.spoilt = item.refused = false;
+    verdict = {"acts: enable", {0}};
+    return;
+  }
+  if (is_stop(number)) {
+    stopped(true);
+    if (number == 2) world_.enabled = false, world_.ladder = 0;
+    if (number == 3) world_.latched = true, world_.enabled = false, world_.ladder = 0;
+    verdict = {"acts: stop " + std::to_string(number), {0}};
+    return;
+  }
+  claim();
+  verdict = {"acts: command " + std::to_string(number), {0}};  // 5 on an axis without a fault: nothing is sent
+}
+
+// A3: "A single write that is not new in one of these ways is answered with exception 0x06 each time".
+void Judge::answer_not_new(std::int64_t number, const Item& item, Verdict& verdict) {
+  verdict = {"not new", {0}};
+  if (!is_start(number) && number != 1) return;
+  if (item.refused) {
+    verdict.answers = {0, 4, 6};  // what a repeated refusal is answered with is not said
+    return;
+  }
+  // "A single write that asks for what is so already ... is answered normally."
+  const bool same_target = number == 6 && world_.motor == Motor::moves &&
+                           world_.accepted.contains(row::target_position) &&
+                           world_.accepted[row::target_position] == world_.target;
+  if (number == 7)
+    verdict = {"not new, relative: 0x06", {6}};
+  else if (number == 1)
+    verdict.answers = world_.enabled && !world_.latched ? std::set<int>{0} : std::set<int>{0, 6};
+  else if (item.ended)
+    verdict = {"not new, perhaps ended by a stop: 0x06", {0, 6}};
+  else if (item.changed)
+    verdict = {"not new, target changed: 0x06", same_target || number == 8 ? std::set<int>{0, 6} : std::set<int>{6}};
+}
+
+void Judge::controlword(std::int64_t value, Verdict& verdict) {
+  verdict = {"acts: controlword " + std::to_string(value), {0}, true};
+  const std::int64_t step = value & 15;
+  const bool start = (value & 16) != 0;
+  claim();
+  if (step == 15 && !world_.enabled) {
+    // 3.4: the latch lasts until "controlword 6 or 7 and then 15". From 6 straight to 15 drives differ, and what a
+    // disable or a quick stop leaves is the drive's affair.
+    const bool sure = world_.ladder == 7;
+    if (!sure && (world_.latched ? world_.ladder == 0 : world_.ladder == 0 && !options_.by_gateway)) {
+      if (!readings_.other()) return;
+    } else if (!sure && readings_.other()) {
+      return;
+    }
+    world_.enabled = true;
+    world_.latched = false;
+    world_.ladder = 15;
+    world_.start_bit = start;
+    world_.motor = Motor::stands;
+    if (world_.accepted.contains(row::mode) && world_.accepted[row::mode] == 3) {
+      world_.raw_mode = 3;
+      world_.motor = Motor::runs;  // 3.4: raw mode 3 runs
+    }
+    if (start) world_.motor = Motor::unknown;
+    return;
+  }
+  if (step == 15) {
+    const bool rising = start && !world_.start_bit;
+    const bool maybe = start && world_.start_bit;  // the gateway's own words set bit 4 as they like
+    world_.start_bit = start;
+    const bool position = world_.accepted.contains(row::mode) && world_.accepted[row::mode] == 1;
+    if (position && (rising || (maybe && readings_.other()))) {
+      world_.motor = world_.held ? Motor::unknown : Motor::moves;
+      world_.target = world_.accepted.contains(row::target_position) ? world_.accepted[row::target_position] : 0;
+    }
+    // In mode 3, standing: see accept().
+    if (world_.raw_mode == 3 && world_.motor == Motor::stands && readings_.other()) world_.motor = Motor::runs;
+    return;
+  }
+  // 3.3: bit 1 = 0, bit 2 = 0, or bits 0..3 = 6 or 7; A6: going to 0 is a stop.
+  stopped(step == 0 && readings_.other());
+  const bool from_ready = world_.ladder == 6 || world_.ladder == 7 || world_.enabled;
+  world_.enabled = false;
+  if (step != 7)
+    world_.ladder = step == 6 ? 6 : 0;
+  else if (from_ready || options_.by_gateway || readings_.other())
+    world_.ladder = 7;
+}
+
+// A6: "A block that covers 40..54 and is 0 in all of it asks for nothing and claims nothing".
+bool Judge::all_zero(const Write& write, const Rows& rows, Verdict& verdict) {
+  const bool covers = write.first <= row::controlword && write.first + write.words.size() > row::command;
+  if (!covers || std::ranges::any_of(write.words, [](std::uint16_t word) { return word != 0; })) return false;
+  ClientMemory& mine = me();
+  const bool falls = mine.controlword.value && *mine.controlword.value != 0;
+  mine.controlword.value = mine.command.value = 0;
+  mine.controlword.written_ms = mine.command.written_ms = seen_.now_ms;
+  // Whether A7's "last write of the row" knows these zeros is not said.
+  if (readings_.other())
+    for (const auto& [offset, value] : rows) mine.rows[offset] = value;
+  verdict = {"all zero: asks for nothing", {0}};
+  if (falls) {
+    controlword(0, verdict);
+    return true;
+  }
+  // "and the owner's target_velocity or target_torque 0 acts while a run is on"; without leases nobody is the owner.
+  if (world_.motor == Motor::runs && (options_.leases ? world_.owner == client_ : readings_.other())) {
+    world_.accepted[row::target_velocity] = 0;
+    verdict.says = "all zero: the run's speed is 0";
+  }
+  return true;
+}
+
+Verdict Judge::registers(const Write& write) {
+  Rows rows = rows_of(write);
+  const bool single = write.function != fc::read_write && rows.size() == 1;  // A1: "A single write is ..."
+  for (const std::uint16_t offset : kZeroLeaves) {
+    if (!rows.contains(offset) || rows[offset] != 0) continue;
+    if (single) return {"refused: 0 alone", {3}};  // A6
+    rows.erase(offset);
+  }
+  Verdict verdict;
+  if (!single && all_zero(write, rows, verdict)) return verdict;
+  Item was = me().command;
+  const Edge command = command_edge(rows, single);
+  const Edge word =
+      rows.contains(row::controlword) ? edge(me().controlword, rows[row::controlword], single, false) : Edge::absent;
+  const std::int64_t number = command == Edge::absent ? 0 : rows[row::command];
+  bool refused = false;
+  if (command == Edge::acts && is_start(number) && word != Edge::acts) refused = start_refused(number, verdict);
+  setpoints(rows, single, command, word, refused);
+  if (verdict.says.empty())
+    verdict.says = command == Edge::remembered || word == Edge::remembered ? "only remembered" : "set-points";
+  if (word == Edge::acts) controlword(rows[row::controlword], verdict);
+  if (command != Edge::absent && number != was.value.value_or(0)) me().command.refused = false;
+  if (refused) me().command.refused = true;
+  // Of a controlword that is not new nothing is said but that the motor does nothing.
+  if (word != Edge::absent && word != Edge::acts && single) verdict.any_answer = true;
+  if (command == Edge::acts && !refused) {
+    if (word == Edge::acts && is_start(number)) {
+      // Two that act in one request: what the first does decides.
+      if (start_refused(number, verdict)) {
+        me().command.refused = true;
+        return verdict;
+      }
+    }
+    this->command(number, me().command, verdict);
+    if (word == Edge::acts) verdict.any_answer = true;
+  }
+  if (command == Edge::not_new && single) answer_not_new(number, was, verdict);
+  return verdict;
+}
+
+// A1, level coils: 0 enable, 3 halt, 7 run_velocity, 8 and 9 jog.
+Judge::Edge Judge::level_edge(std::uint16_t number, std::int64_t value, bool single) {
+  Item& item = me().coils.at(number);
+  const std::optional<std::int64_t> before = item.value;
+  item.value = value;
+  item.written_ms = seen_.now_ms;
+  if (value == 0) {
+    // "A single write of 0 always acts ...; in a block on an empty memory it is only remembered."
+    if (single) return Edge::acts;
+    return !before ? Edge::remembered : *before == 0 ? Edge::nothing : Edge::acts;
+  }
+  if (number == coil::halt) return single || before != 1 ? Edge::acts : Edge::nothing;  // A2: an asserted stop
+  // "Coils 7, 8, 9 act on 1 only after this client wrote 0 to them on this memory. Coil 0 = 1 the same while the stop
+  // latch is set ...; else a single write of 1 on an empty memory enables."
+  if (before == 0) return Edge::acts;
+  if (before == 1) return Edge::not_new;  // "rearm_ms never applies to them"
+  return number == coil::enable && single && !world_.latched ? Edge::acts : Edge::remembered;
+}
+
+Verdict Judge::coils(const Write& write) {
+  const bool single = write.words.size() == 1;
+  Verdict verdict{"nothing", {0}};
+  int acted = 0;
+  for (std::size_t i = 0; i < write.words.size(); ++i) {
+    const auto number = static_cast<std::uint16_t>(write.first + i);
+    if (number >= me().coils.size()) continue;
+    const std::int64_t value = write.words[i];
+    Item& item = me().coils[number];
+    const Item was = item;
+    constexpr std::array<std::int64_t, 8> kCommands{1, 5, 3, 4, 6, 7, 10, 8};
+    const bool level = number == coil::enable || number == coil::halt || number >= coil::run_velocity;
+    const Edge edge = level ? level_edge(number, value, single)
+                            : this->edge(item, value, single, number == coil::quick_stop && value != 0);
+    if (number > coil::run_velocity) continue;  // only zeros are written to these in a sequence
+    const std::int64_t command = kCommands[number];
+    if (single && edge == Edge::not_new && value == 1) {
+      answer_not_new(command, was, verdict);
+      // A3: "or a held level is refused"; unless it is so already.
+      if (level && number == coil::run_velocity) verdict.answers = {0, 6};
+      if (level && number == coil::enable)
+        verdict.answers = world_.enabled && !world_.latched ? std::set{0} : std::set{6};
+    }
+    if (single && level && edge == Edge::remembered && value == 1) verdict = {"only remembered: write 0 first", {6}};
+    if (edge != Edge::acts) continue;
+    ++acted;
+    if (value == 0) {
+      if (number == coil::enable) {
+        this->command(2, item, verdict);
+      } else if (number == coil::halt) {
+        world_.held = false;  // "ends the halt without moving"
+      } else if (number == coil::run_velocity &&
+                 (world_.motor == Motor::runs || (world_.motor == Motor::moves && readings_.other()))) {
+        stopped(readings_.other());
+      }
+      if (number != coil::enable) verdict.says = "coil " + std::to_string(number) + " = 0";
+      continue;
+    }
+    item.refused = is_start(command) && start_refused(command, verdict);
+    if (item.refused) continue;
+    if (number == coil::halt) world_.held = true;
+    this->command(command, item, verdict);
+  }
+  // Which of two goes first in one row of coils is not said.
+  if (acted > 1) world_.motor = Motor::unknown, verdict.any_answer = true;
+  return verdict;
+}
+
+}  // namespace axisgate::test::obey

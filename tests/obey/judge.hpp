@@ -1,0 +1,64 @@
+// One write in one reading of the contract. Promises to change the world that it was given and nothing else.
+#pragma once
+
+#include <functional>
+
+#include "tests/obey/contract.hpp"
+
+namespace axisgate::test::obey {
+
+/// Answers "which of the two readings?", a different way each time until all ways were tried.
+class Readings {
+ public:
+  bool other() {
+    if (next_ == path_.size()) path_.push_back(false);
+    return path_[next_++];
+  }
+  /// False: all were tried.
+  bool advance() {
+    path_.resize(next_);
+    next_ = 0;
+    while (!path_.empty() && path_.back()) path_.pop_back();
+    if (path_.empty()) return false;
+    path_.back() = true;
+    return true;
+  }
+
+ private:
+  std::vector<bool> path_;
+  std::size_t next_ = 0;
+};
+
+class Judge {
+ public:
+  Judge(const ContractOptions& options, World& world, Readings& readings, const Seen& seen, std::size_t client)
+      : options_(options), world_(world), readings_(readings), seen_(seen), client_(client) {}
+
+  Verdict registers(const Write& write);
+  Verdict coils(const Write& write);
+
+ private:
+  enum class Edge : std::uint8_t { absent, nothing, remembered, not_new, acts };
+
+  [[nodiscard]] ClientMemory& me() { return world_.clients[client_]; }
+  Edge edge(Item& item, std::int64_t value, bool single, bool stop);
+  Edge command_edge(const Rows& rows, bool single);
+  Edge level_edge(std::uint16_t number, std::int64_t value, bool single);
+  bool all_zero(const Write& write, const Rows& rows, Verdict& verdict);
+  void setpoints(const Rows& rows, bool single, Edge command, Edge controlword, bool refused);
+  void accept(std::uint16_t offset, std::int64_t value);
+  [[nodiscard]] bool start_refused(std::int64_t command, Verdict& verdict);
+  void controlword(std::int64_t value, Verdict& verdict);
+  void command(std::int64_t number, Item& item, Verdict& verdict);
+  void answer_not_new(std::int64_t number, const Item& item, Verdict& verdict);
+  void stopped(bool asserted);
+  void claim();
+
+  const ContractOptions& options_;
+  World& world_;
+  Readings& readings_;
+  const Seen& seen_;
+  std::size_t client_;
+};
+
+}  // namespace axisgate::test::obey

@@ -1,0 +1,178 @@
+// Signs of life and who takes over (A8).
+#include <gtest/gtest.h>
+
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::obey {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kTakeOver = 14, kNotOwner = 7, kStopLatched = 5;
+
+PlantOptions leases(bool by_address) {
+  PlantOptions options;
+  options.lease = LeaseRules{};  // 2 s, quick_stop, any request
+  options.listener.client_is_address = by_address;
+  return options;
+}
+
+class Life : public testing::TestWithParam<Subject> {
+ protected:
+  void start(Plant& plant, Client& client) {
+    ASSERT_EQ(plant.set_endless(client), kOk);
+    ASSERT_EQ(client.command(plant.endless_command()), kOk);
+    ASSERT_TRUE(plant.turns_within(1s));
+  }
+  /// A PLC's block that asks for nothing it has not asked for before.
+  Write scanned(Plant& plant) { return block(row::target_position, 45, plant.endless_target()); }
+  void stops_by_its_lease(Plant& plant) {
+    EXPECT_TRUE(plant.comes_to_stand(2500ms)) << plant.velocity();
+    EXPECT_EQ(plant.b.word(shown::axis_state), kStopLatched);
+  }
+};
+
+TEST_P(Life, IsNotShownByReadsWhileTheAxisIsDisabled) {
+  Plant plant(GetParam(), leases(false));
+  plant.ready_but_disabled();
+  ASSERT_EQ(plant.set_endless(plant.a), kOk);
+  ASSERT_EQ(plant.b.word(shown::owner), kAnother);
+  for (int i = 0; i < 25; ++i) {
+    (void)plant.a.word(shown::position);
+    plant.run(100ms);
+  }
+  EXPECT_EQ(plant.b.word(shown::owner), kNobody);
+}
+
+TEST_P(Life, IsNotShownByAnIdleScannersBlockWhileTheAxisIsDisabled) {
+  Plant plant(GetParam(), leases(false));
+  plant.ready_but_disabled();
+  const Write block = scanned(plant);
+  ASSERT_EQ(plant.a.write(block), kOk);
+  ASSERT_EQ(plant.b.word(shown::owner), kAnother);
+  plant.scan(plant.a, block, 2500ms);
+  EXPECT_EQ(plant.b.word(shown::owner), kNobody);
+}
+
+TEST_P(Life, IsShownByWhatAsksWhileTheAxisIsDisabled) {
+  Plant plant(GetParam(), leases(false));
+  plant.ready_but_disabled();
+  for (int i = 0; i < 25; ++i) {
+    ASSERT_EQ(plant.set_endless(plant.a), kOk);  // a single write always asks
+    plant.run(100ms);
+  }
+  EXPECT_EQ(plant.b.word(shown::owner), kAnother);
+}
+
+TEST_P(Life, IsShownByReadsWhileTheAxisIsEnabled) {
+  Plant plant(GetParam(), leases(false));
+  plant.ready();
+  start(plant, plant.a);
+  for (int i = 0; i < 30; ++i) {
+    (void)plant.a.word(shown::position);
+    plant.run(100ms);
+  }
+  EXPECT_TRUE(plant.velocity() != 0);
+  EXPECT_EQ(plant.b.word(shown::owner), kAnother);
+}
+
+TEST_P(Life, OfAnAddressIsNotShownByReads) {
+  Plant plant(GetParam(), leases(true));
+  plant.ready();
+  start(plant, plant.a);
+  const auto monitor = plant.connection_from(Plant::kHostOfA);
+  for (int i = 0; i < 23; ++i) {
+    (void)monitor->word(shown::position);
+    plant.run(100ms);
+  }
+  stops_by_its_lease(plant);
+}
+
+TEST_P(Life, OfAnAddressIsShownByWrites) {
+  Plant plant(GetParam(), leases(true));
+  plant.ready();
+  start(plant, plant.a);
+  plant.scan(plant.a, scanned(plant), 4s);
+  EXPECT_TRUE(plant.velocity() != 0);
+  EXPECT_EQ(plant.a.word(shown::owner), kMe);
+}
+
+TEST_P(Life, OfASilentOwnerIsNotEndedByAnotherConnectionOfItsAddress) {
+  Plant plant(GetParam(), leases(false));
+  plant.ready();
+  start(plant, plant.a);
+  const auto other = plant.connection_from(Plant::kHostOfA);
+  plant.run(1500ms);  // more than half of the timeout
+  EXPECT_EQ(plant.set_endless(*other), kNotNow);
+  EXPECT_EQ(other->result(), kNotOwner);
+  EXPECT_EQ(other->word(shown::owner), kAnother);
+  EXPECT_NE(plant.velocity(), 0);
+  plant.run(600ms);
+  stops_by_its_lease(plant);
+}
+
+TEST_P(Life, OfAnOrphanGoesOnWithAnyWriteOfItsAddressAndRole) {
+  Plant plant(GetParam(), leases(false));
+  plant.ready();
+  start(plant, plant.a);
+  plant.a.disconnect();
+  plant.run(800ms);
+  plant.a.connect();
+  // It asks for nothing: command 0.
+  const Write idle = block(row::command, row::command_id, {});
+  EXPECT_EQ(plant.a.write(idle), kOk);
+  EXPECT_EQ(plant.a.word(shown::owner), kMe);
+  plant.scan(plant.a, idle, 3s);
+  EXPECT_NE(plant.velocity(), 0);
+  EXPECT_EQ(plant.b.word(shown::owner), kAnother);
+}
+
+TEST_P(Life, OfAnOrphanGoesOnWithAChangedHeartbeat) {
+  Plant plant(GetParam(), leases(false));
+  plant.ready();
+  start(plant, plant.a);
+  plant.a.disconnect();
+  plant.run(800ms);
+  plant.a.connect();
+  EXPECT_EQ(plant.a.row(row::heartbeat, 1), kOk);
+  EXPECT_EQ(plant.a.word(shown::owner), kMe);
+  plant.run(1500ms);
+  EXPECT_NE(plant.velocity(), 0);
+}
+
+TEST_P(Life, OfAnOrphanIsNotTakenByAnotherAddress) {
+  Plant plant(GetParam(), leases(false));
+  plant.ready();
+  start(plant, plant.a);
+  plant.a.disconnect();
+  plant.run(500ms);
+  EXPECT_EQ(plant.set_endless(plant.b), kNotNow);
+  EXPECT_EQ(plant.b.word(shown::owner), kAnother);
+  plant.run(1500ms);
+  stops_by_its_lease(plant);
+}
+
+TEST_P(Life, OfAnotherConnectionOfTheAddressEndsByCommandFourteenWithoutRank) {
+  Plant plant(GetParam(), leases(false));
+  plant.ready();
+  start(plant, plant.a);
+  const auto other = plant.connection_from(Plant::kHostOfA);
+  EXPECT_EQ(other->command(kTakeOver), kOk);
+  EXPECT_EQ(other->word(shown::owner), kMe);
+  EXPECT_EQ(plant.a.word(shown::owner), kAnother);
+  EXPECT_TRUE(plant.comes_to_stand()) << plant.velocity();  // 3.5: "after a halt"
+}
+
+TEST_P(Life, OfAnotherAddressDoesNotEndByCommandFourteenWithoutRank) {
+  Plant plant(GetParam(), leases(false));
+  plant.ready();
+  start(plant, plant.a);
+  EXPECT_EQ(plant.b.command(kTakeOver), kNotNow);
+  EXPECT_EQ(plant.b.word(shown::owner), kAnother);
+  EXPECT_NE(plant.velocity(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Life, testing::ValuesIn(kSubjects), named);
+
+}  // namespace
+}  // namespace axisgate::test::obey

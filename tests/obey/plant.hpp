@@ -1,0 +1,84 @@
+// One simulated drive behind the shipped core and the shipped Modbus-TCP face, in manual time; a PLC (a), a panel (b)
+// and whoever set the plant up, each with an address of its own. Promises that what the motor does is read from the
+// simulated drive, and that a and b have written nothing before the test does. Never decides what is right.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gateway/upstream/modbus_tcp/client_registry.hpp"
+#include "tests/obey/client.hpp"
+#include "tests/obey/subject.hpp"
+
+namespace axisgate::test::obey {
+
+struct PlantOptions {
+  std::optional<LeaseRules> lease{};  ///< none: leases are off
+  modbus_tcp::ListenerSettings listener{};
+  std::uint64_t seed = 1;
+};
+
+class Plant {
+ public:
+  explicit Plant(Subject subject, PlantOptions options = {});
+
+  /// Online, with speeds and ramps that suit a test, and enabled by neither a nor b; with leases nobody owns it then.
+  void ready();
+  /// The same, disabled.
+  void ready_but_disabled();
+
+  void run(Duration time) { stage.run(time); }
+  /// Sends the same request for so long, each 50 ms. The answers are not looked at.
+  void scan(Client& client, const Write& request, Duration time);
+
+  // What the motor does.
+  [[nodiscard]] Truth motor() { return truth(stage, subject); }
+  [[nodiscard]] std::int64_t position() { return motor().position; }
+  [[nodiscard]] std::int64_t velocity() { return motor().velocity; }
+  [[nodiscard]] bool stands();  ///< and has for 100 ms
+  /// Waits until it stands, then tells where. `limit`: of the wait.
+  std::int64_t comes_to_rest_at(Duration limit = std::chrono::seconds(30));
+  /// Waits until it has this speed, within one part in fifty.
+  bool reaches(std::int64_t velocity, Duration limit = std::chrono::seconds(5));
+  [[nodiscard]] bool turns_within(Duration limit);
+  /// It turns now, and still does a second later.
+  [[nodiscard]] bool keeps_turning();
+  [[nodiscard]] bool comes_to_stand(Duration limit = std::chrono::seconds(3));
+  [[nodiscard]] bool logged(const std::string& part);
+
+  // A motion without an end of its own in the time of a test: a speed, or a very far target where the drive has none.
+  [[nodiscard]] std::int64_t endless_command() const { return has_speeds(subject) ? 8 : 6; }
+  [[nodiscard]] Rows endless_target() const;
+  Answer set_endless(Client& client);
+  /// The rows 48 to 52 that the drive has, as ready() set them: for blocks that cover them.
+  [[nodiscard]] Rows profile_rows();
+
+  Subject subject;
+  GatewayStage stage;
+  modbus_tcp::ListenerSettings listener;
+  modbus_tcp::ClientRegistry registry;
+
+ private:
+  Log log_;
+  modbus_tcp::SessionContext context_;
+  Client fitter_;
+
+ public:
+  Client a;
+  Client b;
+  /// Another connection, from the address whose last byte is `host`.
+  [[nodiscard]] std::unique_ptr<Client> connection_from(std::uint8_t host) {
+    return std::make_unique<Client>(context_, stage.runtime(), host);
+  }
+  [[nodiscard]] bool has(unsigned bit) { return (static_cast<std::uint32_t>(fitter_.wide(shown::supported)) >> bit & 1U) != 0; }
+  static constexpr std::uint8_t kHostOfA = 10, kHostOfB = 20, kHostOfFitter = 30;
+};
+
+/// Far enough to take a second or more, at the speed that ready() sets.
+inline constexpr std::int64_t kFar = 150'000, kNear = 20'000, kAway = -60'000;
+inline constexpr std::int64_t kEndless = 20'000'000;
+inline constexpr std::int64_t kSpeed = 150'000, kOtherSpeed = -90'000;
+/// Of positions, in 1/10000 turn: a count of the coarsest encoder, and rounding.
+inline constexpr std::int64_t kClose = 8;
+
+}  // namespace axisgate::test::obey

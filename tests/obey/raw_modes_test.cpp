@@ -1,0 +1,138 @@
+// Raw velocity and torque modes, as a servo's programmer writes them (3.4): the motor does what the set-point says, as
+// long as the mode runs.
+#include <gtest/gtest.h>
+
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::obey {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kVelocityMode = 3, kTorqueMode = 4, kSomeTorque = 200;  // 20 % of rated
+
+class RawVelocity : public testing::TestWithParam<Subject> {
+ protected:
+  RawVelocity() { plant_.ready_but_disabled(); }
+  void enable_raw() {
+    for (const std::int64_t word : {6, 7, 15}) ASSERT_EQ(plant_.a.row(row::controlword, word), kOk) << word;
+  }
+  /// A scanner's block 40..45, three times.
+  void scan(std::int64_t word, std::int64_t velocity) {
+    const Write request = block(
+        row::controlword, 45, {{row::controlword, word}, {row::mode, kVelocityMode}, {row::target_velocity, velocity}});
+    plant_.scan(plant_.a, request, 150ms);
+  }
+  Plant plant_{GetParam()};
+};
+
+TEST_P(RawVelocity, RunsAtTheVelocityAndStandsAtZero) {
+  ASSERT_EQ(plant_.a.row(row::mode, kVelocityMode), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, 6), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, 7), kOk);
+  ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, 15), kOk);
+  ASSERT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
+  EXPECT_EQ(plant_.a.row(row::target_velocity, 0), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+  EXPECT_EQ(plant_.a.wide(row::target_velocity), 0);
+  EXPECT_EQ(plant_.a.row(row::target_velocity, kOtherSpeed), kOk);
+  EXPECT_TRUE(plant_.reaches(kOtherSpeed)) << plant_.velocity();
+}
+
+TEST_P(RawVelocity, EnabledWithTargetZeroStartsWithTheNextVelocity) {
+  ASSERT_EQ(plant_.a.row(row::mode, kVelocityMode), kOk);
+  ASSERT_EQ(plant_.a.row(row::target_velocity, 0), kOk);
+  enable_raw();
+  ASSERT_TRUE(plant_.stands());
+  plant_.run(500ms);
+  EXPECT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+  EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
+}
+
+TEST_P(RawVelocity, ScannedInABlockDoesTheSame) {
+  scan(0, 0);
+  scan(6, 0);
+  scan(7, 0);
+  scan(15, kSpeed);
+  EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
+  scan(15, 0);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+  scan(15, kOtherSpeed);
+  EXPECT_TRUE(plant_.reaches(kOtherSpeed)) << plant_.velocity();
+  scan(6, kOtherSpeed);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+}
+
+TEST_P(RawVelocity, ScannedWithTargetZeroStartsWithTheNextVelocity) {
+  for (const std::int64_t word : {0, 6, 7, 15}) scan(word, 0);
+  ASSERT_TRUE(plant_.stands());
+  scan(15, kSpeed);
+  EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
+}
+
+TEST_P(RawVelocity, StartsAgainAndAgainWithABlockThatIsTheSameButForItsControlword) {
+  scan(0, kSpeed);
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    SCOPED_TRACE(cycle);
+    scan(6, kSpeed);
+    EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+    scan(7, kSpeed);
+    scan(15, kSpeed);
+    EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
+  }
+}
+
+class RawTorque : public testing::TestWithParam<Subject> {
+ protected:
+  RawTorque() {
+    plant_.ready_but_disabled();
+    plant_.a.row(row::max_velocity, 300'000);  // not every drive has it, and without it a torque ends at the drive's own
+  }
+  Plant plant_{GetParam()};
+};
+
+TEST_P(RawTorque, TurnsTheMotorAndLetsItGoAtZero) {
+  ASSERT_EQ(plant_.a.row(row::mode, kTorqueMode), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, 6), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, 7), kOk);
+  ASSERT_EQ(plant_.a.row(row::target_torque, kSomeTorque), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, 15), kOk);
+  ASSERT_TRUE(plant_.keeps_turning());
+  EXPECT_EQ(plant_.a.row(row::target_torque, 0), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand(5s)) << plant_.velocity();
+  EXPECT_EQ(plant_.a.word(row::target_torque), 0);
+  EXPECT_EQ(plant_.a.row(row::target_torque, kSomeTorque), kOk);
+  EXPECT_TRUE(plant_.keeps_turning());
+}
+
+TEST_P(RawTorque, EnabledWithTargetZeroStartsWithTheNextTorque) {
+  ASSERT_EQ(plant_.a.row(row::mode, kTorqueMode), kOk);
+  for (const std::int64_t word : {6, 7, 15}) ASSERT_EQ(plant_.a.row(row::controlword, word), kOk) << word;
+  plant_.run(500ms);
+  ASSERT_TRUE(plant_.stands());
+  EXPECT_EQ(plant_.a.row(row::target_torque, kSomeTorque), kOk);
+  EXPECT_TRUE(plant_.keeps_turning());
+}
+
+TEST_P(RawTorque, ScannedInABlockDoesTheSame) {
+  const auto scan = [&](std::int64_t word, std::int64_t torque) {
+    plant_.scan(plant_.a,
+                block(row::controlword, row::target_torque,
+                      {{row::controlword, word}, {row::mode, kTorqueMode}, {row::target_torque, torque}}),
+                150ms);
+  };
+  for (const std::int64_t word : {0, 6, 7}) scan(word, 0);
+  scan(15, kSomeTorque);
+  EXPECT_TRUE(plant_.keeps_turning());
+  scan(15, 0);
+  EXPECT_TRUE(plant_.comes_to_stand(5s)) << plant_.velocity();
+  scan(15, kSomeTorque);
+  EXPECT_TRUE(plant_.keeps_turning());
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, RawVelocity, testing::ValuesIn(subjects(has_speeds)), named);
+INSTANTIATE_TEST_SUITE_P(Every, RawTorque, testing::ValuesIn(subjects(has_torque)), named);
+
+}  // namespace
+}  // namespace axisgate::test::obey

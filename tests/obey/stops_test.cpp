@@ -1,0 +1,137 @@
+// Stops (A2): one acts if the command or the id differs from what is remembered, on an empty memory too, and in a
+// single write always.
+#include <gtest/gtest.h>
+
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::obey {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kEnable = 1, kDisable = 2, kQuickStop = 3, kHalt = 4, kStandstill = 1, kStopLatched = 5;
+
+class Stops : public testing::TestWithParam<Subject> {
+ protected:
+  Stops() { plant_.ready(); }
+  /// By ids, as a PLC's program does it; the last id is 2.
+  void start_with_ids() {
+    ASSERT_EQ(a_.command(0, 1), kOk);
+    ASSERT_EQ(plant_.set_endless(a_), kOk);
+    ASSERT_EQ(a_.command(plant_.endless_command(), 2), kOk);
+    ASSERT_TRUE(plant_.keeps_turning());
+  }
+  void stopped_and_latched() {
+    EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+    plant_.run(300ms);
+    EXPECT_EQ(a_.word(shown::axis_state), kStopLatched);
+  }
+  Plant plant_{GetParam()};
+  Client& a_ = plant_.a;
+  Client& b_ = plant_.b;
+};
+
+TEST_P(Stops, OfAQuickStopWithTheIdOfTheCommandBefore) {
+  start_with_ids();
+  EXPECT_EQ(a_.command(kQuickStop, 2), kOk);
+  stopped_and_latched();
+}
+
+TEST_P(Stops, OfAHaltWithTheIdOfTheCommandBefore) {
+  start_with_ids();
+  EXPECT_EQ(a_.command(kHalt, 2), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+  plant_.run(300ms);
+  EXPECT_EQ(a_.word(shown::axis_state), kStandstill);
+}
+
+TEST_P(Stops, OfADisableWithTheIdOfTheCommandBefore) {
+  start_with_ids();
+  EXPECT_EQ(a_.command(kDisable, 2), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+  EXPECT_FALSE(plant_.motor().enabled.value_or(false));
+}
+
+TEST_P(Stops, OfTheSameQuickStopWithAnotherId) {
+  start_with_ids();
+  ASSERT_EQ(a_.command(kQuickStop, 3), kOk);
+  ASSERT_TRUE(plant_.comes_to_stand());
+  ASSERT_EQ(b_.command(kEnable), kOk);
+  ASSERT_EQ(plant_.set_endless(b_), kOk);
+  ASSERT_EQ(b_.command(plant_.endless_command()), kOk);
+  ASSERT_TRUE(plant_.keeps_turning());
+  EXPECT_EQ(a_.command(kQuickStop, 4), kOk);
+  stopped_and_latched();
+}
+
+TEST_P(Stops, ThatAScannerRepeatsDoNotStopWhatComesLater) {
+  start_with_ids();
+  ASSERT_EQ(a_.command(kQuickStop, 3), kOk);
+  ASSERT_TRUE(plant_.comes_to_stand());
+  ASSERT_EQ(b_.command(kEnable), kOk);
+  ASSERT_EQ(plant_.set_endless(b_), kOk);
+  ASSERT_EQ(b_.command(plant_.endless_command()), kOk);
+  ASSERT_TRUE(plant_.turns_within(1s));
+  plant_.scan(a_, block(row::command, row::command_id, {{row::command, kQuickStop}, {row::command_id, 3}}), 500ms);
+  EXPECT_TRUE(plant_.keeps_turning());
+}
+
+TEST_P(Stops, OfAClientThatHasWrittenNothingBefore) {
+  constexpr std::int64_t kSomeId = 77;
+  const std::vector<std::pair<const char*, Write>> ways{
+      {"with an id", block(row::command, row::command_id, {{row::command, kQuickStop}, {row::command_id, kSomeId}})},
+      {"in a block without an id", block(row::command, row::command_id, {{row::command, kQuickStop}})},
+      {"in a block 40 to 56", block(row::controlword, row::heartbeat, {{row::command, kQuickStop}})},
+      {"by FC 23", block(row::command, row::command, {{row::command, kQuickStop}}, fc::read_write)},
+      {"alone", one(row::command, kQuickStop)},
+      {"by FC 22", one(row::command, kQuickStop, fc::mask_write)},
+      {"by its coil", one_coil(coil::quick_stop, true)},
+      {"in a row of coils", coil_block(coil::enable, {0, 0, 1, 0})},
+  };
+  std::uint8_t host = 100;
+  for (const auto& [way, write] : ways) {
+    SCOPED_TRACE(way);
+    ASSERT_EQ(a_.command(0), kOk);
+    ASSERT_EQ(a_.command(kEnable), kOk);
+    ASSERT_EQ(plant_.set_endless(a_), kOk);
+    ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
+    ASSERT_TRUE(plant_.turns_within(1s));
+    plant_.run(200ms);
+    const auto stranger = plant_.connection_from(host++);
+    EXPECT_EQ(stranger->write(write), kOk);
+    EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+    plant_.run(300ms);
+    EXPECT_EQ(a_.word(shown::axis_state), kStopLatched);
+  }
+}
+
+TEST_P(Stops, AlwaysInASingleWrite) {
+  const std::vector<Write> ways{one(row::command, kQuickStop), one(row::command, kQuickStop, fc::mask_write),
+                                one_coil(coil::quick_stop, true), one_coil(coil::quick_stop, true, fc::write_coils),
+                                one_coil(coil::halt, true)};
+  for (const Write& way : ways) {
+    SCOPED_TRACE(text(way));
+    for (int time = 0; time < 2; ++time) {
+      ASSERT_EQ(a_.command(0), kOk);
+      ASSERT_EQ(a_.command(kEnable), kOk);
+      ASSERT_EQ(a_.coil(coil::halt, false), kOk);
+      ASSERT_EQ(plant_.set_endless(a_), kOk);
+      ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
+      ASSERT_TRUE(plant_.turns_within(1s));
+      EXPECT_EQ(b_.write(way), kOk);
+      EXPECT_TRUE(plant_.comes_to_stand()) << "time " << time << ": " << plant_.velocity();
+    }
+  }
+}
+
+TEST_P(Stops, AreDoneWhenTheMotorWasSeenToObey) {
+  start_with_ids();
+  EXPECT_EQ(a_.command(kQuickStop, 3), kOk);
+  EXPECT_EQ(a_.result(), 2);
+  EXPECT_EQ(a_.word(shown::axis_state), kStopLatched);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Stops, testing::ValuesIn(kSubjects), named);
+
+}  // namespace
+}  // namespace axisgate::test::obey

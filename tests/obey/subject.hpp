@@ -1,0 +1,96 @@
+// The drives of these tests, each on every protocol it speaks; a Keya in each of the two modes that its maker's tool
+// can set. Promises one line with one drive, axis 1. Never says what is right: the tests and the contract do.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/stage/gateway_stage.hpp"
+
+namespace axisgate::test::obey {
+
+enum class Subject : std::uint8_t {
+  jd_serial,
+  md_serial,
+  jd_rtu,
+  md_rtu,
+  jd_can,
+  md_can,
+  leadshine,
+  id286pro,
+  keya_can_speed,
+  keya_canopen_speed,
+  keya_rs232_speed,
+  keya_rs485_speed,
+  keya_can_position,
+  keya_canopen_position,
+  keya_rs232_position,
+  keya_rs485_position,
+};
+inline constexpr std::array kSubjects{
+    Subject::jd_serial,
+    Subject::md_serial,
+    Subject::jd_rtu,
+    Subject::md_rtu,
+    Subject::jd_can,
+    Subject::md_can,
+    Subject::leadshine,
+    Subject::id286pro,
+    Subject::keya_can_speed,
+    Subject::keya_canopen_speed,
+    Subject::keya_rs232_speed,
+    Subject::keya_rs485_speed,
+    Subject::keya_can_position,
+    Subject::keya_canopen_position,
+    Subject::keya_rs232_position,
+    Subject::keya_rs485_position,
+};
+
+[[nodiscard]] std::string name(Subject subject);
+/// For INSTANTIATE_TEST_SUITE_P.
+inline constexpr auto named = [](const auto& tested) { return name(tested.param); };
+void PrintTo(Subject subject, std::ostream* out);
+
+[[nodiscard]] constexpr bool is_keya(Subject s) { return s >= Subject::keya_can_speed; }
+[[nodiscard]] constexpr bool is_kinco(Subject s) { return s <= Subject::md_can; }
+[[nodiscard]] constexpr bool is_md(Subject s) {
+  return s == Subject::md_serial || s == Subject::md_rtu || s == Subject::md_can;
+}
+[[nodiscard]] constexpr bool has_positions(Subject s) { return !is_keya(s) || s >= Subject::keya_can_position; }
+[[nodiscard]] constexpr bool has_speeds(Subject s) { return s < Subject::keya_can_position; }
+[[nodiscard]] constexpr bool has_torque(Subject s) { return is_kinco(s) || s == Subject::leadshine; }
+[[nodiscard]] constexpr bool has_homing(Subject s) { return !is_keya(s); }
+/// The drive is a CiA 402 drive; the others' machine is the gateway's.
+[[nodiscard]] constexpr bool is_cia402(Subject s) { return is_kinco(s) || s == Subject::leadshine; }
+
+/// Those of them that `which` is true of, for testing::ValuesIn.
+template <class Predicate>
+std::vector<Subject> subjects(Predicate which) {
+  std::vector<Subject> out;
+  for (const Subject subject : kSubjects)
+    if (which(subject)) out.push_back(subject);
+  return out;
+}
+
+/// A commissioned drive of it, alone on its line. `lease`: none where leases are off.
+[[nodiscard]] GatewayStage::Line line_with(Subject subject, std::optional<LeaseRules> lease);
+
+/// What the simulated motor does, in the units of the registers. Never asked through the gateway.
+struct Truth {
+  std::int64_t position = 0;      ///< 1/10000 turn
+  std::int64_t velocity = 0;      ///< 0.001 rpm; 0: it stands
+  std::optional<bool> enabled{};  ///< none: the drive cannot be disabled over its bus
+};
+[[nodiscard]] Truth truth(GatewayStage& stage, Subject subject);
+
+/// The drive's own object for a position target, in its own counts, where the mailbox can write it without the motor
+/// moving for it.
+struct TargetObject {
+  std::uint16_t index;
+  std::uint16_t subindex;
+};
+[[nodiscard]] std::optional<TargetObject> target_object(Subject subject);
+
+}  // namespace axisgate::test::obey

@@ -1,0 +1,237 @@
+// A start uses the set-point that was accepted last (A7), whoever wrote it, by whichever way in, whatever the drive
+// happens to hold.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::obey {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kEnable = 1, kQuickStop = 3, kHalt = 4, kMove = 6, kRun = 8, kHome = 10;
+
+class Targets : public testing::TestWithParam<Subject> {
+ protected:
+  Targets() { plant_.ready(); }
+  /// 41..43.
+  void block_with(Client& client, std::int64_t target) {
+    ASSERT_EQ(client.rows(row::mode, 43, {{row::mode, 1}, {row::target_position, target}}), kOk);
+  }
+  /// As a panel without ids does it: 0 first.
+  void press(Client& client, std::int64_t command) {
+    ASSERT_EQ(client.command(0), kOk);
+    ASSERT_EQ(client.command(command), kOk);
+  }
+  void move_to(Client& client, std::int64_t target) {
+    ASSERT_EQ(client.row(row::target_position, target), kOk);
+    press(client, kMove);
+    ASSERT_TRUE(plant_.turns_within(1s));
+    plant_.run(100ms);
+  }
+  void ends_at(std::int64_t target) {
+    const std::int64_t at = plant_.comes_to_rest_at();
+    EXPECT_LE(std::abs(at - target), kClose) << "it ends at " << at << " instead of " << target;
+  }
+  void enable_without_moving() {
+    const std::int64_t before = plant_.position();
+    press(a_, kEnable);
+    plant_.run(300ms);
+    EXPECT_LE(std::abs(plant_.position() - before), kClose) << "it moved from " << before << " to " << plant_.position();
+  }
+  Write whole_block(std::int64_t target, std::int64_t command, std::int64_t id) {
+    Rows rows = plant_.profile_rows();
+    rows[row::target_position] = target;
+    rows[row::command] = command;
+    rows[row::command_id] = id;
+    return block(row::target_position, row::command_id, rows);
+  }
+  Plant plant_{GetParam()};
+  Client& a_ = plant_.a;
+  Client& b_ = plant_.b;
+};
+
+TEST_P(Targets, WrittenAndTakenBackWhileItMovesIsNotMovedTo) {
+  move_to(a_, kFar);
+  block_with(a_, kNear);
+  block_with(a_, kFar);
+  EXPECT_EQ(a_.wide(row::target_position), kFar);
+  press(a_, kMove);
+  ends_at(kFar);
+}
+
+TEST_P(Targets, WrittenAndTakenBackInSingleWritesIsNotMovedTo) {
+  move_to(a_, kFar);
+  ASSERT_EQ(a_.row(row::target_position, kNear), kOk);
+  ASSERT_EQ(a_.row(row::target_position, kFar), kOk);
+  press(a_, kMove);
+  ends_at(kFar);
+}
+
+TEST_P(Targets, TakenBackInTheBlockThatStartsIsNotMovedTo) {
+  ASSERT_EQ(a_.command(0, 1), kOk);
+  move_to(a_, kFar);
+  block_with(a_, kNear);
+  ASSERT_EQ(a_.write(whole_block(kFar, kMove, 2)), kOk);
+  ends_at(kFar);
+}
+
+TEST_P(Targets, ChangedWhileItMovesIsMovedToByTheNextStart) {
+  move_to(a_, kFar);
+  block_with(a_, kNear);
+  press(a_, kMove);
+  ends_at(kNear);
+}
+
+TEST_P(Targets, OfAnotherClientTakenBackIsNotMovedTo) {
+  move_to(a_, kFar);
+  block_with(b_, kNear);
+  ASSERT_EQ(a_.row(row::target_position, kFar), kOk);
+  press(a_, kMove);
+  ends_at(kFar);
+}
+
+TEST_P(Targets, OfAnotherClientIsMovedToWhereItWasWrittenLast) {
+  move_to(a_, kFar);
+  block_with(b_, kNear);
+  press(a_, kMove);
+  ends_at(kNear);
+}
+
+TEST_P(Targets, OfAnotherClientTakenBackInABlockThatStartsIsNotMovedTo) {
+  ASSERT_EQ(a_.command(0, 1), kOk);
+  move_to(a_, kFar);
+  block_with(b_, kNear);
+  ASSERT_EQ(a_.write(whole_block(kFar, kMove, 2)), kOk);
+  ends_at(kFar);
+}
+
+TEST_P(Targets, ChangedWhileStopLatchedAreUsedByTheNextStart) {
+  move_to(a_, kFar);
+  ASSERT_EQ(a_.command(kQuickStop), kOk);
+  ASSERT_TRUE(plant_.comes_to_stand());
+  block_with(a_, kNear);
+  block_with(a_, kAway);
+  enable_without_moving();
+  press(a_, kMove);
+  ends_at(kAway);
+}
+
+TEST_P(Targets, TakenBackWhileStopLatchedAreNotMovedTo) {
+  move_to(a_, kFar);
+  ASSERT_EQ(a_.command(kQuickStop), kOk);
+  ASSERT_TRUE(plant_.comes_to_stand());
+  block_with(a_, kNear);
+  block_with(a_, kFar);
+  press(a_, kEnable);
+  press(a_, kMove);
+  ends_at(kFar);
+}
+
+TEST_P(Targets, ChangedWhileDisabledAreUsedByTheNextStart) {
+  constexpr std::int64_t kDisable = 2;
+  move_to(a_, kFar);
+  ASSERT_EQ(a_.command(kDisable), kOk);
+  ASSERT_TRUE(plant_.comes_to_stand());
+  block_with(a_, kNear);
+  block_with(a_, kAway);
+  enable_without_moving();
+  press(a_, kMove);
+  ends_at(kAway);
+}
+
+TEST_P(Targets, ThatAreTheSameAreMovedToAgainAfterAHalt) {
+  ASSERT_EQ(a_.command(0, 1), kOk);
+  for (std::int64_t id = 2; id < 8; id += 2) {
+    ASSERT_EQ(a_.write(whole_block(kFar, kMove, id)), kOk);
+    ASSERT_TRUE(plant_.turns_within(1s)) << id;
+    plant_.run(100ms);
+    ASSERT_EQ(a_.command(kHalt, id + 1), kOk);
+    ASSERT_TRUE(plant_.comes_to_stand());
+    ASSERT_LT(plant_.position(), kFar - kNear);
+    // Where the drive has no halt, what takes its place may leave it latched.
+    ASSERT_EQ(b_.command(kEnable), kOk);
+    ASSERT_EQ(b_.command(0), kOk);
+  }
+  ASSERT_EQ(a_.command(kMove, 9), kOk);
+  ends_at(kFar);
+}
+
+TEST_P(Targets, WrittenToTheDrivesOwnObjectByTheMailboxAreNotMovedTo) {
+  const auto object = target_object(GetParam());
+  if (!object) GTEST_SKIP() << "the drive has no such object, or moves for it";
+  ASSERT_EQ(a_.row(row::target_position, kNear), kOk);
+  ASSERT_TRUE(b_.mailbox_write(object->index, object->subindex, 4, 54'321));
+  press(a_, kMove);
+  ends_at(kNear);
+}
+
+class Speeds : public testing::TestWithParam<Subject> {
+ protected:
+  Speeds() { plant_.ready(); }
+  Plant plant_{GetParam()};
+};
+
+TEST_P(Speeds, ThatAreTheSameRunAgainInABlockWithANewId) {
+  ASSERT_EQ(plant_.a.command(0, 1), kOk);
+  Rows rows = plant_.profile_rows();
+  rows[row::target_velocity] = kSpeed;
+  for (std::int64_t id = 2; id < 8; id += 2) {
+    SCOPED_TRACE(id);
+    rows[row::command] = kRun;
+    rows[row::command_id] = id;
+    EXPECT_EQ(plant_.a.rows(row::target_velocity, row::command_id, rows), kOk);
+    EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
+    EXPECT_EQ(plant_.a.command(kHalt, id + 1), kOk);
+    EXPECT_TRUE(plant_.comes_to_stand());
+  }
+}
+
+// 3.4 says that after a stop "velocity, torque and start are needed anew", A7 that the last accepted set-point is the
+// one that every start uses: either it runs at the speed, or the command says that it does not.
+TEST_P(Speeds, AcceptedBeforeAHaltAreUsedByARunThatComesWithoutThemOrItIsRefused) {
+  ASSERT_EQ(plant_.a.command(0, 1), kOk);
+  ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+  for (std::int64_t id = 2; id < 8; id += 2) {
+    SCOPED_TRACE(id);
+    const Answer answer = plant_.a.command(kRun, id);
+    EXPECT_TRUE(!answer.ok() || plant_.reaches(kSpeed)) << plant_.velocity();
+    EXPECT_EQ(plant_.a.command(kHalt, id + 1), kOk);
+    EXPECT_TRUE(plant_.comes_to_stand());
+  }
+}
+
+TEST_P(Speeds, WrittenAfterAHaltStartNothing) {
+  ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+  ASSERT_EQ(plant_.a.command(kRun), kOk);
+  ASSERT_TRUE(plant_.reaches(kSpeed));
+  ASSERT_EQ(plant_.a.command(kHalt), kOk);
+  ASSERT_TRUE(plant_.comes_to_stand());
+  EXPECT_EQ(plant_.a.row(row::target_velocity, kOtherSpeed), kOk);
+  plant_.run(500ms);
+  EXPECT_TRUE(plant_.stands()) << plant_.velocity();
+}
+
+class Homing : public testing::TestWithParam<Subject> {};
+
+TEST_P(Homing, MethodInABlockWithTheNumberThatTheDriveHoldsCountsAsWritten) {
+  Plant plant(GetParam());
+  plant.ready();
+  // Kincos come with a number that means none.
+  constexpr std::int64_t kOnTheSpot = 35;
+  if (is_kinco(GetParam())) plant.stage.drive(0).poke({0x6098, 0}, kOnTheSpot);
+  plant.run(3s);
+  const auto held = static_cast<std::int16_t>(plant.a.word(row::homing_method));
+  // A method that the profile does not list cannot be asked for.
+  if (!plant.a.rows(row::homing_method, 61, {{row::homing_method, held}}).ok()) GTEST_SKIP() << "it holds " << held;
+  EXPECT_EQ(plant.a.command(kHome), kOk) << "method " << held;
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Targets, testing::ValuesIn(subjects(has_positions)), named);
+INSTANTIATE_TEST_SUITE_P(Every, Speeds, testing::ValuesIn(subjects(has_speeds)), named);
+INSTANTIATE_TEST_SUITE_P(Every, Homing, testing::ValuesIn(subjects(has_homing)), named);
+
+}  // namespace
+}  // namespace axisgate::test::obey

@@ -1,0 +1,51 @@
+// A write as a PLC's programmer thinks of it: a function code, where it begins, what it carries. Promises that a row of
+// 32 bits is written whole, high word first, on axis 1. Never knows a gateway.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace axisgate::test::obey {
+
+using Rows = std::map<std::uint16_t, std::int64_t>;  ///< offset in the axis's block: value
+
+namespace row {
+inline constexpr std::uint16_t controlword = 40, mode = 41, target_position = 42, target_velocity = 44,
+                               target_torque = 46, max_torque = 47, profile_velocity = 48, profile_acceleration = 50,
+                               profile_deceleration = 52, command = 54, command_id = 55, heartbeat = 56,
+                               jog_velocity = 58, homing_method = 60, homing_speed_switch = 62, homing_speed_zero = 64,
+                               homing_acceleration = 66, quick_stop_deceleration = 70, max_velocity = 76;
+}  // namespace row
+
+namespace coil {
+inline constexpr std::uint16_t enable = 0, fault_reset = 1, quick_stop = 2, halt = 3, start_absolute = 4,
+                               start_relative = 5, home = 6, run_velocity = 7, jog_forward = 8, jog_reverse = 9;
+}  // namespace coil
+
+namespace fc {
+inline constexpr int write_coil = 5, write_register = 6, write_coils = 15, write_registers = 16, mask_write = 22,
+                     read_write = 23;
+}  // namespace fc
+
+struct Write {
+  int function = fc::write_registers;
+  std::uint16_t first = 0;             ///< offset in the axis's block of registers or coils
+  std::vector<std::uint16_t> words{};  ///< one for each register, or 0 and 1 for each coil
+  [[nodiscard]] bool coils() const { return function == fc::write_coil || function == fc::write_coils; }
+};
+
+[[nodiscard]] bool is_wide(std::uint16_t offset);
+/// One row alone. Function 0: 6 where the row has 16 bits, else 16.
+[[nodiscard]] Write one(std::uint16_t offset, std::int64_t value, int function = 0);
+/// Registers `first` to `last`; rows that are not named are 0.
+[[nodiscard]] Write block(std::uint16_t first, std::uint16_t last, const Rows& rows,
+                          int function = fc::write_registers);
+[[nodiscard]] Write one_coil(std::uint16_t number, bool on, int function = fc::write_coil);
+[[nodiscard]] Write coil_block(std::uint16_t first, std::vector<std::uint16_t> values);
+/// The rows of it that a table of offsets 40..79 has, with their values; halves of a row are left out.
+[[nodiscard]] Rows rows_of(const Write& write);
+[[nodiscard]] std::string text(const Write& write);
+
+}  // namespace axisgate::test::obey

@@ -1,0 +1,165 @@
+// Zeros (A6): what a scanner's image holds before its program runs asks for nothing; in some rows 0 means "leave as it
+// is".
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::obey {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kEnable = 1, kMove = 6, kRun = 8, kVelocityMode = 3;
+const Write kZeros = block(row::controlword, row::heartbeat, {});
+const Write kFewerZeros = block(row::controlword, row::command, {});
+
+PlantOptions with_leases() {
+  PlantOptions options;
+  options.lease = LeaseRules{};
+  return options;
+}
+
+class Zeros : public testing::TestWithParam<Subject> {
+ protected:
+  Zeros() { plant_.ready(); }
+  [[nodiscard]] bool enabled() { return plant_.motor().enabled.value_or((b_.word(shown::statusword) & 0x6F) == 0x27); }
+  void start(Client& client) {
+    ASSERT_EQ(plant_.set_endless(client), kOk);
+    ASSERT_EQ(client.command(plant_.endless_command()), kOk);
+    ASSERT_TRUE(plant_.keeps_turning());
+  }
+  Plant plant_{GetParam(), with_leases()};
+  Client& a_ = plant_.a;
+  Client& b_ = plant_.b;
+};
+
+TEST_P(Zeros, OfAWholeBlockAskForNothingAndClaimNothing) {
+  for (const Write& zeros : {kZeros, kFewerZeros, block(40, 56, {}, fc::read_write)}) {
+    SCOPED_TRACE(text(zeros));
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_EQ(a_.write(zeros), kOk);
+      EXPECT_EQ(a_.word(shown::owner), kNobody);
+    }
+  }
+  EXPECT_TRUE(enabled());
+  EXPECT_EQ(plant_.position(), 0);
+}
+
+TEST_P(Zeros, OfAWholeBlockDisturbNoOwner) {
+  start(a_);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(b_.write(kZeros), kOk);
+    EXPECT_EQ(b_.word(shown::owner), kAnother);
+    plant_.run(100ms);
+    EXPECT_NE(plant_.velocity(), 0);
+  }
+  EXPECT_EQ(a_.word(shown::owner), kMe);
+}
+
+TEST_P(Zeros, InTheControlwordAfterAnotherValueAreAStop) {
+  ASSERT_EQ(a_.row(row::controlword, 15), kOk);
+  start(a_);
+  EXPECT_EQ(a_.write(kZeros), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+  EXPECT_FALSE(enabled());
+}
+
+TEST_P(Zeros, InTheControlwordOnAnEmptyMemoryAreOnlyRemembered) {
+  if (!has_positions(GetParam())) GTEST_SKIP() << "the owner's target_velocity 0 is another matter";
+  ASSERT_EQ(a_.row(row::target_position, kFar), kOk);
+  ASSERT_EQ(a_.command(kMove), kOk);
+  plant_.run(200ms);
+  EXPECT_EQ(a_.write(kZeros), kOk);
+  EXPECT_TRUE(enabled());
+  const std::int64_t at = plant_.comes_to_rest_at();
+  EXPECT_LE(std::abs(at - kFar), kClose) << at;
+}
+
+TEST_P(Zeros, InRowsThatLeaveAsIsChangeNothingInABlockAndAreRefusedAlone) {
+  struct Row {
+    std::uint16_t offset;
+    std::optional<unsigned> bit;  ///< in `supported`; none: every axis has it
+  };
+  const std::vector<Row> rows{{row::mode, 15},
+                              {row::max_torque, 19},
+                              {row::profile_velocity, 20},
+                              {row::profile_acceleration, 21},
+                              {row::profile_deceleration, 22},
+                              {row::jog_velocity, {}},
+                              {row::homing_speed_switch, 24},
+                              {row::homing_speed_zero, 25},
+                              {row::homing_acceleration, 26},
+                              {row::quick_stop_deceleration, 28},
+                              {row::max_velocity, 31}};
+  ASSERT_EQ(a_.row(row::jog_velocity, kSpeed), kOk);
+  plant_.run(3s);  // every row has been polled
+  for (const auto& [offset, bit] : rows) {
+    if (bit && !plant_.has(*bit)) continue;
+    SCOPED_TRACE("row " + std::to_string(offset));
+    const auto shown = [&] { return is_wide(offset) ? a_.wide(offset) : a_.word(offset); };
+    const std::int64_t before = shown();
+    const auto last = static_cast<std::uint16_t>(offset + (is_wide(offset) ? 1 : 0));
+    EXPECT_EQ(a_.write(block(offset, last, {}, fc::read_write)), kOk);
+    plant_.run(3s);
+    EXPECT_EQ(shown(), before);
+    EXPECT_EQ(a_.row(offset, 0), kBadValue);
+    EXPECT_EQ(shown(), before);
+  }
+}
+
+TEST_P(Zeros, BesideACommandThatActsLeaveItsProfileAsItIs) {
+  ASSERT_EQ(a_.command(0, 1), kOk);
+  Rows rows = plant_.endless_target();
+  rows[row::command] = plant_.endless_command();
+  rows[row::command_id] = 2;
+  EXPECT_EQ(a_.rows(row::controlword, row::heartbeat, rows), kOk);
+  ASSERT_TRUE(plant_.keeps_turning());
+  EXPECT_TRUE(!has_speeds(GetParam()) || plant_.reaches(kSpeed)) << plant_.velocity();
+}
+
+class ZeroSpeed : public testing::TestWithParam<Subject> {
+ protected:
+  ZeroSpeed() { plant_.ready(); }
+  [[nodiscard]] bool enabled() { return plant_.motor().enabled.value_or((plant_.b.word(shown::statusword) & 0x6F) == 0x27); }
+  void run() {
+    ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+    ASSERT_EQ(plant_.a.command(kRun), kOk);
+    ASSERT_TRUE(plant_.reaches(kSpeed));
+  }
+  Plant plant_{GetParam(), with_leases()};
+};
+
+TEST_P(ZeroSpeed, OfTheOwnersWholeBlockActsWhileARunIsOn) {
+  run();
+  EXPECT_EQ(plant_.a.write(kZeros), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand(1500ms)) << plant_.velocity();
+  EXPECT_TRUE(enabled());
+}
+
+TEST_P(ZeroSpeed, OfAnotherClientsWholeBlockDoesNot) {
+  run();
+  EXPECT_EQ(plant_.b.write(kZeros), kOk);
+  EXPECT_EQ(plant_.a.word(shown::owner), kMe);
+  EXPECT_TRUE(plant_.keeps_turning());
+}
+
+TEST_P(ZeroSpeed, OfARawModeIsAStopByItsControlword) {
+  for (const std::int64_t word : {0, 6, 7, 15}) {
+    plant_.scan(plant_.a,
+                block(row::controlword, row::heartbeat,
+                      {{row::controlword, word}, {row::mode, kVelocityMode}, {row::target_velocity, kSpeed}}),
+                200ms);
+  }
+  ASSERT_TRUE(plant_.keeps_turning());
+  EXPECT_EQ(plant_.a.write(kZeros), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+  EXPECT_FALSE(enabled());
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Zeros, testing::ValuesIn(kSubjects), named);
+INSTANTIATE_TEST_SUITE_P(Every, ZeroSpeed, testing::ValuesIn(subjects(has_speeds)), named);
+
+}  // namespace
+}  // namespace axisgate::test::obey
