@@ -37,7 +37,7 @@ class EnableInAStop(Machine):
             self.set_running(Axis(gone, number))
             gone.reset()
             axis = Axis(self.peer(), number)
-            axis.id = axis.get("command_id_seen")  # of its address
+            axis.begin()
             self.watched(number).until_input("stop_latched")
             self.assert_as_told(axis, self.enables(axis))
             axis.command("quick_stop")

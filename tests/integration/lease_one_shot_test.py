@@ -49,6 +49,7 @@ class Connections(OneShot):
             mbpoll(self.ports[0], "0", first, 1)
             self.assertEqual(mbpoll(self.ports[0], "4", first + 28), [ME])
             mbpoll(self.ports[0], "4:int", first + 44, 300 * RPM)
+            mbpoll(self.ports[0], "0", first + 7, 0)
             mbpoll(self.ports[0], "0", first + 7, 1)
             self.until_it_turns_at(number, 300)
             self.once(number, self.assert_refused, PANEL_1)

@@ -107,8 +107,7 @@ class CommandOnItsWay(Panels):
             plc, panel_1, panel_2 = self.three(number)
             plc.set(target_velocity=0)
             self.watched(number).until(owner=ANOTHER)
-            plc.client.write(plc.first + 54, 0, 0)
-            plc.id = plc.get("command_id_seen")
+            plc.begin()
             before = self.sim.state(f"{line}/1")
             self.sim.ask(f"reply-delay {line} 700")
             pending = self.later(plc.command, "enable")
@@ -188,22 +187,17 @@ class Ranks(Panels):
 
 
 class ProgramsThatCount(Panels):
-    """Commands with a command_id. A program begins with id 0, which asks for nothing, and so is none of a panel's business."""
-
-    def begins(self, axis):
-        with self.refused(BUSY):
-            axis.client.write(axis.first + 54, 0, 0)
-        axis.id = axis.get("command_id_seen")
+    """Commands with a command_id. A program begins with command 0, which asks for nothing, and so is nobody's business."""
 
     def test_a_program_that_does_not_own_the_axis_can_stop_it_and_take_it_over(self):
         for number in self.each():
             plc, panel_1, panel_2 = self.three(number)
             self.set_running(plc)
-            self.begins(panel_1)
+            panel_1.begin()
             panel_1.command("quick_stop")
             self.until_it_stands(number)
             self.assert_owner(plc, panel_1, panel_2)
-            self.begins(panel_2)
+            panel_2.begin()
             taken = panel_2.command("take_over")
             self.assert_owner(panel_2, plc, panel_1)
             self.assertEqual(panel_2.get("command_id_seen"), taken)
@@ -220,6 +214,37 @@ class EqualRanks(Panels):
             plc.set(target_velocity=0)
             self.assert_not_his(panel_2, lambda: self.plain(panel_2, "take_over"))
             self.assert_owner(plc, panel_1, panel_2)
+
+    def test_but_from_another_connection_of_his_own(self):
+        for number in self.each():
+            plc = Axis(self.plc, number)
+            again = Axis(self.peer(PLC), number)
+            self.set_running(plc)
+            self.assert_not_his(again, lambda: again.set(target_velocity=0))
+            self.plain(again, "take_over")
+            self.until_it_stands(number)
+            self.assertEqual((again.get("owner"), plc.get("owner")), (ME, ANOTHER))
+            again.command("quick_stop")
+            again.command("release")
+
+
+class IdleScanner(Panels):
+    """A PLC that scans the same block for ever, and a panel, share an axis."""
+
+    def test_it_claims_nothing_and_undoes_nothing(self):
+        for number in self.each():
+            plc, panel_1, _ = self.three(number)
+            idle = lambda: plc.client.write(plc.first + 54, 0, 0, 7)
+            idle()
+            self.assertEqual(plc.get("owner"), NOBODY)
+            self.set_running(panel_1)
+            for _ in range(20):
+                idle()
+            self.assertEqual((panel_1.get("owner"), plc.get("owner")), (ME, ANOTHER))
+            self.assertNotEqual(self.speed(number), 0)
+            panel_1.command("disable")
+            self.until_it_stands(number)
+            panel_1.command("release")
 
 
 if __name__ == "__main__":

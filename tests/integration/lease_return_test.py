@@ -1,7 +1,6 @@
 """A PLC that comes back within its lease goes on as if it had never been away; another address gets nothing."""
 from lease_stage import ANOTHER, ME, NOBODY, NOT_OWNER, PANEL_1, Machine, main
 from modbus import ACTIVE, BUSY, COMMANDS, Axis, Refused
-from processes import until
 
 
 class Return(Machine):
@@ -53,33 +52,31 @@ class FromItsOwnAddress(Return):
 class WhileItsOldConnectionIsHalfOpen(Return):
     """A cable was pulled: nobody has told the gateway that the old connection is dead."""
 
-    def test_it_is_the_owner_again_once_the_old_connection_was_silent(self):
+    def test_it_takes_over_after_a_halt_or_waits_for_the_lease(self):
         again = self.peer()
-        for number in self.each():
-            self.plc.gateway()
-            with self.refused(BUSY):  # the old connection has just asked for something: it lives
-                Axis(again, number).set(target_velocity=400_000)
-            self.assertEqual(Axis(again, number).get("command_result"), NOT_OWNER)
-        self.plc.gateway()
         self.plc.fall_silent()
-
-        def accepted(number):
-            try:
-                Axis(again, number).set(target_velocity=500_000)
-                return True
-            except Refused as refused:
-                self.assertEqual(refused.code, BUSY)
-                self.assertNotEqual(self.speed(number), 0)
-                return False
-
         for number in self.each():
-            until("it is accepted", lambda: accepted(number))
-            self.until_told(number, "its other connection had fallen silent")
-        self.assert_goes_on(again, 500)
+            axis = Axis(again, number)
+            with self.refused(BUSY):  # the old connection may be alive, and somebody's hand on a switch
+                axis.set(target_velocity=400_000)
+            self.assertEqual(axis.get("command_result"), NOT_OWNER)
+            axis.command("take_over")
+            self.until_it_stands(number)
+            self.until_told(number, "has taken the axis over from another connection of its address")
+            self.assertEqual(axis.get("owner"), ME)
+            self.set_running(axis, 400)
         for number in self.each():
             with self.refused(BUSY):  # and the old one, should it ever come alive, is another
                 Axis(self.plc, number).set(target_velocity=300_000)
             self.assertEqual(Axis(self.plc, number).get("owner"), ANOTHER)
+        self.stop_all(again)
+
+    def test_a_silent_owner_s_lease_runs_out(self):
+        again = self.peer()
+        self.plc.fall_silent()
+        for number in self.each():
+            self.assert_stopped_for_good(number)
+            self.enable(Axis(again, number))
         self.stop_all(again)
 
 

@@ -126,6 +126,7 @@ class AllAtOnce(Story):
         with self.refused(REFUSED):
             ours.coil("start_absolute")
         self.assertEqual((ours.get("command_result"), theirs.get("command_result")), (9, 2), "each has its own result")
+        theirs.coil("enable", False)  # after a stop a level acts on 0 -> 1 alone
         theirs.coil("enable")
         ours.until(axis_state=STANDSTILL)
         theirs.set(target_position=0)

@@ -158,11 +158,15 @@ class Axis:
     def command(self, name):
         """With a command_id, as a program does it; the id is returned."""
         if self.id is None:
-            self.client.write(self.first + 54, 0, 0)
-            self.id = self.get("command_id_seen")
+            self.begin()
         self.id = self.id % 0xFFFF + 1
         self.client.write(self.first + 54, COMMANDS[name], self.id)
         return self.id
+
+    def begin(self):
+        """A program begins by writing command 0 with an id that it will not use next."""
+        self.id = self.get("command_id_seen") % 0xFFFF + 1
+        self.client.write(self.first + 54, 0, self.id)
 
     def coil(self, name, on=True):
         address = self.first + COILS.index(name)

@@ -168,6 +168,7 @@ class Motion(Stepper):
         self.stepper.coil("start_absolute")
         self.stepper.until(motion_state=COMPLETED, position_actual=TURN)
         self.stepper.set(target_velocity=60 * RPM)
+        self.stepper.coil("run_velocity", False)
         self.stepper.coil("run_velocity")
         self.until_velocity(60)
         self.stepper.coil("run_velocity", False)
