@@ -28,7 +28,8 @@ Errc Ownership::judge(const ClientPtr& client, bool claims) const {
 
 bool Ownership::waits_for(const ClientPtr& client, bool all_zero) const {
   if (!lease_.rules.on || !client || !lease_.running) return false;
-  return lease_.owner ? how(*client) == Taken::orphan : !all_zero;
+  // What was released must not be taken back by the block that its scanner goes on writing.
+  return lease_.owner ? how(*client) == Taken::orphan : adopted_ && !all_zero;
 }
 
 Ownership::Taken Ownership::take(const ClientPtr& client, Instant now) {
@@ -66,6 +67,7 @@ Errc Ownership::release(const ClientPtr& client, bool enabled, Instant now) {
   if (!lease_.owner) return Errc::ok;
   if (!client || lease_.owner->id != client->id) return Errc::not_owner;
   lease_.owner.reset();
+  adopted_ = false;
   lease_.running = enabled;
   lease_.renewed = now;
   return Errc::ok;
@@ -74,6 +76,7 @@ Errc Ownership::release(const ClientPtr& client, bool enabled, Instant now) {
 void Ownership::open(Instant now) {
   if (!lease_.rules.on || lease_.running) return;
   lease_.owner.reset();
+  adopted_ = true;
   lease_.running = true;
   lease_.renewed = now;
 }

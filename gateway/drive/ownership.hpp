@@ -70,6 +70,7 @@ class Ownership {
   [[nodiscard]] Taken how(const ClientLife& client) const;
 
   Lease& lease_;
+  bool adopted_ = false;  ///< the open lease is of an axis that was found enabled, and not of one that was released
 };
 
 /// For the event of it.

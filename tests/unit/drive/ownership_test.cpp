@@ -162,6 +162,13 @@ TEST_F(Owned, AnAdoptedAxisWaitsForAnyWriteButABlockOfZeros) {
   EXPECT_FALSE(o.waits_for(nullptr, false));
 }
 
+TEST_F(Owned, AReleasedAxisWaitsForWhoAsksForSomething) {
+  Ownership o = owned(rules, kStart);
+  ASSERT_EQ(o.release(plc, true, kStart), Errc::ok);
+  EXPECT_FALSE(o.waits_for(plc, false)) << "its scanner goes on writing the same block";
+  EXPECT_EQ(o.judge(panel, true), Errc::ok);
+}
+
 TEST_F(Owned, TakeOverNeedsAHigherRank) {
   Ownership o = owned(rules, kStart);
   EXPECT_EQ(o.may_take_over(panel), Errc::not_owner) << "equal ranks";
