@@ -13,7 +13,7 @@
 namespace axisgate::drive {
 namespace {
 
-constexpr const char* kName = "leadshine-ld2-can";
+constexpr const char* kName = "kinco-jd";
 
 /// The shipped profile, but for the steps of set_position.
 DriveModel foreign(const char* steps) {
@@ -29,6 +29,7 @@ DriveModel foreign(const char* steps) {
   ResolveInput input;
   input.protocol = "canopen";
   input.node = 1;
+  input.constants.emplace("peak_current_a", Rational(275, 10));
   ResolveAxis axis;
   axis.number = 1;
   axis.name = "axis 1";
@@ -47,7 +48,9 @@ class SetPosition : public testing::Test {
   SetPosition() : model(foreign(kStarts)), store(model.objects) {
     store.begin_exchange();
     store.read(core.model.statusword, 0x0637, core.now);
+    store.read(core.model.controlword, 0x000F, core.now);
     in_mode(1);
+    core.link = LinkState::online;
     core.set_position_value = 4000;
     core.motion.enabled();
   }
