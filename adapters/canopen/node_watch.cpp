@@ -52,7 +52,8 @@ std::optional<boost::container::static_vector<bus::Notice, 1>> NodeWatch::on_err
   expect_heartbeat(now);
   const bool news = !std::exchange(present_, true) || state_ != heard.state;
   state_ = heard.state;
-  if (std::exchange(called_, false) || news) told.push_back(notice(bus::Notice::Kind::present));
+  const bool not_operational = state_ == bus::NodeState::stopped || state_ == bus::NodeState::pre_operational;
+  if (std::exchange(called_, false) || news || not_operational) told.push_back(notice(bus::Notice::Kind::present));
   return told;
 }
 

@@ -263,9 +263,10 @@ bool Axis::stopping() const {
                      [](const Pending& p) { return p.conversation->is_stop() && !p.conversation->stop_is_over(); });
 }
 
-bool Axis::enabling() const {
-  return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
-    return !p.conversation->is_stop() && p.conversation->begun() && asks_to_enable(p.conversation->group());
+bool Axis::enable_is_asked(bool begun) const {
+  return std::any_of(pending_.begin(), pending_.end(), [begun](const Pending& p) {
+    const bool counts = p.conversation->begun() || !begun;
+    return counts && !p.conversation->is_stop() && asks_to_enable(p.conversation->group());
   });
 }
 

@@ -76,7 +76,9 @@ class Axis {
   /// A stop of it waits for the wire or is under way.
   [[nodiscard]] bool stopping() const;
   /// An enable is under way.
-  [[nodiscard]] bool enabling() const;
+  [[nodiscard]] bool enabling() const { return enable_is_asked(true); }
+  /// The same, or (not `begun`) one waits for the wire.
+  [[nodiscard]] bool enable_is_asked(bool begun = false) const;
   /// A disable waits for the wire.
   [[nodiscard]] bool disable_waits() const;
 

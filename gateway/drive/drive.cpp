@@ -23,6 +23,7 @@ Drive::Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> imag
       frame_(model_),
       keep_alive_(model_),
       backoff_(bus.settings().timeout),
+      start_backoff_(bus.settings().timeout),
       timer_(runtime.make_timer([this] { on_time(); })),
       mapped_(model_.objects.size(), false) {
   assert(images.size() == model_.axes.size());
@@ -305,6 +306,7 @@ void Drive::bring_up_to_date() {
   const bool twin = now() < twin_until_;
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::duplicate_node, twin);
   Instant next = twin ? twin_until_ : kNever;
+  if (fell_back_ && now() < set_up_after_) next = std::min(next, set_up_after_);
   for (auto& axis : axes_) {
     axis->publish(now());
     next = std::min({next, axis->next_deadline(), stale_deadline(axis->core(), now())});

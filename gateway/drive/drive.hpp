@@ -123,6 +123,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void on_values(const bus::ReplyFields& fields);
   void on_emergency(const bus::Notice& notice);
   void left_operational(bus::NodeState state);
+  [[nodiscard]] bool may_be_set_up_anew() const;
   void map_values();
   void unmap_values();
   void tell_all(EventKind kind, std::uint32_t code, const std::string& text);
@@ -148,6 +149,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   KeepAlive keep_alive_;
   bus::OrderId keep_alive_order_ = 0;
   bus::Backoff backoff_;
+  bus::Backoff start_backoff_;  ///< between two set-ups of a node that does not become operational
   std::vector<std::unique_ptr<Axis>> axes_;
   std::unique_ptr<Timer> timer_;
   LinkState state_ = LinkState::link_down;
@@ -157,6 +159,10 @@ class Drive final : public bus::BusDrive, private AxisHost {
   std::uint64_t doubts_seen_ = 0;
   Instant probe_due_ = kNever;
   bool adopted_ = false;
+  /// CANopen: the node is not operational though it was told to start. It is polled, and set up and started anew in the
+  /// first disabled state, not before `set_up_after_`.
+  bool fell_back_ = false;
+  Instant set_up_after_ = kLongAgo;
   /// CANopen: the node has given a sign of life since it was last gone. One that has not is asked by SDO once after the
   /// link came up, to find what was there before us; then it is called (design 7, point 3), and asked again after so
   /// many calls alone: a node may know neither guarding nor heartbeat.

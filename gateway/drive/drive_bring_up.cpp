@@ -31,6 +31,7 @@ void Drive::begin_bring_up(bool restarted) {
   fence_.answered();
   backoff_.reset();
   unmap_values();
+  fell_back_ = false;
   keep_alive_.reset();
   bring_up_.begin();
   plan_.restart(now());
@@ -117,14 +118,21 @@ void Drive::judge_loss_reaction() {
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::no_comm_watchdog, !model_.stops_by_itself || !armed);
 }
 
-// Full bring-up at the first disabled state after an adoption.
+// An enable that is under way, or waits for its turn, would meet the NMT commands of a bring-up.
+bool Drive::may_be_set_up_anew() const {
+  const bool wanted = adopted_ || (fell_back_ && now() >= set_up_after_);
+  return wanted && std::none_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->enable_is_asked(); });
+}
+
+// Full bring-up at the first disabled state after an adoption, or after the node left operational.
 void Drive::leave_adoption() {
+  if (!may_be_set_up_anew()) return;
   // A drive that stands in quick stop active holds its motor: bring-up would find it enabled, and adopt it again.
   const bool enabled = std::any_of(axes_.begin(), axes_.end(), [this](const auto& a) {
     const AxisFacts facts = a->core().facts();
     return facts.enabled() || (bring_up_.has_setup() && holds_motor(facts.state));
   });
-  if (!adopted_ || enabled) return;
+  if (enabled) return;
   adopted_ = false;
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, false);
   if (bring_up_.has_setup()) begin_bring_up(false);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "adapters/bus/node_state.hpp"
 #include "gateway/drive/drive.hpp"
@@ -11,6 +12,8 @@ namespace {
 
 // A heartbeat that was on its way when the node was told to start tells of the state before.
 constexpr Duration kNmtSettles = std::chrono::milliseconds(100);
+// A node that was operational for so long has obeyed: what takes it out of that state now is something new.
+constexpr Duration kStartHeld = std::chrono::seconds(30);
 
 }  // namespace
 
@@ -61,23 +64,35 @@ void Drive::on_started() {
 }
 
 void Drive::on_present(bus::NodeState state) {
-  heard_ = true;
+  const bool news = !std::exchange(heard_, true) || node_state_ != state;
   node_state_ = state;
   if (state_ == LinkState::unknown || state_ == LinkState::offline) {
+    // A sign like the one before is no reason to ask sooner.
+    if (!news) return;
     backoff_.reset();
     probe_due_ = now();
     return;
   }
+  // A drive that was adopted, or is another than configured, was never told to start.
+  const bool was_started = !adopted_ && bring_up_.mismatch().empty();
   const bool left = state == bus::NodeState::pre_operational || state == bus::NodeState::stopped;
-  if (left && brought_up() && !adopted_ && now() - started_at_ > kNmtSettles) left_operational(state);
+  if (left && was_started && brought_up() && !fell_back_ && now() - started_at_ > kNmtSettles) left_operational(state);
 }
 
-// Somebody else has stopped it, or it fell back by itself. Its process data is dead; what runs is polled, and it is set
-// up anew as soon as its motor is disabled: a node with an enabled motor gets no NMT command.
+// Our start was lost, somebody else has stopped it, or it fell back by itself. Its process data is dead; what runs is
+// polled, and it is set up anew as soon as its motor is disabled: a node with an enabled motor gets no NMT command.
 void Drive::left_operational(bus::NodeState state) {
-  tell_all(EventKind::warning, 0, fmt::format("the node has become {}, by no command of ours", bus::text(state)));
+  if (now() - started_at_ > kStartHeld) start_backoff_.reset();
+  const Duration pause = start_backoff_.next();
+  set_up_after_ = now() + pause;
+  fell_back_ = true;
+  tell_all(EventKind::warning, 0,
+           fmt::format("the node is {} by no command of ours, or has missed its start: it is polled, and set up and "
+                       "started again in {} ms, or when its motor is disabled",
+                       bus::text(state), std::chrono::duration_cast<std::chrono::milliseconds>(pause).count()));
+  for (std::size_t i = 0; i < mapped_.size(); ++i)
+    if (mapped_[i]) store_.outdate(static_cast<ObjectId>(i));
   unmap_values();
-  adopted_ = true;
 }
 
 void Drive::on_gone() {

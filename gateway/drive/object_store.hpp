@@ -84,6 +84,10 @@ class ObjectStore {
   }
   /// How often doubt_all() was called: whoever keeps the image true reads everything anew then.
   [[nodiscard]] std::uint64_t doubts() const { return doubts_; }
+  /// What it was last may be true, but nothing confirms it any more: good only when it is read again.
+  void outdate(ObjectId id) {
+    each(id, [](ObjectState& s) { s.sent_at = kLongAgo; });
+  }
   void forget(ObjectId id) { at(id) = {}; }
   /// How often the object is confirmed, where that is not its poll class's period; 0: it is.
   void set_period(ObjectId id, Duration period) { periods_[id] = period; }

@@ -17,13 +17,6 @@ std::optional<std::int64_t> homing_method(const AxisCore& core) {
   return listed ? core.homing_method : std::nullopt;
 }
 
-// The drive takes the position itself (row 78), not by a homing on the spot.
-bool by_value(const AxisCore& core) {
-  const auto& def = core.model.command(Command::set_position);
-  return def && std::any_of(def->steps.begin(), def->steps.end(),
-                            [](const Step& step) { return step.source == Step::Source::set_position; });
-}
-
 // The drive runs on and on towards a switch that no input listens to.
 bool switch_is_there(const AxisCore& core, std::int64_t method) {
   for (const HomingNeed& need : core.model.homing_needs) {
@@ -47,8 +40,9 @@ std::optional<std::int16_t> mode_needed(const AxisCore& core, Command command) {
     case Command::home:
       return kModeHoming;
     case Command::set_position:
-      // By a homing on the spot; a drive without CiA 402 has means of its own.
-      return by_value(core) || core.is_virtual() ? std::nullopt : std::optional(kModeHoming);
+      // Whatever the profile's steps are: in a mode that moves, a controlword among them would start the target that
+      // the drive still holds, and a position that jumps is a way to go. A drive without CiA 402 has means of its own.
+      return core.is_virtual() ? std::nullopt : std::optional(kModeHoming);
     case Command::enable:
       break;
     default:

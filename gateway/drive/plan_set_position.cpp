@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <utility>
 
 #include "gateway/drive/planner.hpp"
 
@@ -23,6 +25,19 @@ bool add_wait_for_counter(const AxisCore& core, Plan& plan) {
   return true;
 }
 
+bool writes_at(const AxisCore& core, const Plan& plan, ObjectId object) {
+  return object != kNoObject && std::any_of(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
+           return a.kind == Action::Kind::write && same_place(core, a.object, object);
+         });
+}
+
+std::int64_t last_controlword(const AxisCore& core, const Plan& plan) {
+  std::int64_t word = 0;
+  for (const Action& a : plan.actions)
+    if (a.kind == Action::Kind::write && same_place(core, a.object, core.model.controlword)) word = a.number;
+  return word;
+}
+
 }  // namespace
 
 Plan plan_set_position(const AxisCore& core, int mode_before) {
@@ -42,12 +57,21 @@ Plan plan_set_position(const AxisCore& core, int mode_before) {
   const auto method = core.homing_method ? core.homing_method : core.value(Quantity::homing_method);
   const std::array<Borrowed, 2> borrowed{
       {{Quantity::homing_offset, 0, offset}, {Quantity::homing_method, kMethodPresentPosition, method}}};
+  // The mode that moves was left before; no step may bring it back, nor leave a start in the controlword for it.
+  constexpr int kHoming = 6;
+  constexpr std::int64_t kEnabledBits = 0x000F;
+  Plan steps;
+  if (!add_command_steps(core, Command::set_position, steps)) return steps;
+  if (core.mode_in_force() != kHoming || writes_at(core, steps, core.model.mode))
+    return Plan::refuse(Errc::state_unsuitable);
+  if (writes_at(core, steps, core.model.controlword) && last_controlword(core, steps) != kEnabledBits)
+    steps.add(Action::write(core.model.controlword, kEnabledBits));
   Plan plan;
   plan.add(Action::at(Mark::borrow_homing));
   for (const Borrowed& b : borrowed)
     if (core.model.binding(b.quantity) != nullptr && !add_write(core, b.quantity, {b.during}, plan))
       return Plan::refuse(Errc::bad_value);
-  if (!add_command_steps(core, Command::set_position, plan)) return plan;
+  append(plan, std::move(steps));
   if (!add_wait_for_counter(core, plan)) return Plan::refuse(Errc::bad_value);
   plan.add(Action::at(Mark::values_doubtful));
   for (const Borrowed& b : borrowed) {

@@ -27,6 +27,8 @@ constexpr std::array<std::pair<std::string_view, Command>, 12> kCommands{{
     {"save_parameters", Command::save_parameters},
 }};
 
+constexpr std::int16_t kHomingMode = 6;
+
 std::optional<Command> command_named(std::string_view name) {
   const auto at = std::find_if(kCommands.begin(), kCommands.end(), [&](const auto& row) { return row.first == name; });
   return at == kCommands.end() ? std::nullopt : std::optional(at->second);
@@ -149,6 +151,36 @@ void check_set_position_value(Reading& reading, const CommandSpec& command, cons
   });
 }
 
+bool is_of(const Reading& reading, const std::string& object, Quantity quantity) {
+  const QuantitySpec* spec = reading.profile.find(quantity);
+  return spec != nullptr && std::find(spec->objects.begin(), spec->objects.end(), object) != spec->objects.end();
+}
+
+/// On a CiA 402 drive the gateway carries it out in homing mode, by method 35: in a mode that moves, a controlword
+/// would start the target that the drive still holds.
+void check_starts_nothing(Reading& reading, const CommandSpec& command) {
+  if (command.command != Command::set_position || reading.profile.state.is_virtual) return;
+  bool commands = false;
+  const auto check = [&](const std::vector<StepSpec>& steps) {
+    for (const StepSpec& step : steps) {
+      if (step.verb != Step::Verb::write) continue;
+      commands = commands || is_of(reading, step.object, Quantity::controlword);
+      if (is_of(reading, step.object, Quantity::mode))
+        reading.fault(pointer_to(step.pointer, "write"),
+                      "set_position must not change the mode: an old target could start in it. Leave this step out: "
+                      "the gateway goes to homing mode (6) before the first step, and back after the last");
+    }
+  };
+  check(command.steps);
+  for (const CommandSpec::Variant& variant : command.variants) check(variant.steps);
+  if (!commands) return;
+  if (!reading.profile.modes.contains(kHomingMode) || reading.profile.find(Quantity::homing_method) == nullptr)
+    reading.fault(command.pointer,
+                  "its steps write the controlword, which in a mode that moves starts an old target, so they are "
+                  "carried out in homing mode by method 35: add mode \"6\" to /modes and quantity \"homing_method\", "
+                  "or leave set_position out");
+}
+
 void check_values(Reading& reading, const CommandSpec& command) {
   for (const StepSpec& step : command.steps) check_set_position_value(reading, command, step);
   for (const CommandSpec::Variant& variant : command.variants)
@@ -192,6 +224,7 @@ void read_command(Reading& reading, const std::string& key, const json& node) {
   read_variants(reading, node, out);
   out.steps = StepReader(reading).read(node, out.pointer);
   check_values(reading, out);
+  check_starts_nothing(reading, out);
   const bool everywhere = member(node, "steps") != nullptr || out.quick_stop_otherwise || out.as_absolute;
   if (!everywhere)
     reading.fault(out.pointer,

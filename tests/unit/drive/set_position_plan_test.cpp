@@ -1,0 +1,99 @@
+// A profile of one's own whose set_position writes the controlword, on a CiA 402 drive that stands in mode 1 with an
+// old target in it: what would be sent.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "gateway/drive/planner.hpp"
+#include "gateway/drive/profile_loader.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+constexpr const char* kName = "kinco-jd";
+
+/// The shipped profile, but for the steps of set_position.
+DriveModel foreign(const char* steps) {
+  std::ifstream shipped(std::string(AXISGATE_SOURCE_DIR "/schemas/drives/") + kName + ".json");
+  nlohmann::json profile = nlohmann::json::parse(shipped);
+  profile["commands"]["set_position"] = {{"steps", nlohmann::json::parse(steps)}};
+  const auto folder = std::filesystem::path(testing::TempDir()) / "set_position_plan_test";
+  std::filesystem::create_directories(folder);
+  const std::string path = (folder / (std::string(kName) + ".json")).string();
+  std::ofstream(path) << profile;
+  const LoadedProfile loaded = load_profile(path);
+  if (!loaded.faults.empty()) throw std::runtime_error(text(loaded.faults.front()));
+  ResolveInput input;
+  input.protocol = "canopen";
+  input.node = 1;
+  input.constants.emplace("peak_current_a", Rational(275, 10));
+  ResolveAxis axis;
+  axis.number = 1;
+  axis.name = "axis 1";
+  input.axes = {axis};
+  auto model = resolve(loaded, input);
+  if (auto* faults = std::get_if<std::vector<Fault>>(&model)) throw std::runtime_error(text(faults->front()));
+  return std::get<DriveModel>(std::move(model));
+}
+
+class SetPosition : public testing::Test {
+ protected:
+  static constexpr const char* kStarts =
+      R"([{"write": "target_position", "value": {"quantity": "set_position_value"}},
+          {"write": "controlword", "value": 15}, {"write": "controlword", "value": 31}])";
+
+  SetPosition() : model(foreign(kStarts)), store(model.objects) {
+    store.begin_exchange();
+    store.read(core.model.statusword, 0x0637, core.now);
+    store.read(core.model.controlword, 0x000F, core.now);
+    in_mode(1);
+    core.link = LinkState::online;
+    core.set_position_value = 4000;
+    core.motion.enabled();
+  }
+  void in_mode(std::int64_t mode) {
+    store.read(core.model.mode, mode, core.now);
+    if (core.model.mode_display != kNoObject) store.read(core.model.mode_display, mode, core.now);
+  }
+  [[nodiscard]] static long place_of(const Plan& plan, ObjectId object, std::int64_t number) {
+    const auto at = std::find_if(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
+      return a.kind == Action::Kind::write && a.object == object && a.number == number;
+    });
+    return at == plan.actions.end() ? -1 : at - plan.actions.begin();
+  }
+
+  DriveModel model;
+  ObjectStore store;
+  AxisCore core{model, model.axes[0], store};
+};
+
+TEST_F(SetPosition, TheModeThatMovesIsLeftBeforeTheFirstStep) {
+  const Plan before = plan_preparation(core, Command::set_position);
+  ASSERT_FALSE(before.refused()) << text(before.refusal.code);
+  EXPECT_GE(place_of(before, core.model.mode, 6), 0);
+}
+
+TEST_F(SetPosition, InTheModeThatMovesNothingIsSent) {
+  const Plan plan = plan_set_position(core, 1);
+  EXPECT_TRUE(plan.refused());
+  EXPECT_TRUE(plan.actions.empty());
+}
+
+TEST_F(SetPosition, NoStartIsLeftInTheControlwordForTheModeToComeBack) {
+  in_mode(6);
+  const Plan plan = plan_set_position(core, 1);
+  ASSERT_FALSE(plan.refused()) << text(plan.refusal.code);
+  const long start = place_of(plan, core.model.controlword, 31), back = place_of(plan, core.model.mode, 1);
+  ASSERT_GE(start, 0);
+  ASSERT_GT(back, start);
+  const auto cleared = std::any_of(plan.actions.begin() + start, plan.actions.begin() + back, [&](const Action& a) {
+    return a.kind == Action::Kind::write && a.object == core.model.controlword && a.number == 15;
+  });
+  EXPECT_TRUE(cleared);
+}
+
+}  // namespace
+}  // namespace axisgate::drive
