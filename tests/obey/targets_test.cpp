@@ -39,7 +39,8 @@ class Targets : public testing::TestWithParam<Subject> {
     const std::int64_t before = plant_.position();
     press(a_, kEnable);
     plant_.run(300ms);
-    EXPECT_LE(std::abs(plant_.position() - before), kClose) << "it moved from " << before << " to " << plant_.position();
+    EXPECT_LE(std::abs(plant_.position() - before), kClose)
+        << "it moved from " << before << " to " << plant_.position();
   }
   Write whole_block(std::int64_t target, std::int64_t command, std::int64_t id) {
     Rows rows = plant_.profile_rows();

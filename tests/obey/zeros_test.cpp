@@ -122,7 +122,9 @@ TEST_P(Zeros, BesideACommandThatActsLeaveItsProfileAsItIs) {
 class ZeroSpeed : public testing::TestWithParam<Subject> {
  protected:
   ZeroSpeed() { plant_.ready(); }
-  [[nodiscard]] bool enabled() { return plant_.motor().enabled.value_or((plant_.b.word(shown::statusword) & 0x6F) == 0x27); }
+  [[nodiscard]] bool enabled() {
+    return plant_.motor().enabled.value_or((plant_.b.word(shown::statusword) & 0x6F) == 0x27);
+  }
   void run() {
     ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
     ASSERT_EQ(plant_.a.command(kRun), kOk);
