@@ -66,8 +66,10 @@ TEST_P(Zeros, InTheControlwordAfterAnotherValueAreAStop) {
   EXPECT_FALSE(enabled());
 }
 
-TEST_P(Zeros, InTheControlwordOnAnEmptyMemoryAreOnlyRemembered) {
-  if (!has_positions(GetParam())) GTEST_SKIP() << "the owner's target_velocity 0 is another matter";
+/// The owner's target_velocity 0 is another matter.
+class ZerosInAMove : public Zeros {};
+
+TEST_P(ZerosInAMove, AreOnlyRememberedWhereTheControlwordWasNeverWritten) {
   ASSERT_EQ(a_.row(row::target_position, kFar), kOk);
   ASSERT_EQ(a_.command(kMove), kOk);
   plant_.run(200ms);
@@ -161,6 +163,7 @@ TEST_P(ZeroSpeed, OfARawModeIsAStopByItsControlword) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Zeros, testing::ValuesIn(kSubjects), named);
+INSTANTIATE_TEST_SUITE_P(Every, ZerosInAMove, testing::ValuesIn(subjects(has_positions)), named);
 INSTANTIATE_TEST_SUITE_P(Every, ZeroSpeed, testing::ValuesIn(subjects(has_speeds)), named);
 
 }  // namespace
