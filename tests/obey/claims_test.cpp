@@ -140,12 +140,14 @@ TEST_P(WithoutLeases, SetpointsBesideACommandThatIsRefusedAreTakenOnlyIfTheyWoul
   ASSERT_EQ(b_.command(0, 1), kOk);
   Rows rows = plant_.profile_rows();
   rows[there_.row] = there_.value;
-  ASSERT_EQ(b_.rows(there_.row, 53, [&] {
-    Rows few;
-    for (const auto& [offset, value] : rows)
-      if (offset >= there_.row) few.emplace(offset, value);
-    return few;
-  }()), kOk);
+  ASSERT_EQ(b_.rows(there_.row, 53,
+                    [&] {
+                      Rows few;
+                      for (const auto& [offset, value] : rows)
+                        if (offset >= there_.row) few.emplace(offset, value);
+                      return few;
+                    }()),
+            kOk);
   ASSERT_EQ(a_.row(here_.row, here_.value), kOk);
   ASSERT_EQ(a_.command(kDisable), kOk);
   // The same row as b wrote last, beside a start that the disabled axis refuses.

@@ -16,7 +16,9 @@ class Coils : public testing::TestWithParam<Subject> {
  protected:
   Coils() { plant_.ready(); }
   /// Of an iD286pro the gateway's gate, for its bus cannot disable it.
-  [[nodiscard]] bool enabled() { return plant_.motor().enabled.value_or((plant_.a.word(shown::statusword) & 0x6F) == 0x27); }
+  [[nodiscard]] bool enabled() {
+    return plant_.motor().enabled.value_or((plant_.a.word(shown::statusword) & 0x6F) == 0x27);
+  }
   /// The one that starts an endless motion: a level where the drive has speeds.
   void run_by_command(Client& client) {
     ASSERT_EQ(plant_.set_endless(client), kOk);
@@ -121,12 +123,14 @@ TEST_P(Levels, InARowOfCoilsOnAnEmptyMemoryAreOnlyRemembered) {
   EXPECT_EQ(a_.write(coil_block(coil::run_velocity, {1, 0, 0})), kOk);
   nothing_moves();
   EXPECT_EQ(a_.write(coil_block(coil::run_velocity, {0, 0, 0})), kOk);
+  ASSERT_EQ(a_.row(row::target_velocity, kSpeed), kOk);
   EXPECT_EQ(a_.write(coil_block(coil::run_velocity, {1, 0, 0})), kOk);
   EXPECT_TRUE(plant_.turns_within(1s));
 }
 
 TEST_P(Levels, HeldOverAnothersStopAskForNothingUntilZero) {
   ASSERT_EQ(a_.coil(coil::run_velocity, false), kOk);
+  ASSERT_EQ(a_.row(row::target_velocity, kSpeed), kOk);
   ASSERT_EQ(a_.coil(coil::run_velocity, true), kOk);
   ASSERT_TRUE(plant_.keeps_turning());
   ASSERT_EQ(b_.command(kQuickStop), kOk);
@@ -137,8 +141,8 @@ TEST_P(Levels, HeldOverAnothersStopAskForNothingUntilZero) {
   plant_.run(1500ms);
   EXPECT_EQ(a_.coil(coil::run_velocity, true), kNotNow);
   nothing_moves();
-  ASSERT_EQ(a_.row(row::target_velocity, kSpeed), kOk);
   EXPECT_EQ(a_.coil(coil::run_velocity, false), kOk);
+  ASSERT_EQ(a_.row(row::target_velocity, kSpeed), kOk);
   EXPECT_EQ(a_.coil(coil::run_velocity, true), kOk);
   EXPECT_TRUE(plant_.keeps_turning());
 }

@@ -56,8 +56,10 @@ struct World {
   std::int64_t ladder = 15;                ///< the last raw step of CiA 402 that was taken: 0, 6, 7 or 15
   std::optional<std::int64_t> raw_mode{};  ///< written to row 41 since the last command that selects a mode
   bool start_bit = false;                  ///< bit 4 may be set in the controlword in effect
+  bool stale_speed = false;                ///< the speed was accepted before a stop
   Motor motor = Motor::stands;
   std::int64_t target = 0;  ///< of the move
+  std::int64_t started_ms = 0;
   bool operator==(const World&) const = default;
 };
 
@@ -70,6 +72,7 @@ struct Verdict {
 struct ContractOptions {
   bool leases = false;
   std::set<std::uint16_t> rows{};  ///< set-points the drive has
+  bool no_halt = false;            ///< of a move: the profile stops it by what may latch the axis
   bool by_gateway = false;         ///< the CiA 402 machine is the gateway's
 };
 

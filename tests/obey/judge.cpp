@@ -7,6 +7,7 @@ namespace axisgate::test::obey {
 namespace {
 
 constexpr std::int64_t kClose = 8;  // counts of a coarse encoder, in 1/10000 turn
+constexpr std::int64_t kJustBegunMs = 250;
 constexpr std::int64_t kRearmMs = 1000, kRearmUnsureMs = 150;
 constexpr std::array<std::uint16_t, 11> kZeroLeaves{41, 47, 48, 50, 52, 58, 62, 64, 66, 70, 76};  // A6
 
@@ -68,6 +69,7 @@ void Judge::accept(std::uint16_t offset, std::int64_t value) {
   const auto old = world_.accepted.find(offset);
   const bool differs = old == world_.accepted.end() || old->second != value;
   world_.accepted[offset] = value;
+  if (offset == row::target_velocity) world_.stale_speed = false;
   if (differs && (offset == row::target_position || offset == row::target_velocity)) {
     me().command.changed = true;
     for (Item& coil : me().coils) coil.changed = true;
@@ -111,6 +113,7 @@ void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlw
 
 void Judge::stopped(bool asserted) {
   world_.motor = Motor::stands;  // 3.4: "a stop end[s] every motion for good"
+  world_.stale_speed = true;
   for (std::size_t c = 0; c < world_.clients.size(); ++c) {
     // A1 speaks of "another client's stop"; whether a disabling coil or controlword is one (A2: "nothing else") is
     // open.
@@ -132,7 +135,10 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
     return true;
   }
   // 3.4, command 7: "at standstill; while moving 0x06".
-  const bool under_way = world_.motor == Motor::moves && std::abs(world_.target - seen_.position) > kClose;
+  // A move to where it is already is not over before the drive has said so.
+  const bool just_begun = seen_.now_ms - world_.started_ms < kJustBegunMs;
+  const bool under_way =
+      world_.motor == Motor::moves && (just_begun || std::abs(world_.target - seen_.position) > kClose);
   if (command == 7 && (!seen_.stands || world_.motor == Motor::runs || !seen_.clear || under_way)) {
     const bool unsure = seen_.stands || !seen_.clear;
     if (!unsure || readings_.other()) {
@@ -148,6 +154,22 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
   return false;
 }
 
+// 3.4, command 4: "Where a drive has no halt, the profile names the replacement".
+void Judge::halted(bool asserted) {
+  stopped(asserted);
+  if (!options_.no_halt || !readings_.other()) return;
+  world_.latched = true;
+  world_.enabled = false;
+  world_.ladder = 0;
+}
+
+// A7: "the last accepted set-point is the one that every start uses"; 3.4: after a stop "velocity, torque and start are
+// needed anew". Where none came since, both are allowed.
+void Judge::renew_speed() {
+  if (world_.stale_speed && readings_.other()) world_.accepted[row::target_velocity] = 0;
+  world_.stale_speed = false;
+}
+
 void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
   if (is_start(number)) {
     claim();
@@ -160,11 +182,13 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     item.changed = item.ended = item.spoilt = item.refused = false;
     world_.raw_mode.reset();
     world_.start_bit = true;
+    world_.started_ms = seen_.now_ms;
     // A7: "the last accepted set-point is the one that every start uses".
     const auto of = [&](std::uint16_t offset) {
       return world_.accepted.contains(offset) ? world_.accepted[offset] : std::int64_t{0};
     };
     world_.motor = number == 8 ? Motor::runs : Motor::moves;
+    if (number == 8) renew_speed();
     if (number == 6) world_.target = of(row::target_position);
     if (number == 7) world_.target = seen_.position + of(row::target_position);
     verdict = {"acts: command " + std::to_string(number), {0}};
@@ -190,6 +214,9 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
   if (is_stop(number)) {
     stopped(true);
     if (number == 2) world_.enabled = false, world_.ladder = 0;
+    // 3.4, command 4: "Where a drive has no halt, the profile names the replacement".
+    if (number == 4 && options_.no_halt && readings_.other())
+      world_.latched = true, world_.enabled = false, world_.ladder = 0;
     if (number == 3) world_.latched = true, world_.enabled = false, world_.ladder = 0;
     verdict = {"acts: stop " + std::to_string(number), {0}};
     return;
@@ -220,7 +247,7 @@ void Judge::answer_not_new(std::int64_t number, const Item& item, Verdict& verdi
     verdict = {"not new, target changed: 0x06", same_target || number == 8 ? std::set<int>{0, 6} : std::set<int>{6}};
 }
 
-void Judge::controlword(std::int64_t value, Verdict& verdict) {
+bool Judge::controlword(std::int64_t value, Verdict& verdict) {
   verdict = {"acts: controlword " + std::to_string(value), {0}, true};
   const std::int64_t step = value & 15;
   const bool start = (value & 16) != 0;
@@ -228,12 +255,11 @@ void Judge::controlword(std::int64_t value, Verdict& verdict) {
   if (step == 15 && !world_.enabled) {
     // 3.4: the latch lasts until "controlword 6 or 7 and then 15". From 6 straight to 15 drives differ, and what a
     // disable or a quick stop leaves is the drive's affair.
-    const bool sure = world_.ladder == 7;
-    if (!sure && (world_.latched ? world_.ladder == 0 : world_.ladder == 0 && !options_.by_gateway)) {
-      if (!readings_.other()) return;
-    } else if (!sure && readings_.other()) {
-      return;
+    if (world_.latched && world_.ladder == 0) {
+      verdict = {"refused: controlword 15 while latched, without 6 or 7", {4}};
+      return false;
     }
+    if (world_.ladder != 7 && readings_.other()) return true;
     world_.enabled = true;
     world_.latched = false;
     world_.ladder = 15;
@@ -242,9 +268,10 @@ void Judge::controlword(std::int64_t value, Verdict& verdict) {
     if (world_.accepted.contains(row::mode) && world_.accepted[row::mode] == 3) {
       world_.raw_mode = 3;
       world_.motor = Motor::runs;  // 3.4: raw mode 3 runs
+      renew_speed();
     }
     if (start) world_.motor = Motor::unknown;
-    return;
+    return true;
   }
   if (step == 15) {
     const bool rising = start && !world_.start_bit;
@@ -257,7 +284,7 @@ void Judge::controlword(std::int64_t value, Verdict& verdict) {
     }
     // In mode 3, standing: see accept().
     if (world_.raw_mode == 3 && world_.motor == Motor::stands && readings_.other()) world_.motor = Motor::runs;
-    return;
+    return true;
   }
   // 3.3: bit 1 = 0, bit 2 = 0, or bits 0..3 = 6 or 7; A6: going to 0 is a stop.
   stopped(step == 0 && readings_.other());
@@ -267,6 +294,7 @@ void Judge::controlword(std::int64_t value, Verdict& verdict) {
     world_.ladder = step == 6 ? 6 : 0;
   else if (from_ready || options_.by_gateway || readings_.other())
     world_.ladder = 7;
+  return true;
 }
 
 // A6: "A block that covers 40..54 and is 0 in all of it asks for nothing and claims nothing".
@@ -313,7 +341,15 @@ Verdict Judge::registers(const Write& write) {
   setpoints(rows, single, command, word, refused);
   if (verdict.says.empty())
     verdict.says = command == Edge::remembered || word == Edge::remembered ? "only remembered" : "set-points";
-  if (word == Edge::acts) controlword(rows[row::controlword], verdict);
+  // 3.3: "it stops at the first failure".
+  if (word == Edge::acts && !controlword(rows[row::controlword], verdict)) {
+    // A stop is accepted in every state; what the two together are answered with is not said.
+    if (command == Edge::acts && is_stop(number)) {
+      this->command(number, me().command, verdict);
+      verdict.any_answer = true;
+    }
+    return verdict;
+  }
   if (command != Edge::absent && number != was.value.value_or(0)) me().command.refused = false;
   if (refused) me().command.refused = true;
   // Of a controlword that is not new nothing is said but that the motor does nothing.
@@ -330,73 +366,6 @@ Verdict Judge::registers(const Write& write) {
     if (word == Edge::acts) verdict.any_answer = true;
   }
   if (command == Edge::not_new && single) answer_not_new(number, was, verdict);
-  return verdict;
-}
-
-// A1, level coils: 0 enable, 3 halt, 7 run_velocity, 8 and 9 jog.
-Judge::Edge Judge::level_edge(std::uint16_t number, std::int64_t value, bool single) {
-  Item& item = me().coils.at(number);
-  const std::optional<std::int64_t> before = item.value;
-  item.value = value;
-  item.written_ms = seen_.now_ms;
-  if (value == 0) {
-    // "A single write of 0 always acts ...; in a block on an empty memory it is only remembered."
-    if (single) return Edge::acts;
-    return !before ? Edge::remembered : *before == 0 ? Edge::nothing : Edge::acts;
-  }
-  if (number == coil::halt) return single || before != 1 ? Edge::acts : Edge::nothing;  // A2: an asserted stop
-  // "Coils 7, 8, 9 act on 1 only after this client wrote 0 to them on this memory. Coil 0 = 1 the same while the stop
-  // latch is set ...; else a single write of 1 on an empty memory enables."
-  if (before == 0) return Edge::acts;
-  if (before == 1) return Edge::not_new;  // "rearm_ms never applies to them"
-  return number == coil::enable && single && !world_.latched ? Edge::acts : Edge::remembered;
-}
-
-Verdict Judge::coils(const Write& write) {
-  const bool single = write.words.size() == 1;
-  Verdict verdict{"nothing", {0}};
-  int acted = 0;
-  for (std::size_t i = 0; i < write.words.size(); ++i) {
-    const auto number = static_cast<std::uint16_t>(write.first + i);
-    if (number >= me().coils.size()) continue;
-    const std::int64_t value = write.words[i];
-    Item& item = me().coils[number];
-    const Item was = item;
-    constexpr std::array<std::int64_t, 8> kCommands{1, 5, 3, 4, 6, 7, 10, 8};
-    const bool level = number == coil::enable || number == coil::halt || number >= coil::run_velocity;
-    const Edge edge = level ? level_edge(number, value, single)
-                            : this->edge(item, value, single, number == coil::quick_stop && value != 0);
-    if (number > coil::run_velocity) continue;  // only zeros are written to these in a sequence
-    const std::int64_t command = kCommands[number];
-    if (single && edge == Edge::not_new && value == 1) {
-      answer_not_new(command, was, verdict);
-      // A3: "or a held level is refused"; unless it is so already.
-      if (level && number == coil::run_velocity) verdict.answers = {0, 6};
-      if (level && number == coil::enable)
-        verdict.answers = world_.enabled && !world_.latched ? std::set{0} : std::set{6};
-    }
-    if (single && level && edge == Edge::remembered && value == 1) verdict = {"only remembered: write 0 first", {6}};
-    if (edge != Edge::acts) continue;
-    ++acted;
-    if (value == 0) {
-      if (number == coil::enable) {
-        this->command(2, item, verdict);
-      } else if (number == coil::halt) {
-        world_.held = false;  // "ends the halt without moving"
-      } else if (number == coil::run_velocity &&
-                 (world_.motor == Motor::runs || (world_.motor == Motor::moves && readings_.other()))) {
-        stopped(readings_.other());
-      }
-      if (number != coil::enable) verdict.says = "coil " + std::to_string(number) + " = 0";
-      continue;
-    }
-    item.refused = is_start(command) && start_refused(command, verdict);
-    if (item.refused) continue;
-    if (number == coil::halt) world_.held = true;
-    this->command(command, item, verdict);
-  }
-  // Which of two goes first in one row of coils is not said.
-  if (acted > 1) world_.motor = Motor::unknown, verdict.any_answer = true;
   return verdict;
 }
 

@@ -48,10 +48,13 @@ class Judge {
   void setpoints(const Rows& rows, bool single, Edge command, Edge controlword, bool refused);
   void accept(std::uint16_t offset, std::int64_t value);
   [[nodiscard]] bool start_refused(std::int64_t command, Verdict& verdict);
-  void controlword(std::int64_t value, Verdict& verdict);
+  /// False: it was refused, and nothing after it is carried out.
+  bool controlword(std::int64_t value, Verdict& verdict);
   void command(std::int64_t number, Item& item, Verdict& verdict);
   void answer_not_new(std::int64_t number, const Item& item, Verdict& verdict);
   void stopped(bool asserted);
+  void halted(bool asserted);
+  void renew_speed();
   void claim();
 
   const ContractOptions& options_;

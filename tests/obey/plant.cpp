@@ -35,7 +35,9 @@ Plant::Plant(Subject which, PlantOptions options)
       context_{listener, stage.gateway().image(), stage.gateway(), registry, log_, &stage.runtime()},
       fitter_(context_, stage.runtime(), kHostOfFitter),
       a(context_, stage.runtime(), kHostOfA),
-      b(context_, stage.runtime(), kHostOfB) {}
+      b(context_, stage.runtime(), kHostOfB) {
+  listener.idle_timeout = Duration{};  // tests that wait for a minute keep their connections
+}
 
 void Plant::ready_but_disabled() {
   expect(stage.come_online(), "the axis never came online");

@@ -70,7 +70,9 @@ class Plant {
   [[nodiscard]] std::unique_ptr<Client> connection_from(std::uint8_t host) {
     return std::make_unique<Client>(context_, stage.runtime(), host);
   }
-  [[nodiscard]] bool has(unsigned bit) { return (static_cast<std::uint32_t>(fitter_.wide(shown::supported)) >> bit & 1U) != 0; }
+  [[nodiscard]] bool has(unsigned bit) {
+    return (static_cast<std::uint32_t>(fitter_.wide(shown::supported)) >> bit & 1U) != 0;
+  }
   static constexpr std::uint8_t kHostOfA = 10, kHostOfB = 20, kHostOfFitter = 30;
 };
 

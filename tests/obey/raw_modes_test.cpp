@@ -87,7 +87,8 @@ class RawTorque : public testing::TestWithParam<Subject> {
  protected:
   RawTorque() {
     plant_.ready_but_disabled();
-    plant_.a.row(row::max_velocity, 300'000);  // not every drive has it, and without it a torque ends at the drive's own
+    plant_.a.row(row::max_velocity,
+                 300'000);  // not every drive has it, and without it a torque ends at the drive's own
   }
   Plant plant_{GetParam()};
 };

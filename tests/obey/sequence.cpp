@@ -24,11 +24,14 @@ std::string text(const Step& step) {
   return out;
 }
 
-Sequence::Sequence(Subject subject, std::uint64_t seed, std::size_t clients)
+Sequence::Sequence(Subject subject, std::uint64_t seed, std::size_t clients, Rows profile)
     : subject_(subject),
       random_(seed * 64 + static_cast<std::uint64_t>(subject)),
       clients_(clients),
-      flavour_(flavour_of(subject, seed)) {}
+      profile_(std::move(profile)),
+      flavour_(flavour_of(subject, seed)) {
+  for (Writer& writer : writers_) writer.zeros = once_in(2);
+}
 
 std::int64_t Sequence::position() { return has_positions(subject_) ? any_of(kPositions) : 0; }
 std::int64_t Sequence::speed() { return has_speeds(subject_) ? any_of(kSpeeds) : 0; }
@@ -104,6 +107,7 @@ Write Sequence::single(Writer& writer) {
 Write Sequence::registers(Writer& writer) {
   const int function = once_in(4) ? fc::read_write : fc::write_registers;
   Rows rows = targets(writer);
+  if (!writer.zeros) rows.insert(profile_.begin(), profile_.end());
   const std::int64_t mode = flavour_ == Flavour::both || once_in(2) ? 0 : flavour_ == Flavour::moves ? 1 : 3;
   const auto only = [&](std::uint16_t first, std::uint16_t last) {
     std::erase_if(rows, [&](const auto& r) { return r.first < first || r.first > last; });

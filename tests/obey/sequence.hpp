@@ -23,7 +23,8 @@ enum class Flavour : std::uint8_t { moves, speeds, both };
 
 class Sequence {
  public:
-  Sequence(Subject subject, std::uint64_t seed, std::size_t clients);
+  /// `profile`: rows 48 to 52 as the drive holds them; some clients write these in their blocks, some write zeros.
+  Sequence(Subject subject, std::uint64_t seed, std::size_t clients, Rows profile);
 
   [[nodiscard]] Flavour flavour() const { return flavour_; }
   Step next();
@@ -34,6 +35,7 @@ class Sequence {
   struct Writer {
     std::int64_t id = 0;
     std::int64_t word = 0;
+    bool zeros = false;  ///< where others have the profile's rows
     Rows last{};
   };
   std::uint64_t below(std::uint64_t bound) { return random_.below(bound); }
@@ -57,6 +59,7 @@ class Sequence {
   Subject subject_;
   simulated::Random random_;
   std::size_t clients_;
+  Rows profile_;
   Flavour flavour_;
   std::array<Writer, 2> writers_{};
 };

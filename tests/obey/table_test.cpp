@@ -54,10 +54,13 @@ class Play {
   Play(Subject subject, std::uint64_t seed, bool leases)
       : leases_(leases),
         plant_(subject, leases ? PlantOptions{LeaseRules{}, {}, seed} : PlantOptions{{}, {}, seed}),
-        sequence_(subject, seed, leases ? 1 : 2) {
-    plant_.ready();
+        sequence_(subject, seed, leases ? 1 : 2, [this] {
+          plant_.ready();
+          return plant_.profile_rows();
+        }()) {
     ContractOptions options;
     options.leases = leases;
+    options.no_halt = is_kinco(subject) && !is_md(subject) && sequence_.flavour() != Flavour::speeds;
     options.by_gateway = !is_cia402(subject);
     if (has_positions(subject)) options.rows.insert(row::target_position);
     if (has_speeds(subject)) options.rows.insert(row::target_velocity);

@@ -66,8 +66,10 @@ TEST_P(Zeros, InTheControlwordAfterAnotherValueAreAStop) {
   EXPECT_FALSE(enabled());
 }
 
-TEST_P(Zeros, InTheControlwordOnAnEmptyMemoryAreOnlyRemembered) {
-  if (!has_positions(GetParam())) GTEST_SKIP() << "the owner's target_velocity 0 is another matter";
+/// The owner's target_velocity 0 is another matter.
+class ZerosInAMove : public Zeros {};
+
+TEST_P(ZerosInAMove, AreOnlyRememberedWhereTheControlwordWasNeverWritten) {
   ASSERT_EQ(a_.row(row::target_position, kFar), kOk);
   ASSERT_EQ(a_.command(kMove), kOk);
   plant_.run(200ms);
@@ -122,7 +124,9 @@ TEST_P(Zeros, BesideACommandThatActsLeaveItsProfileAsItIs) {
 class ZeroSpeed : public testing::TestWithParam<Subject> {
  protected:
   ZeroSpeed() { plant_.ready(); }
-  [[nodiscard]] bool enabled() { return plant_.motor().enabled.value_or((plant_.b.word(shown::statusword) & 0x6F) == 0x27); }
+  [[nodiscard]] bool enabled() {
+    return plant_.motor().enabled.value_or((plant_.b.word(shown::statusword) & 0x6F) == 0x27);
+  }
   void run() {
     ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
     ASSERT_EQ(plant_.a.command(kRun), kOk);
@@ -159,6 +163,7 @@ TEST_P(ZeroSpeed, OfARawModeIsAStopByItsControlword) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Zeros, testing::ValuesIn(kSubjects), named);
+INSTANTIATE_TEST_SUITE_P(Every, ZerosInAMove, testing::ValuesIn(subjects(has_positions)), named);
 INSTANTIATE_TEST_SUITE_P(Every, ZeroSpeed, testing::ValuesIn(subjects(has_speeds)), named);
 
 }  // namespace
