@@ -15,13 +15,11 @@ import time
 import unittest
 
 SOURCE, BUILD = (os.path.abspath(folder) for folder in sys.argv[1:3])
+sys.path.insert(0, f"{SOURCE}/tests/integration")
+from processes import Ports  # noqa: E402 where the stories have it
+
 LONGEST = 60
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+PORTS = Ports()
 
 
 def processes_in(folder):
@@ -50,7 +48,7 @@ class Demo(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
-        self.port = free_port()
+        self.port = PORTS.free()
         self.environment = {**os.environ, "TMPDIR": self.folder.name, "TERM": "xterm"}
 
     def command(self, *options):

@@ -82,17 +82,23 @@ class Program:
 
 
 class Ports:
-    """Ports of loopback that neither another test at the same time nor an outgoing connection takes."""
+    """Ports of loopback that neither another test at the same time nor an outgoing connection takes: each is kept by a name in the
+    kernel as long as the test runs, also while nobody listens there."""
 
     def __init__(self):
         self.next = 10000 + os.getpid() * 16 % 20000
+        self.claims = []
 
     def free(self):
         while True:
-            port, self.next = self.next, self.next + 1
+            port, self.next = self.next, self.next + 1 if self.next < 30000 else 10000
+            claim = socket.socket(socket.AF_UNIX)
             with socket.socket() as probe:
                 try:
+                    claim.bind(f"\0axisgate-test-port-{port}")
                     probe.bind(("127.0.0.1", port))
-                    return port
                 except OSError:
+                    claim.close()
                     continue
+            self.claims.append(claim)
+            return port

@@ -28,7 +28,9 @@ def drive(kind, node, axis, **more):
 
 
 def bus(device, *drives, **more):
-    return {"name": os.path.basename(device), "adapter": "kinco-serial", "device": device, "rs485": "off", "drives": list(drives), **more}
+    """Waits for an answer longer than a machine that is busy with something else keeps a simulated drive from giving it."""
+    return {"name": os.path.basename(device), "adapter": "kinco-serial", "device": device, "rs485": "off", "timeout_ms": 1000,
+            "drives": list(drives), **more}
 
 
 class Simulator(Program):
