@@ -24,6 +24,10 @@ inline constexpr std::array kCuts{Cut::silent, Cut::reported};
 class GapRig {
  public:
   explicit GapRig(Subject subject, std::optional<LeaseRules> lease = {});
+  GapRig(const GapRig&) = delete;
+  GapRig& operator=(const GapRig&) = delete;
+  /// Prints the gateway's log where the test has failed.
+  ~GapRig();
 
   TableRig rig;
   std::shared_ptr<ClientLife> owner = client(1, "10.0.0.1");
