@@ -67,6 +67,12 @@ void GapRig::cut(Cut cut) {
   rig.stage.run(1ms);
 }
 
+Duration GapRig::short_gap(Cut cut) const {
+  const Subject s = rig.subject();
+  const bool watches = s == Subject::jd_can || s == Subject::md_can || s == Subject::leadshine;
+  return watches && cut == Cut::silent ? 350ms : 800ms;
+}
+
 bool GapRig::comes_to_rest(Duration limit) {
   const Instant end = rig.stage.runtime().now() + limit;
   while (rig.turns())
@@ -84,6 +90,7 @@ bool GapRig::stays_at_rest(Duration time) {
 bool GapRig::adopted() { return (rig.axis().alarms >> static_cast<unsigned>(AxisAlarm::adopted_running) & 1U) != 0; }
 
 void GapRig::expect_usable() {
+  run(2s);  // a drive that has missed the gateway for too long may stop by itself yet
   ASSERT_TRUE(rig.stage.come_online());
   if (rig.axis().has(AxisInput::fault)) {
     EXPECT_EQ(command(Command::fault_reset), Errc::ok);

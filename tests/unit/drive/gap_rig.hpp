@@ -40,6 +40,9 @@ class GapRig {
   void set_moving();
   void cut(Cut cut);
   void mend() { rig.mend(); }
+  /// A gap that no drive answers with a stop of its own: those on CANopen want a heartbeat or a guarding frame each
+  /// 1500 ms, and it comes each 500 ms.
+  [[nodiscard]] Duration short_gap(Cut cut) const;
 
   /// Within `limit`.
   [[nodiscard]] bool comes_to_rest(Duration limit = std::chrono::seconds(30));
