@@ -49,7 +49,7 @@ void Axis::on_time(Instant now) {
 }
 
 Instant Axis::next_deadline() const {
-  Instant next = std::min({core_.motion.deadline(), ownership_.until(), jog_.until(), owed_.next_deadline()});
+  Instant next = std::min({core_.motion.deadline(), ownership_.until(), jog_.until(), owed_.next_deadline(core_.now)});
   for (const Pending& p : pending_)
     for (const Waiting& client : p.callbacks) next = std::min(next, deadline_of(p, client));
   return next;

@@ -274,6 +274,9 @@ std::optional<Conversation::Move> Conversation::advance_wait(const Action& actio
   const bool looked = fresh && state.sent_at + kLookSeldom >= std::min(now, wait_until_);
   if (now >= wait_until_ && (looked || (fresh && action.limit == Duration{}))) {
     if (action.optional) {
+      // Nobody answers a frame, and the motor has not told either that it was heard.
+      stop_withheld_ = stop_withheld_ || (phase_ == Phase::stop && !core_.drive.composed.empty() &&
+                                          is_continuous(core_.mode_in_force()) && core_.facts().moving);
       pop();
     } else {
       fail(action.otherwise, refusal(action.otherwise).detail);

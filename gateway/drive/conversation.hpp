@@ -107,7 +107,7 @@ class Conversation {
   bool begun_ = false;
   bool handed_over_ = false;
   bool stop_confirmed_ = false;
-  bool stop_withheld_ = false;  ///< it could have enabled, and was not sent
+  bool stop_withheld_ = false;      ///< not sent, as it could have enabled, or not seen to act
   bool verifying_ = false;          ///< a write was not acknowledged: its object is read back
   int attempts_ = 0;                ///< of a stop, beyond the first
   std::optional<int> mode_before_;  ///< in force before the first preparation

@@ -56,7 +56,9 @@ class OwedStop {
   /// What must be sent now: the axis was read enabled since the last attempt.
   [[nodiscard]] std::optional<StopKind> due(Instant now) const;
   /// When due() may change without anything being told.
-  [[nodiscard]] Instant next_deadline() const { return read_enabled_ ? not_before_ : kNever; }
+  [[nodiscard]] Instant next_deadline(Instant now) const {
+    return read_enabled_ && not_before_ > now ? not_before_ : kNever;
+  }
 
  private:
   End discharge(End how);

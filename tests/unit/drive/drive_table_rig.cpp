@@ -53,8 +53,11 @@ GatewayStage::Line plain_line_of(Subject subject) {
     case Subject::md_can:
       return can_line_of({simulated::KincoCanDrive{kinco_options(subject), {}}}, 1);
     case Subject::jd_serial:
-    case Subject::md_serial:
-      return line_of(is_md(subject) ? KincoType::md : KincoType::jd, 1);
+    case Subject::md_serial: {
+      GatewayStage::Line line = line_of(is_md(subject) ? KincoType::md : KincoType::jd, 1);
+      line.options.reply_delay = 2ms;
+      return line;
+    }
     case Subject::keya_can_speed:
     case Subject::keya_can_position:
       return can_line_of({simulated::KeyaCanDrive{keya_options(subject)}}, 1);

@@ -24,6 +24,10 @@ inline constexpr std::array kCuts{Cut::silent, Cut::reported};
 class GapRig {
  public:
   explicit GapRig(Subject subject, std::optional<LeaseRules> lease = {});
+  GapRig(const GapRig&) = delete;
+  GapRig& operator=(const GapRig&) = delete;
+  /// Prints the gateway's log where the test has failed.
+  ~GapRig();
 
   TableRig rig;
   std::shared_ptr<ClientLife> owner = client(1, "10.0.0.1");
@@ -36,6 +40,9 @@ class GapRig {
   void set_moving();
   void cut(Cut cut);
   void mend() { rig.mend(); }
+  /// A gap that no drive answers with a stop of its own: those on CANopen want a heartbeat or a guarding frame each
+  /// 1500 ms, and it comes each 500 ms.
+  [[nodiscard]] Duration short_gap(Cut cut) const;
 
   /// Within `limit`.
   [[nodiscard]] bool comes_to_rest(Duration limit = std::chrono::seconds(30));

@@ -36,7 +36,7 @@ TEST(OwedStop, IsSentAgainAtItsPaceAndOnlyAfterAFreshRead) {
   EXPECT_EQ(owed.due(kStart + 1h), std::nullopt) << "that read is older than the last sending";
   EXPECT_EQ(owed.state_read(operation_enabled, 6), End::none);
   EXPECT_EQ(owed.due(kStart + OwedStop::kPace - 1ms), std::nullopt);
-  EXPECT_EQ(owed.next_deadline(), kStart + OwedStop::kPace);
+  EXPECT_EQ(owed.next_deadline(kStart), kStart + OwedStop::kPace);
   EXPECT_EQ(owed.due(kStart + OwedStop::kPace), StopKind::disable);
 }
 
