@@ -112,8 +112,10 @@ TEST(Stops, AreSentThreeTimesAtMostUntilTheStateShows) {
   rig.motor().set_input(1, true);
   rig.mark();
   const auto place = rig.stage.begin(1, with_command(Command::disable));
-  rig.stage.run(6s);
+  rig.stage.run(5s);
   EXPECT_EQ(rig.count(kControlword, 0x06), 3U);
+  rig.stage.run(1s);
+  EXPECT_EQ(rig.count(kControlword, 0x06), 4U) << "it is still enabled, so the stop is owed on";
   ASSERT_TRUE(place->has_value());
   EXPECT_EQ((*place)->outcome.code, Errc::timed_out) << "at the client's deadline";
 }
