@@ -19,7 +19,7 @@ class Line(Story):
 
     def setUp(self):
         super().setUp()
-        self.start(buses=[bus(self.path(self.line), *self.drives(), adapter=self.adapter)])
+        self.start(buses=[bus(self.path(self.line), *self.drives(), adapter=self.adapter, timeout_ms=None)])
         self.axes = [self.axis(number) for number in (1, 2, 3)]
         for axis in self.axes:
             axis.set(profile_velocity=600 * RPM, profile_acceleration=30000, profile_deceleration=30000)

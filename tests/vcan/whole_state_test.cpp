@@ -59,7 +59,7 @@ class Traced : public ::testing::Test {
 
 TEST_F(Traced, AStateShorterThanTheProcessorsIsSetAndTheRestStays) {
   const std::vector<unsigned char> before = state();
-  if (before.size() <= kWithoutAvx) GTEST_SKIP() << "this processor has no more state than that";
+  ASSERT_GT(before.size(), kWithoutAvx) << "a processor without AVX shows nothing here";
   std::vector<unsigned char> part(before.begin(), before.begin() + kWithoutAvx);
   part[kXmm0] ^= 0xFFU;
   part[512] |= 2U;  // the header: XMM registers are not as they were at the start
