@@ -178,6 +178,7 @@ void Conversation::reach(const Action& action, Instant now) {
       break;
     case Mark::quick_stopped:
       if (!motion.latched()) motion.stop(true, now);
+      motion.disarm();
       stops_before_ = motion.stops();
       break;
     case Mark::halted:

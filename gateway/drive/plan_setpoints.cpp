@@ -133,6 +133,13 @@ bool writes(const Plan& plan, ObjectId object) {
 
 void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
   bool look_again = false;
+  // Those without a quantity on this axis are nobody's to ask for: 0 in any unit. They go first: a drive may take two of
+  // them for one set-point (Kinco: target torque and target current), and what was asked for must be the last word.
+  const auto& bindings = core.model.bindings;
+  for (const ObjectId id : core.model.zero_before_enable)
+    if (std::none_of(bindings.begin(), bindings.end(),
+                     [&](const Binding& b) { return b.writable && same_place(core, id, b.object); }))
+      add_running_target(core, id, 0, plan, look_again);
   for (const Quantity q : {Quantity::target_velocity, Quantity::target_torque}) {
     const Binding* binding = core.model.binding(q);
     if (binding == nullptr || !binding->writable || moves_by_write(core, binding->object)) continue;
@@ -140,12 +147,6 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
     const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, core.object(binding->object));
     add_running_target(core, binding->object, raw.value_or(0), plan, look_again);
   }
-  // Those without a quantity on this axis are nobody's to ask for: 0 in any unit.
-  const auto& bindings = core.model.bindings;
-  for (const ObjectId id : core.model.zero_before_enable)
-    if (std::none_of(bindings.begin(), bindings.end(),
-                     [&](const Binding& b) { return b.writable && same_place(core, id, b.object); }))
-      add_running_target(core, id, 0, plan, look_again);
   if (look_again) plan.add(Action::at(Mark::look_again));
 }
 

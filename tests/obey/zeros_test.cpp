@@ -70,13 +70,15 @@ TEST_P(Zeros, InTheControlwordAfterAnotherValueAreAStop) {
 class ZerosInAMove : public Zeros {};
 
 TEST_P(ZerosInAMove, AreOnlyRememberedWhereTheControlwordWasNeverWritten) {
-  ASSERT_EQ(a_.row(row::target_position, kFar), kOk);
+  // Not so far that a Keya's own watchdog ends the move: in position mode nothing may be sent again.
+  constexpr std::int64_t kWithinASecond = kFar / 2;
+  ASSERT_EQ(a_.row(row::target_position, kWithinASecond), kOk);
   ASSERT_EQ(a_.command(kMove), kOk);
   plant_.run(200ms);
   EXPECT_EQ(a_.write(kZeros), kOk);
   EXPECT_TRUE(enabled());
   const std::int64_t at = plant_.comes_to_rest_at();
-  EXPECT_LE(std::abs(at - kFar), kClose) << at;
+  EXPECT_LE(std::abs(at - kWithinASecond), kClose) << at;
 }
 
 TEST_P(Zeros, InRowsThatLeaveAsIsChangeNothingInABlockAndAreRefusedAlone) {
@@ -89,13 +91,15 @@ TEST_P(Zeros, InRowsThatLeaveAsIsChangeNothingInABlockAndAreRefusedAlone) {
                               {row::profile_velocity, 20},
                               {row::profile_acceleration, 21},
                               {row::profile_deceleration, 22},
-                              {row::jog_velocity, {}},
+                              {row::jog_velocity, 17},  // with target_velocity
                               {row::homing_speed_switch, 24},
                               {row::homing_speed_zero, 25},
                               {row::homing_acceleration, 26},
                               {row::quick_stop_deceleration, 28},
                               {row::max_velocity, 31}};
-  ASSERT_EQ(a_.row(row::jog_velocity, kSpeed), kOk);
+  if (plant_.has(17)) {
+    ASSERT_EQ(a_.row(row::jog_velocity, kSpeed), kOk);
+  }
   plant_.run(3s);  // every row has been polled
   for (const auto& [offset, bit] : rows) {
     if (bit && !plant_.has(*bit)) continue;

@@ -2,6 +2,7 @@
 #include <array>
 #include <boost/container/static_vector.hpp>
 
+#include "gateway/image/shown.hpp"
 #include "gateway/upstream/modbus_tcp/claims.hpp"
 #include "gateway/upstream/modbus_tcp/write_plan.hpp"
 
@@ -52,6 +53,11 @@ struct Asked {
   bool not_new = false;
 };
 
+/// A single 0 to the button by which the axis jogs is a stop of anybody's; elsewhere a 0 ends its client's own jog alone.
+bool ends_anybodys_jog(const Request& request, std::uint16_t first, const AxisImage& axis) {
+  return request.write_count == 1 && !request.written_coil(0) && (shown_level_coils(axis) >> first & 1U) != 0;
+}
+
 /// What the coils of the request ask for, by the edge rules.
 Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, Writing writing, const RowMemory& rows,
           EdgeMemory& edges) {
@@ -72,7 +78,7 @@ Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, Wr
       asked.acting.push_back(coil_asks.command);
   }
   const JogAsks jogs = edges.jog(jog, writing);
-  if (jogs.ends) asked.acting.push_back(Command::jog_end);
+  if (jogs.ends) asked.acting.push_back(ends_anybodys_jog(request, first, axis) ? Command::halt : Command::jog_end);
   if (jogs.start) asked.acting.push_back(*jogs.start);
   asked.not_new = asked.not_new || jogs.not_new;
   const bool stops = any_of(asked.acting, is_stop) || jogs.ends || has(asked.acting, Command::end_run);

@@ -8,6 +8,12 @@ constexpr std::size_t kRunVelocity = 7;
 constexpr std::size_t kJogForward = 8;
 constexpr std::size_t kJogReverse = 9;
 
+/// "A single write that asks for what is so already is answered normally."
+bool is_so(Command command, const Writing& writing) {
+  if (command == Command::enable) return writing.enabled;
+  return command == Command::fault_reset && !writing.needs_zero;
+}
+
 bool is_start(Command command) { return command >= Command::move_absolute && command <= Command::home; }
 
 }  // namespace
@@ -33,7 +39,7 @@ Verdict EdgeMemory::judge_single(const Item& item, const Kind& kind, const Writi
   if (kind.stop_word) return interrupted ? Verdict::acts : Verdict::nothing;
   const bool changed = item.targets != writing.targets;
   const bool over = !item.acted || endings.ended(since, writing.client);
-  return kind.relative || changed || over ? Verdict::not_new : Verdict::nothing;
+  return kind.relative || ((changed || over) && !kind.is_so) ? Verdict::not_new : Verdict::nothing;
 }
 
 Verdict EdgeMemory::judge(Item& item, std::uint16_t value, const Kind& kind, const Writing& writing) {
@@ -75,8 +81,10 @@ Verdict EdgeMemory::controlword(std::uint16_t value, const Writing& writing) {
 
 Verdict EdgeMemory::command(Command value, const Writing& writing) {
   const auto number = static_cast<std::uint16_t>(value);
-  const Kind kind{
-      .stop = axisgate::is_stop(value), .relative = value == Command::move_relative, .held_start = is_start(value)};
+  const Kind kind{.stop = axisgate::is_stop(value),
+                  .relative = value == Command::move_relative,
+                  .is_so = is_so(value, writing),
+                  .held_start = is_start(value)};
   // "0 in `command` does nothing and arms it."
   const Verdict verdict = value == Command::none ? Verdict::nothing : judge(command_, number, kind, writing);
   return conclude(command_, number, verdict, writing);
@@ -130,7 +138,9 @@ CoilAsks EdgeMemory::coil(const CoilRow& coil, bool value, const Writing& writin
   if (coil.level && !axisgate::is_stop(asked == Command::disable ? Command::none : asked)) {
     verdict = judge_level(item, coil, value, writing);
   } else if (asked != Command::none) {
-    const Kind kind{.stop = axisgate::is_stop(asked), .relative = asked == Command::move_relative};
+    const Kind kind{.stop = axisgate::is_stop(asked),
+                    .relative = asked == Command::move_relative,
+                    .is_so = is_so(asked, writing)};
     verdict = judge(item, value ? 1 : 0, kind, writing);
   }
   const bool swallowed = !value && writing.form == WriteForm::block && item.is_on() && item.disowned;

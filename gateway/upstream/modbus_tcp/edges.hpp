@@ -114,6 +114,7 @@ class EdgeMemory {
     bool stop = false;        ///< asserted: commands 2 to 4, coils 2 and 3 = 1
     bool stop_word = false;   ///< a controlword that is a stop where it acts
     bool relative = false;    ///< a relative move: one that is not new always says so
+    bool is_so = false;       ///< what it asks for is so already: repeating it is answered normally
     bool held_start = false;  ///< commands 6 to 10: a target beside it asks for a start that does not come
   };
   [[nodiscard]] static Verdict judge(Item& item, std::uint16_t value, const Kind& kind, const Writing& writing);

@@ -133,6 +133,7 @@ TEST_F(Owned, WhileDisabledOnlyWhatAsksRenewsWhicheverSignCountsElse) {
   for (const LeaseRenewal renew : {LeaseRenewal::any, LeaseRenewal::write, LeaseRenewal::heartbeat}) {
     rules.renew = renew;
     lease = {};
+    plc->heartbeat = kLongAgo;
     Ownership o = owned(rules, kStart);
     o.set_armed(false);
     plc->last_request = plc->heartbeat = kStart + 1900ms;
@@ -241,6 +242,7 @@ TEST_F(Owned, GraceMakesALeaseLongerByItselfAndNotEachTime) {
 TEST_F(Owned, GraceOfAnyRenewalIsAddedToWhatRenewsIt) {
   for (const LeaseRenewal renew : {LeaseRenewal::any, LeaseRenewal::write, LeaseRenewal::heartbeat}) {
     lease = {};
+    plc->heartbeat = kLongAgo;
     rules.renew = renew;
     Ownership o = owned(rules, kStart);
     plc->grace = 3s;
