@@ -1,13 +1,14 @@
 #include "gateway/app/commission_command.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <cstdio>
-#include <iostream>
 
 #include "adapters/asio/asio_runtime.hpp"
+#include "adapters/asio/line_input.hpp"
 #include "gateway/app/commission_plan.hpp"
 #include "gateway/app/config_loader.hpp"
 #include "gateway/app/device_wires.hpp"
@@ -56,6 +57,17 @@ class Workbench {
     }
     return true;
   }
+  /// What the person says, however long it takes: polls and heartbeats go on.
+  [[nodiscard]] std::optional<std::string> next_line() {
+    std::optional<std::string> line;
+    bool said = false;
+    person_.next([&](std::optional<std::string> typed) {
+      line = std::move(typed);
+      said = true;
+    });
+    while (!said) io_.run_one_for(std::chrono::milliseconds(100));
+    return line;
+  }
   [[nodiscard]] GroupResult ask(AxisNumber axis, const ObjectRequest& request) {
     Group group;
     group.role = Role::engineer;
@@ -71,45 +83,102 @@ class Workbench {
   boost::asio::io_context io_{1};
   Log log_;
   AsioRuntime runtime_;
+  LineInput person_{io_, STDIN_FILENO};
   std::unique_ptr<Gateway> gateway_;
 };
 
-bool says_yes(const CommissionOptions& options) {
-  if (options.yes) return true;
-  fmt::print("Write these now? Only \"yes\" does: ");
-  std::fflush(stdout);
-  std::string answer;
-  return std::getline(std::cin, answer) && answer == "yes";
-}
+/// What the loop does while the person is asked, and what a yes leads to.
+class Commissioning {
+ public:
+  Commissioning(Workbench& bench, const drive::DriveModel& model, bus::AxisSlot slot, const CommissionOptions& options)
+      : bench_(bench), model_(model), axis_(model.axes[slot].number), yes_(options.yes) {}
 
-bool write_all(Workbench& bench, const drive::DriveModel& model, AxisNumber axis,
-               const std::vector<drive::ObjectWrite>& writes) {
-  for (const drive::ObjectWrite& write : writes) {
-    const drive::ObjectDef& object = model.object(write.object);
-    ObjectRequest request{true, object.address.index, object.address.sub, object.size,
-                          static_cast<std::uint32_t>(static_cast<std::uint64_t>(write.raw))};
-    const GroupResult result = bench.ask(axis, request);
-    const bool ok = result.outcome.code == Errc::ok;
-    fmt::print("  {}: {}\n", text(model, write),
-               ok ? "written" : fmt::format("{}, detail {:#x}", text(result.outcome.code), result.outcome.detail));
-    if (!ok) return false;
+  /// Asks about one finding, and carries it out after a yes.
+  void ask(const drive::Check& check, std::string_view place) {
+    const Numbers shown = read(check);
+    const auto bad = is_bad(model_, check, shown);
+    if (bad == false) return fmt::print("\n{}: ok now, by what was written before\n", check.name);
+    fmt::print("\n{} {}", place, question(model_, check, shown));
+    if (!says_yes()) return leave("not written");
+    const Numbers now = read(check);
+    if (const std::string why = objection(axes()); !why.empty()) return leave("not written: " + why);
+    if (const std::string why = objection(model_, check, shown, now); !why.empty()) return leave("not written: " + why);
+    carry_out(check);
   }
-  return true;
-}
+  [[nodiscard]] bool input_ended() const { return input_ended_; }
+  [[nodiscard]] bool all_done() const { return !left_; }
+  [[nodiscard]] bool wrote() const { return wrote_; }
+  [[nodiscard]] std::vector<AxisShown> axes() {
+    std::vector<AxisShown> out;
+    for (const drive::AxisModel& axis : model_.axes) {
+      const AxisImage& image = *bench_.gateway().image().find(axis.number);
+      out.push_back({axis.number, image.link_state, image.has(AxisInput::enabled)});
+    }
+    return out;
+  }
 
-/// Reads the checks' objects anew and judges them again.
-bool verify(Workbench& bench, const drive::DriveModel& model, AxisNumber axis, const std::vector<Finding>& before) {
-  bool good = true;
-  for (const Finding& finding : before) {
-    if (!finding.bad) continue;
-    const drive::ObjectDef& object = model.object(finding.check->bad.object);
-    const GroupResult result = bench.ask(axis, {false, object.address.index, object.address.sub, object.size, 0});
-    const bool cured = result.outcome.code == Errc::ok && !finding.check->bad.holds(object, result.object_data);
-    fmt::print("  {}: {}\n", finding.check->name, cured ? "ok now" : "STILL BAD");
-    good = good && cured;
+ private:
+  void leave(const std::string& why) {
+    left_ = true;
+    fmt::print("  {}\n", why);
   }
-  return good;
-}
+  [[nodiscard]] bool says_yes() {
+    fmt::print("Write this to axis {}? Only \"yes\" does, anything else leaves it as it is: ", axis_);
+    if (yes_) fmt::print("yes (--yes)\n");
+    std::fflush(stdout);
+    if (yes_) return true;
+    const std::optional<std::string> line = bench_.next_line();
+    input_ended_ = !line;
+    if (!line || ::isatty(STDIN_FILENO) == 0) fmt::print("{}\n", line.value_or("no answer"));
+    return line && means_yes(*line);
+  }
+  /// Anew from the drive, and with it what tells whether a motor has torque.
+  [[nodiscard]] Numbers read(const drive::Check& check) {
+    for (const drive::AxisModel& axis : model_.axes)
+      for (const drive::ObjectId id : axis.state_sources)
+        if (!model_.object(id).made) static_cast<void>(read(id));
+    Numbers out;
+    for (const drive::ObjectId id : objects_of(model_, check))
+      if (const auto number = read(id)) out[id] = *number;
+    return out;
+  }
+  [[nodiscard]] std::optional<std::int64_t> read(drive::ObjectId id) {
+    const drive::ObjectDef& object = model_.object(id);
+    const GroupResult result = bench_.ask(axis_, {false, object.address.index, object.address.sub, object.size, 0});
+    if (result.outcome.code != Errc::ok) return std::nullopt;
+    return object.number(result.object_data);
+  }
+  void carry_out(const drive::Check& check) {
+    for (const drive::ObjectWrite& write : check.remedy) {
+      const drive::ObjectDef& object = model_.object(write.object);
+      wrote_ = true;
+      const GroupResult result = bench_.ask(axis_, {true, object.address.index, object.address.sub, object.size,
+                                                    static_cast<std::uint32_t>(static_cast<std::uint64_t>(write.raw))});
+      const bool ok = result.outcome.code == Errc::ok;
+      fmt::print("  {}: {}\n", text(model_, write),
+                 ok ? "written" : fmt::format("{}, detail {:#x}", text(result.outcome.code), result.outcome.detail));
+      left_ = left_ || !ok;
+      if (!ok) break;
+    }
+    static_cast<void>(bench_.run_until([&] { return is_online(); }, kOnlineLimit));
+    const ReadBack after = read_back(model_, check, read(check));
+    fmt::print("{}", after.text);
+    left_ = left_ || !after.cured;
+  }
+  /// A drive that stores may be mute for a moment.
+  [[nodiscard]] bool is_online() {
+    const auto shown = axes();
+    return std::all_of(shown.begin(), shown.end(), [](const AxisShown& a) { return a.link == LinkState::online; });
+  }
+
+  Workbench& bench_;
+  const drive::DriveModel& model_;
+  AxisNumber axis_;
+  bool yes_;
+  bool input_ended_ = false;
+  bool left_ = false;   ///< something bad was left as it is
+  bool wrote_ = false;  ///< at least tried to
+};
 
 int commission(const LoadedConfig& loaded, const Place& place, const CommissionOptions& options) {
   const drive::DriveModel& model = loaded.models[place.bus][place.drive];
@@ -128,23 +197,20 @@ int commission(const LoadedConfig& loaded, const Place& place, const CommissionO
   }
   const std::vector<Finding> found = findings(model, bench.gateway().drive_of(options.axis)->store(), place.slot);
   for (const Finding& finding : found) fmt::print("  {}\n", text(model, finding));
-  const std::vector<drive::ObjectWrite> writes = remedies(found);
-  if (writes.empty()) {
+  const std::vector<const drive::Check*> questions = to_ask(found);
+  if (questions.empty()) {
     fmt::print("nothing to remedy\n");
     return 0;
   }
-  if (image.has(AxisInput::enabled)) {
-    fmt::print(stderr, "axis {} is enabled: disable it first, settings are not changed under torque\n", options.axis);
+  Commissioning work(bench, model, place.slot, options);
+  if (const std::string why = objection(work.axes()); !why.empty()) {
+    fmt::print(stderr, "{}\n", why);
     return 1;
   }
-  fmt::print("the remedy:\n");
-  for (const drive::ObjectWrite& write : writes) fmt::print("  {}\n", text(model, write));
-  if (!says_yes(options)) {
-    fmt::print("nothing was written\n");
-    return 1;
-  }
-  if (!write_all(bench, model, options.axis, writes)) return 1;
-  return verify(bench, model, options.axis, found) ? 0 : 1;
+  for (std::size_t i = 0; i < questions.size() && !work.input_ended(); ++i)
+    work.ask(*questions[i], fmt::format("question {} of {}:", i + 1, questions.size()));
+  if (!work.wrote()) fmt::print("nothing was written\n");
+  return work.all_done() ? 0 : 1;
 }
 
 }  // namespace
