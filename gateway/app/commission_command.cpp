@@ -1,5 +1,6 @@
 #include "gateway/app/commission_command.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -73,10 +74,10 @@ class Workbench {
     group.role = Role::engineer;
     group.object = request;
     group.start_by = group.answer_by = runtime_.now() + kWriteLimit;
-    std::optional<GroupResult> result;
-    if (auto at_once = gateway_->submit(axis, group, [&](const GroupResult& r) { result = r; })) return *at_once;
-    if (!run_until([&] { return result.has_value(); }, kWriteLimit + kWriteLimit)) return {{Errc::timed_out, 0}, 0, 0};
-    return *result;
+    const auto result = std::make_shared<std::optional<GroupResult>>();  // it may come after we gave up
+    if (auto at_once = gateway_->submit(axis, group, [result](const GroupResult& r) { *result = r; })) return *at_once;
+    if (!run_until([&] { return result->has_value(); }, kWriteLimit + kWriteLimit)) return {{Errc::timed_out, 0}, 0, 0};
+    return **result;
   }
 
  private:
@@ -213,9 +214,16 @@ int commission(const LoadedConfig& loaded, const Place& place, const CommissionO
   return work.all_done() ? 0 : 1;
 }
 
+/// Started without a standard input: the bus must not get its number, or frames would be taken for answers.
+bool keep_stdin_taken() { return ::fcntl(STDIN_FILENO, F_GETFD) >= 0 || ::open("/dev/null", O_RDONLY) == STDIN_FILENO; }
+
 }  // namespace
 
 int run(const CommissionOptions& options) {
+  if (!keep_stdin_taken()) {
+    fmt::print(stderr, "there is no standard input, and /dev/null cannot be opened in its place\n");
+    return 1;
+  }
   const LoadResult result = load_config(options.config, options.profile_folders);
   if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
   const auto& loaded = std::get<LoadedConfig>(result);
