@@ -2,7 +2,6 @@
 
 #include <poll.h>
 #include <sys/epoll.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <array>
@@ -11,6 +10,12 @@
 #include <utility>
 
 namespace axisgate {
+namespace {
+
+/// Of what nobody waits for; a terminal gives a line a read.
+constexpr int kMaxReads = 1024;
+
+}  // namespace
 
 LineInput::LineInput(boost::asio::io_context& context, int descriptor)
     : context_(context), descriptor_(descriptor), terminal_(::isatty(descriptor) == 1), readable_(context) {
@@ -27,13 +32,15 @@ LineInput::LineInput(boost::asio::io_context& context, int descriptor)
 
 void LineInput::next(OnLine on_line) {
   on_line_ = std::move(on_line);
-  if (terminal_ && !ended_) {
-    typed_.clear();
-    ::tcflush(descriptor_, TCIFLUSH);
-  }
+  if (terminal_) forget_what_was_typed();
   boost::asio::post(context_, [this, alive = std::weak_ptr(alive_)] {
     if (!alive.expired()) look();
   });
+}
+
+void LineInput::forget_what_was_typed() {
+  for (int reads = 0; reads < kMaxReads && !ended_ && ready(); ++reads) ended_ = read_some() == Read::end;
+  typed_.clear();
 }
 
 void LineInput::look() {

@@ -27,6 +27,7 @@ class LineInput {
 
  private:
   enum class Read : std::uint8_t { some, nothing_yet, end };
+  void forget_what_was_typed();
   void look();
   void wait();
   void tell(std::optional<std::string> line);

@@ -98,22 +98,28 @@ class Commissioning {
   void ask(const drive::Check& check, std::string_view place) {
     const Numbers shown = read(check);
     const auto bad = is_bad(model_, check, shown);
-    if (bad == false) return fmt::print("\n{}: ok now, by what was written before\n", check.name);
+    if (bad == false) return fmt::print("\n{} {}: ok by now\n", place, check.name);
+    if (!bad) return leave(fmt::format("{} {}: it cannot be read, and is not asked about", place, check.name));
     fmt::print("\n{} {}", place, question(model_, check, shown));
     if (!says_yes()) return leave("not written");
-    const Numbers now = read(check);
-    if (const std::string why = objection(axes()); !why.empty()) return leave("not written: " + why);
-    if (const std::string why = objection(model_, check, shown, now); !why.empty()) return leave("not written: " + why);
+    const std::string changed = objection(model_, check, shown, read(check));
+    // Whether a motor has torque is looked at last, next to the write.
+    const std::string forbidden = objection(axes_now());
+    if (!forbidden.empty() || !changed.empty())
+      return leave("not written: " + (forbidden.empty() ? changed : forbidden));
     carry_out(check);
   }
   [[nodiscard]] bool input_ended() const { return input_ended_; }
   [[nodiscard]] bool all_done() const { return !left_; }
   [[nodiscard]] bool wrote() const { return wrote_; }
-  [[nodiscard]] std::vector<AxisShown> axes() {
+  /// Read anew: the image of a value that comes by itself may be older than the answer.
+  [[nodiscard]] std::vector<AxisShown> axes_now() {
     std::vector<AxisShown> out;
     for (const drive::AxisModel& axis : model_.axes) {
+      const bool told = std::all_of(axis.state_sources.begin(), axis.state_sources.end(),
+                                    [&](drive::ObjectId id) { return model_.object(id).made || read(id); });
       const AxisImage& image = *bench_.gateway().image().find(axis.number);
-      out.push_back({axis.number, image.link_state, image.has(AxisInput::enabled)});
+      out.push_back({axis.number, image.link_state, told, image.has(AxisInput::enabled)});
     }
     return out;
   }
@@ -133,11 +139,7 @@ class Commissioning {
     if (!line || ::isatty(STDIN_FILENO) == 0) fmt::print("{}\n", line.value_or("no answer"));
     return line && means_yes(*line);
   }
-  /// Anew from the drive, and with it what tells whether a motor has torque.
   [[nodiscard]] Numbers read(const drive::Check& check) {
-    for (const drive::AxisModel& axis : model_.axes)
-      for (const drive::ObjectId id : axis.state_sources)
-        if (!model_.object(id).made) static_cast<void>(read(id));
     Numbers out;
     for (const drive::ObjectId id : objects_of(model_, check))
       if (const auto number = read(id)) out[id] = *number;
@@ -167,10 +169,7 @@ class Commissioning {
     left_ = left_ || !after.cured;
   }
   /// A drive that stores may be mute for a moment.
-  [[nodiscard]] bool is_online() {
-    const auto shown = axes();
-    return std::all_of(shown.begin(), shown.end(), [](const AxisShown& a) { return a.link == LinkState::online; });
-  }
+  [[nodiscard]] bool is_online() { return bench_.gateway().image().find(axis_)->link_state == LinkState::online; }
 
   Workbench& bench_;
   const drive::DriveModel& model_;
@@ -204,7 +203,7 @@ int commission(const LoadedConfig& loaded, const Place& place, const CommissionO
     return 0;
   }
   Commissioning work(bench, model, place.slot, options);
-  if (const std::string why = objection(work.axes()); !why.empty()) {
+  if (const std::string why = objection(work.axes_now()); !why.empty()) {
     fmt::print(stderr, "{}\n", why);
     return 1;
   }

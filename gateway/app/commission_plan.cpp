@@ -73,6 +73,7 @@ std::optional<bool> is_bad(const drive::DriveModel& model, const drive::Check& c
 std::string objection(const std::vector<AxisShown>& axes) {
   for (const AxisShown& axis : axes) {
     if (axis.link != LinkState::online) return fmt::format("axis {} is not online ({})", axis.number, text(axis.link));
+    if (!axis.told) return fmt::format("axis {} does not tell whether it is enabled", axis.number);
     if (axis.enabled)
       return fmt::format("axis {} is enabled: disable it first, settings are not changed under torque", axis.number);
   }

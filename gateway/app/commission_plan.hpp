@@ -41,6 +41,7 @@ using Numbers = std::map<drive::ObjectId, std::int64_t>;
 struct AxisShown {
   AxisNumber number = 0;
   LinkState link = LinkState::unknown;
+  bool told = false;  ///< what tells its state could be read just now
   bool enabled = false;
 };
 /// Why nothing may be written to this drive now; empty: it may.

@@ -122,11 +122,12 @@ TEST_F(CommissionPlan, AYesDoesNotCountForWhatCannotBeRead) {
 }
 
 TEST_F(CommissionPlan, NothingIsWrittenUnderTorqueOnAnyMotorOfTheDriveOrToADriveThatIsGone) {
-  EXPECT_EQ(objection({{1, LinkState::online, false}, {2, LinkState::online, false}}), "");
-  EXPECT_THAT(objection({{1, LinkState::online, false}, {2, LinkState::online, true}}),
+  EXPECT_EQ(objection({{1, LinkState::online, true, false}, {2, LinkState::online, true, false}}), "");
+  EXPECT_THAT(objection({{1, LinkState::online, true, false}, {2, LinkState::online, true, true}}),
               AllOf(HasSubstr("axis 2 is enabled"), HasSubstr("disable it first")));
-  EXPECT_THAT(objection({{1, LinkState::suspect, false}}), HasSubstr("not online"));
-  EXPECT_THAT(objection({{1, LinkState::offline, true}}), HasSubstr("not online"));
+  EXPECT_THAT(objection({{1, LinkState::online, false, false}}), HasSubstr("does not tell"));
+  EXPECT_THAT(objection({{1, LinkState::suspect, true, false}}), HasSubstr("not online"));
+  EXPECT_THAT(objection({{1, LinkState::offline, true, true}}), HasSubstr("not online"));
 }
 
 TEST_F(CommissionPlan, WhatWasWrittenIsReadBackAndSaid) {
