@@ -137,15 +137,20 @@ void add_profile(CLI::App& app, Parsed& parsed) {
 }
 
 void add_commission(CLI::App& app, Parsed& parsed) {
-  CLI::App* command = add_config_command(app, parsed, "commission",
-                                         "Show settings of a drive that a person must decide, and apply the remedies",
-                                         parsed.commission.config);
+  CLI::App* command =
+      add_config_command(app, parsed, "commission",
+                         "Show settings of a drive that a person must decide, ask about each, and apply its remedy",
+                         parsed.commission.config);
   command->add_option("AXIS", parsed.commission.axis, "axis number")
       ->required()
       ->check(CLI::Range(1, 499).description(""));
-  command->add_flag("--yes", parsed.commission.yes, "apply the remedies without asking");
+  command->add_flag("--yes", parsed.commission.yes,
+                    "answer yes to every question, also to those that take the limit inputs away");
   command->footer(
       "The gateway must not be running: the command needs the bus for itself. It never enables or moves an axis.\n"
+      "One question for each setting that is bad: only 'yes' writes what the question names, the end of the input is a "
+      "no.\nBefore a write the drive is read again: what changed since the question, or has torque, is not written.\n"
+      "Exit code 1: something was left as it is, or the drive cannot be reached.\n"
       "Example: axisgate commission /etc/axisgate/gateway.json 1");
   command->callback([&parsed] { run_with_folders(parsed, parsed.commission); });
 }

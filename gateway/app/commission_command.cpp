@@ -1,13 +1,15 @@
 #include "gateway/app/commission_command.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <cstdio>
-#include <iostream>
 
 #include "adapters/asio/asio_runtime.hpp"
+#include "adapters/asio/line_input.hpp"
 #include "gateway/app/commission_plan.hpp"
 #include "gateway/app/config_loader.hpp"
 #include "gateway/app/device_wires.hpp"
@@ -56,60 +58,127 @@ class Workbench {
     }
     return true;
   }
+  /// What the person says, however long it takes: polls and heartbeats go on.
+  [[nodiscard]] std::optional<std::string> next_line() {
+    std::optional<std::string> line;
+    bool said = false;
+    person_.next([&](std::optional<std::string> typed) {
+      line = std::move(typed);
+      said = true;
+    });
+    while (!said) io_.run_one_for(std::chrono::milliseconds(100));
+    return line;
+  }
   [[nodiscard]] GroupResult ask(AxisNumber axis, const ObjectRequest& request) {
     Group group;
     group.role = Role::engineer;
     group.object = request;
     group.start_by = group.answer_by = runtime_.now() + kWriteLimit;
-    std::optional<GroupResult> result;
-    if (auto at_once = gateway_->submit(axis, group, [&](const GroupResult& r) { result = r; })) return *at_once;
-    if (!run_until([&] { return result.has_value(); }, kWriteLimit + kWriteLimit)) return {{Errc::timed_out, 0}, 0, 0};
-    return *result;
+    const auto result = std::make_shared<std::optional<GroupResult>>();  // it may come after we gave up
+    if (auto at_once = gateway_->submit(axis, group, [result](const GroupResult& r) { *result = r; })) return *at_once;
+    if (!run_until([&] { return result->has_value(); }, kWriteLimit + kWriteLimit)) return {{Errc::timed_out, 0}, 0, 0};
+    return **result;
   }
 
  private:
   boost::asio::io_context io_{1};
   Log log_;
   AsioRuntime runtime_;
+  LineInput person_{io_, STDIN_FILENO};
   std::unique_ptr<Gateway> gateway_;
 };
 
-bool says_yes(const CommissionOptions& options) {
-  if (options.yes) return true;
-  fmt::print("Write these now? Only \"yes\" does: ");
-  std::fflush(stdout);
-  std::string answer;
-  return std::getline(std::cin, answer) && answer == "yes";
-}
+/// What the loop does while the person is asked, and what a yes leads to.
+class Commissioning {
+ public:
+  Commissioning(Workbench& bench, const drive::DriveModel& model, bus::AxisSlot slot, const CommissionOptions& options)
+      : bench_(bench), model_(model), axis_(model.axes[slot].number), yes_(options.yes) {}
 
-bool write_all(Workbench& bench, const drive::DriveModel& model, AxisNumber axis,
-               const std::vector<drive::ObjectWrite>& writes) {
-  for (const drive::ObjectWrite& write : writes) {
-    const drive::ObjectDef& object = model.object(write.object);
-    ObjectRequest request{true, object.address.index, object.address.sub, object.size,
-                          static_cast<std::uint32_t>(static_cast<std::uint64_t>(write.raw))};
-    const GroupResult result = bench.ask(axis, request);
-    const bool ok = result.outcome.code == Errc::ok;
-    fmt::print("  {}: {}\n", text(model, write),
-               ok ? "written" : fmt::format("{}, detail {:#x}", text(result.outcome.code), result.outcome.detail));
-    if (!ok) return false;
+  /// Asks about one finding, and carries it out after a yes.
+  void ask(const drive::Check& check, std::string_view place) {
+    const Numbers shown = read(check);
+    const auto bad = is_bad(model_, check, shown);
+    if (bad == false) return fmt::print("\n{} {}: ok by now\n", place, check.name);
+    if (!bad) return leave(fmt::format("{} {}: it cannot be read, and is not asked about", place, check.name));
+    fmt::print("\n{} {}", place, question(model_, check, shown));
+    if (!says_yes()) return leave("not written");
+    const std::string changed = objection(model_, check, shown, read(check));
+    // Whether a motor has torque is looked at last, next to the write.
+    const std::string forbidden = objection(axes_now());
+    if (!forbidden.empty() || !changed.empty())
+      return leave("not written: " + (forbidden.empty() ? changed : forbidden));
+    carry_out(check);
   }
-  return true;
-}
+  [[nodiscard]] bool input_ended() const { return input_ended_; }
+  [[nodiscard]] bool all_done() const { return !left_; }
+  [[nodiscard]] bool wrote() const { return wrote_; }
+  /// Read anew: the image of a value that comes by itself may be older than the answer.
+  [[nodiscard]] std::vector<AxisShown> axes_now() {
+    std::vector<AxisShown> out;
+    for (const drive::AxisModel& axis : model_.axes) {
+      const bool told = std::all_of(axis.state_sources.begin(), axis.state_sources.end(),
+                                    [&](drive::ObjectId id) { return model_.object(id).made || read(id); });
+      const AxisImage& image = *bench_.gateway().image().find(axis.number);
+      out.push_back({axis.number, image.link_state, told, image.has(AxisInput::enabled)});
+    }
+    return out;
+  }
 
-/// Reads the checks' objects anew and judges them again.
-bool verify(Workbench& bench, const drive::DriveModel& model, AxisNumber axis, const std::vector<Finding>& before) {
-  bool good = true;
-  for (const Finding& finding : before) {
-    if (!finding.bad) continue;
-    const drive::ObjectDef& object = model.object(finding.check->bad.object);
-    const GroupResult result = bench.ask(axis, {false, object.address.index, object.address.sub, object.size, 0});
-    const bool cured = result.outcome.code == Errc::ok && !finding.check->bad.holds(object, result.object_data);
-    fmt::print("  {}: {}\n", finding.check->name, cured ? "ok now" : "STILL BAD");
-    good = good && cured;
+ private:
+  void leave(const std::string& why) {
+    left_ = true;
+    fmt::print("  {}\n", why);
   }
-  return good;
-}
+  [[nodiscard]] bool says_yes() {
+    fmt::print("Write this to axis {}? Only \"yes\" does, anything else leaves it as it is: ", axis_);
+    if (yes_) fmt::print("yes (--yes)\n");
+    std::fflush(stdout);
+    if (yes_) return true;
+    const std::optional<std::string> line = bench_.next_line();
+    input_ended_ = !line;
+    if (!line || ::isatty(STDIN_FILENO) == 0) fmt::print("{}\n", line.value_or("no answer"));
+    return line && means_yes(*line);
+  }
+  [[nodiscard]] Numbers read(const drive::Check& check) {
+    Numbers out;
+    for (const drive::ObjectId id : objects_of(model_, check))
+      if (const auto number = read(id)) out[id] = *number;
+    return out;
+  }
+  [[nodiscard]] std::optional<std::int64_t> read(drive::ObjectId id) {
+    const drive::ObjectDef& object = model_.object(id);
+    const GroupResult result = bench_.ask(axis_, {false, object.address.index, object.address.sub, object.size, 0});
+    if (result.outcome.code != Errc::ok) return std::nullopt;
+    return object.number(result.object_data);
+  }
+  void carry_out(const drive::Check& check) {
+    for (const drive::ObjectWrite& write : check.remedy) {
+      const drive::ObjectDef& object = model_.object(write.object);
+      wrote_ = true;
+      const GroupResult result = bench_.ask(axis_, {true, object.address.index, object.address.sub, object.size,
+                                                    static_cast<std::uint32_t>(static_cast<std::uint64_t>(write.raw))});
+      const bool ok = result.outcome.code == Errc::ok;
+      fmt::print("  {}: {}\n", text(model_, write),
+                 ok ? "written" : fmt::format("{}, detail {:#x}", text(result.outcome.code), result.outcome.detail));
+      left_ = left_ || !ok;
+      if (!ok) break;
+    }
+    static_cast<void>(bench_.run_until([&] { return is_online(); }, kOnlineLimit));
+    const ReadBack after = read_back(model_, check, read(check));
+    fmt::print("{}", after.text);
+    left_ = left_ || !after.cured;
+  }
+  /// A drive that stores may be mute for a moment.
+  [[nodiscard]] bool is_online() { return bench_.gateway().image().find(axis_)->link_state == LinkState::online; }
+
+  Workbench& bench_;
+  const drive::DriveModel& model_;
+  AxisNumber axis_;
+  bool yes_;
+  bool input_ended_ = false;
+  bool left_ = false;   ///< something bad was left as it is
+  bool wrote_ = false;  ///< at least tried to
+};
 
 int commission(const LoadedConfig& loaded, const Place& place, const CommissionOptions& options) {
   const drive::DriveModel& model = loaded.models[place.bus][place.drive];
@@ -128,28 +197,32 @@ int commission(const LoadedConfig& loaded, const Place& place, const CommissionO
   }
   const std::vector<Finding> found = findings(model, bench.gateway().drive_of(options.axis)->store(), place.slot);
   for (const Finding& finding : found) fmt::print("  {}\n", text(model, finding));
-  const std::vector<drive::ObjectWrite> writes = remedies(found);
-  if (writes.empty()) {
+  const std::vector<const drive::Check*> questions = to_ask(found);
+  if (questions.empty()) {
     fmt::print("nothing to remedy\n");
     return 0;
   }
-  if (image.has(AxisInput::enabled)) {
-    fmt::print(stderr, "axis {} is enabled: disable it first, settings are not changed under torque\n", options.axis);
+  Commissioning work(bench, model, place.slot, options);
+  if (const std::string why = objection(work.axes_now()); !why.empty()) {
+    fmt::print(stderr, "{}\n", why);
     return 1;
   }
-  fmt::print("the remedy:\n");
-  for (const drive::ObjectWrite& write : writes) fmt::print("  {}\n", text(model, write));
-  if (!says_yes(options)) {
-    fmt::print("nothing was written\n");
-    return 1;
-  }
-  if (!write_all(bench, model, options.axis, writes)) return 1;
-  return verify(bench, model, options.axis, found) ? 0 : 1;
+  for (std::size_t i = 0; i < questions.size() && !work.input_ended(); ++i)
+    work.ask(*questions[i], fmt::format("question {} of {}:", i + 1, questions.size()));
+  if (!work.wrote()) fmt::print("nothing was written\n");
+  return work.all_done() ? 0 : 1;
 }
+
+/// Started without a standard input: the bus must not get its number, or frames would be taken for answers.
+bool keep_stdin_taken() { return ::fcntl(STDIN_FILENO, F_GETFD) >= 0 || ::open("/dev/null", O_RDONLY) == STDIN_FILENO; }
 
 }  // namespace
 
 int run(const CommissionOptions& options) {
+  if (!keep_stdin_taken()) {
+    fmt::print(stderr, "there is no standard input, and /dev/null cannot be opened in its place\n");
+    return 1;
+  }
   const LoadResult result = load_config(options.config, options.profile_folders);
   if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
   const auto& loaded = std::get<LoadedConfig>(result);

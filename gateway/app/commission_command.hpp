@@ -1,5 +1,7 @@
-// `axisgate commission CONFIG AXIS`: shows the settings of a drive that a person must decide, and applies the remedies.
-// Promises to change nothing before a yes.
+// `axisgate commission CONFIG AXIS`: shows the settings of a drive that a person must decide, asks about each that is
+// bad, and applies its remedy.
+// Promises to change nothing before a yes, nothing that the question did not name, and nothing that changed meanwhile;
+// and that polls and heartbeats go on while it waits for the answer.
 // Never enables or moves an axis.
 #pragma once
 
@@ -13,7 +15,7 @@ struct CommissionOptions {
   std::string config;
   std::uint16_t axis = 0;
   std::vector<std::string> profile_folders;
-  bool yes = false;  ///< apply the remedies without asking
+  bool yes = false;  ///< the answer to every question
 };
 
 [[nodiscard]] int run(const CommissionOptions& options);

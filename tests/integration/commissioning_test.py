@@ -83,7 +83,7 @@ class FactoryFresh(Story):
         axis.until(axis_state=STANDSTILL)
 
     def test_a_typed_yes_does_as_well(self):
-        self.cured(answer="yes\n")
+        self.cured(answer=3 * "yes\n")
         done = self.commission()
         self.assertEqual(done.returncode, 0)
         self.assertIn("nothing to remedy", done.stdout)
