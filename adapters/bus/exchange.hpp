@@ -106,7 +106,8 @@ enum class NodeState : std::uint8_t { unknown, stopped, pre_operational, operati
 struct Notice {
   enum class Kind : std::uint8_t {
     started,    ///< it has just started: whatever it held is gone (CANopen boot-up)
-    present,    ///< it is there, in `state`: at its first sign of life, and at its first sign, at each change, and at each sign of another state than operational
+    present,    ///< it is there, in `state`: at its first sign of life, at each change, and at
+                ///< each sign of another state than operational
     gone,       ///< its heartbeat is overdue, or guarding it was not answered
     values,     ///< `fields`: process data, as map_process_data() has named it
     emergency,  ///< CiA 301 EMCY: `code`, `error_register`, `vendor`; `repeats` more like it were left out before

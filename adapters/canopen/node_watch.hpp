@@ -1,7 +1,8 @@
 // Whether a node is there and in what state, by its boot-up, heartbeats, or answers to node guarding (CiA 301 section
 // 7.2.8.3.2). Promises one notice for each change, one for each call(), and one for each sign that the node is stopped
 // or pre-operational: whether it should be, only its drive knows, and it may learn that later than the first sign;
-// `gone` once; and that a heartbeat is missed only after one was heard. Never sends: it says when a guarding frame is due. Never looks at a clock.
+// `gone` once; and that a heartbeat is missed only after one was heard. Never sends: it says when a guarding frame is
+// due. Never looks at a clock.
 #pragma once
 
 #include <boost/container/static_vector.hpp>

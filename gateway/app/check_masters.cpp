@@ -257,10 +257,10 @@ void warn_about_shared_addresses(std::vector<std::string>& out, const LoadedConf
   for (const auto& listener : loaded.config.modbus_tcp)
     if (listener.client_is_address) listeners.push_back(fmt::format("{}:{}", listener.host, listener.port));
   if (axes.empty() || listeners.empty()) return;
-  out.push_back(
-      fmt::format("on {} all programs of one computer are one client (\"client\": \"address\"): an HMI that writes from "
-                  "the PLC's computer keeps {} alive when the PLC's program is dead; write \"renew\": \"heartbeat\"",
-                  fmt::join(listeners, ", "), axes_text(axes)));
+  out.push_back(fmt::format(
+      "on {} all programs of one computer are one client (\"client\": \"address\"): an HMI that writes from "
+      "the PLC's computer keeps {} alive when the PLC's program is dead; write \"renew\": \"heartbeat\"",
+      fmt::join(listeners, ", "), axes_text(axes)));
 }
 
 }  // namespace

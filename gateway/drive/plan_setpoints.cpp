@@ -133,8 +133,8 @@ bool writes(const Plan& plan, ObjectId object) {
 
 void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
   bool look_again = false;
-  // Those without a quantity on this axis are nobody's to ask for: 0 in any unit. They go first: a drive may take two of
-  // them for one set-point (Kinco: target torque and target current), and what was asked for must be the last word.
+  // Those without a quantity on this axis are nobody's to ask for: 0 in any unit. They go first: a drive may take two
+  // of them for one set-point (Kinco: target torque and target current), and what was asked for must be the last word.
   const auto& bindings = core.model.bindings;
   for (const ObjectId id : core.model.zero_before_enable)
     if (std::none_of(bindings.begin(), bindings.end(),

@@ -32,6 +32,7 @@ struct Item {
   bool changed = false;  ///< this client has changed one of its targets since it acted
   bool ended = false;    ///< a stop or another client since it acted
   bool refused = false;  ///< it was not carried out
+  bool acted = false;    ///< ever; else it was only remembered
   bool operator==(const Item&) const = default;
 };
 

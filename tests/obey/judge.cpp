@@ -30,6 +30,9 @@ Judge::Edge Judge::edge(Item& item, std::int64_t value, bool single, bool stop) 
   if (!before) return single ? Edge::acts : Edge::remembered;
   if (*before != value) return Edge::acts;
   // A1: "and when this client has not written it for rearm_ms, but not after another client's stop ... since it acted".
+  // A1 lets a controlword that another's stop has spoilt not act, and so a stop: the reading that stops is allowed too.
+  const bool stop_word = (value & 6) != 6 || (value & 15) == 6 || (value & 15) == 7;
+  if (single && item.spoilt && &item == &me().controlword && stop_word && readings_.other()) return Edge::acts;
   if (!single || item.spoilt || quiet < kRearmMs - kRearmUnsureMs) return Edge::not_new;
   if (quiet < kRearmMs + kRearmUnsureMs && readings_.other()) return Edge::not_new;
   return Edge::acts;
@@ -131,7 +134,8 @@ void Judge::stopped(bool asserted) {
 bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
   // 3.4: "they need an axis that is enabled, not faulted and not stop-latched".
   if (!world_.enabled || world_.latched) {
-    verdict = {"refused: not enabled, or latched", {4}};
+    // A stop that has not shown yet keeps it waiting, and then it has not started in time.
+    verdict = {"refused: not enabled, or latched", {4, 6}};
     return true;
   }
   // 3.4, command 7: "at standstill; while moving 0x06".
@@ -139,7 +143,7 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
   const bool just_begun = seen_.now_ms - world_.started_ms < kJustBegunMs;
   const bool under_way =
       world_.motor == Motor::moves && (just_begun || std::abs(world_.target - seen_.position) > kClose);
-  if (command == 7 && (!seen_.stands || world_.motor == Motor::runs || !seen_.clear || under_way)) {
+  if (command == 7 && (just_begun || !seen_.stands || world_.motor == Motor::runs || !seen_.clear || under_way)) {
     const bool unsure = seen_.stands || !seen_.clear;
     if (!unsure || readings_.other()) {
       verdict = {"refused: relative while moving", {6}};
@@ -180,6 +184,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
       for (Item& coil : world_.clients[c].coils) coil.ended = true;
     }
     item.changed = item.ended = item.spoilt = item.refused = false;
+    item.acted = true;
     world_.raw_mode.reset();
     world_.start_bit = true;
     world_.started_ms = seen_.now_ms;
@@ -203,6 +208,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
       return;
     }
     if (!was) world_.motor = Motor::stands;
+    if (!was) world_.started_ms = seen_.now_ms;  // what a drive shows of standing still lags behind
     world_.enabled = true;
     world_.latched = false;
     world_.held = world_.held && readings_.other();
@@ -237,12 +243,16 @@ void Judge::answer_not_new(std::int64_t number, const Item& item, Verdict& verdi
   const bool same_target = number == 6 && world_.motor == Motor::moves &&
                            world_.accepted.contains(row::target_position) &&
                            world_.accepted[row::target_position] == world_.target;
-  if (number == 7)
-    verdict = {"not new, relative: 0x06", {6}};
+  // It was only remembered: A3 does not say what a single write that repeats it is answered with. And a start that was
+  // refused may be tried again at once: 0x04, as it may be told that it is not new.
+  if (is_start(number) && !item.acted)
+    verdict = {"not new, only remembered before", {0, 4, 6}};
+  else if (number == 7)
+    verdict = {"not new, relative: 0x06", {4, 6}};
   else if (number == 1)
     verdict.answers = world_.enabled && !world_.latched ? std::set<int>{0} : std::set<int>{0, 6};
   else if (item.ended)
-    verdict = {"not new, perhaps ended by a stop: 0x06", {0, 6}};
+    verdict = {"not new, perhaps ended by a stop: 0x06", {0, 4, 6}};
   else if (item.changed)
     verdict = {"not new, target changed: 0x06", same_target || number == 8 ? std::set<int>{0, 6} : std::set<int>{6}};
 }

@@ -19,7 +19,7 @@ Flavour flavour_of(Subject subject, std::uint64_t seed) {
 
 std::string text(const Step& step) {
   std::string out = step.client == 0 ? "a " : "b ";
-  out += step.mailbox ? "mailbox target " + std::to_string(*step.mailbox) : text(step.write);
+  out += text(step.write);
   if (step.pause_ms != 0) out += ", then " + std::to_string(step.pause_ms) + " ms";
   return out;
 }
@@ -183,12 +183,6 @@ Step Sequence::next() {
     case 4:
       step.write = some_coils();
       break;
-    case 5:
-      if (target_object(subject_) && flavour_ != Flavour::speeds && once_in(3)) {
-        step.mailbox = any_of(kPositions) + 777;
-        break;
-      }
-      [[fallthrough]];
     default:
       step.write = registers(writer);
   }
@@ -203,13 +197,13 @@ std::vector<Step> Sequence::ending() {
     return block(row::command, row::command_id, {{row::command, command}, {row::command_id, number}});
   };
   std::vector<Step> steps;
-  steps.push_back({client, one_coil(coil::halt, false), 1200, {}});
-  steps.push_back({client, one(row::command, 0), 50, {}});
-  steps.push_back({client, one(row::command, 1), 300, {}});
+  steps.push_back({client, one_coil(coil::halt, false), 1200});
+  steps.push_back({client, one(row::command, 0), 50});
+  steps.push_back({client, one(row::command, 1), 300});
   writer.id += 2;
-  steps.push_back({client, pair(0, writer.id - 1), 0, {}});
+  steps.push_back({client, pair(0, writer.id - 1), 0});
   const bool move = flavour_ == Flavour::moves || (flavour_ == Flavour::both && once_in(2));
-  steps.push_back({client, pair(move ? 6 : 8, writer.id), 0, {}});
+  steps.push_back({client, pair(move ? 6 : 8, writer.id), 0});
   return steps;
 }
 

@@ -13,8 +13,7 @@ namespace axisgate::test::obey {
 struct Step {
   std::size_t client = 0;
   Write write{};
-  std::int64_t pause_ms = 0;              ///< after it
-  std::optional<std::int64_t> mailbox{};  ///< instead: a position target for the drive's own object, in its counts
+  std::int64_t pause_ms = 0;  ///< after it
 };
 [[nodiscard]] std::string text(const Step& step);
 

@@ -74,7 +74,7 @@ class Play {
 
   void play() {
     if (sequence_.flavour() != Flavour::both)
-      step({0, one(row::mode, sequence_.flavour() == Flavour::moves ? 1 : 3), 50, {}});
+      step({0, one(row::mode, sequence_.flavour() == Flavour::moves ? 1 : 3), 50});
     for (int i = 0; i < kWrites; ++i) step(sequence_.next());
     for (const Step& last : sequence_.ending()) step(last);
     for (int i = 0; i < 20; ++i) {
@@ -96,17 +96,12 @@ class Play {
     Client& client = step.client == 0 ? plant_.a : plant_.b;
     std::string line = std::to_string(++steps_) + ". " + std::to_string(seen.now_ms) + " ms, at " +
                        std::to_string(seen.position) + (seen.stands ? "" : " turning") + ": " + text(step);
-    if (step.mailbox) {
-      const TargetObject object = *target_object(plant_.subject);
-      line += client.mailbox_write(object.index, object.subindex, 4, *step.mailbox) ? " [done]" : " [failed]";
-    } else {
-      line += "  -> " + contract_->write(step.client, step.write, seen);
-      const Answer answer = client.write(step.write);
-      line += "  [" + (answer.ok() ? std::string("ok") : "exception " + std::to_string(answer.exception)) + "]";
-      if (!contract_->answered(answer.exception)) {
-        ++wrong_answers_;
-        line += "  <-- NO READING HAS THIS ANSWER";
-      }
+    line += "  -> " + contract_->write(step.client, step.write, seen);
+    const Answer answer = client.write(step.write);
+    line += "  [" + (answer.ok() ? std::string("ok") : "exception " + std::to_string(answer.exception)) + "]";
+    if (!contract_->answered(answer.exception)) {
+      ++wrong_answers_;
+      line += "  <-- NO READING HAS THIS ANSWER";
     }
     if (contract_->worlds().size() > 1) line += "  (" + std::to_string(contract_->worlds().size()) + " readings)";
     told_.push_back(line + "\n      then: " + contract_->expected_end());

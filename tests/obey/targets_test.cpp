@@ -162,12 +162,15 @@ TEST_P(Targets, ThatAreTheSameAreMovedToAgainAfterAHalt) {
 
 class DriveObject : public Targets {};
 
-TEST_P(DriveObject, WrittenByTheMailboxIsNotMovedTo) {
+// A write of the object that a quantity uses is a write of that quantity: accepted last, it is what a start goes to.
+TEST_P(DriveObject, WrittenByTheMailboxIsASetPointLikeAnyOther) {
   const TargetObject object = *target_object(GetParam());
   ASSERT_EQ(a_.row(row::target_position, kNear), kOk);
   ASSERT_TRUE(b_.mailbox_write(object.index, object.subindex, 4, 54'321));
+  const std::int64_t shown = a_.wide(row::target_position);
+  ASSERT_NE(shown, kNear);
   press(a_, kMove);
-  ends_at(kNear);
+  ends_at(shown);
 }
 
 class Speeds : public testing::TestWithParam<Subject> {
@@ -191,8 +194,8 @@ TEST_P(Speeds, ThatAreTheSameRunAgainInABlockWithANewId) {
   }
 }
 
-// 3.4: after a stop "velocity, torque and start are needed anew". A7 says that the last accepted set-point is the one that
-// every start uses: of the two, the one that cannot move the motor.
+// 3.4: after a stop "velocity, torque and start are needed anew". A7 says that the last accepted set-point is the one
+// that every start uses: of the two, the one that cannot move the motor.
 TEST_P(Speeds, AcceptedBeforeAHaltAreNeededAnew) {
   ASSERT_EQ(plant_.a.command(0, 1), kOk);
   ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);

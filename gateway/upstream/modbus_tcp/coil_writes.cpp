@@ -53,7 +53,8 @@ struct Asked {
   bool not_new = false;
 };
 
-/// A single 0 to the button by which the axis jogs is a stop of anybody's; elsewhere a 0 ends its client's own jog alone.
+/// A single 0 to the button by which the axis jogs is a stop of anybody's; elsewhere a 0 ends its client's own jog
+/// alone.
 bool ends_anybodys_jog(const Request& request, std::uint16_t first, const AxisImage& axis) {
   return request.write_count == 1 && !request.written_coil(0) && (shown_level_coils(axis) >> first & 1U) != 0;
 }

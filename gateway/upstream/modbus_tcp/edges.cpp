@@ -138,9 +138,8 @@ CoilAsks EdgeMemory::coil(const CoilRow& coil, bool value, const Writing& writin
   if (coil.level && !axisgate::is_stop(asked == Command::disable ? Command::none : asked)) {
     verdict = judge_level(item, coil, value, writing);
   } else if (asked != Command::none) {
-    const Kind kind{.stop = axisgate::is_stop(asked),
-                    .relative = asked == Command::move_relative,
-                    .is_so = is_so(asked, writing)};
+    const Kind kind{
+        .stop = axisgate::is_stop(asked), .relative = asked == Command::move_relative, .is_so = is_so(asked, writing)};
     verdict = judge(item, value ? 1 : 0, kind, writing);
   }
   const bool swallowed = !value && writing.form == WriteForm::block && item.is_on() && item.disowned;

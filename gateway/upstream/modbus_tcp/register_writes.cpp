@@ -114,6 +114,11 @@ class GroupMaker {
     return controlword_row() != nullptr && own_.edges.controlword_empty();
   }
 
+  /// What acts lets the set-points beside it ask. A stop claims nothing, and so lets those of the owner ask alone.
+  void note_acting(bool stop) {
+    const Lease& lease = found_.axis->lease;
+    acting_ = acting_ || !stop || !lease.rules.on || lease.owned_by(client_.id);
+  }
   void note(Verdict verdict) { not_new_ = not_new_ || verdict == Verdict::not_new; }
 
   void put_words() {
@@ -125,7 +130,8 @@ class GroupMaker {
       if (verdict == Verdict::acts) {
         group_.controlword = word;
         group_.single_controlword = single_;
-        acting_ = acting_ || !is_stop_controlword(word);
+        constexpr std::uint16_t kStoppingBits = 0x0006;  // one of them 0: a stop of anybody's
+        note_acting((word & kStoppingBits) != kStoppingBits);
       }
     }
     if (const RowWrite* const row = found_.of(Source::command)) {
@@ -135,7 +141,7 @@ class GroupMaker {
                                         : own_.edges.command(asked, writing_);
       note(verdict);
       if (verdict == Verdict::acts) group_.command = asked;
-      acting_ = acting_ || (verdict == Verdict::acts && !is_stop(asked));
+      if (verdict == Verdict::acts) note_acting(is_stop(asked));
     }
     if (found_.of(Source::command_id) != nullptr) own_.command_id = group_.command_id = id();
   }

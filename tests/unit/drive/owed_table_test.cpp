@@ -1,5 +1,6 @@
 // What each motor on each protocol does with a stop that was asked for while its wire was cut, with a jog whose button
 // was let go meanwhile, and with a lease that ran out: it stands, and stays where it is until it is enabled anew.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/unit/drive/gap_rig.hpp"
@@ -175,7 +176,8 @@ class JogInAGap : public testing::TestWithParam<std::tuple<Subject, Cut, bool>> 
     for (Duration done{}; done < time; done += 100ms) {
       Group again;
       again.jog_again = Command::jog_forward;
-      EXPECT_EQ(axis.ask(again), Errc::ok);
+      // not_new: the drive's own watchdog has ended the jog, and the button is held in vain.
+      EXPECT_THAT(axis.ask(again), testing::AnyOf(Errc::ok, Errc::not_new));
       axis.run(100ms);
     }
   }
