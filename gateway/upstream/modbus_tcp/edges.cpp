@@ -11,6 +11,7 @@ constexpr std::size_t kJogReverse = 9;
 /// "A single write that asks for what is so already is answered normally."
 bool is_so(Command command, const Writing& writing) {
   if (command == Command::enable) return writing.enabled;
+  if (command == Command::run_velocity) return writing.runs_velocity;
   return command == Command::fault_reset && !writing.needs_zero;
 }
 
