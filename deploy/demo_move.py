@@ -39,10 +39,10 @@ class Axis:
         return not self.client.write_registers(self.block + offset, values, slave=1).isError()
 
     def begin(self):
-        """Command ids start with 0 and count on from the last one that the gateway has seen."""
-        self.write(COMMAND, [0, 0])
+        """A program begins by writing command 0 with an id that it will not use next, and counts on from there."""
         seen = self.client.read_holding_registers(self.block + COMMAND_ID_SEEN, 1, slave=1)
-        self.id = 0 if seen.isError() else seen.registers[0]
+        self.id = 1 if seen.isError() else seen.registers[0] % 0xFFFF + 1
+        self.write(COMMAND, [0, self.id])
 
     def command(self, number):
         self.id = self.id % 0xFFFF + 1

@@ -32,8 +32,8 @@ TEST(Golden, JdComesUp) {
 
 TEST(Golden, JdIsEnabledMovesAndIsDisabled) {
   Recorder story(KincoType::jd, false);
-  story.say("commands with a command_id: 0 first, then counted on");
-  story.write(54, {0, 0});
+  story.say("commands with a command_id: command 0 with an id first, then counted on");
+  story.write(54, {0, 100});
   story.write(54, {1, 1});
   story.say("target 20000 units and 600 rpm in one block with move_absolute");
   story.write(42, {0, 20000});
@@ -53,6 +53,8 @@ TEST(Golden, JdIsStoppedQuicklyAndLatched) {
   story.coil(2, true);
   story.say("latched: a start is refused until it is enabled anew");
   story.write(54, {6});
+  story.say("a level acts on 0 -> 1 alone");
+  story.coil(0, false);
   story.coil(0, true);
   compare(story, "kinco-jd.quick-stop");
 }
@@ -152,6 +154,7 @@ TEST(Golden, AStepperIsStoppedQuicklyAndLatched) {
   story.coil(2, true);
   story.say("latched: a start is refused until it is enabled anew");
   story.write(54, {6});
+  story.coil(0, false);
   story.coil(0, true);
   compare(story, "id286pro.quick-stop");
 }

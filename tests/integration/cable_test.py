@@ -33,7 +33,7 @@ class Cable(Story):
         self.assertEqual(block["error_code"], 0x8130)
         self.assertEqual(axis.inputs() - {"warning", "stop_latched"}, set())
         self.assertEqual(self.client.overview(axis.number)["link_state"], LINK_DOWN)
-        for name in ("enable", "disable", "fault_reset", "move_absolute"):
+        for name in ("enable", "fault_reset", "move_absolute"):
             with self.refused(NO_PATH):
                 axis.command(name)
             self.assertEqual(axis.get("command_result"), NEVER_SENT)
@@ -126,18 +126,23 @@ class PulledWhile(Cable):
         self.lift.command("enable")
         self.lift.until(axis_state=STANDSTILL)
 
-    def test_a_quick_stop_that_cannot_be_sent_latches_all_the_same(self):
+    def test_a_quick_stop_that_cannot_be_sent_latches_and_is_owed(self):
         self.enable()
+        self.lift.set(target_velocity=100 * RPM)
+        self.lift.command("run_velocity")
+        self.lift.until(axis_state=CONTINUOUS)
         self.pull()
         with self.refused(NO_PATH):
             self.lift.command("quick_stop")
+        self.assertIn("stop_latched", self.lift.inputs())
         self.put_back()
-        self.lift.until_input("enabled")
+        self.lift.until_input("enabled", False)
+        until("standstill", lambda: self.lift.get("velocity_actual") == 0)
         self.assertIn("stop_latched", self.lift.inputs())
         with self.refused(REFUSED):
             self.lift.command("move_absolute")
-        self.lift.command("quick_stop")  # now it gets through
-        self.lift.until_input("enabled", False)
+        self.lift.command("enable")
+        self.lift.until(axis_state=STANDSTILL)
 
     def test_faulted(self):
         self.enable()

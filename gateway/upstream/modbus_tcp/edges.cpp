@@ -76,7 +76,9 @@ Verdict EdgeMemory::conclude(Item& item, std::uint16_t value, Verdict verdict, c
 }
 
 Verdict EdgeMemory::controlword(std::uint16_t value, const Writing& writing) {
-  const Kind kind{.stop_word = is_stop_controlword(value)};
+  constexpr std::uint16_t kStepsAndStart = 0x001F, kEnabled = 0x000F;  // "enabled" is all that this word asks for
+  const Kind kind{.stop_word = is_stop_controlword(value),
+                  .is_so = writing.enabled && (value & kStepsAndStart) == kEnabled};
   return conclude(controlword_, value, judge(controlword_, value, kind, writing), writing);
 }
 

@@ -124,7 +124,8 @@ class GroupMaker {
   void put_words() {
     if (const RowWrite* const row = controlword_row(); row != nullptr && !row->ignored) {
       const auto word = static_cast<std::uint16_t>(row->value);
-      writing_.targets = own_.rows.targets();
+      constexpr std::uint16_t kStart = 0x0010;  // bit 4: the other words start nothing that a target belongs to
+      writing_.targets = (word & kStart) != 0 ? own_.rows.targets() : 0;
       const Verdict verdict = own_.edges.controlword(word, writing_);
       note(verdict);
       if (verdict == Verdict::acts) {

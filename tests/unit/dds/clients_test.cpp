@@ -120,6 +120,7 @@ struct Grace : Writers {
     lease.rules.renew = renew;
     lease.owner = life;
     lease.running = true;
+    lease.any_sign = true;
     lease.renewed = kStart;
   }
 };

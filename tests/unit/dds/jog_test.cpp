@@ -12,6 +12,7 @@ using namespace std::chrono_literals;
 
 constexpr std::uint8_t kForward = 31, kReverse = 32, kEnd = 33;
 constexpr int kDone = 2, kNotOwner = 7, kUnsuitable = 9, kBadValue = 17;
+constexpr std::uint8_t kNotNew = 10;  // command_result not_new: held in vain
 
 struct Jogged : testing::TestWithParam<AxisNumber> {
   DdsRig rig;
@@ -63,7 +64,7 @@ TEST_P(Jogged, EndsWhenItsCommandComesNoMoreThoughItsWriterLives) {
   EXPECT_TRUE(rig.turns(axis));
   rig.run(600ms);
   EXPECT_TRUE(stands()) << "nobody holds the button, and beats are no button";
-  EXPECT_EQ(hold(kForward, 1s), kUnsuitable) << "one that is still held after a pause starts nothing, and says so";
+  EXPECT_EQ(hold(kForward, 1s), kNotNew) << "one that is still held after a pause starts nothing, and says so";
   EXPECT_FALSE(rig.turns(axis));
   EXPECT_EQ(rig.ask(writer, kEnd, axis).result, kDone);
   EXPECT_EQ(jog(kForward), kDone);
@@ -77,7 +78,7 @@ TEST_P(Jogged, AnothersStopEndsItForGood) {
   hold(kForward, 1s);
   const auto other = rig.writer(2);
   EXPECT_EQ(rig.ask(other, 4, axis).result, kDone);
-  EXPECT_EQ(hold(kForward, 2s), kUnsuitable);
+  EXPECT_EQ(hold(kForward, 2s), kNotNew);
   EXPECT_FALSE(rig.turns(axis));
 }
 
@@ -96,7 +97,7 @@ TEST_P(Jogged, AButtonHeldInVainStartsNothingWhenTheAxisBecomesFree) {
   EXPECT_EQ(jog(kForward), kNotOwner);
   EXPECT_EQ(hold(kForward, 300ms), kNotOwner);
   EXPECT_EQ(rig.ask(owner, 13, axis).result, kDone);
-  EXPECT_EQ(hold(kForward, 500ms), kUnsuitable);
+  EXPECT_EQ(hold(kForward, 500ms), kNotNew);
   EXPECT_FALSE(rig.turns(axis));
 }
 
