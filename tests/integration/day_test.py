@@ -49,6 +49,8 @@ class Day(Story):
 
 
 class ByRegisters(Day):
+    sim_options = ("--boot-ms", "5000")  # a restart is silent for longer than the gateway waits
+
     def test_enable_is_answered_when_the_drive_is_enabled(self):
         for axis, drive in self.each():
             axis.command("enable")

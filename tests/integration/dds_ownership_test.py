@@ -43,7 +43,7 @@ class BesideModbus(DdsStory):
                 with self.refused(BUSY):
                     axis.set(target_velocity=-300_000)
                 with self.refused(BUSY):
-                    axis.coil("enable", True)
+                    axis.set(target_position=1)
                 self.assertGreater(self.speed(number), 0)
                 axis.coil("quick_stop")  # open to everybody
                 self.until_it_stands(number)

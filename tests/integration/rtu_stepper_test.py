@@ -12,6 +12,7 @@ COMMAND_REGISTER = 323
 
 
 class Stepper(Story):
+    sim_options = ("--boot-ms", "5000")  # a restart is silent for longer than the gateway waits
     lines = {"line": "rtu:id286pro@1"}
 
     def buses(self):
