@@ -34,7 +34,7 @@ class CableCut(KeyaStory):
             self.assertEqual((block["statusword"], block["valid"], block["error_code"]), (0, 0, HEARTBEAT_LOST))
             self.assertEqual(axis.inputs() - {"warning"}, set())
         for axis in self.axes:
-            for name in ("enable", "run_velocity", "disable"):
+            for name in ("enable", "run_velocity"):
                 with self.refused(NO_PATH):
                     axis.command(name)
             with self.refused(NO_PATH):

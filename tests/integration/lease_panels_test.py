@@ -77,7 +77,7 @@ class AnybodyStops(Panels):
             self.until_told(number, "which does not own the axis")
             with self.refused(REFUSED):
                 plc.command("run_velocity")
-            self.assert_not_his(panel_1, lambda: panel_1.coil("enable"))
+            self.assert_not_his(panel_1, lambda: panel_1.set(target_velocity=0))
             self.assertEqual(self.speed(number), 0)
             self.set_running(plc, 200)
             panel_2.coil("halt")
