@@ -183,7 +183,7 @@ class AnotherMaster(Interface):
     def test_a_node_that_is_stopped_is_taken_back(self):
         for axis in self.lost:
             self.send(0x000, bytes([0x02, axis.number]))
-            self.gateway.wait_for(f"axis {axis.number}: the node has become stopped, by no command of ours")
+            self.gateway.wait_for(f"axis {axis.number}: the node is stopped by no command of ours")
             until("it runs its process data", lambda: self.ask("nmt DRIVE", axis.number) == "operational")
         self.assert_back()
 
