@@ -29,14 +29,17 @@ void Axis::on_time(Instant now) {
     if (first != clients.begin()) {
       // Others still wait for it.
       const bool sent = conversation.begun() || conversation.is_stop();
-      due_.push_back({{{sent ? Errc::timed_out : Errc::never_started, 0}, 0, 0},
-                      {std::make_move_iterator(first), std::make_move_iterator(clients.end())}});
+      Due& due = due_.emplace_back();
+      due.result.outcome = {sent ? Errc::timed_out : Errc::never_started, 0};
+      due.callbacks.assign(std::make_move_iterator(first), std::make_move_iterator(clients.end()));
       clients.erase(first, clients.end());
       continue;
     }
     if (conversation.is_stop() && !conversation.stop_is_over()) {
       // Its client has its answer; the stop goes on until it shows, or was repeated as often as it may.
-      due_.push_back({{{Errc::timed_out, 0}, 0, 0}, std::exchange(pending->callbacks, {})});
+      Due& due = due_.emplace_back();
+      due.result.outcome = {Errc::timed_out, 0};
+      due.callbacks = std::exchange(pending->callbacks, {});
       continue;
     }
     conversation.abort({conversation.begun() ? Errc::timed_out : Errc::never_started, 0});
