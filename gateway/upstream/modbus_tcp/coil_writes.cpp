@@ -56,7 +56,8 @@ struct Asked {
 /// A single 0 to the button by which the axis jogs is a stop of anybody's; elsewhere a 0 ends its client's own jog
 /// alone.
 bool ends_anybodys_jog(const Request& request, std::uint16_t first, const AxisImage& axis) {
-  return request.write_count == 1 && !request.written_coil(0) && (static_cast<unsigned>(shown_level_coils(axis)) >> first & 1U) != 0;
+  return request.write_count == 1 && !request.written_coil(0) &&
+         (static_cast<unsigned>(shown_level_coils(axis)) >> first & 1U) != 0;
 }
 
 /// What the coils of the request ask for, by the edge rules.
