@@ -1,8 +1,6 @@
 #include "gateway/drive/axis.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <iterator>
 #include <string>
 #include <utility>
 
