@@ -42,7 +42,9 @@ void LineWatch::on_babble() {
   given_up_ = true;
   timer_->expires_at(runtime_.now() + kSecondLook);
   line_.drop();
-  report(false, std::string(kWhy) + "; opened anew " + std::to_string(kReopensInARow) + " times, waiting for silence");
+  std::string why(kWhy);
+  why.append("; opened anew ").append(std::to_string(kReopensInARow)).append(" times, waiting for silence");
+  report(false, why);
 }
 
 /// Of a line that was given up: still noisy, then it is opened anew; quiet, then it is taken back.

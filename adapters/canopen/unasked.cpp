@@ -7,7 +7,7 @@
 
 namespace axisgate::canopen {
 
-using Kind = bus::Notice::Kind;
+using NoticeKind = bus::Notice::Kind;
 
 Unasked::Unasked(const NodeWatch::Settings& settings)
     : node_(settings.node),
@@ -17,7 +17,8 @@ Unasked::Unasked(const NodeWatch::Settings& settings)
                     can::BabbleWatch(can::kMaxProcessDataPerSecond), can::BabbleWatch(can::kMaxProcessDataPerSecond)} {}
 
 bool Unasked::News::restarted() const {
-  return std::any_of(notices.begin(), notices.end(), [](const bus::Notice& n) { return n.kind == Kind::started; });
+  return std::any_of(notices.begin(), notices.end(),
+                     [](const bus::Notice& n) { return n.kind == NoticeKind::started; });
 }
 
 void Unasked::link_up(Instant now) {
@@ -65,7 +66,7 @@ Unasked::News Unasked::on_stray_reply(bool twin, Instant now) {
 bool Unasked::passes(can::BabbleWatch& watch, std::uint32_t id, Instant now, News& news) {
   const can::BabbleWatch::Verdict verdict = watch.on_frame(now);
   if (verdict.tell) {
-    news.notices.push_back({.kind = Kind::babbling, .node = node_, .code = static_cast<std::uint16_t>(id)});
+    news.notices.push_back({.kind = NoticeKind::babbling, .node = node_, .code = static_cast<std::uint16_t>(id)});
   }
   news.bad = !verdict.pass;
   return verdict.pass;
@@ -97,13 +98,13 @@ void Unasked::on_process_data(std::uint8_t number, Bytes bytes, News& news) {
   if (map.empty()) return;
   const auto fields = decode_process_data(map, bytes);
   news.bad = !fields;
-  if (fields) news.notices.push_back({.kind = Kind::values, .node = node_, .fields = *fields});
+  if (fields) news.notices.push_back({.kind = NoticeKind::values, .node = node_, .fields = *fields});
 }
 
 void Unasked::tell_twin(Instant now, News& news) {
   if (now < tell_twin_at_) return;
   tell_twin_at_ = now + kTellTwinAgain;
-  news.notices.push_back({.kind = Kind::twin, .node = node_});
+  news.notices.push_back({.kind = NoticeKind::twin, .node = node_});
 }
 
 Unasked::News Unasked::on_deadline(Instant now) {
@@ -113,7 +114,7 @@ Unasked::News Unasked::on_deadline(Instant now) {
   news.guard = due.guard;
   if (due.gone) {
     twins_.forget();
-    news.notices.push_back({.kind = Kind::gone, .node = node_});
+    news.notices.push_back({.kind = NoticeKind::gone, .node = node_});
   }
   return news;
 }

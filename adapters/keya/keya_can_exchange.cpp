@@ -20,7 +20,7 @@ std::optional<bus::ExchangeResult> refusal_of_read(const bus::Exchange& exchange
   return std::nullopt;
 }
 
-std::optional<bus::ExchangeResult> refusal_of_write(const bus::Exchange& exchange) {
+std::optional<bus::ExchangeResult> refusal_of_can_write(const bus::Exchange& exchange) {
   if (!is_command(exchange.object.index)) return refused(kReadOnly);
   if (exchange.object.sub == 0 || exchange.object.sub > kMotors) return refused(kNoSubIndex);
   if (exchange.size != 4 || exchange.object.byte != 0 || !exchange.more.empty() || exchange.bytes)
@@ -32,7 +32,7 @@ std::optional<bus::ExchangeResult> refusal_of_write(const bus::Exchange& exchang
 
 std::optional<bus::ExchangeResult> refusal_of(const bus::Exchange& exchange) {
   assert(exchange.access != bus::Access::command);
-  return exchange.access == bus::Access::read ? refusal_of_read(exchange) : refusal_of_write(exchange);
+  return exchange.access == bus::Access::read ? refusal_of_read(exchange) : refusal_of_can_write(exchange);
 }
 
 CanMessage request_of(const bus::Exchange& exchange) {

@@ -34,7 +34,7 @@ std::optional<bus::ExchangeResult> refusal_of_read(KeyaLine line, const bus::Exc
   return std::nullopt;
 }
 
-std::optional<bus::ExchangeResult> refusal_of_write(const bus::Exchange& exchange) {
+std::optional<bus::ExchangeResult> refusal_of_serial_write(const bus::Exchange& exchange) {
   if (std::ranges::find(kFields, exchange.object) == kFields.end()) return refused(kNoObject);
   if (exchange.more.size() != kFields.size() - 1 || exchange.bytes) return refused(kUnsupportedAccess);
   for (const bus::ObjectAddress& object : kFields) {
@@ -52,7 +52,7 @@ std::optional<bus::ExchangeResult> refusal_of_write(const bus::Exchange& exchang
 
 std::optional<bus::ExchangeResult> refusal_of(KeyaLine line, const bus::Exchange& exchange) {
   assert(exchange.access != bus::Access::command);
-  return exchange.access == bus::Access::read ? refusal_of_read(line, exchange) : refusal_of_write(exchange);
+  return exchange.access == bus::Access::read ? refusal_of_read(line, exchange) : refusal_of_serial_write(exchange);
 }
 
 SerialFrame request_of(KeyaLine line, const bus::Exchange& exchange) {

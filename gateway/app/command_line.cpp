@@ -18,8 +18,6 @@
 namespace axisgate::app {
 namespace {
 
-constexpr int kWrongCommandLine = 2;
-
 /// Everything that options are read into; commands copy from it when they run.
 struct Parsed {
   std::string profiles;

@@ -5,6 +5,9 @@
 
 namespace axisgate::app {
 
+/// The exit code where an option or its value is wrong.
+inline constexpr int kWrongCommandLine = 2;
+
 /// Parses and runs; the exit code of the process. 0: done. 1: the command says no. 2: the command line is wrong.
 [[nodiscard]] int run_command_line(int argc, const char* const* argv);
 

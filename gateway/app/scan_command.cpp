@@ -1,4 +1,5 @@
 #include "gateway/app/scan_command.hpp"
+#include "gateway/app/command_line.hpp"
 
 #include <fmt/format.h>
 
@@ -25,7 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kWrongCommandLine = 2;
 /// A bus that cannot be spoken on by then is not waited for.
 constexpr Duration kUpLimit = std::chrono::seconds(3);
 /// With these words a link tells that it could not be opened. Without them the scan would end all the same, at

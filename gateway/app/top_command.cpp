@@ -1,4 +1,5 @@
 #include "gateway/app/top_command.hpp"
+#include "gateway/app/command_line.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +24,6 @@ using boost::asio::awaitable;
 constexpr std::chrono::milliseconds kAnswerLimit{2000};
 constexpr std::chrono::milliseconds kConnectLimit{3000};
 constexpr std::chrono::milliseconds kRetryPeriod{1000};
-constexpr int kWrongCommandLine = 2;
 constexpr std::uint8_t kTargetFailed = 0x0B;  // a listener with "offline_reads": "exception" says so of a silent axis
 
 struct Place {

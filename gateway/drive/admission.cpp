@@ -145,6 +145,17 @@ bool holds_stop(const Group& group) {
   return is_stop(group.command) || (group.controlword && is_stop(*group.controlword, group.single_controlword));
 }
 
+bool stops_alone(const Group& group) {
+  return holds_stop(group) && group.setpoints.empty() && !group.mode && !group.object && !group.set_position_value &&
+         !group.jog_velocity && (group.command == Command::none || is_stop(group.command)) &&
+         (!group.controlword || is_stop(*group.controlword, group.single_controlword));
+}
+
+bool asks_to_enable(const Group& group) {
+  return group.command == Command::enable ||
+         (group.controlword && request_of(*group.controlword) == Request402::enable_operation);
+}
+
 Group stop_alone(const Group& group) {
   Group out = group;
   out.setpoints.clear();

@@ -15,6 +15,10 @@ namespace axisgate::drive {
 [[nodiscard]] bool reads_alone(const Group& group);
 /// The group holds a stop by design 3.4.
 [[nodiscard]] bool holds_stop(const Group& group);
+/// The group holds a stop and nothing else.
+[[nodiscard]] bool stops_alone(const Group& group);
+/// The group asks for operation_enabled, by command or controlword.
+[[nodiscard]] bool asks_to_enable(const Group& group);
 /// What is left of a group that holds a stop when everything else is taken out of it.
 [[nodiscard]] Group stop_alone(const Group& group);
 /// The stop latches the axis: quick_stop, by command, controlword, or because this drive has no other halt.

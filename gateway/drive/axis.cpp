@@ -11,15 +11,6 @@
 namespace axisgate::drive {
 namespace {
 
-bool asks_to_enable(const Group& group) {
-  return group.command == Command::enable ||
-         (group.controlword && request_of(*group.controlword) == Request402::enable_operation);
-}
-
-bool stops_alone(const Group& group) {
-  return group.setpoints.empty() && !group.mode && !group.object && !group.set_position_value;
-}
-
 bool begins_anything(const Group& group) {
   return asks_to_enable(group) || (group.command >= Command::move_absolute && group.command <= Command::set_position);
 }

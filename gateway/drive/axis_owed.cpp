@@ -32,18 +32,7 @@ Command command_of(StopKind stop) {
   return Command::disable;
 }
 
-bool stops_alone(const Group& group) {
-  return holds_stop(group) && group.setpoints.empty() && !group.mode && !group.object && !group.set_position_value &&
-         !group.jog_velocity && (group.command == Command::none || is_stop(group.command)) &&
-         (!group.controlword || is_stop(*group.controlword, group.single_controlword));
-}
-
 bool outcome_unknown(Errc code) { return command_result(code) == CommandResult::outcome_unknown; }
-
-bool asks_to_enable(const Group& group) {
-  return group.command == Command::enable ||
-         (group.controlword && request_of(*group.controlword) == Request402::enable_operation);
-}
 
 }  // namespace
 

@@ -41,6 +41,11 @@ inline constexpr std::uint16_t kHalt = 1U << 8;
 inline constexpr std::uint16_t kMaker = 0xF800;
 }  // namespace controlword
 
+/// A bit of the mask is 1 that was 0.
+[[nodiscard]] constexpr bool rising(std::uint16_t before, std::uint16_t now, std::uint16_t mask) {
+  return (now & ~before & mask) != 0;
+}
+
 /// The motor has torque and obeys: enabled, or stood still by a quick stop that ends there.
 [[nodiscard]] constexpr bool holds_motor(State402 state) {
   return state == State402::operation_enabled || state == State402::quick_stop_active;

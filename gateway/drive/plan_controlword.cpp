@@ -3,8 +3,6 @@
 namespace axisgate::drive {
 namespace {
 
-bool rising(std::uint16_t before, std::uint16_t now, std::uint16_t mask) { return (now & ~before & mask) != 0; }
-
 // Bit 4 rising starts; so does the maker's bit that makes the drive follow its target, even in the word that enables.
 bool starts_move(const AxisFacts& facts, std::uint16_t before, std::uint16_t word) {
   if (facts.mode != 1) return false;

@@ -6,8 +6,6 @@
 namespace axisgate::drive {
 namespace {
 
-bool rising(std::uint16_t before, std::uint16_t now, std::uint16_t mask) { return (now & ~before & mask) != 0; }
-
 // 6 or 7 in a block of registers is no stop, but what was enabled ends by it all the same.
 Plan plan_close(const AxisCore& core) {
   Plan plan;

@@ -135,8 +135,6 @@ void read_object(Reading& reading, const std::string& name, const json& node) {
   reading.profile.objects.push_back(std::move(out));
 }
 
-constexpr std::int64_t kLastRegister = 0xFFFF;
-
 /// The bits an object takes where it lies: two objects must not take the same ones.
 struct Extent {
   std::string where;

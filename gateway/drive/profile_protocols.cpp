@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::int64_t kDefaultTimeoutMs = 100;
 constexpr std::int64_t kFirstErrorFunction = 0x80, kLastErrorFunction = 0xFF;  // bit 7 is what makes it one
-constexpr std::int64_t kLastRegister = 0xFFFF;
 
 Duration milliseconds(std::int64_t count) { return std::chrono::milliseconds(count); }
 

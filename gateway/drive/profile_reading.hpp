@@ -3,6 +3,7 @@
 // reports what the JSON Schema reports already: a value of the wrong type simply reads as absent.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -12,6 +13,9 @@
 #include "gateway/drive/profile.hpp"
 
 namespace axisgate::drive {
+
+/// The last address of a Modbus register.
+inline constexpr std::int64_t kLastRegister = 0xFFFF;
 
 class Reading {
  public:

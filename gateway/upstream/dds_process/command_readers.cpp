@@ -16,7 +16,6 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 /// Of one axis, until they are taken. Then the library takes no more, and reliable writers keep theirs.
 constexpr std::int32_t kMostSamplesPerAxis = 64;
-constexpr SteadyNs kSecond = 1'000'000'000;
 
 std::string where(const eprosima::fastrtps::rtps::WriterProxyData& writer) {
   for (const auto& locator : writer.remote_locators().unicast) {

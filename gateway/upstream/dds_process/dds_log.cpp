@@ -1,4 +1,5 @@
 #include "gateway/upstream/dds_process/dds_log.hpp"
+#include "gateway/upstream/dds_process/steady.hpp"
 
 #include <fastdds/dds/log/Log.hpp>
 #include <memory>
@@ -24,8 +25,6 @@ class ToLog : public eprosima::fastdds::dds::LogConsumer {
  private:
   DdsLog& log_;
 };
-
-constexpr SteadyNs kSecond = 1'000'000'000;
 
 }  // namespace
 

@@ -1,4 +1,5 @@
 #include "gateway/upstream/dds_process/liveliness_readers.hpp"
+#include "gateway/upstream/dds_process/steady.hpp"
 
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
@@ -11,8 +12,6 @@ namespace {
 
 using eprosima::fastrtps::Duration_t;
 using eprosima::fastrtps::types::ReturnCode_t;
-
-constexpr SteadyNs kSecond = 1'000'000'000;
 
 fastdds::LivelinessQosPolicyKind to_fastdds(LivelinessKind kind) {
   switch (kind) {

@@ -24,7 +24,6 @@
 namespace axisgate::dds {
 namespace {
 
-constexpr SteadyNs kMillisecond = 1'000'000;
 constexpr SteadyNs kBeatPeriod = 100 * kMillisecond;
 constexpr SteadyNs kMemoryPeriod = 250 * kMillisecond;
 /// In one turn of the loop, so that neither direction starves the other.

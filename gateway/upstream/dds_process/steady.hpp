@@ -9,6 +9,9 @@
 
 namespace axisgate::dds {
 
+inline constexpr SteadyNs kMillisecond = 1'000'000;
+inline constexpr SteadyNs kSecond = 1000 * kMillisecond;
+
 [[nodiscard]] inline SteadyNs clock_ns(clockid_t clock) {
   timespec now{};
   clock_gettime(clock, &now);

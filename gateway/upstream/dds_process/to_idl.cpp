@@ -1,9 +1,9 @@
+#include "gateway/upstream/dds_process/steady.hpp"
 #include "gateway/upstream/dds_process/to_idl.hpp"
 
 namespace axisgate::dds {
 
 axisgate::Time to_time(SteadyNs at, ClockDifference difference) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
   axisgate::Time time;
   if (at == 0) return time;
   const std::int64_t of_day = at + difference;

@@ -22,7 +22,6 @@ namespace {
 using eprosima::fastrtps::Duration_t;
 using eprosima::fastrtps::types::ReturnCode_t;
 
-constexpr SteadyNs kMillisecond = 1'000'000;
 constexpr SteadyNs kRedrawPeriod = 200 * kMillisecond;
 /// With --once: for the first axis, and then for one more.
 constexpr SteadyNs kFirstWithin = 5'000 * kMillisecond;

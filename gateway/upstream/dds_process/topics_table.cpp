@@ -1,4 +1,5 @@
 #include "gateway/upstream/dds_process/topics_table.hpp"
+#include "gateway/upstream/dds_process/steady.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +10,6 @@
 
 namespace axisgate::dds {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 // Numbers of design 3.1, registers 18 and 31.
 constexpr std::array<std::string_view, 6> kLinks{"unknown", "setup", "online", "suspect", "offline", "link down"};

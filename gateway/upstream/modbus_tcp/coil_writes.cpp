@@ -18,9 +18,6 @@ constexpr std::array kOrder{Command::quick_stop,  Command::disable,       Comman
 /// Both sides of a jog coil, and each of the others, ask for one thing at most.
 using Acting = boost::container::static_vector<Command, kCoils + 1>;
 
-constexpr std::uint16_t kJogForward = 8;
-constexpr std::uint16_t kJogReverse = 9;
-
 bool starts_motion(Command command) {
   return command == Command::home || command == Command::move_absolute || command == Command::move_relative ||
          command == Command::run_velocity || command == Command::jog_forward || command == Command::jog_reverse;

@@ -5,8 +5,6 @@ namespace {
 
 constexpr std::size_t kEnable = 0;  // offsets of the coils
 constexpr std::size_t kRunVelocity = 7;
-constexpr std::size_t kJogForward = 8;
-constexpr std::size_t kJogReverse = 9;
 
 /// "A single write that asks for what is so already is answered normally."
 bool is_so(Command command, const Writing& writing) {

@@ -20,6 +20,10 @@ namespace axisgate::modbus_tcp {
 /// write.
 enum class WriteForm : std::uint8_t { single, block };
 
+/// Offsets of the jog coils in the unit's coils (design 3.4).
+inline constexpr std::uint16_t kJogForward = 8;
+inline constexpr std::uint16_t kJogReverse = 9;
+
 /// How and when an item is written, by whom, and what the axis is like.
 struct Writing {
   WriteForm form = WriteForm::single;
