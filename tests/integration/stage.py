@@ -12,6 +12,7 @@ import unittest
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 
+from disturbance import UndisturbedTest
 from modbus import ONLINE, Client, Refused
 from processes import NEVER, Ports, Program, until
 
@@ -84,20 +85,18 @@ class Gateway(Program):
         return self
 
 
-class Story(unittest.TestCase):
+class Story(UndisturbedTest):
     """A machine of two drives on two lines, unless a story builds another."""
 
     lines = {"lift": "jd@1", "feeder": "md@1"}
     sim_options = ()
 
-    def run(self, result=None):
-        before = len(result.errors) + len(result.failures)
+    def run_once(self, result):
         self.programs = []
-        outcome = super().run(result)
-        if len(result.errors) + len(result.failures) > before:
+        super().run_once(result)
+        if not result.wasSuccessful():
             for program in self.programs:
                 print(f"--- {program.name} ({self.id()})\n{program.text()}", file=sys.stderr)
-        return outcome
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="axisgate-story-")
