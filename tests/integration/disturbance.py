@@ -7,16 +7,19 @@ runs, a thread watches whether it and its programs could run; a test that failed
 such evidence a failure is one at once, and a test that passed has passed.
 """
 import os
+import select
 import threading
 import time
+import tty
 import unittest
 
 ATTEMPTS = 5
 PERIOD = 0.02  # seconds between two looks at the clock
+LONG = 10  # seconds; a terminal that takes longer for a byte is told as one that took so long
 LOOK_EVERY = 0.25  # seconds between two looks at the processes
 WINDOW = 1.0  # the shortest lease, and the time of most watchdogs
-# The sooner half of such a time is what the gateway, its client and the drive need in turn, at their usual pace. Three of them that
-# each lack a bit more than a seventh of it have used up the other half.
+# A drive's answer is waited for 100 ms and more, and a keep-alive comes three times in its watchdog's second: what is lacking by more
+# than this within a second may be an answer too late or two keep-alives in one.
 BOUND = 0.15
 TICK = 1 / os.sysconf("SC_CLK_TCK")
 
@@ -62,9 +65,27 @@ def waits(processes):
 
 
 def stolen():
-    """How many seconds each processor of this guest was somebody else's."""
-    rows = [line.split() for line in read("/proc/stat").splitlines() if line.startswith("cpu")]
-    return {row[0]: int(row[8]) * TICK for row in rows[1:] if len(row) > 8}
+    """How many seconds the processors of this guest were somebody else's, all together."""
+    row = read("/proc/stat").partition("\n")[0].split()
+    return int(row[8]) * TICK if len(row) > 8 else 0
+
+
+class Terminal:
+    """A pseudo-terminal, as the simulated lines are: a byte comes out of it when a thread of the kernel has had a processor."""
+
+    def __enter__(self):
+        self.near, self.far = os.openpty()
+        tty.setraw(self.far)
+        return self
+
+    def __exit__(self, *_):
+        os.close(self.near)
+        os.close(self.far)
+
+    def pass_a_byte(self):
+        os.write(self.near, b".")
+        if select.select([self.far], [], [], LONG)[0]:
+            os.read(self.far, 64)
 
 
 class Disturbance:
@@ -73,59 +94,58 @@ class Disturbance:
     def __init__(self):
         self.worst = (0, "")
         self.looks = []
+        self.late = 0
         self.over = threading.Event()
         self.thread = threading.Thread(target=self.watch, daemon=True)
 
     def __enter__(self):
         self.processes, self.listed = family(os.getpid()), time.monotonic()
-        self.look(self.listed, self.waited_so_far())
+        self.look(self.listed, *self.so_far())
         self.thread.start()
         return self
 
     def __exit__(self, *_):
         self.over.set()
         self.thread.join()
-        self.look(time.monotonic(), self.waited_so_far())
+        self.look(time.monotonic(), *self.so_far())
 
     def watch(self):
         last = looked = time.monotonic()
         over = False
-        while not over:
-            over = self.over.wait(PERIOD)
-            now = time.monotonic()
-            self.passed(now - last)
-            last = now
-            if now - looked >= LOOK_EVERY:
-                looked = now
-                self.look(now, self.waited_so_far())
-
-    def waited_so_far(self):
-        if time.monotonic() - self.listed >= WINDOW:
-            self.processes, self.listed = family(os.getpid()), time.monotonic()
-        return {**waits(self.processes), **stolen()}
+        with Terminal() as terminal:
+            while not over:
+                over = self.over.wait(PERIOD)
+                terminal.pass_a_byte()
+                now = time.monotonic()
+                self.passed(now - last)
+                last = now
+                if now - looked >= LOOK_EVERY:
+                    looked = now
+                    self.look(now, *self.so_far())
 
     def passed(self, seconds):
         """So long after the last look at the clock came this one."""
-        self.found(seconds - PERIOD, "the machine stood still")
+        late = max(0, seconds - PERIOD)
+        self.late += late
+        self.found(late, "the machine stood still")
 
-    def look(self, now, waited):
-        """At all that waited, each with its time since it began: what came to it within the last window?"""
+    def so_far(self):
+        if time.monotonic() - self.listed >= WINDOW:
+            self.processes, self.listed = family(os.getpid()), time.monotonic()
+        return waits(self.processes), {"this guest had no processor": stolen(), "the machine was late": self.late}
+
+    def look(self, now, waited, totals):
+        """At how long each thread has waited since it began, and at other sums of seconds: what came to them within the last window?"""
         while len(self.looks) > 1 and self.looks[1][0] <= now - WINDOW:
             self.looks.pop(0)
-        if self.looks:
-            before = self.looks[0][1]
-            for who, seconds in waited.items():
-                more = seconds - before.get(who, 0)
-                if more > self.worst[0]:
-                    self.found(more, self.words(who))
-        self.looks.append((now, waited))
-
-    @staticmethod
-    def words(who):
-        if isinstance(who, str):
-            return f"{who} was taken from this machine"
-        name = read(f"/proc/{who[0]}/comm").strip() or "a program that has ended"
-        return f"{name} waited for a processor"
+        self.looks.append((now, waited, totals))
+        _, waited_then, totals_then = self.looks[0]
+        if len(self.looks) > 1:
+            # Client, gateway and drive act in turn: what one of them waits the others wait too.
+            self.found(sum(max(0, seconds - waited_then.get(who, 0)) for who, seconds in waited.items()),
+                       "its programs waited for a processor")
+            for words, seconds in totals.items():
+                self.found(seconds - totals_then[words], words)
 
     def found(self, seconds, words):
         self.worst = max(self.worst, (seconds, words))

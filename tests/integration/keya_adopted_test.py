@@ -14,7 +14,7 @@ class FoundRunningOnRs485(KeyaStory):
 
     def setUp(self):
         super().setUp()
-        self.begin(RS485, lease={"timeout_ms": 3000})
+        self.begin(RS485, lease={"timeout_ms": 1500})
         self.run_both()
         self.kill_the_gateway()
         self.assert_runs_on()
@@ -38,7 +38,7 @@ class FoundRunningOnRs485(KeyaStory):
         for axis in self.axes:
             axis.set(heartbeat=1)
             self.assertEqual(axis.get("owner"), ME)
-        self.let_pass(5, self.client.gateway)
+        self.let_pass(2, self.client.gateway)
         self.assertEqual((self.enabled(), self.speeds()), ([True, True], [SPEED, SPEED]))
         self.assertEqual(self.commands(), self.before, "nothing was sent")
         left, right = self.axes
@@ -68,7 +68,7 @@ class OneOfTwoFoundRunningOnRs485(KeyaStory):
 
     def setUp(self):
         super().setUp()
-        self.begin(RS485, lease={"timeout_ms": 3000})
+        self.begin(RS485, lease={"timeout_ms": 1500})
         self.enable(self.axes[0])
         self.run_axis(self.axes[0])
         self.kill_the_gateway()
@@ -88,7 +88,7 @@ class OneOfTwoFoundRunningOnRs485(KeyaStory):
         left, right = self.axes
         left.set(heartbeat=1)
         self.assertEqual(left.get("owner"), ME)
-        self.let_pass(5, self.client.gateway)
+        self.let_pass(2, self.client.gateway)
         self.assertEqual((self.enabled(), self.speeds()), ([True, False], [SPEED, 0]))
         left.command("quick_stop")
         self.until_it_stands()

@@ -128,7 +128,7 @@ class OwnerDiesWhileTheCableIsOut(KeyaStory):
     """No stop of its lease reaches the drive; by RS485 it runs on, and is stopped when it is found running."""
 
     def test_on_rs485(self):
-        self.begin(RS485, lease={"timeout_ms": 2000})
+        self.begin(RS485, lease={"timeout_ms": 1500})
         self.run_both()
         self.sim.ask("unplug cart")
         for axis in self.seen:

@@ -1,5 +1,5 @@
 """A day with a Keya on each of its interfaces: both motors come online, obey one by one, and are read back."""
-from keya_stage import ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, RPM, RS232, RS485, SPEED, TURN, KeyaStory, main
+from keya_stage import ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, LONGER_THAN_A_WATCHDOG, RPM, RS232, RS485, SPEED, TURN, KeyaStory, main
 from modbus import (ABORTED, ALARM_ADOPTED, ALARM_STOP_LATCHED, COMMANDS, COMPLETED, CONTINUOUS, DISABLED, NO_ADDRESS, NO_MOTION, ONLINE,
                     REFUSED, STANDSTILL)
 from processes import until
@@ -98,7 +98,7 @@ class OneMotorInPositionMode(KeyaStory):
         self.move(left, 5 * TURN)
         self.move(left, -2 * TURN)
         commands = self.commands()
-        self.let_pass(3)
+        self.let_pass(LONGER_THAN_A_WATCHDOG)
         if interface.loss:
             self.assertGreater(self.commands(), commands, "it is kept alive")
         self.assertEqual((self.positions()[0], self.trips()), (-2 * TURN, 0), "what is sent again moves nothing")

@@ -3,11 +3,11 @@ the owner does."""
 import socket
 import struct
 
-from keya_stage import CANOPEN, KEYA_CAN, RS232, RS485, SPEED, KeyaStory, main
+from keya_stage import CANOPEN, KEYA_CAN, MANY_KEEP_ALIVES, RS232, RS485, SPEED, KeyaStory, main
 from modbus import BUSY, CONTINUOUS, DISABLED
 from processes import until
 
-LEASE = {"timeout_ms": 2000}
+LEASE = {"timeout_ms": 1500}
 NOBODY, ANOTHER = 0, 2
 
 
@@ -16,13 +16,13 @@ class OwnerLives(KeyaStory):
         self.begin(interface, lease=LEASE)
         self.run_both()
         before, where = self.commands(), self.positions()
-        self.let_pass(6, self.owner_asks)
+        self.let_pass(3, self.owner_asks)  # twice as long as a lease
         self.assertEqual((self.trips(), self.enabled(), self.speeds()), (0, [True, True], [SPEED, SPEED]))
         for axis in self.seen:
             self.assertEqual((axis.get("axis_state"), axis.get("owner")), (CONTINUOUS, ANOTHER))
         self.assertTrue(all(now > then for now, then in zip(self.positions(), where)))
         if interface.loss:
-            self.assertGreater(self.commands(), before + 6, "more often than once a second")
+            self.assertGreater(self.commands(), before + 3, "more often than once a second")
         else:
             self.assertEqual(self.commands(), before, "no watchdog, no keep-alive")
 
@@ -57,7 +57,7 @@ class OwnerDies(KeyaStory):
         for axis in self.seen:
             axis.until_input("stop_latched")
             axis.until_input("enabled", False)
-        self.let_pass(2)
+        self.let_pass(MANY_KEEP_ALIVES)
         self.assertEqual((self.commands(), self.positions()), (commands, where), "the keep-alive has ended")
         self.client = self.connect()  # the next one
         self.axes = [self.client.axis(1), self.client.axis(2)]
@@ -107,7 +107,7 @@ class ScannerGoesOnWithoutItsProgram(KeyaStory):
         for axis in self.axes:
             self.beating(lambda axis=axis: self.enable(axis))
             self.beating(lambda axis=axis: self.run_axis(axis))
-        self.let_pass(4, self.beat)
+        self.let_pass(2, self.beat)
         self.assertEqual((self.trips(), self.enabled(), self.speeds()), (0, [True, True], [SPEED, SPEED]))
 
         def scanned():
@@ -197,7 +197,7 @@ class TwoOwners(KeyaStory):
             return self.enabled() == [False, True] and self.speeds()[0] == 0
 
         until("its motor stands without torque", alive)
-        self.let_pass(3, lambda: living.get("axis_state") == CONTINUOUS)
+        self.let_pass(2, lambda: living.get("axis_state") == CONTINUOUS)
         self.assertEqual((self.enabled(), self.speeds(), self.trips()), ([False, True], [0, SPEED], 0))
 
     def test_on_rs232(self):

@@ -1,6 +1,6 @@
 """A Keya restarts while both of its motors run: both axes are told, every motion has ended for good, and nothing is enabled by the
 gateway, however short the restart was."""
-from keya_stage import CANOPEN, KEYA_CAN, RS232, RS485, KeyaStory, main
+from keya_stage import CANOPEN, KEYA_CAN, MANY_KEEP_ALIVES, RS232, RS485, SPEED, KeyaStory, main
 from modbus import DISABLED, FAILED, ONLINE
 from processes import until
 
@@ -30,7 +30,7 @@ class RestartsInMotion(KeyaStory):
 
 
 class RestartsSlowly(RestartsInMotion):
-    boot_ms = 3000
+    boot_ms = 2000
 
     def test_on_rs232(self):
         self.restart(RS232, self.boot_ms)
@@ -73,10 +73,10 @@ class OneMotorTrips(KeyaStory):
         self.ask("fault", "A", OVERCURRENT)
         left.until(error_code=0x2310, vendor_error=0x0040, motion_state=FAILED)
         self.assertEqual(self.enabled(), [False, True])
-        self.run_axis(right, 600)
+        self.run_axis(right, 2 * SPEED)
         self.ask("clear", "A", OVERCURRENT)
-        self.let_pass(3)
-        self.assertEqual((self.enabled(), self.speeds(), self.trips()), ([False, True], [0, 600], 0))
+        self.let_pass(MANY_KEEP_ALIVES)
+        self.assertEqual((self.enabled(), self.speeds(), self.trips()), ([False, True], [0, 2 * SPEED], 0))
         if not interface.on_can:  # a frame names both motors: whether its 0 for one is the disabling that clears is not stated
             right.command("disable")
         enabled = self.enabled()
