@@ -116,7 +116,7 @@ class Motion(Commanded):
 
 
 class Jog(Commanded):
-    axis_options = {"jog_timeout_ms": 1000}
+    axis_options = {"jog_timeout_ms": 600}
 
     def test_a_motor_jogs_while_its_command_comes_again(self):
         for peer, number, axis in self.each_axis_of_each_vendor():
@@ -128,7 +128,7 @@ class Jog(Commanded):
                     return self.speed(number) * sign > 0
 
                 until(f"{name} turns", turns)
-                end = time.monotonic() + 1.5
+                end = time.monotonic() + 0.9
                 while time.monotonic() < end:
                     request = peer.ask(number, name, jog_velocity=200 * RPM)
                     self.assertEqual(peer.answer(request)[0], DONE)

@@ -58,8 +58,8 @@ class Strengths(DdsStory):
     """Two writers of one axis: DDS's exclusive ownership, and the lease that goes with it."""
 
     lines_of = ("serial",)
-    lease = {"timeout_ms": 10000}
-    lives_by = ("manual", 6000)  # the library tells apart whose assertion it hears
+    lease = {"timeout_ms": 5000}
+    lives_by = ("manual", 3000)  # the library tells apart whose assertion it hears
 
     def setUp(self):
         super().setUp()
@@ -132,8 +132,8 @@ class Strengths(DdsStory):
 
 class Equals(DdsStory):
     lines_of = ("serial",)
-    lease = {"timeout_ms": 10000}
-    lives_by = ("manual", 6000)  # the library tells apart whose assertion it hears
+    lease = {"timeout_ms": 5000}
+    lives_by = ("manual", 3000)  # the library tells apart whose assertion it hears
 
     def test_while_one_has_the_axis_another_of_its_strength_has_not(self):
         self.begin()

@@ -217,9 +217,10 @@ QOS = """<?xml version="1.0"?>
     <qos>
       <reliability><kind>RELIABLE</kind></reliability>
       <durability><kind>TRANSIENT_LOCAL</kind></durability>
-      <deadline><period><sec>3</sec></period></deadline>
+      <deadline><period><sec>1</sec></period></deadline>
       <liveliness>
-        <kind>AUTOMATIC</kind><lease_duration><sec>3</sec></lease_duration><announcement_period><sec>1</sec></announcement_period>
+        <kind>AUTOMATIC</kind>
+        <lease_duration><sec>1</sec></lease_duration><announcement_period><nanosec>300000000</nanosec></announcement_period>
       </liveliness>
     </qos>
   </data_writer>
@@ -231,14 +232,14 @@ class Missed(Signalled):
     """Subscribers that ask for a deadline and for liveliness, and a configuration that offers both."""
 
     lines_of = ("serial",)
-    dds = {"max_period_ms": 500, "qos_file": "qos.xml"}
+    dds = {"max_period_ms": 300, "qos_file": "qos.xml"}
 
     def setUp(self):
         super().setUp()
         with open(self.path("qos.xml"), "w", encoding="utf-8") as file:
             file.write(QOS)
         self.begin()
-        self.readers = [self.peer_of(vendor).read("axis_state", "deadline", 3000, "automatic", 3000) for vendor in VENDORS]
+        self.readers = [self.peer_of(vendor).read("axis_state", "deadline", 1500, "automatic", 1500) for vendor in VENDORS]
         for reader in self.readers:
             self.at = reader.name
             reader.sample("axis_state", axis=1)

@@ -6,11 +6,12 @@ from modbus import BUSY, REFUSED, STANDSTILL, Axis, Refused
 from processes import until
 
 FORWARD, REVERSE = COILS.index("jog_forward"), COILS.index("jog_reverse")
+A_MOMENT = 0.2  # seconds: many turns of the gateway's and the drives' loops
 
 
 class Buttons(Machine):
     lease = {"timeout_ms": 10000}
-    jog_timeout_ms = 1000
+    jog_timeout_ms = 600
     axis_options = {"jog_timeout_ms": jog_timeout_ms}
 
     def setUp(self):
@@ -69,7 +70,7 @@ class Held(Buttons):
             axis = self.ready(number)
             for name, rpm in (("jog_forward", 200), ("jog_reverse", -200)):
                 self.press(axis, name)
-                self.hold(axis, name, 1.5 * self.jog_timeout_ms / 1000)
+                self.hold(axis, name, 1.3 * self.jog_timeout_ms / 1000)
                 until("at its velocity", lambda: axis.coil(name) or abs(axis.get("velocity_actual") - rpm * RPM) < 40 * RPM)
                 axis.coil(name, False)
                 self.assert_halted(axis)
@@ -92,7 +93,7 @@ class ReleaseLost(Buttons):
             until("it stands", stands_meanwhile)
             self.assertGreaterEqual(time.monotonic() - before, self.jog_timeout_ms / 1000)
             self.assert_halted(axis)
-            self.press_in_vain(axis, "jog_forward", 1.2)  # the button that hangs: no time makes it a new press
+            self.press_in_vain(axis, "jog_forward", 1.2 * self.jog_timeout_ms / 1000)  # the button that hangs: no time makes it a new press
             axis.coil("jog_forward", False)
             self.press(axis, "jog_forward")
             axis.coil("jog_forward", False)
@@ -120,9 +121,9 @@ class BothButtons(Buttons):
             self.press(axis, "jog_forward")
             axis.coil("jog_reverse")
             self.assert_halted(axis)
-            self.press_in_vain(axis, "jog_forward", 0.3)
+            self.press_in_vain(axis, "jog_forward", A_MOMENT)
             axis.coil("jog_forward", False)
-            self.press_in_vain(axis, "jog_reverse", 0.3)
+            self.press_in_vain(axis, "jog_reverse", A_MOMENT)
             axis.coil("jog_reverse", False)
             self.press(axis, "jog_reverse")
             axis.coil("jog_reverse", False)
@@ -147,9 +148,9 @@ class Stopped(Buttons):
             other.coil("quick_stop")
             other.coil("quick_stop", False)
             self.until_it_stands(number)
-            self.press_in_vain(axis, "jog_forward", 0.3)
+            self.press_in_vain(axis, "jog_forward", A_MOMENT)
             self.enable(axis)
-            self.press_in_vain(axis, "jog_forward", 1.2)
+            self.press_in_vain(axis, "jog_forward", 1.2 * self.jog_timeout_ms / 1000)
             axis.coil("jog_forward", False)
             self.press(axis, "jog_forward")
             axis.coil("jog_forward", False)
@@ -182,7 +183,7 @@ class NotTheOwner(Buttons):
             with self.refused(BUSY):
                 other.coil("jog_reverse")
             other.coil("jog_reverse", False)  # letting go of what was pressed in vain ends nobody's jog
-            self.hold(axis, "jog_forward", 0.5)
+            self.hold(axis, "jog_forward", A_MOMENT)
             axis.coil("jog_forward", False)
             self.assert_halted(axis)
             axis.command("disable")

@@ -1,6 +1,6 @@
 """A gateway is started while both motors of a Keya are enabled and run: it reads, lets them run, and its open lease is all that a start
 can lead to."""
-from keya_stage import ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, RPM, RS232, RS485, SPEED, KeyaStory, main
+from keya_stage import ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, RPM, RS232, RS485, SPEED, KeyaStory, main, on
 from modbus import ALARM_ADOPTED, ALARM_STOP_LATCHED, DISABLED, ONLINE
 from processes import until
 
@@ -98,7 +98,8 @@ class OneOfTwoFoundRunningOnRs485(KeyaStory):
 class FoundRunning(KeyaStory):
     """Where the drive watches its master, a start in time finds it enabled, and is no command: the watchdog goes on counting."""
 
-    def find(self, interface):
+    @on(RS232, KEYA_CAN, CANOPEN)
+    def test_it_lets_them_run_and_the_watchdog_goes_on(self, interface):
         self.begin(interface)
         for _ in range(ATTEMPTS):
             trips = self.trips()
@@ -116,15 +117,6 @@ class FoundRunning(KeyaStory):
             until("no longer adopted", lambda: not axis.get("axis_alarms") & ALARM_ADOPTED)
         self.assert_nothing_is_enabled_by_itself()
         self.assert_fresh_enable_works()
-
-    def test_on_rs232(self):
-        self.find(RS232)
-
-    def test_on_its_own_can_protocol(self):
-        self.find(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.find(CANOPEN)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """The cable of a Keya is pulled while both motors run, and put back: the drive stops by itself where it has a watchdog, and whatever it
 did, nothing is enabled or started by the gateway."""
-from keya_stage import CANOPEN, KEYA_CAN, RPM, RS232, RS485, KeyaStory, main
+from keya_stage import CANOPEN, KEYA_CAN, RPM, RS232, RS485, KeyaStory, main, on
 from modbus import (ALARM_ADOPTED, ALARM_STOP_LATCHED, DISABLED, FAILED, LINK_DOWN, NO_PATH, OFFLINE, ONLINE)
 from processes import until
 
@@ -59,42 +59,25 @@ class CableCut(KeyaStory):
 class PortIsGone(CableCut):
     """The adapter is pulled from the computer."""
 
-    def pull(self, interface):
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_nothing_is_enabled_or_started(self, interface):
         self.cut(interface, "unplug cart", "plug cart", LINK_DOWN)
-
-    def test_on_rs232(self):
-        self.pull(RS232)
-
-    def test_on_rs485(self):
-        self.pull(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.pull(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.pull(CANOPEN)
 
 
 class DriveFallsSilent(CableCut):
     """The port is still there, and nobody answers."""
 
-    def test_on_rs232(self):
-        self.cut(RS232, "mute cart/1 on", "clear cart/1", OFFLINE)
-
-    def test_on_rs485(self):
-        self.cut(RS485, "mute cart/1 on", "clear cart/1", OFFLINE)
-
-    def test_on_its_own_can_protocol(self):
-        self.cut(KEYA_CAN, "connect cart/1 off", "connect cart/1 on", OFFLINE)
-
-    def test_on_canopen(self):
-        self.cut(CANOPEN, "connect cart/1 off", "connect cart/1 on", OFFLINE)
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_nothing_is_enabled_or_started(self, interface):
+        words = ("connect cart/1 off", "connect cart/1 on") if interface.on_can else ("mute cart/1 on", "clear cart/1")
+        self.cut(interface, *words, OFFLINE)
 
 
 class OnlyTheAnswersAreLost(KeyaStory):
     """The drive hears and its answers do not arrive: it must not be kept alive blindly."""
 
-    def lose(self, interface):
+    @on(RS232, RS485, KEYA_CAN)
+    def test_it_is_not_kept_alive_blindly(self, interface):
         self.begin(interface)
         self.run_both()
         self.ask("lose", "on")
@@ -113,15 +96,6 @@ class OnlyTheAnswersAreLost(KeyaStory):
         self.until_it_stands()
         self.assert_nothing_is_enabled_by_itself()
         self.assert_fresh_enable_works()
-
-    def test_on_rs232(self):
-        self.lose(RS232)
-
-    def test_on_rs485(self):
-        self.lose(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.lose(KEYA_CAN)
 
 
 class OwnerDiesWhileTheCableIsOut(KeyaStory):

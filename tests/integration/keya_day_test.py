@@ -1,12 +1,14 @@
 """A day with a Keya on each of its interfaces: both motors come online, obey one by one, and are read back."""
-from keya_stage import ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, LONGER_THAN_A_WATCHDOG, RPM, RS232, RS485, SPEED, TURN, KeyaStory, main
+from keya_stage import (ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, LONGER_THAN_A_WATCHDOG, RPM, RS232, RS485, SPEED, TURN,
+                        KeyaStory, main, on)
 from modbus import (ABORTED, ALARM_ADOPTED, ALARM_STOP_LATCHED, COMMANDS, COMPLETED, CONTINUOUS, DISABLED, NO_ADDRESS, NO_MOTION, ONLINE,
                     REFUSED, STANDSTILL)
 from processes import until
 
 
 class TwoMotorsAtSpeed(KeyaStory):
-    def spend_the_day(self, interface):
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_they_obey_one_by_one(self, interface):
         self.begin(interface)
         self.look_at_first()
         left, right = self.axes
@@ -70,23 +72,12 @@ class TwoMotorsAtSpeed(KeyaStory):
         right.command("disable")
         self.until_it_stands()
 
-    def test_on_rs232(self):
-        self.spend_the_day(RS232)
-
-    def test_on_rs485(self):
-        self.spend_the_day(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.spend_the_day(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.spend_the_day(CANOPEN)
-
 
 class OneMotorInPositionMode(KeyaStory):
     """Motor A positions, motor B runs at speed: parameters 0020 and 0050."""
 
-    def spend_the_day(self, interface):
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_what_is_sent_again_moves_nothing(self, interface):
         self.begin(interface, drive="+0020=3", constants={"control_mode_a": 3})
         left, right = self.axes
         self.sim.ask("set cart/1 count A 25000")
@@ -113,18 +104,6 @@ class OneMotorInPositionMode(KeyaStory):
         number = axis.command("move_absolute")
         axis.until(motion_state=COMPLETED, motion_id=number)
         self.assertAlmostEqual(self.positions()[0], target, delta=10)
-
-    def test_on_rs232(self):
-        self.spend_the_day(RS232)
-
-    def test_on_rs485(self):
-        self.spend_the_day(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.spend_the_day(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.spend_the_day(CANOPEN)
 
 
 class ModeChosenByTheClient(KeyaStory):

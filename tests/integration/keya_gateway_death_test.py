@@ -2,7 +2,8 @@
 on, as far as its manual says, and the axes had an alarm that told so."""
 import signal
 
-from keya_stage import ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, MANY_KEEP_ALIVES, RS232, RS485, SPEED, TURN, KeyaStory, main
+from keya_stage import (ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, MANY_KEEP_ALIVES, RS232, RS485, SPEED, TURN, KeyaStory,
+                        main, on)
 from modbus import CONTINUOUS, DISABLED, FAILED, ONLINE
 from processes import until
 
@@ -20,9 +21,14 @@ class GatewayDies(KeyaStory):
             self.assertEqual(axis.get("axis_alarms") & ALARM_NO_COMM_WATCHDOG, watched)
         self.assertEqual((self.trips(), self.speeds()), (0, [SPEED, SPEED]))
 
+    def stand_still(self):
+        self.gateway.send(signal.SIGSTOP)
+        self.addCleanup(self.gateway.send, signal.SIGCONT)
+
 
 class Killed(GatewayDies):
-    def kill(self, interface):
+    @on(RS232, KEYA_CAN, CANOPEN)
+    def test_the_drive_stops_by_itself_and_nothing_starts_it_again(self, interface):
         self.run_in(interface)
         self.kill_the_gateway()
         self.assert_stopped_by_its_watchdog()
@@ -34,52 +40,32 @@ class Killed(GatewayDies):
         self.assertEqual(self.commands(), commands)
         self.assert_fresh_enable_works()
 
-    def test_on_rs232(self):
-        self.kill(RS232)
-
     def test_on_rs485_the_motors_run_on(self):
         self.run_in(RS485)
         self.kill_the_gateway()
         self.assert_runs_on()
 
-    def test_on_its_own_can_protocol(self):
-        self.kill(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.kill(CANOPEN)
-
 
 class EndedInGoodOrder(GatewayDies):
-    def end(self, interface):
+    @on(RS232, KEYA_CAN, CANOPEN)
+    def test_the_drive_stops_by_itself(self, interface):
         self.run_in(interface)
         self.assertEqual(self.gateway.terminate(), 0)
         self.assert_stopped_by_its_watchdog()
-
-    def test_on_rs232(self):
-        self.end(RS232)
 
     def test_on_rs485_the_motors_run_on(self):
         self.run_in(RS485)
         self.assertEqual(self.gateway.terminate(), 0)
         self.assert_runs_on()
 
-    def test_on_its_own_can_protocol(self):
-        self.end(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.end(CANOPEN)
-
 
 class Hangs(GatewayDies):
     """Stopped until the drive has noticed, and then let go on: it must not carry on where it was."""
 
-    def hang(self):
-        self.gateway.send(signal.SIGSTOP)
-        self.addCleanup(self.gateway.send, signal.SIGCONT)
-
-    def hang_for_a_while(self, interface):
+    @on(RS232, KEYA_CAN, CANOPEN)
+    def test_nothing_is_carried_on(self, interface):
         self.run_in(interface)
-        self.hang()
+        self.stand_still()
         self.assert_stopped_by_its_watchdog()
         where = self.positions()
         self.gateway.send(signal.SIGCONT)
@@ -90,12 +76,9 @@ class Hangs(GatewayDies):
         self.assertEqual(self.trips(), 1, "it was not enabled for a moment either")
         self.assert_fresh_enable_works()
 
-    def test_on_rs232(self):
-        self.hang_for_a_while(RS232)
-
     def test_on_rs485_the_motors_run_on(self):
         self.run_in(RS485)
-        self.hang()
+        self.stand_still()
         self.assert_runs_on()
         self.gateway.send(signal.SIGCONT)
         for axis in self.axes:
@@ -104,12 +87,6 @@ class Hangs(GatewayDies):
         self.until_it_stands()
         self.assert_nothing_is_enabled_by_itself()
         self.assert_fresh_enable_works()
-
-    def test_on_its_own_can_protocol(self):
-        self.hang_for_a_while(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.hang_for_a_while(CANOPEN)
 
 
 class HangsAgainAndAgain(GatewayDies):
@@ -130,12 +107,11 @@ class HangsAgainAndAgain(GatewayDies):
             self.assert_never_enabled(where)
 
 
-class HangsLongerThanALease(GatewayDies):
+class HangsForLong(GatewayDies):
     def hang(self, interface, *leases):
         self.begin(interface, lease=[{"timeout_ms": timeout} for timeout in leases])
         self.run_both()
-        self.gateway.send(signal.SIGSTOP)
-        self.addCleanup(self.gateway.send, signal.SIGCONT)
+        self.stand_still()
         until("it is silent", lambda: int(self.ask("last-command").split()[0]) > LEASE_MS + 300)
         if interface.loss:
             self.assert_stopped_by_its_watchdog()
@@ -145,29 +121,23 @@ class HangsLongerThanALease(GatewayDies):
             self.assert_never_enabled(where)
         self.seen[0].until(owner=0)
 
-    def hang_longer_than_both(self, interface):
+
+class HangsLongerThanALease(HangsForLong):
+    """By RS485 nothing but the leases stops the motors, and at once."""
+
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_both_are_stopped_for_good(self, interface):
         self.hang(interface, LEASE_MS, LEASE_MS)
         self.until_it_stands()
         self.assert_nothing_is_enabled_by_itself()
         self.assert_fresh_enable_works()
 
-    def test_on_rs232(self):
-        self.hang_longer_than_both(RS232)
 
-    def test_on_rs485_the_leases_act_at_once(self):
-        self.hang_longer_than_both(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.hang_longer_than_both(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.hang_longer_than_both(CANOPEN)
-
-
-class HangsLongerThanOneOfTwoLeases(HangsLongerThanALease):
+class HangsLongerThanOneOfTwoLeases(HangsForLong):
     """The stop of motor A is no reason to set motor B going."""
 
-    def hang_longer_than_one(self, interface):
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_one_is_stopped_and_the_other_is_not_set_going(self, interface):
         self.hang(interface, LEASE_MS, 60000)
         if interface.loss:
             self.seen[1].until(axis_state=DISABLED, motion_state=FAILED)
@@ -176,23 +146,12 @@ class HangsLongerThanOneOfTwoLeases(HangsLongerThanALease):
             until("motor A stands without torque", lambda: self.enabled() == [False, True] and self.speeds() == [0, SPEED])
             self.assertEqual(self.seen[1].get("axis_state"), CONTINUOUS)
 
-    def test_on_rs232(self):
-        self.hang_longer_than_one(RS232)
-
-    def test_on_rs485_the_leases_act_at_once(self):
-        self.hang_longer_than_one(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.hang_longer_than_one(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.hang_longer_than_one(CANOPEN)
-
 
 class HangsInAMove(GatewayDies):
     """Motor A is on its way to a far position, motor B runs at speed. Neither goes on, and an enable moves nothing."""
 
-    def hang(self, interface):
+    @on(RS232, KEYA_CAN, CANOPEN)
+    def test_an_enable_moves_nothing(self, interface):
         self.begin(interface, drive="+0020=3", constants={"control_mode_a": 3})
         left, right = self.axes
         self.enable(left)
@@ -201,8 +160,7 @@ class HangsInAMove(GatewayDies):
         left.set(target_position=20000 * TURN)
         number = left.command("move_absolute")
         until("it moves", lambda: self.positions()[0] > TURN)
-        self.gateway.send(signal.SIGSTOP)
-        self.addCleanup(self.gateway.send, signal.SIGCONT)
+        self.stand_still()
         self.assert_stopped_by_its_watchdog()
         where = self.positions()
         self.gateway.send(signal.SIGCONT)
@@ -212,15 +170,6 @@ class HangsInAMove(GatewayDies):
             self.enable(axis)
         self.let_pass(MANY_KEEP_ALIVES)
         self.assertEqual((self.enabled(), self.positions()), ([True, True], where), "an enable moves nothing")
-
-    def test_on_rs232(self):
-        self.hang(RS232)
-
-    def test_on_its_own_can_protocol(self):
-        self.hang(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.hang(CANOPEN)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@ the owner does."""
 import socket
 import struct
 
-from keya_stage import CANOPEN, KEYA_CAN, MANY_KEEP_ALIVES, RS232, RS485, SPEED, KeyaStory, main
+from keya_stage import CANOPEN, KEYA_CAN, MANY_KEEP_ALIVES, RS232, RS485, SPEED, KeyaStory, main, on
 from modbus import BUSY, CONTINUOUS, DISABLED
 from processes import until
 
@@ -12,7 +12,8 @@ NOBODY, ANOTHER = 0, 2
 
 
 class OwnerLives(KeyaStory):
-    def live(self, interface):
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_its_motors_run_on(self, interface):
         self.begin(interface, lease=LEASE)
         self.run_both()
         before, where = self.commands(), self.positions()
@@ -29,18 +30,6 @@ class OwnerLives(KeyaStory):
     def owner_asks(self):
         """Any request of the owner renews the leases of all that it owns."""
         return self.axes[0].get("axis_state") == CONTINUOUS
-
-    def test_on_rs232(self):
-        self.live(RS232)
-
-    def test_on_rs485(self):
-        self.live(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.live(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.live(CANOPEN)
 
 
 class OwnerDies(KeyaStory):
@@ -64,44 +53,29 @@ class OwnerDies(KeyaStory):
         self.run_both()
         self.assertEqual(self.enabled(), [True, True])
 
-    def reset_the_connection(self):
-        connection = self.client.tcp.socket
-        connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-        connection.close()
-
-    def test_on_rs232(self):
-        self.die(RS232)
-
-    def test_on_rs485(self):
-        self.die(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.die(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.die(CANOPEN)
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_its_motors_are_stopped_for_good(self, interface):
+        self.die(interface)
 
 
 class OwnerEndsItsConnection(OwnerDies):
     """By closing it, and by a reset, as a process does that is killed."""
 
-    def test_on_rs232(self):
-        self.die(RS232, lambda: self.client.close())
+    def reset_the_connection(self):
+        connection = self.client.tcp.socket
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        connection.close()
 
-    def test_on_rs485(self):
-        self.die(RS485, self.reset_the_connection)
-
-    def test_on_its_own_can_protocol(self):
-        self.die(KEYA_CAN, self.reset_the_connection)
-
-    def test_on_canopen(self):
-        self.die(CANOPEN, lambda: self.client.close())
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_its_motors_are_stopped_for_good(self, interface):
+        self.die(interface, self.reset_the_connection if interface in (RS485, KEYA_CAN) else lambda: self.client.close())
 
 
 class ScannerGoesOnWithoutItsProgram(KeyaStory):
     """A PLC in STOP: it asks and writes as ever, and its heartbeat register does not change any more."""
 
-    def stop_the_program(self, interface):
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_its_motors_are_stopped(self, interface):
         self.begin(interface, lease={**LEASE, "renew": "heartbeat"})
         self.beats = 0
         for axis in self.axes:
@@ -135,18 +109,6 @@ class ScannerGoesOnWithoutItsProgram(KeyaStory):
     def scan(self, axis):
         axis.set(heartbeat=self.beats % 0x10000)
 
-    def test_on_rs232(self):
-        self.stop_the_program(RS232)
-
-    def test_on_rs485(self):
-        self.stop_the_program(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.stop_the_program(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.stop_the_program(CANOPEN)
-
 
 class LeaseWithoutAStop(KeyaStory):
     """`on_expiry` none: nothing is sent, and that is what the drive's watchdog waits for."""
@@ -165,23 +127,16 @@ class LeaseWithoutAStop(KeyaStory):
         self.assert_nothing_is_enabled_by_itself()
         self.assert_fresh_enable_works()
 
-    def test_on_rs232(self):
-        self.die(RS232)
-
-    def test_on_rs485(self):
-        self.die(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.die(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.die(CANOPEN)
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_it(self, interface):
+        self.die(interface)
 
 
 class TwoOwners(KeyaStory):
     """Two clients with a motor each: the death of one stops its motor alone."""
 
-    def one_dies(self, interface):
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_the_motor_of_the_other_runs_on(self, interface):
         self.begin(interface, lease=LEASE)
         dying = self.axes[0]
         living = self.connect().axis(2)
@@ -199,18 +154,6 @@ class TwoOwners(KeyaStory):
         until("its motor stands without torque", alive)
         self.let_pass(2, lambda: living.get("axis_state") == CONTINUOUS)
         self.assertEqual((self.enabled(), self.speeds(), self.trips()), ([False, True], [0, SPEED], 0))
-
-    def test_on_rs232(self):
-        self.one_dies(RS232)
-
-    def test_on_rs485(self):
-        self.one_dies(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.one_dies(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.one_dies(CANOPEN)
 
 
 if __name__ == "__main__":

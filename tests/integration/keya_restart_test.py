@@ -1,6 +1,6 @@
 """A Keya restarts while both of its motors run: both axes are told, every motion has ended for good, and nothing is enabled by the
 gateway, however short the restart was."""
-from keya_stage import CANOPEN, KEYA_CAN, MANY_KEEP_ALIVES, RS232, RS485, SPEED, KeyaStory, main
+from keya_stage import CANOPEN, KEYA_CAN, MANY_KEEP_ALIVES, RS232, RS485, SPEED, KeyaStory, main, on
 from modbus import DISABLED, FAILED, ONLINE
 from processes import until
 
@@ -32,17 +32,9 @@ class RestartsInMotion(KeyaStory):
 class RestartsSlowly(RestartsInMotion):
     boot_ms = 2000
 
-    def test_on_rs232(self):
-        self.restart(RS232, self.boot_ms)
-
-    def test_on_rs485(self):
-        self.restart(RS485, self.boot_ms)
-
-    def test_on_its_own_can_protocol(self):
-        self.restart(KEYA_CAN, self.boot_ms)
-
-    def test_on_canopen(self):
-        self.restart(CANOPEN, self.boot_ms)
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_nothing_is_enabled_by_itself(self, interface):
+        self.restart(interface, self.boot_ms)
 
 
 class RestartsAtOnce(RestartsInMotion):
@@ -50,23 +42,16 @@ class RestartsAtOnce(RestartsInMotion):
 
     boot_ms = 20
 
-    def test_on_rs232(self):
-        self.restart(RS232, self.boot_ms)
-
-    def test_on_rs485(self):
-        self.restart(RS485, self.boot_ms)
-
-    def test_on_its_own_can_protocol(self):
-        self.restart(KEYA_CAN, self.boot_ms)
-
-    def test_on_canopen(self):
-        self.restart(CANOPEN, self.boot_ms)
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_nothing_is_enabled_by_itself(self, interface):
+        self.restart(interface, self.boot_ms)
 
 
 class OneMotorTrips(KeyaStory):
     """A fault of one motor is no business of the other's: nothing that is sent for the neighbour switches it on again."""
 
-    def trip(self, interface):
+    @on(RS232, RS485, KEYA_CAN, CANOPEN)
+    def test_the_other_runs_on_and_this_one_stays_disabled(self, interface):
         self.begin(interface)
         self.run_both()
         left, right = self.axes
@@ -86,18 +71,6 @@ class OneMotorTrips(KeyaStory):
         self.enable(left)
         self.assertEqual(self.enabled(), [True, enabled[1]])
         self.run_axis(left)
-
-    def test_on_rs232(self):
-        self.trip(RS232)
-
-    def test_on_rs485(self):
-        self.trip(RS485)
-
-    def test_on_its_own_can_protocol(self):
-        self.trip(KEYA_CAN)
-
-    def test_on_canopen(self):
-        self.trip(CANOPEN)
 
 
 if __name__ == "__main__":

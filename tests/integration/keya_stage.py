@@ -21,18 +21,34 @@ MANY_KEEP_ALIVES = 1.0  # seconds; they are 300 ms apart
 class Interface:
     """What the simulator and a configuration call it, and the fault that the drive's watchdog leaves; 0 where it has none."""
 
-    def __init__(self, simulated, adapter, loss, **settings):
-        self.simulated, self.adapter, self.loss, self.settings = simulated, adapter, loss, settings
+    def __init__(self, name, simulated, adapter, loss, **settings):
+        self.name, self.simulated, self.adapter, self.loss, self.settings = name, simulated, adapter, loss, settings
 
     @property
     def on_can(self):
         return self.simulated.startswith("lawicel:")
 
 
-RS232 = Interface("keya-rs232", "keya-rs232", RS232_LOSS, rs485="off")
-RS485 = Interface("keya-rs485@1", "keya-rs485", 0, rs485="off")
-KEYA_CAN = Interface("lawicel:keya-can@1", "keya-can", CAN_LOSS, bitrate=250000)
-CANOPEN = Interface("lawicel:keya-kydas4860-2e@1", "canopen", CAN_LOSS, bitrate=250000)
+RS232 = Interface("rs232", "keya-rs232", "keya-rs232", RS232_LOSS, rs485="off")
+RS485 = Interface("rs485", "keya-rs485@1", "keya-rs485", 0, rs485="off")
+KEYA_CAN = Interface("its_own_can_protocol", "lawicel:keya-can@1", "keya-can", CAN_LOSS, bitrate=250000)
+CANOPEN = Interface("canopen", "lawicel:keya-kydas4860-2e@1", "canopen", CAN_LOSS, bitrate=250000)
+
+
+class on:  # pylint: disable=invalid-name
+    """`@on(RS232, CANOPEN)` before `def test_x(self, interface)`: one test for each of these, test_x_on_rs232 and so on."""
+
+    def __init__(self, *interfaces):
+        self.interfaces = interfaces
+
+    def __call__(self, tell):
+        self.tell = tell
+        return self
+
+    def __set_name__(self, story, name):
+        delattr(story, name)
+        for interface in self.interfaces:
+            setattr(story, f"{name}_on_{interface.name}", lambda test, interface=interface: self.tell(test, interface))
 
 
 class KeyaStory(Story):

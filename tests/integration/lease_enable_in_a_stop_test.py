@@ -5,7 +5,7 @@ from processes import NEVER, until
 
 
 class EnableInAStop(Machine):
-    lease = {"timeout_ms": 1500}
+    lease = {"timeout_ms": 1000}
 
     def setUp(self):
         super().setUp()

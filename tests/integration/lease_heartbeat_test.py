@@ -11,7 +11,7 @@ RUN_VELOCITY = 8
 class Scanner(Machine):
     """It writes command, command_id and heartbeat of each axis as one block, and the target velocity, and reads all the rest."""
 
-    lease = {"timeout_ms": 1500, "renew": "heartbeat"}
+    lease = {"timeout_ms": 1200, "renew": "heartbeat"}
 
     def setUp(self):
         super().setUp()
@@ -71,7 +71,7 @@ class Scanner(Machine):
         """Whatever the scanner writes: for longer than a lease."""
         for number in self.each():
             self.until_it_stands(number)
-        end = time.monotonic() + 1.5 * self.lease["timeout_ms"] / 1000
+        end = time.monotonic() + 1.2 * self.lease["timeout_ms"] / 1000
         while time.monotonic() < end:
             scan()
             for number in self.numbers:
@@ -86,7 +86,7 @@ class Scanner(Machine):
 class InStop(Scanner):
     def test_a_scanner_without_its_program_does_not_keep_a_motor_running(self):
         self.runs()
-        end = time.monotonic() + 2 * self.lease["timeout_ms"] / 1000
+        end = time.monotonic() + 1.5 * self.lease["timeout_ms"] / 1000
         while time.monotonic() < end:
             self.scan_all(beating=True)
             for number in self.numbers:
@@ -108,7 +108,7 @@ class InStop(Scanner):
 class GatewaysHeartbeat(Scanner):
     def test_register_8_beats_for_all_axes_at_once(self):
         self.runs()
-        end = time.monotonic() + 2 * self.lease["timeout_ms"] / 1000
+        end = time.monotonic() + 1.5 * self.lease["timeout_ms"] / 1000
         while time.monotonic() < end:
             self.plc.write(GATEWAY["heartbeat"][0], self.next_beat())
             for number in self.numbers:
@@ -124,11 +124,11 @@ class GatewaysHeartbeat(Scanner):
 
 
 class WritesAlone(Scanner):
-    lease = {"timeout_ms": 1500, "renew": "write"}
+    lease = {"timeout_ms": 1200, "renew": "write"}
 
     def test_reads_do_not_renew_and_writes_do(self):
         self.runs()
-        end = time.monotonic() + 2 * self.lease["timeout_ms"] / 1000
+        end = time.monotonic() + 1.5 * self.lease["timeout_ms"] / 1000
         while time.monotonic() < end:
             self.scan_all(beating=False)
             for number in self.numbers:

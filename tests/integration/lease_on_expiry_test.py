@@ -15,7 +15,7 @@ class OnExpiry(Machine):
 
 
 class Halt(OnExpiry):
-    lease = {"timeout_ms": 1500, "on_expiry": "halt"}
+    lease = {"timeout_ms": 1000, "on_expiry": "halt"}
 
     def test_it_stands_under_torque_and_is_latched(self):
         for number in self.each():
@@ -34,7 +34,7 @@ class Halt(OnExpiry):
 
 
 class Disable(OnExpiry):
-    lease = {"timeout_ms": 1500, "on_expiry": "disable"}
+    lease = {"timeout_ms": 1000, "on_expiry": "disable"}
 
     def test_it_ends_disabled_and_latched(self):
         for number in self.each():
@@ -48,7 +48,7 @@ class Disable(OnExpiry):
 
 
 class Nothing(OnExpiry):
-    lease = {"timeout_ms": 1500, "on_expiry": "none"}
+    lease = {"timeout_ms": 1000, "on_expiry": "none"}
     lines_of = tuple(line for line in MACHINES if not line.startswith("keya"))
 
     def test_it_runs_on_and_is_free(self):
@@ -67,7 +67,7 @@ class Nothing(OnExpiry):
 
 
 class NothingOnAKeya(OnExpiry):
-    lease = {"timeout_ms": 1500, "on_expiry": "none"}
+    lease = {"timeout_ms": 1000, "on_expiry": "none"}
     lines_of = ("keya232", "keyacan")
 
     def test_nobody_feeds_its_watchdog_which_stops_it(self):

@@ -58,7 +58,7 @@ class Connections(OneShot):
 
 
 class NoMoreShots(OneShot):
-    lease = {"timeout_ms": 1500}
+    lease = {"timeout_ms": 1000}
 
     def test_a_host_that_does_not_come_again_is_a_master_that_is_gone(self):
         for number in self.each():

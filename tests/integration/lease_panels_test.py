@@ -109,7 +109,7 @@ class CommandOnItsWay(Panels):
             self.watched(number).until(owner=ANOTHER)
             plc.begin()
             before = self.sim.state(f"{line}/1")
-            self.sim.ask(f"reply-delay {line} 700")
+            self.sim.ask(f"reply-delay {line} 300")
             pending = self.later(plc.command, "enable")
             until("the drive was told something", lambda: self.sim.state(f"{line}/1") != before or pending.done())
             self.assertFalse(pending.done())
@@ -144,7 +144,7 @@ class HandOver(Panels):
 
 
 class Abandoned(Panels):
-    lease = {"timeout_ms": 1500}
+    lease = {"timeout_ms": 1000}
 
     def test_a_motor_that_is_released_and_that_nobody_takes_is_stopped(self):
         for number in self.each():

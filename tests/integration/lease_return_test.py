@@ -37,7 +37,7 @@ class FromItsOwnAddress(Return):
         self.assert_goes_on(again, 400)
         for number in self.numbers:
             self.until_told(number, words)
-        self.keep_running(again, self.numbers, 2 * self.lease["timeout_ms"] / 1000)
+        self.keep_running(again, self.numbers, 1.2 * self.lease["timeout_ms"] / 1000)
         self.stop_all(again)
 
     def test_after_it_closed_its_connection(self):

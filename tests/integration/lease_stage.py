@@ -167,6 +167,11 @@ class Machine(Story):
             for number in numbers:
                 self.assertNotEqual(self.speed(number), 0, f"axis {number}")
 
+    def let_pass(self, seconds):
+        """In which the gateway answers the watcher alone."""
+        over = time.monotonic() + seconds
+        until("time", lambda: self.watcher.gateway() and time.monotonic() > over)
+
     # What is true afterwards.
 
     def until_without_torque(self, number):
