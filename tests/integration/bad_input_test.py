@@ -4,13 +4,11 @@ import random
 import socket
 import struct
 
-from pymodbus.diag_message import ReturnBusCommunicationErrorCountRequest, ReturnQueryDataRequest
+from pymodbus.diag_message import ReturnBusCommunicationErrorCountRequest
 
-from modbus import AXIS, BAD_VALUE, NO_ADDRESS, NO_FUNCTION, ONLINE, Closed
+from modbus import ONLINE, Closed
 from processes import NEVER, until
 from stage import Gateway, Story, drive, main
-
-KNOWN_FUNCTIONS = {1, 2, 3, 4, 5, 6, 8, 15, 16, 22, 23, 43}
 
 
 class WrongBytes(Story):
@@ -43,9 +41,6 @@ class WrongBytes(Story):
         number, protocol, length, answered = struct.unpack(">HHHB", head)
         self.assertEqual((number, protocol, answered), (7, 0, unit))
         return self.raw.recv(length - 1, socket.MSG_WAITALL)
-
-    def assert_exception(self, pdu, code):
-        self.assertEqual(self.answer(pdu), bytes([pdu[0] | 0x80, code]), pdu.hex(" "))
 
     def test_what_is_no_frame_closes_its_connection_and_is_counted(self):
         wrong = {"protocol 1": struct.pack(">HHHBBHH", 1, 1, 6, 1, 3, 0, 1), "length 0": struct.pack(">HHHB", 1, 0, 0, 1),
@@ -89,45 +84,6 @@ class WrongBytes(Story):
             answer = self.answer(pdu)
             self.assertIn(answer[0] & 0x7F, reading)
         self.assert_online(self.axis(1))
-
-    def test_unknown_functions(self):
-        for function in sorted(set(range(1, 128)) - KNOWN_FUNCTIONS):
-            self.assert_exception(bytes([function]) + bytes(4), NO_FUNCTION)
-        self.assert_exception(bytes([43, 99, 1, 0]), NO_FUNCTION)
-        self.assert_exception(struct.pack(">BHH", 8, 99, 0), NO_FUNCTION)
-
-    def test_addresses_that_are_not_there(self):
-        for pdu in (struct.pack(">BHH", 3, 300, 1), struct.pack(">BHH", 3, 65535, 2), struct.pack(">BHH", 1, 300, 1),
-                    struct.pack(">BHH", 2, 50, 1), struct.pack(">BHH", 6, 100, 1), struct.pack(">BHH", 6, 157, 1),
-                    struct.pack(">BHH", 5, 300, 0xFF00), struct.pack(">BHHBH", 16, 300, 1, 2, 1)):
-            self.assert_exception(pdu, NO_ADDRESS)
-
-    def test_half_of_every_32_bit_value(self):
-        for name, (offset, kind) in AXIS.items():
-            if offset < 40 or not kind.endswith("32"):
-                continue
-            for address in (100 + offset, 101 + offset):
-                with self.subTest(name, address=address), self.refused(NO_ADDRESS):
-                    self.client.write(address, 1)
-
-    def test_impossible_values(self):
-        for pdu in (struct.pack(">BHH", 3, 100, 0), struct.pack(">BHH", 3, 100, 126), struct.pack(">BHH", 1, 100, 2001),
-                    struct.pack(">BHH", 5, 100, 1), struct.pack(">BHHBH", 16, 142, 2, 2, 1), struct.pack(">BHHB", 16, 142, 0, 0),
-                    struct.pack(">BHHB", 15, 100, 3, 2) + bytes(2), struct.pack(">BHH", 6, 154, 99), struct.pack(">BHH", 6, 141, 99)):
-            self.assert_exception(pdu, BAD_VALUE)
-        axis = self.axis(1)
-        for values in ({"homing_method": 99}, {"target_position": -2147483648}, {"profile_velocity": 4294967295}):
-            with self.subTest(values), self.refused(BAD_VALUE):
-                axis.set(**values)
-        self.assertEqual(self.sim.writes("lift/1"), 0)
-
-    def test_requests_that_are_cut_short(self):
-        for pdu in (b"\x03", b"\x03\x00", b"\x03\x00\x64\x00", b"\x06\x00\x8e\x00", b"\x10\x00\x8e\x00\x02\x04\x00\x00",
-                    b"\x16\x00", b"\x17\x00"):
-            self.assert_exception(pdu, BAD_VALUE)
-
-    def test_an_echo_brings_back_what_was_sent(self):
-        self.assertEqual(self.client.execute(ReturnQueryDataRequest(0xBEEF, unit=1)).message, (0xBEEF,))
 
 
 class WrongConfiguration(Story):

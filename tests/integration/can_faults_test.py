@@ -118,7 +118,7 @@ class Doubt(OneOfThree):
         """Every value of every axis differs from its neighbour's; they are known to be so."""
         self.truths = {}
         for turns, axis in enumerate(self.axes, 1):
-            self.targets[axis.number] = turns * 3 * TURN
+            self.targets[axis.number] = turns * TURN // 2
             self.move(axis)
             axis.command("disable")
             axis.until_input("moving", False)

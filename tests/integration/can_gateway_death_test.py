@@ -106,6 +106,8 @@ class MotorsRun(CanStory):
 
 
 class DriveFallsSilent(CanStory):
+    timings = {"timeout_ms": 300}
+
     def setUp(self):
         super().setUp()
         self.begin()

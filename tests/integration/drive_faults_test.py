@@ -75,7 +75,7 @@ class Line(Story):
     def stand_somewhere(self):
         """Every value of every axis differs from its neighbour's."""
         for turns, axis in enumerate(self.axes, 1):
-            self.targets[axis.number] = turns * 3 * TURN
+            self.targets[axis.number] = turns * TURN // 2
             self.move(axis)
             axis.command("disable")
             axis.until_input("moving", False)
@@ -126,9 +126,10 @@ class Line(Story):
         for axis in self.axes:
             self.move(axis)
 
-    def tell_late(self):
+    def tell_late(self, milliseconds=130):
+        """More than the gateway waits for an answer."""
         self.stand_somewhere()
-        self.watch_until("late DRIVE 130 0.3", lambda bus_now: bus_now["late_replies"] >= 10)
+        self.watch_until(f"late DRIVE {milliseconds} 0.3", lambda bus_now: bus_now["late_replies"] >= 5)
         self.healed()
         self.assert_others_go_on()
         self.move(self.middle)
@@ -174,7 +175,7 @@ class Chain(Line):
 
     def test_noise(self):
         self.stand_somewhere()
-        self.watch_until("noise DRIVE 0.3", lambda bus_now: bus_now["dropped_bytes"] >= 200)
+        self.watch_until("noise DRIVE 0.3", lambda bus_now: bus_now["dropped_bytes"] >= 100)
         self.assert_others_go_on()
         self.healed()
         self.move(self.middle)
@@ -255,7 +256,7 @@ class Rs485(Line):
 
     def test_babble(self):
         self.stand_somewhere()
-        self.watch_until("babble DRIVE 0.1", lambda bus_now: bus_now["dropped_bytes"] >= 300)
+        self.watch_until("babble DRIVE 0.1", lambda bus_now: bus_now["dropped_bytes"] >= 100)
         self.healed()
         for axis in self.axes:
             axis.until(link_state=ONLINE)

@@ -77,8 +77,9 @@ class Told(End):
 
     def test_sigterm_while_a_write_waits_for_a_mute_drive(self):
         self.sim.ask("mute lift/1 on")
-        write = self.later(lambda: self.axis(1).set(target_velocity=5))
-        until("it is on the wire", lambda: self.sim.ask("exchanges lift"))
+        write = self.later(lambda: self.axis(1).set(profile_acceleration=12345))
+        until("it waits behind a request that nobody answers", lambda: self.client.bus(0)["queue_depth"] >= 1 or write.done())
+        self.assertFalse(write.done())
         self.assertEqual(self.end(signal.SIGTERM), 0)
         self.assertIsNotNone(write.exception(timeout=NEVER))
 

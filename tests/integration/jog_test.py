@@ -30,32 +30,38 @@ class Buttons(Machine):
         self.assertEqual(self.speed(number), 0)
         return axis
 
-    def hold(self, axis, name, seconds):
-        """Writes the 1 again and again: the motor turns all the while."""
+    def all_ready(self):
+        return [self.ready(number) for number in self.each()]
+
+    def hold(self, name, seconds, *axes):
+        """Writes the 1 again and again: the motors turn all the while."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
-            axis.coil(name)
-            self.assertNotEqual(self.speed(axis.number), 0)
-            self.assertIn(name, axis.coils())
+            for axis in axes:
+                axis.coil(name)
+                self.assertNotEqual(self.speed(axis.number), 0, f"axis {axis.number}")
+                self.assertIn(name, axis.coils())
 
-    def press(self, axis, name):
-        """Until it turns."""
-        def turns():
-            axis.coil(name)
-            return self.speed(axis.number) * (1 if name == "jog_forward" else -1) > 0
+    def press(self, name, *axes):
+        """Until they turn."""
+        def turn():
+            for axis in axes:
+                axis.coil(name)
+            return all(self.speed(axis.number) * (1 if name == "jog_forward" else -1) > 0 for axis in axes)
 
-        until(f"axis {axis.number} jogs", turns)
+        until(f"axes {[axis.number for axis in axes]} jog", turn)
 
-    def press_in_vain(self, axis, name, seconds):
+    def press_in_vain(self, name, seconds, *axes):
         """For longer than a jog would need to begin."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
-            try:
-                axis.coil(name)
-            except Refused as refused:
-                self.assertIn(refused.code, (REFUSED, BUSY))
-            self.assertEqual(self.speed(axis.number), 0)
-            self.assertNotIn(name, axis.coils())
+            for axis in axes:
+                try:
+                    axis.coil(name)
+                except Refused as refused:
+                    self.assertIn(refused.code, (REFUSED, BUSY))
+                self.assertEqual(self.speed(axis.number), 0, f"axis {axis.number}")
+                self.assertNotIn(name, axis.coils())
 
     def assert_halted(self, axis):
         self.until_it_stands(axis.number)
@@ -65,45 +71,58 @@ class Buttons(Machine):
 
 
 class Held(Buttons):
-    def test_it_turns_while_the_coil_is_written_and_halts_on_its_release(self):
-        for number in self.each():
-            axis = self.ready(number)
-            for name, rpm in (("jog_forward", 200), ("jog_reverse", -200)):
-                self.press(axis, name)
-                self.hold(axis, name, 1.3 * self.jog_timeout_ms / 1000)
-                until("at its velocity", lambda: axis.coil(name) or abs(axis.get("velocity_actual") - rpm * RPM) < 40 * RPM)
+    def test_they_turn_while_the_coil_is_written_and_halt_on_its_release(self):
+        axes = self.all_ready()
+        for name, rpm in (("jog_forward", 200), ("jog_reverse", -200)):
+            self.press(name, *axes)
+            self.hold(name, 1.3 * self.jog_timeout_ms / 1000, *axes)
+
+            def at_its_velocity():
+                for axis in axes:
+                    axis.coil(name)
+                return all(abs(axis.get("velocity_actual") - rpm * RPM) < 40 * RPM for axis in axes)
+
+            until("at their velocity", at_its_velocity)
+            for axis in axes:
                 axis.coil(name, False)
+            for axis in axes:
                 self.assert_halted(axis)
-            axis.command("disable")
 
 
 class ReleaseLost(Buttons):
-    def test_it_halts_though_its_client_goes_on_reading_and_writing_other_things(self):
-        for number in self.each():
-            axis = self.ready(number)
-            before = time.monotonic()
-            self.press(axis, "jog_forward")
+    def test_they_halt_though_their_client_goes_on_reading_and_writing_other_things(self):
+        axes = self.all_ready()
+        pressed = {}
+        for axis in axes:
+            pressed[axis.number] = time.monotonic()
+            self.press("jog_forward", axis)
+        turning = set(pressed)
 
-            def stands_meanwhile():
+        def stand_meanwhile():
+            for axis in axes:
                 axis.block()
                 axis.coils()
                 axis.set(heartbeat=int(time.monotonic() * 100) & 0xFFFF)
-                return self.speed(number) == 0
+                if axis.number in turning and self.speed(axis.number) == 0:
+                    self.assertGreaterEqual(time.monotonic() - pressed[axis.number], self.jog_timeout_ms / 1000)
+                    turning.remove(axis.number)
+            return not turning
 
-            until("it stands", stands_meanwhile)
-            self.assertGreaterEqual(time.monotonic() - before, self.jog_timeout_ms / 1000)
+        until("they stand", stand_meanwhile)
+        for axis in axes:
             self.assert_halted(axis)
-            self.press_in_vain(axis, "jog_forward", 1.2 * self.jog_timeout_ms / 1000)  # the button that hangs: no time makes it a new press
+        # The button that hangs: no time makes it a new press.
+        self.press_in_vain("jog_forward", 1.2 * self.jog_timeout_ms / 1000, *axes)
+        for axis in axes:
             axis.coil("jog_forward", False)
-            self.press(axis, "jog_forward")
+            self.press("jog_forward", axis)
             axis.coil("jog_forward", False)
             self.assert_halted(axis)
-            axis.command("disable")
 
     def test_it_halts_when_its_client_is_gone(self):
         for number in self.each():
             axis = self.ready(number)
-            self.press(axis, "jog_reverse")
+            self.press("jog_reverse", axis)
             self.panel.reset()
             self.until_it_stands(number)
             self.watched(number).until(axis_state=STANDSTILL, owner=ANOTHER)
@@ -118,14 +137,14 @@ class BothButtons(Buttons):
     def test_both_at_once_are_a_halt(self):
         for number in self.each():
             axis = self.ready(number)
-            self.press(axis, "jog_forward")
+            self.press("jog_forward", axis)
             axis.coil("jog_reverse")
             self.assert_halted(axis)
-            self.press_in_vain(axis, "jog_forward", A_MOMENT)
+            self.press_in_vain("jog_forward", A_MOMENT, axis)
             axis.coil("jog_forward", False)
-            self.press_in_vain(axis, "jog_reverse", A_MOMENT)
+            self.press_in_vain("jog_reverse", A_MOMENT, axis)
             axis.coil("jog_reverse", False)
-            self.press(axis, "jog_reverse")
+            self.press("jog_reverse", axis)
             axis.coil("jog_reverse", False)
             self.assert_halted(axis)
             axis.command("disable")
@@ -144,15 +163,15 @@ class Stopped(Buttons):
     def test_after_a_stop_only_a_new_press_jogs(self):
         for number in self.each():
             axis, other = self.ready(number), Axis(self.peer(PANEL_1), number)
-            self.press(axis, "jog_forward")
+            self.press("jog_forward", axis)
             other.coil("quick_stop")
             other.coil("quick_stop", False)
             self.until_it_stands(number)
-            self.press_in_vain(axis, "jog_forward", A_MOMENT)
+            self.press_in_vain("jog_forward", A_MOMENT, axis)
             self.enable(axis)
-            self.press_in_vain(axis, "jog_forward", 1.2 * self.jog_timeout_ms / 1000)
+            self.press_in_vain("jog_forward", 1.2 * self.jog_timeout_ms / 1000, axis)
             axis.coil("jog_forward", False)
-            self.press(axis, "jog_forward")
+            self.press("jog_forward", axis)
             axis.coil("jog_forward", False)
             self.assert_halted(axis)
             axis.command("disable")
@@ -179,11 +198,11 @@ class NotTheOwner(Buttons):
             other.coil("jog_reverse", False)
             with self.refused(BUSY):
                 other.coil("jog_reverse")
-            self.press(axis, "jog_forward")
+            self.press("jog_forward", axis)
             with self.refused(BUSY):
                 other.coil("jog_reverse")
             other.coil("jog_reverse", False)  # letting go of what was pressed in vain ends nobody's jog
-            self.hold(axis, "jog_forward", A_MOMENT)
+            self.hold("jog_forward", A_MOMENT, axis)
             axis.coil("jog_forward", False)
             self.assert_halted(axis)
             axis.command("disable")

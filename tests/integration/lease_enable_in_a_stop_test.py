@@ -5,6 +5,9 @@ from processes import NEVER, until
 
 
 class EnableInAStop(Machine):
+    """Most drives stop by themselves once they were told to. A Keya's stop has many steps: speed 0, and the torque goes when the motor
+    stands; the gateway does both."""
+
     lease = {"timeout_ms": 1000}
 
     def setUp(self):
@@ -31,7 +34,7 @@ class EnableInAStop(Machine):
             self.enable(axis)
         self.assertEqual(self.speed(axis.number), 0)
 
-    def after_the_lease_has_run_out(self):
+    def test_the_lease_has_run_out_a_moment_ago(self):
         for number in self.each():
             gone = self.peer()
             self.set_running(Axis(gone, number))
@@ -42,7 +45,7 @@ class EnableInAStop(Machine):
             self.assert_as_told(axis, self.enables(axis))
             axis.command("quick_stop")
 
-    def after_a_panel_has_stopped_it(self):
+    def test_a_panel_has_stopped_it_a_moment_ago(self):
         for number in self.each():
             axis, panel = Axis(self.peer(), number), Axis(self.peer(PANEL_1), number)
             self.set_running(axis)
@@ -52,30 +55,6 @@ class EnableInAStop(Machine):
             stop.result(timeout=NEVER)
             self.assert_as_told(axis, enabled)
             axis.command("quick_stop")
-
-
-class StopOfOneCommand(EnableInAStop):
-    """The drive stops by itself once it was told to."""
-
-    lines_of = ("serial", "modbus", "stepper", "kincocan", "leadshine")
-
-    def test_the_lease_has_run_out_a_moment_ago(self):
-        self.after_the_lease_has_run_out()
-
-    def test_a_panel_has_stopped_it_a_moment_ago(self):
-        self.after_a_panel_has_stopped_it()
-
-
-class StopOfManySteps(EnableInAStop):
-    """Speed 0, and the torque goes when the motor stands: the gateway does both."""
-
-    lines_of = ("keya232", "keyacan")
-
-    def test_the_lease_has_run_out_a_moment_ago(self):
-        self.after_the_lease_has_run_out()
-
-    def test_a_panel_has_stopped_it_a_moment_ago(self):
-        self.after_a_panel_has_stopped_it()
 
 
 if __name__ == "__main__":

@@ -63,6 +63,7 @@ class NoMoreShots(OneShot):
     def test_a_host_that_does_not_come_again_is_a_master_that_is_gone(self):
         for number in self.each():
             self.once(number, self.set_running)
+        for number in self.each():
             self.assert_stopped_for_good(number)
             self.assert_it_can_be_had_again(number)
 

@@ -4,7 +4,7 @@ from modbus import ACTIVE, BUSY, Axis, Refused
 
 
 class Return(Machine):
-    lease = {"timeout_ms": 4000}
+    lease = {"timeout_ms": 2500}
 
     def setUp(self):
         super().setUp()
