@@ -105,15 +105,15 @@ class MotorsRun(CanStory):
         self.all_stop_by_themselves()
 
 
-class DriveFallsSilent(CanStory):
-    timings = {"timeout_ms": 300}
-
+class Prepared(CanStory):
     def setUp(self):
         super().setUp()
         self.begin()
         for axis in self.axes:
             self.prepare(axis)
 
+
+class DriveFallsSilent(Prepared):
     def test_its_heartbeat_stays_away(self):
         self.let_heartbeats_pass()  # one that was never heard is not missed
         for axis in self.axes:
@@ -131,7 +131,13 @@ class DriveFallsSilent(CanStory):
                 for other in others:
                     other.command("disable")
 
-    def test_it_lives_and_answers_nothing(self):
+
+class DriveAnswersNothing(Prepared):
+    """Though it lives: its heartbeat goes on."""
+
+    timings = {"timeout_ms": 300}
+
+    def test_it_is_offline_and_comes_back(self):
         for axis in self.axes:
             with self.subTest(axis=axis.number):
                 others = [other for other in self.axes if other is not axis]

@@ -1,7 +1,6 @@
 """`axisgate scan` on a serial CAN adapter: who is there is found, nobody is disturbed, and what cannot be used is named."""
 import re
 import subprocess
-import unittest
 
 from processes import NEVER, Program, until
 from stage import AXISGATE, Story, main

@@ -85,6 +85,13 @@ class Line(Story):
     # The stories, on each kind of line.
 
     def tell_mute(self):
+        self.be_mute_for_a_while()
+        self.middle.until_input("enabled")  # nobody told it to stop
+        self.middle.command("disable")
+        self.middle.until(axis_state=DISABLED)
+        self.move(self.middle)
+
+    def be_mute_for_a_while(self):
         self.move(self.middle)
         self.fault("mute DRIVE on")
         self.middle.until(link_state=OFFLINE)
@@ -92,14 +99,9 @@ class Line(Story):
         self.assertEqual((block["statusword"], block["valid"], block["error_code"]), (0, 0, 0x8130))
         with self.refused(NO_PATH):
             self.middle.command("move_absolute")
-        self.assertEqual(self.client.bus(0)["link"], 2)
-        self.assertEqual(self.client.gateway()["axes_online"], 2)
+        self.assertEqual((self.client.bus(0)["link"], self.client.gateway()["axes_online"]), (2, 2))
         self.assert_others_go_on()
         self.healed()
-        self.middle.until_input("enabled")  # nobody told it to stop
-        self.middle.command("disable")
-        self.middle.until(axis_state=DISABLED)
-        self.move(self.middle)
 
     def tell_restart(self, meanwhile):
         for axis in self.axes:

@@ -1,10 +1,10 @@
 """Drives of three makers' types on one Modbus RTU line: each moves, one is in trouble and its neighbours go on, the cable is pulled."""
 import cable_test
 from cable_test import NEVER_SENT, OUTCOME_UNKNOWN, Cable
-from drive_faults_test import FAR, RPM, TURN, Line
-from modbus import (ALARM_ADOPTED, COMPLETED, DISABLED, FAILED, NO_ANSWER, NO_PATH, OFFLINE, ONLINE, SETUP, STANDSTILL)
+from drive_faults_test import FAR, RPM, Line
+from modbus import ALARM_ADOPTED, DISABLED, FAILED, NO_ANSWER, NO_PATH, ONLINE, STANDSTILL
 from processes import until
-from stage import Story, bus, drive, main
+from stage import bus, drive, main
 
 
 class ThreeMakers(Line):
@@ -36,7 +36,8 @@ class Neighbours(ThreeMakers):
         self.assertEqual((counts["timeouts"], counts["bad_frames"], counts["late_replies"]), (0, 0, 0))
 
     def test_one_is_mute(self):
-        self.tell_mute()
+        self.be_mute_for_a_while()
+        self.move(self.middle)
 
     def test_one_is_late(self):
         self.tell_late(200)
