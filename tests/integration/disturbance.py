@@ -99,7 +99,7 @@ class Disturbance:
         self.thread = threading.Thread(target=self.watch, daemon=True)
 
     def __enter__(self):
-        self.processes, self.listed = family(os.getpid()), time.monotonic()
+        self.list_processes()
         self.look(self.listed, *self.so_far())
         self.thread.start()
         return self
@@ -129,9 +129,12 @@ class Disturbance:
         self.late += late
         self.found(late, "the machine stood still")
 
+    def list_processes(self):
+        self.processes, self.listed = family(os.getpid()), time.monotonic()
+
     def so_far(self):
         if time.monotonic() - self.listed >= WINDOW:
-            self.processes, self.listed = family(os.getpid()), time.monotonic()
+            self.list_processes()
         return waits(self.processes), {"this guest had no processor": stolen(), "the machine was late": self.late}
 
     def look(self, now, waited, totals):
@@ -182,6 +185,10 @@ class Trial(unittest.TestResult):
     def addSubTest(self, *arguments):
         self.tell("addSubTest", *arguments)
 
+    def words(self):
+        """The last line of what went wrong first."""
+        return (self.failures + self.errors)[0][1].strip().splitlines()[-1]
+
     def counts_for(self, result):
         for method, arguments in self.told:
             getattr(result, method)(*arguments)
@@ -201,10 +208,11 @@ class UndisturbedTest(unittest.TestCase):
             if trial.wasSuccessful():
                 break
             reason = disturbance.evidence()
+            failed = f"{self.id()}: attempt {attempt} has failed: {trial.words()}\n    "
             if not reason or attempt == ATTEMPTS:
-                print(f"{self.id()}: attempt {attempt} has failed; {reason or 'the machine was not disturbed'}", flush=True)
+                print(f"{failed}{reason or 'the machine was not disturbed'}", flush=True)
                 break
-            print(f"{self.id()}: attempt {attempt} has failed; {reason}: run again", flush=True)
+            print(f"{failed}{reason}: run again", flush=True)
         trial.counts_for(result)
         result.stopTest(self)
         return result

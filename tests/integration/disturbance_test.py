@@ -81,6 +81,7 @@ class Repeats(unittest.TestCase):
                 self.assertTrue(result.wasSuccessful())
                 self.assertEqual(attempts, 2)
                 self.assertIn(f"{STOOD_STILL}: run again", printed)
+                self.assertIn(str(outcome), printed, "what it was is told all the same")
 
     def test_a_failure_of_a_machine_that_ran_is_one_at_once(self):
         for outcome, failures, errors in ((FAILURE, 1, 0), (ERROR, 0, 1)):
@@ -107,6 +108,7 @@ class Repeats(unittest.TestCase):
 class Evidence(unittest.TestCase):
     def setUp(self):
         self.disturbance = Disturbance()
+        self.disturbance.list_processes()
 
     def test_a_look_at_the_clock_that_comes_late(self):
         self.disturbance.passed(PERIOD + 0.9 * BOUND)
@@ -114,6 +116,7 @@ class Evidence(unittest.TestCase):
         self.disturbance.passed(PERIOD + 1.23)
         self.disturbance.passed(PERIOD)
         self.assertEqual(self.disturbance.evidence(), STOOD_STILL)
+        self.assertAlmostEqual(self.disturbance.so_far()[1]["the machine was late"], 1.23 + 0.9 * BOUND)
 
     def look(self, *rows, every=0.25):
         """Each row is what two threads had waited, and a sum, at one look."""
@@ -141,7 +144,12 @@ class Evidence(unittest.TestCase):
 
 
 # The watch in a process of its own: it says when it watches, waits for a line, and tells what it has seen.
-WATCHER = "from disturbance import Disturbance\nwith Disturbance() as seen:\n    print('watching', flush=True)\n    input()\nprint(seen.evidence())"
+WATCHER = """from disturbance import Disturbance
+with Disturbance() as seen:
+    print('watching', flush=True)
+    input()
+print(seen.evidence())
+"""
 
 
 class Watches(unittest.TestCase):
