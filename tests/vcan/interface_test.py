@@ -60,6 +60,9 @@ class Interface(CanStory):
             self.move(axis)
             axis.command("disable")
             axis.until(axis_state=DISABLED)
+        self.assert_no_request_beside_another()
+
+    def assert_no_request_beside_another(self):
         self.assert_one_request_at_a_time("cell", "other")
 
 
@@ -85,6 +88,7 @@ class DownAndUp(Interface):
             axis.command("run_velocity")
             axis.until(axis_state=CONTINUOUS)
         self.lost[0].until_input("moving")
+        self.let_heartbeats_pass()  # a gateway that was never heard is not missed
         ip("link", "set", self.interface, "down")
         self.assert_gone()
         for axis in self.lost:
@@ -113,6 +117,18 @@ class Controller(Interface):
         if not hasattr(self, "controller"):
             self.controller = self.raw_socket()
         self.controller.send(struct.pack("=IB3x8s", socket.CAN_ERR_FLAG | classes, 8, bytes(8)))
+
+    def assert_back(self):
+        """The drives know nothing of our controller's trouble: what they were asked before it they may still answer while the gateway
+        asks anew. Hence no such request from the moment that all are online, and none at all on the other bus."""
+        for axis in self.lost:
+            axis.until(link_state=ONLINE)
+        self.overlaps = self.ask("overlaps LINE")
+        super().assert_back()
+
+    def assert_no_request_beside_another(self):
+        self.assertEqual(self.ask("overlaps LINE"), self.overlaps, "requests were on the bus at the same time")
+        self.assert_one_request_at_a_time("other")
 
     def test_bus_off_and_restarted(self):
         self.tell(BUS_OFF)
