@@ -55,6 +55,7 @@ class Unplugged(CanStory):
         self.begin()
         for axis in self.axes:
             self.prepare(axis)
+        self.let_heartbeats_pass()  # a gateway that was never heard is not missed
 
     def pull(self, axis):
         self.ask("connect DRIVE off", axis.number)
