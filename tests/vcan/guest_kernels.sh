@@ -106,7 +106,7 @@ run_in_user_mode_linux() {
   timeout -k 5 $((limit * uml_slower + uml_boot)) taskset -c "$cpu" env ${preload:+"$preload"} linux.uml mem=1024M root=/dev/root rootfstype=hostfs \
     rootflags=/ rw "init=$state/init" "uml_dir=$state" quiet \
     console=tty1 con=null ssl=null con0=null,fd:5 con2=null,fd:6 con1=null,fd:7 \
-    "GUEST_STATE=$state" "GUEST_LIMIT=$limit" GUEST_KIND=uml 5>&1 6>&2 7>"$state/kernel.log" >"$state/monitor.log" 2>&1 </dev/null &
+    "GUEST_STATE=$state" "GUEST_LIMIT=$limit" GUEST_KIND=uml ${preload:+AXISGATE_OWN_TIME=yes} 5>&1 6>&2 7>"$state/kernel.log" >"$state/monitor.log" 2>&1 </dev/null &
   guest=$!
   guest_wait "$uml_boot"
   say "User-Mode Linux did not start, its messages are above"
