@@ -62,6 +62,7 @@ class ArbiterStage : public testing::Test {
     EXPECT_FALSE(admission.joined);
     return admission.id;
   }
+  void expect_refused(const Order& o) { EXPECT_EQ(arbiter.submit(o, now).code, Errc::queue_full); }
   /// Who gets the wire next; 0 for a poll. The exchange is over at once.
   std::optional<OrderId> exchange() {
     const auto grant = arbiter.next(now);

@@ -8,11 +8,6 @@ using testing::ElementsAre;
 
 using ArbiterTest = ArbiterStage;
 
-TEST_F(ArbiterTest, gives_nothing_to_nobody) {
-  EXPECT_EQ(arbiter.next(now), std::nullopt);
-  EXPECT_EQ(arbiter.next_deadline(), kNever);
-}
-
 TEST_F(ArbiterTest, grants_in_order_of_class_however_they_came) {
   arbiter.set_poll_due(0, now);
   const OrderId of_setup = submit(setup(1));
@@ -24,7 +19,8 @@ TEST_F(ArbiterTest, grants_in_order_of_class_however_they_came) {
   EXPECT_EQ(serve(), of_mailbox);
   EXPECT_EQ(serve(), of_setup);
   EXPECT_EQ(serve(), 0u) << "the poll";
-  EXPECT_EQ(serve(), std::nullopt);
+  EXPECT_EQ(serve(), std::nullopt) << "it is spent until the drive says anew";
+  EXPECT_EQ(arbiter.next_deadline(), kNever);
 }
 
 TEST_F(ArbiterTest, keeps_the_wire_to_one_exchange) {
@@ -67,25 +63,20 @@ TEST_F(ArbiterTest, a_turn_taken_in_one_class_costs_none_in_another) {
   EXPECT_EQ(granted_drive, 0);
 }
 
-TEST_F(ArbiterTest, commands_of_one_axis_are_never_interleaved) {
-  const OrderId group = submit(command(0));
-  const OrderId next_group = submit(command(0));
-  EXPECT_EQ(exchange(), group);
-  EXPECT_EQ(exchange(), group) << "started, so it goes on";
-  arbiter.wait(group, now + 20ms);
-  EXPECT_EQ(exchange(), std::nullopt) << "the next group waits for the end of this one, not for its pauses";
+TEST_F(ArbiterTest, commands_of_one_axis_are_never_interleaved_and_those_of_others_do_not_wait_for_them) {
+  const OrderId first = submit(command(0));
+  const OrderId second = submit(command(0));
+  EXPECT_EQ(exchange(), first);
+  EXPECT_EQ(exchange(), first) << "started, so it goes on";
+  arbiter.wait(first, now + 20ms);
+  EXPECT_EQ(exchange(), std::nullopt) << "the next one waits for the end of this one, not for its pauses";
+  const OrderId of_other_axis = submit(command(0, 1));
+  EXPECT_EQ(serve(), of_other_axis);
+  EXPECT_EQ(arbiter.next_deadline(), now + 20ms);
   now += 20ms;
-  EXPECT_EQ(exchange(), group);
-  arbiter.finish(group);
-  EXPECT_EQ(exchange(), next_group);
-}
-
-TEST_F(ArbiterTest, the_axes_of_one_drive_do_not_wait_for_each_other) {
-  const OrderId of_first_axis = submit(command(0, 0));
-  const OrderId of_second_axis = submit(command(0, 1));
-  EXPECT_EQ(exchange(), of_first_axis);
-  arbiter.wait(of_first_axis, now + 1s);
-  EXPECT_EQ(exchange(), of_second_axis);
+  EXPECT_EQ(exchange(), first);
+  arbiter.finish(first);
+  EXPECT_EQ(exchange(), second);
 }
 
 TEST_F(ArbiterTest, one_setup_runs_per_drive) {
@@ -128,14 +119,6 @@ TEST_F(ArbiterTest, a_poll_that_is_not_due_is_not_owed) {
   EXPECT_EQ(arbiter.next_deadline(), now + 100ms);
 }
 
-TEST_F(ArbiterTest, a_granted_poll_is_spent_until_the_drive_says_anew) {
-  arbiter.set_poll_due(0, now);
-  EXPECT_EQ(exchange(), 0u);
-  EXPECT_EQ(exchange(), std::nullopt);
-  arbiter.set_poll_due(0, now);
-  EXPECT_EQ(exchange(), 0u);
-}
-
 TEST_F(ArbiterTest, a_stop_does_not_wait_for_the_share_of_poll) {
   arbiter.set_poll_due(0, now);
   for (int i = 0; i < bus::kOthersPerPoll; ++i) {
@@ -164,40 +147,20 @@ TEST_F(ArbiterTest, a_flood_of_stops_of_one_drive_holds_up_another_by_one_exchan
   EXPECT_EQ(serve(), of_other);
 }
 
-TEST_F(ArbiterTest, a_stop_that_waits_for_a_condition_lets_others_go_on) {
-  const OrderId halt = submit(stop(0));
-  ASSERT_EQ(exchange(), halt);
-  arbiter.wait(halt, now + 10ms);
-  const OrderId of_other = submit(command(1));
-  EXPECT_EQ(serve(), of_other);
-  EXPECT_EQ(arbiter.next_deadline(), now + 10ms);
-}
-
-TEST_F(ArbiterTest, a_declined_grant_frees_the_wire_at_once) {
+TEST_F(ArbiterTest, an_order_that_declines_frees_the_wire_at_once_and_is_asked_again_after_a_pause_or_its_own_wait) {
   const OrderId idle = submit(command(0));
   const OrderId other = submit(command(1));
   ASSERT_EQ(arbiter.next(now)->id, idle);
   arbiter.decline();
   EXPECT_FALSE(arbiter.wire_busy());
   EXPECT_EQ(serve(), other);
-}
-
-TEST_F(ArbiterTest, an_order_that_declines_and_stays_is_asked_again_after_a_pause) {
-  const OrderId idle = submit(command(0));
-  ASSERT_TRUE(arbiter.next(now));
-  arbiter.decline();
   EXPECT_EQ(arbiter.next(now), std::nullopt) << "the loop must come to rest";
   EXPECT_EQ(arbiter.next_deadline(), now + bus::kDeclinePause);
   now += bus::kDeclinePause;
-  EXPECT_EQ(serve(), idle);
-}
-
-TEST_F(ArbiterTest, a_decline_does_not_shorten_a_wait_asked_for) {
-  const OrderId waiting = submit(command(0));
-  ASSERT_TRUE(arbiter.next(now));
-  arbiter.wait(waiting, now + 50ms);
+  ASSERT_EQ(arbiter.next(now)->id, idle);
+  arbiter.wait(idle, now + 50ms);
   arbiter.decline();
-  EXPECT_EQ(arbiter.next_deadline(), now + 50ms);
+  EXPECT_EQ(arbiter.next_deadline(), now + 50ms) << "a decline does not shorten a wait asked for";
 }
 
 }  // namespace

@@ -9,105 +9,88 @@ using testing::SizeIs;
 
 constexpr int kSteps = 3;
 
-enum class Failure { none, refused, bad_reply, timeout, link_loss, stop, drive_offline };
-
+class BusFailure;
+struct Failure {
+  const char* name;
+  Errc expected;
+  void (*happen)(BusFailure&);
+};
 struct Case {
   Failure failure;
   int step;
 };
-void PrintTo(const Case& c, std::ostream* out) {
-  static constexpr std::array kNames{"none", "refused", "bad_reply", "timeout", "link_loss", "stop", "drive_offline"};
-  *out << kNames.at(static_cast<std::size_t>(c.failure)) << " at step " << c.step;
-}
+void PrintTo(const Case& c, std::ostream* out) { *out << c.failure.name << " at step " << c.step; }
 
 class BusFailure : public BusStage, public testing::WithParamInterface<Case> {
- protected:
+ public:
   /// The drive's side of the conversation: three exchanges, ended at once by a failure.
   void converse(OrderId order) {
     drives[0].result_hook = [this, order](const ExchangeResult& result) {
       if (gone) return;
-      if (result.code != Errc::ok || ++done == kSteps) finish(order, result.code);
+      if (result.code != Errc::ok || ++done == kSteps) {
+        end(result.code);
+        bus->finish(order);
+      }
     };
     drives[0].ended_hook = [this, order](OrderId id, Errc code) {
-      if (id != order) return;
-      gone = true;
-      endings.push_back(code);
+      if (id == order) end(code);
     };
   }
-  void finish(OrderId order, Errc code) {
+  void end(Errc code) {
     gone = true;
     endings.push_back(code);
-    bus->finish(order);
   }
-  void answer_step() {
+  /// The next exchange is on the wire.
+  void await_step() {
     if (!wire->outstanding) pass_gap();
     ASSERT_TRUE(wire->outstanding);
+  }
+  void stop_axis() {
+    stop = submit(0, Priority::stop);
+    turn();
     wire->reply();
   }
-  void fail_step() {
-    if (!wire->outstanding) pass_gap();
-    ASSERT_TRUE(wire->outstanding);
-    switch (GetParam().failure) {
-      case Failure::none:
-        break;
-      case Failure::refused:
-        wire->reply(ended_as(Errc::refused_by_drive));
-        break;
-      case Failure::bad_reply:
-        wire->reply(ended_as(Errc::bad_reply));
-        break;
-      case Failure::timeout:
-        runtime.advance_by(kTimeout);
-        break;
-      case Failure::link_loss:
-        wire->down("gone");
-        wire->up();
-        break;
-      case Failure::stop:
-        stop = submit(0, Priority::stop);
-        turn();
-        wire->reply();
-        break;
-      case Failure::drive_offline:
-        bus->end_drive(0, Errc::offline, Errc::timed_out);
-        turn();
-        wire->reply();
-        break;
-    }
+  void drive_goes_offline() {
+    bus->end_drive(0, Errc::offline, Errc::timed_out);
+    turn();
+    wire->reply();
   }
-  [[nodiscard]] static Errc expected() {
-    switch (GetParam().failure) {
-      case Failure::none:
-        return Errc::ok;
-      case Failure::refused:
-        return Errc::refused_by_drive;
-      case Failure::bad_reply:
-        return Errc::bad_reply;
-      case Failure::timeout:
-        return Errc::timed_out;
-      case Failure::link_loss:
-        return Errc::link_lost;
-      case Failure::stop:
-        return Errc::dropped_by_stop;
-      case Failure::drive_offline:
-        return Errc::timed_out;
-    }
-    return Errc::ok;
+  void link_goes_and_returns() {
+    wire->down("gone");
+    wire->up();
   }
 
+  using BusStage::kTimeout;
+  using BusStage::runtime;
+  using BusStage::wire;
   bool gone = false;
   int done = 0;
   OrderId stop = 0;
   std::vector<Errc> endings;
 };
 
+const Failure kFailures[] = {
+    {"refusal", Errc::refused_by_drive, [](BusFailure& on) { on.wire->reply(ended_as(Errc::refused_by_drive)); }},
+    {"bad_reply", Errc::bad_reply, [](BusFailure& on) { on.wire->reply(ended_as(Errc::bad_reply)); }},
+    {"timeout", Errc::timed_out, [](BusFailure& on) { on.runtime.advance_by(BusFailure::kTimeout); }},
+    {"link_loss", Errc::link_lost, [](BusFailure& on) { on.link_goes_and_returns(); }},
+    {"stop", Errc::dropped_by_stop, [](BusFailure& on) { on.stop_axis(); }},
+    {"drive_offline", Errc::timed_out, [](BusFailure& on) { on.drive_goes_offline(); }},
+};
+
 TEST_P(BusFailure, ends_the_order_once_and_serves_the_next) {
   link_up();
   converse(submit(0));
   turn();
-  for (int step = 0; step < GetParam().step; ++step) answer_step();
-  if (GetParam().step < kSteps) fail_step();
-  EXPECT_THAT(endings, testing::ElementsAre(expected()));
+  for (int step = 0; step < GetParam().step; ++step) {
+    await_step();
+    wire->reply();
+  }
+  if (GetParam().step < kSteps) {
+    await_step();
+    GetParam().failure.happen(*this);
+  }
+  EXPECT_THAT(endings, testing::ElementsAre(GetParam().failure.expected));
 
   runtime.advance_by(kSettle + kGap);
   if (stop != 0) {
@@ -128,9 +111,8 @@ TEST_P(BusFailure, ends_the_order_once_and_serves_the_next) {
 }
 
 std::vector<Case> every_failure() {
-  std::vector<Case> cases{{Failure::none, kSteps}};
-  for (const Failure failure : {Failure::refused, Failure::bad_reply, Failure::timeout, Failure::link_loss,
-                                Failure::stop, Failure::drive_offline}) {
+  std::vector<Case> cases{{{"nothing", Errc::ok, nullptr}, kSteps}};
+  for (const Failure& failure : kFailures) {
     for (int step = 0; step < kSteps; ++step) cases.push_back({failure, step});
   }
   return cases;

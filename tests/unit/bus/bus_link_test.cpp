@@ -10,28 +10,21 @@ using testing::SizeIs;
 
 using BusLink = BusStage;
 
-TEST_F(BusLink, takes_no_order_before_the_link_is_up) {
+TEST_F(BusLink, takes_no_order_before_it_is_up_and_then_serves_the_poll_that_was_due) {
   EXPECT_FALSE(bus->up());
   EXPECT_EQ(bus->submit(Order{}).code, Errc::offline);
   bus->set_poll_due(0, runtime.now());
   turn();
   EXPECT_THAT(wire->sent, IsEmpty());
-}
-
-TEST_F(BusLink, tells_every_drive_and_the_log_that_it_is_up) {
   wire->up();
   EXPECT_TRUE(bus->up());
-  EXPECT_THAT(diary, ElementsAre("drive 1: link up", "drive 2: link up"));
-  EXPECT_THAT(log_lines, ElementsAre("info bus lift: link up"));
-}
-
-TEST_F(BusLink, a_poll_due_while_down_goes_out_when_the_link_is_up) {
-  bus->set_poll_due(0, runtime.now());
-  wire->up();
   EXPECT_THAT(wire->sent, SizeIs(1));
 }
 
-TEST_F(BusLink, lost_while_idle_it_tells_the_drives_and_the_log) {
+TEST_F(BusLink, tells_every_drive_and_the_log_that_it_is_up_and_that_it_is_lost) {
+  wire->up();
+  EXPECT_THAT(diary, ElementsAre("drive 1: link up", "drive 2: link up"));
+  EXPECT_THAT(log_lines, ElementsAre("info bus lift: link up"));
   link_up();
   wire->down("/dev/ttyUSB0: hung up");
   EXPECT_FALSE(bus->up());
@@ -53,49 +46,37 @@ TEST_F(BusLink, lost_with_an_exchange_on_the_wire_it_ends_everything_in_the_same
   EXPECT_EQ(runtime.next_deadline(), kNever) << "nothing is left to wait for";
 }
 
-TEST_F(BusLink, lost_between_two_exchanges_of_an_order_its_outcome_is_unknown) {
-  link_up();
-  submit(0);
-  turn();
-  wire->reply();
-  diary.clear();
-  wire->down("gone");
-  EXPECT_THAT(diary, ElementsAre("drive 1: order 1 link lost", "drive 1: link down", "drive 2: link down"));
-}
-
-TEST_F(BusLink, lost_while_an_order_waits_for_a_condition_it_ends) {
-  link_up();
-  const OrderId id = submit(0);
-  turn();
-  wire->reply();
-  bus->wait(id, runtime.now() + 1h);
-  turn();
-  diary.clear();
-  wire->down("gone");
-  EXPECT_EQ(diary.front(), "drive 1: order 1 link lost");
-}
-
-TEST_F(BusLink, lost_from_inside_send_the_exchange_ends_in_the_same_turn) {
-  link_up();
-  wire->on_send = [this] { wire->down("gone"); };
-  submit(0);
-  turn();
-  EXPECT_THAT(diary, ElementsAre("drive 1: grant 1", "drive 1: link lost", "drive 1: order 1 link lost",
-                                 "drive 1: link down", "drive 2: link down"));
-  EXPECT_FALSE(bus->up());
-}
-
-TEST_F(BusLink, lost_and_back_from_inside_send_both_are_told) {
-  link_up();
-  wire->on_send = [this] {
-    wire->on_send = nullptr;
+TEST_F(BusLink, lost_between_two_exchanges_of_an_order_or_while_it_waits_for_a_condition_its_outcome_is_unknown) {
+  for (const bool waits : {false, true}) {
+    link_up();
+    const OrderId id = submit(0);
+    turn();
+    wire->reply();
+    if (waits) bus->wait(id, runtime.now() + 1h);
+    turn();
+    diary.clear();
     wire->down("gone");
-    wire->up();
-  };
-  submit(0);
-  turn();
-  EXPECT_THAT(diary, ElementsAre("drive 1: grant 1", "drive 1: link lost", "drive 1: order 1 link lost",
-                                 "drive 1: link down", "drive 2: link down", "drive 1: link up", "drive 2: link up"));
+    EXPECT_THAT(
+        diary, ElementsAre(fmt::format("drive 1: order {} link lost", id), "drive 1: link down", "drive 2: link down"));
+  }
+}
+
+TEST_F(BusLink, lost_from_inside_send_the_exchange_ends_in_the_same_turn_and_a_return_is_told_as_well) {
+  for (const bool returns : {false, true}) {
+    link_up();
+    wire->on_send = [this, returns] {
+      wire->on_send = nullptr;
+      wire->down("gone");
+      if (returns) wire->up();
+    };
+    const OrderId id = submit(0);
+    turn();
+    Diary expected{fmt::format("drive 1: grant {}", id), "drive 1: link lost",
+                   fmt::format("drive 1: order {} link lost", id), "drive 1: link down", "drive 2: link down"};
+    if (returns) expected.insert(expected.end(), {"drive 1: link up", "drive 2: link up"});
+    EXPECT_EQ(diary, expected);
+    EXPECT_EQ(bus->up(), returns);
+  }
 }
 
 TEST_F(BusLink, a_drive_may_ask_for_more_while_the_link_is_going_down) {
@@ -114,20 +95,7 @@ TEST_F(BusLink, a_drive_may_ask_for_more_while_the_link_is_going_down) {
   EXPECT_THAT(answers, ElementsAre(Errc::offline, Errc::offline, Errc::offline));
 }
 
-TEST_F(BusLink, works_as_before_when_the_link_is_back) {
-  link_up();
-  submit(0);
-  turn();
-  wire->down("gone");
-  wire->up();
-  diary.clear();
-  submit(1);
-  turn();
-  wire->reply();
-  EXPECT_THAT(diary, ElementsAre("drive 2: grant 2", "drive 2: ok"));
-}
-
-TEST_F(BusLink, the_silence_after_an_exchange_does_not_outlive_the_link) {
+TEST_F(BusLink, works_as_before_when_it_is_back_and_the_silence_after_an_exchange_does_not_outlive_it) {
   link_up();
   submit(0);
   turn();
@@ -137,7 +105,8 @@ TEST_F(BusLink, the_silence_after_an_exchange_does_not_outlive_the_link) {
   diary.clear();
   submit(1);
   turn();
-  EXPECT_THAT(diary, ElementsAre("drive 2: grant 2"));
+  wire->reply();
+  EXPECT_THAT(diary, ElementsAre("drive 2: grant 2", "drive 2: ok"));
 }
 
 TEST_F(BusLink, a_bus_destroyed_with_an_exchange_on_the_wire_calls_nobody) {

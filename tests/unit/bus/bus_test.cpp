@@ -10,33 +10,24 @@ using testing::SizeIs;
 
 using BusTest = BusStage;
 
-TEST_F(BusTest, a_grant_becomes_one_exchange_and_its_reply_one_result) {
-  link_up();
-  submit(0);
-  turn();
-  EXPECT_THAT(wire->sent, ElementsAre(drives[0].exchange()));
-  wire->reply();
-  EXPECT_THAT(diary, ElementsAre("drive 1: grant 1", "drive 1: ok"));
-}
-
-TEST_F(BusTest, submit_returns_before_the_drive_is_called) {
+TEST_F(BusTest, a_grant_becomes_one_exchange_and_its_reply_one_result_and_then_the_line_is_silent) {
+  bus->set_decode(true);
+  EXPECT_TRUE(wire->decode) << "the decode level is passed on";
   link_up();
   submit(0);
   EXPECT_THAT(diary, IsEmpty()) << "the drive does not know the order's number yet";
   EXPECT_EQ(runtime.next_deadline(), runtime.now()) << "but the next turn of the loop goes on at once";
-}
-
-TEST_F(BusTest, the_line_is_silent_between_two_exchanges) {
-  link_up();
-  submit(0);
   submit(1);
   turn();
+  EXPECT_THAT(wire->sent, ElementsAre(drives[0].exchange()));
   wire->reply();
   turn();
   EXPECT_THAT(wire->sent, SizeIs(1));
   EXPECT_EQ(runtime.next_deadline(), runtime.now() + kGap);
+  wire->on_send = [this] { wire->reply(); };
   pass_gap();
-  EXPECT_THAT(wire->sent, SizeIs(2));
+  EXPECT_THAT(diary, ElementsAre("drive 1: grant 1", "drive 1: ok", "drive 2: grant 2", "drive 2: ok"))
+      << "a reply from inside send() is one";
 }
 
 TEST_F(BusTest, an_exchange_without_an_answer_times_out_and_the_line_settles) {
@@ -143,14 +134,6 @@ TEST_F(BusTest, a_drive_that_wants_a_poll_and_declines_it_for_ever_lets_the_loop
   EXPECT_EQ(runtime.next_deadline(), runtime.now() + bus::kDeclinePause);
 }
 
-TEST_F(BusTest, a_reply_from_inside_send_is_a_reply) {
-  link_up();
-  wire->on_send = [this] { wire->reply(); };
-  submit(0);
-  turn();
-  EXPECT_THAT(diary, ElementsAre("drive 1: grant 1", "drive 1: ok"));
-}
-
 TEST_F(BusTest, a_stop_waits_for_the_exchange_on_the_wire_and_the_gap_alone) {
   link_up();
   bus->set_poll_due(0, runtime.now());
@@ -215,11 +198,6 @@ TEST_F(BusTest, knows_its_load) {
   wire->reply();
   runtime.advance_by(1s);
   EXPECT_EQ(bus->load_permille(), 50);
-}
-
-TEST_F(BusTest, passes_the_decode_level_on) {
-  bus->set_decode(true);
-  EXPECT_TRUE(wire->decode);
 }
 
 }  // namespace

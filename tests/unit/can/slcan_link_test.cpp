@@ -34,9 +34,13 @@ class SlcanLinkTest : public testing::Test {
     link = std::make_unique<can::SlcanLink>("lift", can::CanDevice{.lawicel = true, .path = "/dev/adapter"}, 250000,
                                             std::make_unique<FakePort>(&port), runtime, log);
   }
-  void start(std::vector<can::CanFilter> filters = kEverything) {
+  /// The port is up, the channel is not yet open.
+  void begin(std::vector<can::CanFilter> filters = kEverything) {
     link->start(diary, std::move(filters));
     port->link->on_link_up();
+  }
+  void start(std::vector<can::CanFilter> filters = kEverything) {
+    begin(std::move(filters));
     port->say("\aV2\r\r\r");
     runtime.run_due();
     port->say("F00\r");
@@ -55,11 +59,11 @@ class SlcanLinkTest : public testing::Test {
 };
 
 TEST_F(SlcanLinkTest, comes_up_once_the_channel_is_open) {
-  link->start(diary, kEverything);
-  port->link->on_link_up();
+  begin();
   EXPECT_EQ(port->take_sent(), "\r\r\rC\rV\r");
-  port->say("\aV2\r\r");
+  port->say("t1230\r\aV2\r\r");
   EXPECT_TRUE(diary.told.empty());
+  EXPECT_TRUE(diary.frames.empty()) << "frames before the channel is open are nobody's";
   EXPECT_EQ(port->take_sent(), "S5\rO\r");
   port->say("\r");
   EXPECT_THAT(diary.told, ElementsAre("up"));
@@ -67,8 +71,7 @@ TEST_F(SlcanLinkTest, comes_up_once_the_channel_is_open) {
 }
 
 TEST_F(SlcanLinkTest, an_adapter_that_never_answers_is_said_to_tell_no_errors) {
-  link->start(diary, kEverything);
-  port->link->on_link_up();
+  begin();
   runtime.advance_by(1s);
   EXPECT_THAT(diary.told, ElementsAre("up"));
   EXPECT_THAT(log_lines, ElementsAre(HasSubstr("acknowledges nothing")));
@@ -95,13 +98,6 @@ TEST_F(SlcanLinkTest, only_what_a_filter_passes_is_handed_over) {
   port->say("t1230\rt5830\rT000005830\r");
   ASSERT_EQ(diary.frames.size(), 1);
   EXPECT_EQ(diary.frames[0].id, 0x583);
-}
-
-TEST_F(SlcanLinkTest, frames_before_the_channel_is_open_are_nobodys) {
-  link->start(diary, kEverything);
-  port->link->on_link_up();
-  port->say("t1230\r");
-  EXPECT_TRUE(diary.frames.empty());
 }
 
 TEST_F(SlcanLinkTest, one_turn_hands_over_no_more_than_its_bound_and_the_next_the_rest) {
@@ -153,6 +149,7 @@ TEST_F(SlcanLinkTest, send_calls_nobody_back_when_the_queue_is_full) {
 
 TEST_F(SlcanLinkTest, the_loss_of_the_port_is_told_once_with_its_reason_and_the_way_back) {
   start();
+  port->say("t12");
   port->link->on_link_down("/dev/adapter: hung up");
   runtime.advance_by(10s);
   EXPECT_THAT(diary.told, ElementsAre("up", "down: /dev/adapter: hung up"));
@@ -160,21 +157,12 @@ TEST_F(SlcanLinkTest, the_loss_of_the_port_is_told_once_with_its_reason_and_the_
   port->say("V2\r\r\r");
   EXPECT_THAT(diary.told, ElementsAre("up", "down: /dev/adapter: hung up", "up"));
   EXPECT_EQ(link->trouble().reconnects, 1);
-}
-
-TEST_F(SlcanLinkTest, half_a_frame_before_the_loss_and_half_after_it_are_no_frame) {
-  start();
-  port->say("t12");
-  port->link->on_link_down("gone");
-  port->link->on_link_up();
-  port->say("V2\r\r\r");
   port->say("30\r");
-  EXPECT_TRUE(diary.frames.empty());
+  EXPECT_TRUE(diary.frames.empty()) << "half a frame before the loss and half after it are none";
 }
 
 TEST_F(SlcanLinkTest, an_adapter_that_refuses_is_logged_once_not_each_second) {
-  link->start(diary, kEverything);
-  port->link->on_link_up();
+  begin();
   for (int i = 0; i < 5; ++i) {
     port->say("V2\r\a");
     runtime.advance_by(1s);
@@ -185,15 +173,11 @@ TEST_F(SlcanLinkTest, an_adapter_that_refuses_is_logged_once_not_each_second) {
                           "second"));
 }
 
-TEST_F(SlcanLinkTest, bytes_of_no_line_are_counted) {
+TEST_F(SlcanLinkTest, bytes_of_no_line_are_counted_and_without_end_take_the_link_down) {
   start();
   port->say("\xFF\xFEhello\rt1230\r");
   EXPECT_EQ(link->trouble().bad_bytes, 8);
   EXPECT_EQ(diary.frames.size(), 1);
-}
-
-TEST_F(SlcanLinkTest, noise_without_end_takes_the_link_down) {
-  start();
   for (int i = 0; i < 12 && diary.up(); ++i) {
     port->say("\xFF\xFE\xFD");
     runtime.advance_by(10ms);

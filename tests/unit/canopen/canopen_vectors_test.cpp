@@ -1,91 +1,48 @@
 // Every CANopen frame of the three drive sheets (tests/vectors), through codec and wire.
-#include <fstream>
-#include <nlohmann/json.hpp>
-
 #include "adapters/canopen/cob_id.hpp"
 #include "adapters/canopen/emergency.hpp"
 #include "adapters/canopen/nmt.hpp"
 #include "adapters/canopen/process_data.hpp"
+#include "tests/unit/bus/sheet_vectors.hpp"
 #include "tests/unit/canopen/canopen_wire_stage.hpp"
 
 namespace axisgate::test {
 namespace {
 
-using nlohmann::json;
-
-struct Vector {
-  std::string id;
-  std::string protocol;
-  bool request = false;
-  bool well_formed = true;
-  std::uint32_t can_id = 0;
-  ByteRow bytes;
-  ByteRow corrected;  ///< as it must be sent: padded, or what a misprint was meant to be
-  bool remote = false;
-  json decoded;
-};
-void PrintTo(const Vector& vector, std::ostream* out) { *out << vector.id; }
-
-std::uint32_t number(const json& value) {
-  return value.is_string() ? static_cast<std::uint32_t>(std::stoul(value.get<std::string>(), nullptr, 16))
-                           : static_cast<std::uint32_t>(value.get<std::int64_t>());
-}
-
-Vector vector_of(const std::string& sheet, const json& row) {
-  Vector vector;
-  vector.id = sheet + "/" + row.at("id").get<std::string>();
-  vector.protocol = row.at("protocol");
-  vector.request = row.at("direction") == "request";
-  vector.well_formed = row.value("well_formed", true);
-  vector.can_id = number(row.at("can_id"));
-  const std::string hex = row.at("hex");
-  vector.bytes = from_hex(hex);
-  const std::string padded = row.value("hex_padded", hex);
-  vector.corrected = from_hex(row.value("hex_corrected", padded));
-  vector.remote = row.value("rtr", false);
-  vector.decoded = row.at("decoded");
-  return vector;
-}
+using testing::ElementsAre;
 
 template <typename Which>
-std::vector<Vector> vectors_that(Which which) {
-  std::vector<Vector> all;
-  for (const char* name : {"kinco-jd", "kinco-md", "leadshine-ld2-can"}) {
-    std::ifstream file(std::string(AXISGATE_SOURCE_DIR) + "/tests/vectors/" + name + ".json");
-    const json sheet = json::parse(file);
-    for (const json& row : sheet.at("vectors")) {
-      if (row.at("protocol").get<std::string>().rfind("canopen", 0) != 0) continue;
-      const Vector vector = vector_of(name, row);
-      if (which(vector)) all.push_back(vector);
-    }
-  }
-  return all;
+std::vector<SheetVector> vectors_that(Which which) {
+  return sheet_vectors({"kinco-jd", "kinco-md", "leadshine-ld2-can"},
+                       [&](const SheetVector& v) { return v.protocol().starts_with("canopen") && which(v); });
+}
+std::vector<SheetVector> vectors_of(std::string_view protocol) {
+  return vectors_that([&](const SheetVector& v) { return v.protocol() == protocol; });
+}
+std::uint32_t can_id(const SheetVector& v) { return number(v.row.at("can_id")); }
+CanFrame printed(const SheetVector& v) { return can::data_frame(can_id(v), v.printed); }
+CanFrame meant(const SheetVector& v) { return can::data_frame(can_id(v), v.bytes); }
+bool well_formed(const SheetVector& v) { return v.row.value("well_formed", true); }
+bool is_sdo(const SheetVector& v) { return v.protocol() == "canopen-sdo"; }
+bool is_sdo_request(const SheetVector& v) { return is_sdo(v) && well_formed(v) && v.request(); }
+bool is_sdo_reply(const SheetVector& v) { return is_sdo(v) && well_formed(v) && !v.request(); }
+bool is_misprint(const SheetVector& v) { return is_sdo(v) && !well_formed(v); }
+bool is_error_control(const SheetVector& v) {
+  return (v.protocol() == "canopen-heartbeat" || v.protocol() == "canopen-guard") && !v.request();
 }
 
-bool good_sdo(const Vector& v) { return v.protocol == "canopen-sdo" && v.well_formed; }
-
-std::string test_name(const testing::TestParamInfo<Vector>& info) {
-  std::string name = info.param.id;
-  for (char& c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-  }
-  return name;
-}
-
-bus::Exchange exchange_of(const json& decoded) {
-  const auto index = static_cast<std::uint16_t>(number(decoded.at("index")));
-  const auto sub = static_cast<std::uint8_t>(number(decoded.at("sub")));
-  const auto node = decoded.at("node").get<std::uint8_t>();
-  bus::Exchange exchange = read_of(index, sub, 0, node);
-  if (decoded.at("op") == "write" || decoded.at("op") == "write-ok") {
+bus::Exchange exchange_of(const SheetVector& v) {
+  bus::Exchange exchange = read_of(static_cast<std::uint16_t>(v.value("index")),
+                                   static_cast<std::uint8_t>(v.value("sub")), 0, v.says("node"));
+  if (v.says("op") == "write" || v.says("op") == "write-ok") {
     exchange.access = bus::Access::write;
-    exchange.size = static_cast<std::uint8_t>(decoded.value("size", 2));
-    exchange.raw = decoded.contains("value") ? number(decoded.at("value")) : 0;
+    exchange.size = static_cast<std::uint8_t>(v.decoded().value("size", 2));
+    exchange.raw = v.decoded().contains("value") ? v.value("value") : 0;
   }
   return exchange;
 }
 
-class Sheets : public CanopenWireStage, public testing::WithParamInterface<Vector> {
+class Sheets : public CanopenWireStage, public testing::WithParamInterface<SheetVector> {
  protected:
   void SetUp() override {
     std::vector<canopen::CanopenNode> nodes;
@@ -102,25 +59,25 @@ using Emergencies = Sheets;
 using Misprints = Sheets;
 
 TEST_P(SdoRequests, are_sent_byte_for_byte_padded_to_eight) {
-  const Vector& v = GetParam();
-  wire->send(exchange_of(v.decoded));
-  EXPECT_THAT(link->sent, testing::ElementsAre(can::data_frame(v.can_id, v.corrected)));
+  wire->send(exchange_of(GetParam()));
+  EXPECT_THAT(link->sent, ElementsAre(meant(GetParam())));
 }
 
 TEST_P(SdoReplies, answer_the_request_they_belong_to_as_printed_and_padded) {
-  const Vector& v = GetParam();
-  for (const ByteRow& bytes : {v.bytes, v.corrected}) {
-    wire->send(exchange_of(v.decoded));
-    bring(can::data_frame(v.can_id, bytes));
-    ASSERT_FALSE(replies.empty());
-    const bus::ExchangeResult& result = replies.back();
-    if (v.decoded.contains("error_code")) {
-      EXPECT_EQ(result, refusal_of(number(v.decoded.at("error_code"))));
-    } else if (v.decoded.at("op") == "read-ok") {
+  const SheetVector& v = GetParam();
+  for (const CanFrame& frame : {printed(v), meant(v)}) {
+    replies.clear();
+    wire->send(exchange_of(v));
+    bring(frame);
+    ASSERT_EQ(replies.size(), 1u);
+    const bus::ExchangeResult& result = replies[0];
+    if (v.decoded().contains("error_code")) {
+      EXPECT_EQ(result, refusal_of(v.value("error_code")));
+    } else if (v.says("op") == "read-ok") {
       ASSERT_EQ(result.fields.size(), 1u);
-      EXPECT_EQ(result.fields[0].size, number(v.decoded.at("size")));
+      EXPECT_EQ(result.fields[0].size, v.value("size"));
       const std::uint32_t mask = result.fields[0].size == 4 ? ~0U : (1U << (8 * result.fields[0].size)) - 1;
-      EXPECT_EQ(result.fields[0].raw, number(v.decoded.at("value")) & mask);
+      EXPECT_EQ(result.fields[0].raw, v.value("value") & mask);
     } else {
       EXPECT_EQ(result, bus::ExchangeResult{});
     }
@@ -129,66 +86,50 @@ TEST_P(SdoReplies, answer_the_request_they_belong_to_as_printed_and_padded) {
 
 /// The examples of one manual print them with seven or eight bytes.
 TEST_P(NmtCommands, are_sent_with_exactly_two_bytes) {
-  const Vector& v = GetParam();
-  wire->send(nmt_of(number(v.decoded.at("command")), static_cast<std::uint8_t>(v.corrected.at(1))));
-  EXPECT_THAT(link->sent, testing::ElementsAre(can::data_frame(v.can_id, v.corrected)));
+  wire->send(nmt_of(GetParam().value("command"), GetParam().bytes.at(1)));
+  EXPECT_THAT(link->sent, ElementsAre(meant(GetParam())));
   runtime.run_due();
-  EXPECT_THAT(replies, testing::ElementsAre(bus::ExchangeResult{}));
+  EXPECT_THAT(replies, ElementsAre(bus::ExchangeResult{}));
 }
 
 TEST_P(ErrorControls, tell_the_nodes_state) {
-  const Vector& v = GetParam();
-  bring(can::data_frame(v.can_id, v.bytes));
+  const SheetVector& v = GetParam();
+  bring(printed(v));
   ASSERT_EQ(notices.size(), 1u);
-  EXPECT_EQ(notices[0].node, v.decoded.at("node"));
-  const std::string state = v.decoded.at("state");
+  EXPECT_EQ(notices[0].node, v.value("node"));
+  const std::string state = v.says("state");
   const auto is = [&](std::string_view word) { return state.find(word) != std::string::npos; };
   EXPECT_EQ(notices[0].kind, is("boot-up") ? bus::Notice::Kind::started : bus::Notice::Kind::present);
   EXPECT_EQ(notices[0].state, is("stopped")                 ? bus::NodeState::stopped
                               : is("pre-") || is("boot-up") ? bus::NodeState::pre_operational
                                                             : bus::NodeState::operational);
-  if (v.decoded.contains("toggle")) {
-    EXPECT_EQ(canopen::decode_error_control(v.bytes)->toggle, v.decoded.at("toggle") == 1);
+  if (v.decoded().contains("toggle")) {
+    EXPECT_EQ(canopen::decode_error_control(v.printed)->toggle, v.says("toggle") == 1);
   }
 }
 
 TEST_P(Emergencies, are_told_with_code_register_and_the_makers_bytes) {
-  const Vector& v = GetParam();
-  bring(can::data_frame(v.can_id, v.bytes));
+  const SheetVector& v = GetParam();
+  bring(printed(v));
   ASSERT_EQ(notices.size(), 1u);
   EXPECT_EQ(notices[0].kind, bus::Notice::Kind::emergency);
-  EXPECT_EQ(notices[0].code, number(v.decoded.at("error_code")));
-  EXPECT_EQ(notices[0].error_register, number(v.decoded.at("error_register")));
-  EXPECT_THAT(notices[0].vendor, testing::ElementsAreArray(Bytes(v.bytes).subspan(3)));
+  EXPECT_EQ(notices[0].code, v.value("error_code"));
+  EXPECT_EQ(notices[0].error_register, v.value("error_register"));
+  EXPECT_THAT(notices[0].vendor, testing::ElementsAreArray(Bytes(v.printed).subspan(3)));
 }
 
 TEST_P(Misprints, end_no_exchange) {
-  const Vector& v = GetParam();
   wire->send(read_of(0x6041));
-  bring(can::data_frame(0x581, v.bytes));
+  bring(can::data_frame(0x581, GetParam().printed));
   EXPECT_THAT(told, testing::IsEmpty());
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SdoRequests,
-                         testing::ValuesIn(vectors_that([](const Vector& v) { return good_sdo(v) && v.request; })),
-                         test_name);
-INSTANTIATE_TEST_SUITE_P(All, SdoReplies,
-                         testing::ValuesIn(vectors_that([](const Vector& v) { return good_sdo(v) && !v.request; })),
-                         test_name);
-INSTANTIATE_TEST_SUITE_P(All, NmtCommands,
-                         testing::ValuesIn(vectors_that([](const Vector& v) { return v.protocol == "canopen-nmt"; })),
-                         test_name);
-INSTANTIATE_TEST_SUITE_P(All, ErrorControls, testing::ValuesIn(vectors_that([](const Vector& v) {
-                           return (v.protocol == "canopen-heartbeat" || v.protocol == "canopen-guard") && !v.request;
-                         })),
-                         test_name);
-INSTANTIATE_TEST_SUITE_P(All, Emergencies,
-                         testing::ValuesIn(vectors_that([](const Vector& v) { return v.protocol == "canopen-emcy"; })),
-                         test_name);
-INSTANTIATE_TEST_SUITE_P(All, Misprints, testing::ValuesIn(vectors_that([](const Vector& v) {
-                           return v.protocol == "canopen-sdo" && !v.well_formed;
-                         })),
-                         test_name);
+INSTANTIATE_TEST_SUITE_P(All, SdoRequests, testing::ValuesIn(vectors_that(is_sdo_request)), vector_name);
+INSTANTIATE_TEST_SUITE_P(All, SdoReplies, testing::ValuesIn(vectors_that(is_sdo_reply)), vector_name);
+INSTANTIATE_TEST_SUITE_P(All, NmtCommands, testing::ValuesIn(vectors_of("canopen-nmt")), vector_name);
+INSTANTIATE_TEST_SUITE_P(All, ErrorControls, testing::ValuesIn(vectors_that(is_error_control)), vector_name);
+INSTANTIATE_TEST_SUITE_P(All, Emergencies, testing::ValuesIn(vectors_of("canopen-emcy")), vector_name);
+INSTANTIATE_TEST_SUITE_P(All, Misprints, testing::ValuesIn(vectors_that(is_misprint)), vector_name);
 
 // --- Process data: the maps are the sheets' examples ----------------------------------------------------------------
 
@@ -203,10 +144,7 @@ const PdoRow kPdos[] = {
     {"kinco-jd/can-d-tpdo1", 1, true, {{{0x6041, 0}, 2, 0xD437}}},
     {"kinco-jd/can-d-rpdo1", 1, false, {{{0x607A, 0}, 4, 50000}, {{0x6060, 0}, 1, 1}}},
     {"kinco-md/d-can-tpdo1-example", 1, true, {{{0x6063, 0}, 4, 50000}, {{0x6041, 0}, 2, 0xD437}}},
-    {"kinco-md/d-can-rpdo1-example",
-     1,
-     false,
-     {{{0x607A, 0}, 4, 50000}, {{0x6060, 0}, 1, 1}, {{0x6040, 0}, 2, 0x003F}}},
+    {"kinco-md/d-can-rpdo1-example", 1, false, {{{0x607A, 0}, 4, 50000}, {{0x6060, 0}, 1, 1}, {{0x6040, 0}, 2, 0x3F}}},
     {"kinco-md/d-can-rpdo2-example", 2, false, {{{0x60FF, 0}, 4, 2684355}, {{0x6081, 0}, 4, 3579139}}},
     {"leadshine-ld2-can/pdo-ex-rpdo1", 1, false, {{{0x6040, 0}, 2, 0x2211}}},
     {"leadshine-ld2-can/pdo-ex-tpdo1", 1, true, {{{0x6041, 0}, 2, 0x00F3}}},
@@ -216,34 +154,32 @@ const PdoRow kPdos[] = {
 };
 
 TEST(SheetProcessData, every_printed_frame_is_cut_and_built_by_its_map) {
-  const auto printed = vectors_that([](const Vector& v) { return v.protocol == "canopen-pdo"; });
-  EXPECT_EQ(printed.size(), std::size(kPdos)) << "a sheet has a frame that this test does not know";
-  for (const Vector& v : printed) {
-    SCOPED_TRACE(v.id);
-    const auto* row = std::ranges::find_if(kPdos, [&](const PdoRow& r) { return v.id == r.id; });
-    ASSERT_NE(row, std::end(kPdos));
-    const auto id = canopen::cob_id(v.can_id);
+  const auto frames = vectors_of("canopen-pdo");
+  EXPECT_EQ(frames.size(), std::size(kPdos)) << "a sheet has a frame that this test does not know";
+  for (const SheetVector& v : frames) {
+    SCOPED_TRACE(v.name);
+    const auto* known = std::ranges::find_if(kPdos, [&](const PdoRow& r) { return v.name == r.id; });
+    ASSERT_NE(known, std::end(kPdos));
+    const auto id = canopen::cob_id(can_id(v));
     ASSERT_TRUE(id);
-    EXPECT_EQ(id->service, row->sent_by_drive ? canopen::Service::tpdo : canopen::Service::rpdo);
-    EXPECT_EQ(id->number, row->number);
+    EXPECT_EQ(id->service, known->sent_by_drive ? canopen::Service::tpdo : canopen::Service::rpdo);
+    EXPECT_EQ(id->number, known->number);
     bus::ProcessMap map;
-    bus::ReplyFields values;
-    for (const bus::ReplyField& field : row->values) {
-      map.push_back({field.object, field.size});
-      values.push_back(field);
-    }
-    EXPECT_EQ(canopen::decode_process_data(map, v.bytes), values);
-    EXPECT_EQ(canopen::encode_process_data(v.can_id, values), can::data_frame(v.can_id, v.bytes));
+    for (const bus::ReplyField& field : known->values) map.push_back({field.object, field.size});
+    const bus::ReplyFields values(known->values.begin(), known->values.end());
+    EXPECT_EQ(canopen::decode_process_data(map, v.printed), values);
+    EXPECT_EQ(canopen::encode_process_data(can_id(v), values), printed(v));
   }
 }
 
 TEST(SheetFrames, guarding_and_sync_are_what_the_sheets_print) {
-  for (const Vector& v : vectors_that([](const Vector& v) { return v.protocol == "canopen-guard" && v.request; })) {
-    EXPECT_EQ(canopen::guard_frame(1).id, v.can_id) << v.id;
-    EXPECT_TRUE(v.remote && canopen::guard_frame(1).remote) << v.id;
+  for (const SheetVector& v : vectors_of("canopen-guard")) {
+    if (!v.request()) continue;
+    EXPECT_EQ(canopen::guard_frame(1).id, can_id(v)) << v.name;
+    EXPECT_TRUE(v.row.value("rtr", false) && canopen::guard_frame(1).remote) << v.name;
   }
-  for (const Vector& v : vectors_that([](const Vector& v) { return v.protocol == "canopen-sync"; })) {
-    EXPECT_EQ(can::data_frame(canopen::kSyncId, {}), can::data_frame(v.can_id, v.bytes)) << v.id;
+  for (const SheetVector& v : vectors_of("canopen-sync")) {
+    EXPECT_EQ(can::data_frame(canopen::kSyncId, {}), printed(v)) << v.name;
   }
 }
 

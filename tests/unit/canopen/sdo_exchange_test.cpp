@@ -6,32 +6,45 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
+using Kind = bus::Notice::Kind;
 
-using SdoExchange = CanopenWireStage;
+constexpr std::string_view kStatus = "4B 41 60 00 37 02 00 00";
 
-TEST_F(SdoExchange, a_read_is_sent_to_its_node_and_its_value_reported) {
-  wire->send(read_of(0x6041, 0, 2));
-  EXPECT_THAT(link->sent, ElementsAre(frame_of(0x601, "40 41 60 00 00 00 00 00")));
-  bring(0x581, "4B 41 60 00 37 02 00 00");
-  EXPECT_THAT(replies, ElementsAre(value_of(0x6041, 2, 0x0237)));
-}
+class SdoExchange : public CanopenWireStage {
+ protected:
+  /// A read of the statusword, and so many answers to it.
+  void read_status(int answers = 1) {
+    wire->send(read_of(0x6041));
+    for (int i = 0; i < answers; ++i) bring(0x581, kStatus);
+  }
+};
 
-TEST_F(SdoExchange, a_frame_shorter_than_eight_bytes_is_taken) {
-  wire->send(read_of(0x6041));
-  bring(0x581, "4B 41 60 00 37 02");
-  EXPECT_THAT(replies, ElementsAre(value_of(0x6041, 2, 0x0237)));
-}
-
-TEST_F(SdoExchange, a_value_without_a_size_has_four_bytes) {
-  wire->send(read_of(0x6064));
-  bring(0x581, "42 64 60 00 E0 B1 FF FF");
-  EXPECT_THAT(replies, ElementsAre(value_of(0x6064, 4, 0xFFFFB1E0)));
-}
-
-TEST_F(SdoExchange, a_width_other_than_asked_is_reported_as_it_came) {
-  wire->send(read_of(0x6041, 0, 4));
-  bring(0x581, "4B 41 60 00 37 02 00 00");
-  EXPECT_THAT(replies, ElementsAre(value_of(0x6041, 2, 0x0237))) << "the profile's type decides what that means";
+TEST_F(SdoExchange, a_read_is_sent_to_its_node_and_its_value_reported_as_it_came) {
+  struct Read {
+    bus::Exchange asked;
+    const char* reply;
+    bus::ExchangeResult result;
+  };
+  const Read reads[] = {
+      {read_of(0x6041, 0, 2), "4B 41 60 00 37 02 00 00", value_of(0x6041, 2, 0x0237)},
+      {read_of(0x6041), "4B 41 60 00 37 02", value_of(0x6041, 2, 0x0237)},              // shorter than eight bytes
+      {read_of(0x6064), "42 64 60 00 E0 B1 FF FF", value_of(0x6064, 4, 0xFFFFB1E0)},    // without a size: four bytes
+      {read_of(0x6041, 0, 4), "4B 41 60 00 37 02 00 00", value_of(0x6041, 2, 0x0237)},  // of another width than asked
+      {read_of(0x2000), "47 00 20 00 01 02 03 00", refusal_of(0x06070010)},             // three bytes fit no field
+  };
+  for (const Read& read : reads) {
+    clear();
+    wire->send(read.asked);
+    ByteRow request = from_hex("40 00 00 00 00 00 00 00");
+    store_le16(request, 1, read.asked.object.index);
+    EXPECT_THAT(link->sent, ElementsAre(can::data_frame(0x601, request)));
+    bring(0x581, read.reply);
+    EXPECT_THAT(replies, ElementsAre(read.result)) << read.reply;
+  }
+  wire->send(long_read_of(0x2000));
+  bring(0x581, "47 00 20 00 01 02 03 00");
+  ASSERT_TRUE(replies.back().bytes);
+  EXPECT_EQ(*replies.back().bytes, from_hex("01 02 03"));
 }
 
 TEST_F(SdoExchange, a_write_is_ok_with_or_without_an_echo_of_its_data) {
@@ -61,38 +74,20 @@ TEST_F(SdoExchange, only_the_reply_that_fits_in_everything_ends_the_exchange) {
   bring(0x581, "60 41 60 00 04 00 00 00");  // an acknowledgement
   bring(0x581, "80 41 60 01 00 00 02 06");  // an abort of another sub-index
   bring(0x581, "03 01 00 00 00 00 00 00");  // a segment
-  EXPECT_THAT(replies, IsEmpty());
   EXPECT_EQ(wire->statistics().late_replies, 6u);
   EXPECT_EQ(wire->statistics().bad_frames, 0u);
-  bring(0x581, "4B 41 60 00 37 02 00 00");
+  for (const char* no_reply : {"", "4B 41 60", "43 41 60 00 37 02", "E0 41 60 00 00 00 00 00"}) bring(0x581, no_reply);
+  EXPECT_EQ(wire->statistics().bad_frames, 4u);
+  EXPECT_THAT(replies, IsEmpty());
+  bring(0x581, kStatus);
   EXPECT_THAT(replies, ElementsAre(value_of(0x6041, 2, 0x0237)));
 }
 
-TEST_F(SdoExchange, what_is_no_reply_is_a_bad_frame_and_waiting_goes_on) {
-  wire->send(read_of(0x6041));
-  for (const char* hex : {"", "4B 41 60", "43 41 60 00 37 02", "E0 41 60 00 00 00 00 00"}) bring(0x581, hex);
-  EXPECT_EQ(wire->statistics().bad_frames, 4u);
-  EXPECT_THAT(replies, IsEmpty());
-}
-
-TEST_F(SdoExchange, a_timeout_is_told_to_the_server_and_its_reply_is_late) {
+TEST_F(SdoExchange, a_timeout_is_told_to_the_server) {
   wire->send(read_of(0x6041));
   clear();
   wire->abandon();
   EXPECT_THAT(link->sent, ElementsAre(frame_of(0x601, "80 41 60 00 00 00 04 05")));
-  bring(0x581, "4B 41 60 00 37 02 00 00");
-  EXPECT_THAT(told, IsEmpty());
-  EXPECT_EQ(wire->statistics().late_replies, 1u);
-}
-
-TEST_F(SdoExchange, a_late_reply_does_not_answer_the_next_request) {
-  wire->send(read_of(0x6041));
-  wire->abandon();
-  wire->send(read_of(0x6063));
-  bring(0x581, "4B 41 60 00 37 02 00 00");
-  EXPECT_THAT(replies, IsEmpty());
-  bring(0x581, "43 63 60 00 B0 3C FF FF");
-  EXPECT_THAT(replies, ElementsAre(value_of(0x6063, 4, 0xFFFF3CB0)));
 }
 
 TEST_F(SdoExchange, an_object_longer_than_wanted_is_refused_and_its_transfer_ended) {
@@ -102,69 +97,38 @@ TEST_F(SdoExchange, an_object_longer_than_wanted_is_refused_and_its_transfer_end
   EXPECT_THAT(replies, ElementsAre(refusal_of(0x06070010))) << "it will be as long the next time";
 }
 
-TEST_F(SdoExchange, three_bytes_fit_no_field_and_are_refused_where_a_field_is_wanted) {
-  wire->send(read_of(0x2000));
-  bring(0x581, "47 00 20 00 01 02 03 00");
-  EXPECT_THAT(replies, ElementsAre(refusal_of(0x06070010)));
-  wire->send(long_read_of(0x2000));
-  bring(0x581, "47 00 20 00 01 02 03 00");
-  ASSERT_TRUE(replies.back().bytes);
-  EXPECT_EQ(*replies.back().bytes, from_hex("01 02 03"));
-}
-
-TEST_F(SdoExchange, the_next_request_may_be_sent_from_inside_a_reply) {
-  wire->send(read_of(0x6041));
-  next = read_of(0x6064);
-  bring(0x581, "4B 41 60 00 37 02 00 00");
-  EXPECT_EQ(link->sent.back(), frame_of(0x601, "40 64 60 00 00 00 00 00"));
-  bring(0x581, "43 64 60 00 01 00 00 00");
-  EXPECT_THAT(replies, ElementsAre(value_of(0x6041, 2, 0x0237), value_of(0x6064, 4, 1)));
-}
-
 // --- Two devices, one number (a second reply) -----------------------------------------------------------------------
 
-TEST_F(SdoExchange, a_second_reply_to_a_finished_request_tells_of_a_twin) {
-  wire->send(read_of(0x6041));
-  bring(0x581, "4B 41 60 00 37 02 00 00");
-  runtime.advance_by(200ms);
-  bring(0x581, "80 41 60 00 00 00 02 06");
-  EXPECT_THAT(kinds(), ElementsAre(bus::Notice::Kind::twin));
-  EXPECT_EQ(notices[0].node, 1);
-  EXPECT_EQ(replies.size(), 1u);
-}
-
-TEST_F(SdoExchange, a_second_reply_after_two_timeouts_is_only_late) {
-  wire->send(read_of(0x6041));
-  bring(0x581, "4B 41 60 00 37 02 00 00");
+TEST_F(SdoExchange, a_second_reply_to_a_finished_request_within_two_timeouts_tells_of_two_devices) {
+  read_status();
   runtime.advance_by(201ms);
-  bring(0x581, "4B 41 60 00 37 02 00 00");
+  bring(0x581, kStatus);
   EXPECT_THAT(notices, IsEmpty());
   EXPECT_EQ(wire->statistics().late_replies, 1u);
+  read_status();
+  runtime.advance_by(200ms);
+  bring(0x581, "80 41 60 00 00 00 02 06");
+  EXPECT_THAT(kinds(), ElementsAre(Kind::twin));
+  EXPECT_EQ(notices[0].node, 1);
+  EXPECT_EQ(replies.size(), 2u);
 }
 
-TEST_F(SdoExchange, the_reply_to_a_request_given_up_is_no_twins) {
+TEST_F(SdoExchange, the_reply_to_a_request_given_up_is_no_second_devices) {
   wire->send(read_of(0x6041));
   wire->abandon();
-  wire->send(read_of(0x6041));
-  bring(0x581, "4B 41 60 00 37 02 00 00");  // to the first
-  bring(0x581, "4B 41 60 00 37 02 00 00");  // to the second
+  read_status(2);  // one to the first request, one to the second
   EXPECT_EQ(replies.size(), 1u);
   EXPECT_THAT(notices, IsEmpty());
-  bring(0x581, "4B 41 60 00 37 02 00 00");  // one too many
-  EXPECT_THAT(kinds(), ElementsAre(bus::Notice::Kind::twin));
+  bring(0x581, kStatus);  // one too many
+  EXPECT_THAT(kinds(), ElementsAre(Kind::twin));
 }
 
-TEST_F(SdoExchange, a_twin_is_told_once_in_ten_seconds) {
-  const auto doubled = [&] {
-    wire->send(read_of(0x6041));
-    bring(0x581, "4B 41 60 00 37 02 00 00");
-    bring(0x581, "4B 41 60 00 37 02 00 00");
-  };
-  doubled();
-  doubled();
+TEST_F(SdoExchange, two_devices_are_told_once_in_ten_seconds) {
+  read_status(2);
+  read_status(2);
   EXPECT_EQ(notices.size(), 1u);
   runtime.advance_by(10s);
-  doubled();
+  read_status(2);
   EXPECT_EQ(notices.size(), 2u);
 }
 

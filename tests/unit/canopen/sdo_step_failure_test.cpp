@@ -5,6 +5,8 @@
 namespace axisgate::test {
 namespace {
 
+using Result = std::optional<bus::ExchangeResult>;
+
 struct Conversation {
   const char* name;
   bool write;
@@ -28,15 +30,12 @@ class SdoStepFailure : public SdoStage, public testing::WithParamInterface<Conve
   [[nodiscard]] bus::Exchange what() const {
     return GetParam().write ? long_write_of(kObject, content_of(GetParam().size)) : long_read_of(kObject);
   }
-  /// Replies that a conversation without faults takes.
-  int count_replies() {
-    EXPECT_EQ(transfer(what())->code, Errc::ok);
-    return replies_sent;
-  }
-  /// Runs the conversation once for each of its replies, that one spoiled.
+  /// Runs the conversation once for each of its replies, that one spoiled: `how` may change it; false: it is lost.
+  /// In blocks a lost segment is repeated, and nobody notices: that is no silence.
   template <typename How, typename Check>
   void with_each_reply(How how, Check check) {
-    const int count = count_replies();
+    ASSERT_EQ(transfer(what())->code, Errc::ok);
+    const int count = replies_sent;
     for (int spoiled = 1; spoiled <= count; ++spoiled) {
       SCOPED_TRACE("reply " + std::to_string(spoiled) + " of " + std::to_string(count));
       fresh();
@@ -44,18 +43,30 @@ class SdoStepFailure : public SdoStage, public testing::WithParamInterface<Conve
       check(transfer(what()));
     }
   }
-  /// After whatever went wrong: the same again must go well.
-  void expect_recovery() {
-    spoil = nullptr;
-    const auto result = transfer(what());
+  template <typename How>
+  void expect_silence_at_each_reply(How how) {
+    with_each_reply(how, [&](const Result& result) {
+      if (GetParam().blocks && result) return;
+      expect_silence_then_recovery(result);
+    });
+  }
+  void expect_whole(const Result& result) {
     ASSERT_TRUE(result);
     EXPECT_EQ(result->code, Errc::ok);
+    if (!GetParam().write && result->bytes) {
+      EXPECT_EQ(*result->bytes, content_of(GetParam().size));
+    }
     if (GetParam().write) {
       EXPECT_EQ(server.objects[kObject], content_of(GetParam().size));
     }
   }
+  /// After whatever went wrong: the same again must go well.
+  void expect_recovery() {
+    spoil = nullptr;
+    expect_whole(transfer(what()));
+  }
   /// Silence: the bus gives up at its timeout.
-  void expect_silence_then_recovery(const std::optional<bus::ExchangeResult>& result) {
+  void expect_silence_then_recovery(const Result& result) {
     ASSERT_FALSE(result) << "nothing may end the exchange but its timeout";
     wire->abandon();
     serve();
@@ -66,25 +77,14 @@ class SdoStepFailure : public SdoStage, public testing::WithParamInterface<Conve
 };
 
 TEST_P(SdoStepFailure, a_lost_reply_ends_by_the_timeout_and_an_abort) {
-  with_each_reply([](ByteRow&) { return false; },
-                  [&](const auto& result) {
-                    // A segment lost inside a block is repeated, and nobody notices.
-                    if (result && GetParam().blocks) return;
-                    expect_silence_then_recovery(result);
-                  });
+  expect_silence_at_each_reply([](ByteRow&) { return false; });
 }
 
-TEST_P(SdoStepFailure, an_abort_ends_it_with_the_servers_code) {
-  with_each_reply(
-      [](ByteRow& row) {
-        row = from_hex("80 00 20 00 21 00 00 08");
-        return true;
-      },
-      [&](const auto& result) {
-        EXPECT_EQ(result, refusal_of(0x08000021, true));
-        fresh();
-        expect_recovery();
-      });
+TEST_P(SdoStepFailure, another_nodes_reply_is_not_taken) {
+  expect_silence_at_each_reply([&](ByteRow& row) {
+    bring(can::data_frame(0x582, row));
+    return false;
+  });
 }
 
 TEST_P(SdoStepFailure, an_abort_of_another_object_is_not_for_us) {
@@ -93,38 +93,28 @@ TEST_P(SdoStepFailure, an_abort_of_another_object_is_not_for_us) {
         row = from_hex("80 00 20 01 21 00 00 08");
         return true;
       },
-      [&](const auto& result) {
-        if (result && GetParam().blocks) return;
-        EXPECT_FALSE(result);
-      });
+      [&](const Result& result) { EXPECT_TRUE(!result || GetParam().blocks); });
 }
 
 TEST_P(SdoStepFailure, a_wrong_toggle_or_sub_index_is_not_taken) {
-  with_each_reply(
-      [](ByteRow& row) {
-        const bool names_object = (row[0] & 0xE0) == 0x40 || (row[0] & 0xE0) == 0x60;
-        if (names_object) {
-          row[3] ^= 1;
-        } else {
-          row[0] ^= 0x10;
-        }
-        return true;
-      },
-      [&](const auto& result) {
-        if (GetParam().blocks) return;  // no toggles there: sequences have their own tests
-        expect_silence_then_recovery(result);
-      });
+  if (GetParam().blocks) return;  // no toggles there: sequences have their own tests
+  expect_silence_at_each_reply([](ByteRow& row) {
+    const bool names_object = (row[0] & 0xE0) == 0x40 || (row[0] & 0xE0) == 0x60;
+    row[names_object ? 3 : 0] ^= names_object ? 1 : 0x10;
+    return true;
+  });
 }
 
-TEST_P(SdoStepFailure, another_nodes_reply_is_not_taken) {
+TEST_P(SdoStepFailure, an_abort_ends_it_with_the_servers_code) {
   with_each_reply(
-      [&](ByteRow& row) {
-        bring(can::data_frame(0x582, row));
-        return false;
+      [](ByteRow& row) {
+        row = from_hex("80 00 20 00 21 00 00 08");
+        return true;
       },
-      [&](const auto& result) {
-        if (result && GetParam().blocks) return;
-        EXPECT_FALSE(result);
+      [&](const Result& result) {
+        EXPECT_EQ(result, refusal_of(0x08000021, true));
+        fresh();
+        expect_recovery();
       });
 }
 
@@ -135,7 +125,7 @@ TEST_P(SdoStepFailure, a_reply_that_comes_after_the_timeout_ends_nothing) {
         late = row;
         return false;
       },
-      [&](const auto& result) {
+      [&](const Result& result) {
         if (result) return;
         wire->abandon();
         const std::size_t before = replies.size();
@@ -152,30 +142,20 @@ TEST_P(SdoStepFailure, a_reply_that_comes_twice_spoils_nothing) {
         bring(can::data_frame(0x581, row));
         return true;
       },
-      [&](const auto& result) {
-        ASSERT_TRUE(result);
-        EXPECT_EQ(result->code, Errc::ok);
-        if (!GetParam().write && result->bytes) {
-          EXPECT_EQ(*result->bytes, content_of(GetParam().size));
-        }
-        if (GetParam().write) {
-          EXPECT_EQ(server.objects[kObject], content_of(GetParam().size));
-        }
-      });
+      [&](const Result& result) { expect_whole(result); });
 }
 
 TEST_P(SdoStepFailure, a_restart_in_its_midst_is_told_and_the_transfer_forgotten) {
   with_each_reply(
       [&](ByteRow&) {
-        const bool blocks_offered = server.offers_block;
-        const auto objects = server.objects;
-        server = SdoServer{};
-        server.offers_block = blocks_offered;
-        server.objects = objects;
+        SdoServer restarted;
+        restarted.offers_block = server.offers_block;
+        restarted.objects = server.objects;
+        server = restarted;
         bring(0x701, "00");
         return false;
       },
-      [&](const auto& result) {
+      [&](const Result& result) {
         EXPECT_THAT(kinds(), testing::ElementsAre(bus::Notice::Kind::started));
         if (result) return;
         const std::size_t sent = link->sent.size();
@@ -187,7 +167,7 @@ TEST_P(SdoStepFailure, a_restart_in_its_midst_is_told_and_the_transfer_forgotten
 
 TEST_P(SdoStepFailure, a_link_loss_in_its_midst_leaves_nothing_behind) {
   with_each_reply([](ByteRow&) { return false; },
-                  [&](const auto& result) {
+                  [&](const Result& result) {
                     if (result) return;
                     link->events->on_link_down("can0 is gone");
                     link->events->on_link_up();

@@ -1,6 +1,6 @@
 // Property: whatever frames come, a reply is told once, and only for a frame that says all that was asked for.
 #include "gateway/core/random.hpp"
-#include "tests/unit/keya/keya_can_stage.hpp"
+#include "tests/unit/keya/keya_frames.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -45,7 +45,7 @@ class KeyaCanProperty : public KeyaCanStage {
 
 TEST_F(KeyaCanProperty, a_reply_is_told_for_each_frame_that_answers_what_is_outstanding_and_for_no_other) {
   std::optional<bus::Exchange> asked;
-  std::size_t told = 0;
+  std::size_t answered = 0;
   for (int i = 0; i < 200'000; ++i) {
     if (!asked) {
       asked = any_exchange();
@@ -57,19 +57,17 @@ TEST_F(KeyaCanProperty, a_reply_is_told_for_each_frame_that_answers_what_is_outs
     }
     const can::CanFrame frame = any_frame();
     const bool expected = asked && answers(frame, *asked);
-    bus.replies.clear();
     bring(frame);
-    ASSERT_EQ(bus.replies.size(), expected ? 1u : 0u) << i << ": " << keya::describe(frame);
+    ASSERT_EQ(replies.size(), expected ? 1u : 0u) << i << ": " << keya::describe(frame);
     if (expected) {
-      ++told;
-      ASSERT_EQ(bus.replies[0].fields.size(), asked->access == bus::Access::read ? 1u : 0u);
+      ++answered;
+      ASSERT_EQ(replies[0].fields.size(), asked->access == bus::Access::read ? 1u : 0u);
       asked.reset();
     }
-    bus.notices.clear();
-    bus.told.clear();
+    forget();
     runtime.advance_by(1ms);
   }
-  EXPECT_GT(told, 400u);
+  EXPECT_GT(answered, 400u);
 }
 
 }  // namespace

@@ -1,18 +1,13 @@
-// Keya's frames in the notation of the manual, exchanges, and the printers that make a failure readable.
+// Keya's frames in the notation of the manual, exchanges, and stages with a Keya wire on them.
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "adapters/bus/wire.hpp"
 #include "adapters/keya/keya_can_exchange.hpp"
+#include "adapters/keya/keya_can_wire.hpp"
+#include "adapters/keya/keya_fields.hpp"
 #include "adapters/keya/keya_serial_exchange.hpp"
+#include "adapters/keya/keya_serial_wire.hpp"
 #include "adapters/keya/keya_text.hpp"
+#include "tests/unit/bus/scripted_links.hpp"
 
 namespace axisgate::keya {
 
@@ -23,47 +18,9 @@ inline void PrintTo(const SerialFrame& frame, std::ostream* out) {
 
 }  // namespace axisgate::keya
 
-namespace axisgate::bus {
-
-inline void PrintTo(const ExchangeResult& result, std::ostream* out) {
-  *out << text(result.code) << std::hex << " detail 0x" << result.detail;
-  for (const ReplyField& field : result.fields) {
-    *out << " " << field.object.index << ":" << int{field.object.sub} << "+" << int{field.object.byte} << "=0x"
-         << field.raw << "/" << int{field.size};
-  }
-  *out << std::dec;
-}
-
-inline void PrintTo(const Notice& notice, std::ostream* out) {
-  *out << "notice " << static_cast<int>(notice.kind) << " node " << int{notice.node} << std::hex << " code 0x"
-       << notice.code << std::dec;
-}
-
-}  // namespace axisgate::bus
-
 namespace axisgate::test {
 
-using namespace std::chrono_literals;
-using ByteRow = std::vector<Byte>;
-
-/// "01 2B 40" to bytes.
-inline ByteRow from_hex(std::string_view hex) {
-  ByteRow bytes;
-  for (std::size_t at = 0; at + 1 < hex.size(); at += 3) {
-    bytes.push_back(static_cast<Byte>(std::stoi(std::string(hex.substr(at, 2)), nullptr, 16)));
-  }
-  return bytes;
-}
-
-inline ByteRow operator+(ByteRow a, const ByteRow& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-template <std::size_t size>
-ByteRow row(const std::array<Byte, size>& bytes) {
-  return {bytes.begin(), bytes.end()};
-}
+using keya::KeyaLine;
 
 inline bus::Exchange read_of(std::uint16_t index, std::uint8_t sub = 0, std::uint8_t byte = 0, std::uint8_t size = 0,
                              std::uint8_t node = 1) {
@@ -93,49 +50,76 @@ inline bus::Exchange control_of(bool on_a, bool on_b, std::int32_t a, std::int32
   exchange.more.push_back({{keya::kOnIndex, 2}, 1, on_b ? 1U : 0U});
   return exchange;
 }
-
-inline bus::ExchangeResult value_of(std::uint16_t index, std::uint8_t sub, std::uint8_t size, std::uint32_t raw) {
-  bus::ExchangeResult result;
-  result.fields.push_back({{index, sub}, size, raw});
-  return result;
-}
-inline bus::ExchangeResult pair_value(std::uint16_t index, std::uint8_t sub, std::uint32_t a, std::uint32_t b,
-                                      std::uint8_t size = 2) {
-  bus::ExchangeResult result = value_of(index, sub, size, a);
-  result.fields.push_back({{index, sub, size}, size, b});
-  return result;
-}
-inline bus::ExchangeResult refusal_with(std::uint32_t code) {
-  bus::ExchangeResult result;
-  result.code = Errc::refused_by_drive;
-  result.detail = code;
+inline bus::ExchangeResult pair_value(std::uint16_t index, std::uint8_t sub, std::uint32_t a, std::uint32_t b) {
+  bus::ExchangeResult result = value_of(index, 2, a, sub);
+  result.fields.push_back({{index, sub, 2}, 2, b});
   return result;
 }
 
-/// What both wires tell the bus.
-class Listener : public bus::WireEvents {
- public:
-  void on_wire_up() override { told.emplace_back("up"); }
-  void on_wire_down(std::string_view why) override { told.push_back("down: " + std::string(why)); }
-  void on_reply(const bus::ExchangeResult& result) override {
-    told.emplace_back("reply");
-    replies.push_back(result);
-    if (then_send) then_send();
-  }
-  void on_notice(const bus::Notice& notice) override {
-    told.emplace_back("notice");
-    notices.push_back(notice);
-  }
-  [[nodiscard]] std::vector<bus::Notice::Kind> kinds() const {
-    std::vector<bus::Notice::Kind> all;
-    for (const bus::Notice& notice : notices) all.push_back(notice.kind);
-    return all;
-  }
+// Answers of a serial drive, as the manual prints them.
+inline constexpr std::string_view kSpeed232 = "ED 02 01 F5 FE 0E 00 00 00 00 00 00";
+inline constexpr std::string_view kBeat232 = "EE 01 F4 08 01 22 31 02 58 00 00 99";
+inline constexpr std::string_view kSpeed485 = "ED 01 02 01 F5 FE 0E 00 00 00 00 F2";
+inline constexpr std::string_view kVoltage485 = "ED 01 05 31 00 00 00 00 00 00 00 24";
+inline constexpr std::string_view kFaults485 = "ED 01 07 08 01 00 01 00 00 00 00 FF";
 
-  std::vector<std::string> told;
-  std::vector<bus::ExchangeResult> replies;
-  std::vector<bus::Notice> notices;
-  std::function<void()> then_send;  ///< from inside each reply, as the bus does
+inline bus::Exchange speeds_of(std::uint8_t node = 1) { return pair_of(0x2102, 0, 2, node); }
+inline const bus::ExchangeResult kSpeeds = pair_value(0x2102, 0, 501, 0xFE0E);
+
+inline can::CanFrame extended(std::uint32_t id, std::string_view hex) {
+  return keya::extended_frame(id, from_hex(hex));
+}
+
+class KeyaStage : public WireStage {
+ protected:
+  /// Each is sent; none goes out, and its refusal is told in the next turn.
+  void expect_refusals(const std::vector<std::pair<bus::Exchange, std::uint32_t>>& cases) {
+    for (const auto& [exchange, code] : cases) {
+      replies.clear();
+      wire->send(exchange);
+      EXPECT_THAT(replies, testing::IsEmpty()) << "never from inside send()";
+      runtime.run_due();
+      EXPECT_THAT(replies, testing::ElementsAre(refusal_of(code)));
+    }
+  }
+};
+
+/// On a bus whose drives are the test.
+class KeyaCanStage : public KeyaStage {
+ protected:
+  static constexpr std::uint32_t kReply1 = 0x05800001;
+
+  KeyaCanStage() {
+    auto made = std::make_unique<ScriptedCanLink>();
+    link = made.get();
+    wire = keya::make_keya_can_wire({.name = "can1", .nodes = {1, 2}}, std::move(made), runtime, log);
+    wire->start(*this);
+    link->events->on_link_up();
+    forget();
+  }
+  void bring(std::uint32_t id, std::string_view hex) { bring(extended(id, hex)); }
+  void bring(const can::CanFrame& frame) { link->events->on_frame(frame, runtime.now()); }
+
+  ScriptedCanLink* link = nullptr;
+};
+
+/// On a line whose far end is the test.
+class KeyaSerialStage : public KeyaStage {
+ protected:
+  KeyaSerialStage() { begin(KeyaLine::rs485); }
+  /// A new wire, its link up.
+  void begin(KeyaLine line, std::uint32_t baud = 115200) {
+    wire.reset();
+    auto made = std::make_unique<ScriptedLink>();
+    link = made.get();
+    wire = keya::make_keya_serial_wire({.name = "belt", .line = line, .baud = baud}, std::move(made), runtime, log);
+    wire->start(*this);
+    link->events->on_link_up();
+    forget();
+  }
+  void bring(std::string_view hex) { link->bring(hex); }
+
+  ScriptedLink* link = nullptr;
 };
 
 }  // namespace axisgate::test

@@ -1,7 +1,7 @@
 // Which of several possible frames is meant: RS232 has no sum, so only the form of a frame and what follows it tell.
 #include "adapters/keya/keya_serial_receiver.hpp"
 
-#include "tests/unit/keya/keya_serial_stage.hpp"
+#include "tests/unit/keya/keya_frames.hpp"
 
 namespace axisgate::keya {
 namespace {

@@ -1,14 +1,9 @@
-// Frames as the manuals print them, and the printers that make a failure readable.
+// Frames as the manuals print them, and exchanges.
 #pragma once
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string_view>
-#include <vector>
 
 #include "adapters/kinco/kinco_exchange.hpp"
 #include "adapters/kinco/kinco_text.hpp"
+#include "tests/unit/bus/wire_stage.hpp"
 
 namespace axisgate::kinco {
 
@@ -20,34 +15,11 @@ inline void PrintTo(const Frame& frame, std::ostream* out) {
 
 namespace axisgate::test {
 
-using ByteRow = std::vector<Byte>;
-
-/// "01 2B 40" to bytes.
-inline ByteRow from_hex(std::string_view hex) {
-  ByteRow bytes;
-  for (std::size_t at = 0; at + 1 < hex.size(); at += 3) {
-    bytes.push_back(static_cast<Byte>(std::stoi(std::string(hex.substr(at, 2)), nullptr, 16)));
-  }
-  return bytes;
-}
-
-inline ByteRow operator+(ByteRow a, const ByteRow& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-inline ByteRow row(const kinco::FrameBytes& bytes) { return {bytes.begin(), bytes.end()}; }
-
 inline bus::Exchange read_of(std::uint16_t index, std::uint8_t sub = 0, std::uint8_t size = 0, std::uint8_t node = 1) {
   return {.node = node, .access = bus::Access::read, .object = {index, sub}, .size = size, .raw = 0};
 }
 inline bus::Exchange write_of(std::uint16_t index, std::uint32_t raw, std::uint8_t size, std::uint8_t node = 1) {
   return {.node = node, .access = bus::Access::write, .object = {index, 0}, .size = size, .raw = raw};
-}
-inline bus::ExchangeResult value_of(std::uint16_t index, std::uint8_t size, std::uint32_t raw, std::uint8_t sub = 0) {
-  bus::ExchangeResult result;
-  result.fields.push_back({{index, sub}, size, raw});
-  return result;
 }
 
 // The statusword of station 1, as the MD sheet prints it.

@@ -27,14 +27,16 @@ class LateReplies : public LibmodbusLinkStage, private bus::WireEvents {
   void on_wire_down(std::string_view) override { up = false; }
   void on_reply(const bus::ExchangeResult& result) override { replies.push_back(result); }
 
-  void ask(std::uint16_t at, std::uint8_t size = 2) {
-    wire->send(read_of(at, size));
+  void ask(const bus::Exchange& exchange) {
+    wire->send(exchange);
     request_at(pty, 8);
   }
-  void ask_and_give_up(std::uint16_t at) {
-    ask(at);
+  void ask(std::uint16_t at, std::uint8_t size = 2) { ask(read_of(at, size)); }
+  void ask_and_give_up(const bus::Exchange& exchange) {
+    ask(exchange);
     wire->abandon();
   }
+  void ask_and_give_up(std::uint16_t at) { ask_and_give_up(read_of(at)); }
   [[nodiscard]] bool heard_late(std::uint32_t count) {
     return await([&] { return wire->statistics().late_replies == count; });
   }
@@ -100,9 +102,7 @@ TEST_F(LateReplies, of_several_lost_requests_all_come_and_all_are_counted) {
 }
 
 TEST_F(LateReplies, of_another_drive_do_not_answer_this_one) {
-  wire->send(read_of(100, 2, 2));
-  request_at(pty, 8);
-  wire->abandon();
+  ask_and_give_up(read_of(100, 2, 2));
   ask(100);
   answer(pty, "02 03 02 FF FF");
   answer(pty, kHundred);
@@ -112,11 +112,8 @@ TEST_F(LateReplies, of_another_drive_do_not_answer_this_one) {
 }
 
 TEST_F(LateReplies, to_a_write_do_not_acknowledge_another) {
-  wire->send(write_of(0x3100, 0x2F, 2));
-  request_at(pty, 8);
-  wire->abandon();
-  wire->send(write_of(0x3100, 0x3F, 2));
-  request_at(pty, 8);
+  ask_and_give_up(write_of(0x3100, 0x2F, 2));
+  ask(write_of(0x3100, 0x3F, 2));
   answer(pty, "01 06 31 00 00 2F");
   ASSERT_TRUE(heard_late(1));
   EXPECT_THAT(replies, IsEmpty());

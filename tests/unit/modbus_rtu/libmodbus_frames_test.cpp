@@ -23,12 +23,14 @@ class LibmodbusFrames : public LibmodbusLinkStage {
     EXPECT_TRUE(await([&] { return diary.noise >= bytes; }));
     EXPECT_EQ(diary.noise, bytes);
   }
-  /// The worker listens for frames again once it has been silent or something was sent: the latter can be awaited.
-  void end_noise() {
-    const std::size_t before = diary.frames.size();
-    send(1, "01 03 32 00 00 01");
-    request_at(pty, 8);
-    EXPECT_EQ(diary.frames.size(), before);
+  /// No frame, but noise to its last byte; the worker listens for frames again once something was sent.
+  void expect_noise_only(const ByteRow& bad) {
+    diary.frames.clear();
+    const std::size_t before = diary.noise;
+    answer(pty, bad);
+    ASSERT_TRUE(await([&] { return diary.noise == before + bad.size(); })) << hex_text(bad);
+    ask(pty);
+    EXPECT_THAT(diary.frames, IsEmpty());
   }
   Pty pty;
 };
@@ -54,13 +56,6 @@ TEST_F(LibmodbusFrames, the_longest_there_are_go_both_ways) {
   expect_frames({"1: " + hex_text(reply)});
 }
 
-TEST_F(LibmodbusFrames, errors_come_whole_also_with_the_function_that_kinco_prints) {
-  send(1, "01 03 32 00 00 01");
-  request_at(pty, 8);
-  for (const char* error : {"01 83 02", "01 81 02", "01 86 03", "01 90 04", "01 FF 0B"}) answer(pty, error);
-  expect_frames({"1: 01 83 02", "1: 01 81 02", "1: 01 86 03", "1: 01 90 04", "1: 01 FF 0B"});
-}
-
 TEST_F(LibmodbusFrames, an_answer_split_at_any_byte_is_one_answer) {
   modbus_rtu::ExchangeNumber number = 0;
   for (const char* reply : {"01 03 04 C3 50 00 00", "01 06 31 00 00 0F", "01 10 6F 00 00 02", "01 83 02"}) {
@@ -79,11 +74,18 @@ TEST_F(LibmodbusFrames, an_answer_split_at_any_byte_is_one_answer) {
   EXPECT_EQ(diary.noise, 0u);
 }
 
-TEST_F(LibmodbusFrames, glued_together_they_are_told_one_by_one) {
-  answer(pty, with_crc("01 03 02 C0 37") + with_crc("02 06 31 00 00 0F") + with_crc("01 83 02") +
-                  with_crc("01 10 6F 00 00 02") + with_crc("FA 03 04 00 01 00 02"));
-  expect_frames(
-      {"0: 01 03 02 C0 37", "0: 02 06 31 00 00 0F", "0: 01 83 02", "0: 01 10 6F 00 00 02", "0: FA 03 04 00 01 00 02"});
+TEST_F(LibmodbusFrames, glued_together_they_are_told_one_by_one_errors_as_kinco_prints_them_among_them) {
+  const std::vector<std::string> frames{"01 03 02 C0 37", "02 06 31 00 00 0F", "01 83 02",
+                                        "01 81 02",       "01 86 03",          "01 90 04",
+                                        "01 FF 0B",       "01 10 6F 00 00 02", "FA 03 04 00 01 00 02"};
+  ByteRow glued;
+  std::vector<std::string> expected;
+  for (const std::string& frame : frames) {
+    glued = glued + with_crc(frame);
+    expected.push_back("0: " + frame);
+  }
+  answer(pty, glued);
+  expect_frames(expected);
   EXPECT_EQ(diary.noise, 0u);
 }
 
@@ -91,23 +93,15 @@ TEST_F(LibmodbusFrames, of_every_unit_are_told_and_only_with_a_right_crc) {
   // libmodbus leaves the CRC of all units but the one asked to us, and knows none above 247.
   send(1, "FE 03 32 00 00 01");
   request_at(pty, 8);
-  std::vector<std::string> expected;
   for (int unit = 0; unit < 256; ++unit) {
-    const ByteRow frame{static_cast<Byte>(unit), 0x03, 0x02, 0x12, 0x34};
-    answer(pty, with_crc(frame));
-    expected.push_back("1: " + hex_text(frame));
-    ASSERT_TRUE(await([&] { return diary.frames.size() == expected.size(); }));
-  }
-  EXPECT_EQ(diary.frames, expected);
-  for (int unit = 0; unit < 256; ++unit) {
+    SCOPED_TRACE(unit);
     ByteRow frame = with_crc(ByteRow{static_cast<Byte>(unit), 0x03, 0x02, 0x12, 0x34});
-    frame.back() ^= 1;
-    const std::size_t before = diary.noise;
+    diary.frames.clear();
     answer(pty, frame);
-    ASSERT_TRUE(await([&] { return diary.noise == before + frame.size(); })) << "unit " << unit;
-    end_noise();
+    expect_frames({"1: " + hex_text(without_crc(frame))});
+    frame.back() ^= 1;
+    expect_noise_only(frame);
   }
-  EXPECT_EQ(diary.frames.size(), 256u);
 }
 
 TEST_F(LibmodbusFrames, with_any_bit_turned_on_the_line_are_no_frames) {
@@ -117,13 +111,9 @@ TEST_F(LibmodbusFrames, with_any_bit_turned_on_the_line_are_no_frames) {
     for (int bit = 0; bit < 8; ++bit) {
       ByteRow bad = good;
       bad[at] = static_cast<Byte>(bad[at] ^ (1 << bit));
-      const std::size_t before = diary.noise;
-      answer(pty, bad);
-      ASSERT_TRUE(await([&] { return diary.noise == before + bad.size(); })) << "byte " << at << " bit " << bit;
-      end_noise();
+      expect_noise_only(bad);
     }
   }
-  EXPECT_THAT(diary.frames, IsEmpty());
 }
 
 // --- What nobody asked for -----------------------------------------------------------------------------------------
@@ -131,8 +121,7 @@ TEST_F(LibmodbusFrames, with_any_bit_turned_on_the_line_are_no_frames) {
 TEST_F(LibmodbusFrames, nobody_asked_for_carry_the_number_of_the_newest_request) {
   answer(pty, "01 03 02 00 01");
   expect_frames({"0: 01 03 02 00 01"});
-  send(7, "01 03 32 00 00 01");
-  request_at(pty, 8);
+  ask(pty, 7);
   answer(pty, "01 03 02 00 02");
   answer(pty, "01 03 02 00 03");
   expect_frames({"0: 01 03 02 00 01", "7: 01 03 02 00 02", "7: 01 03 02 00 03"});
@@ -142,8 +131,7 @@ TEST_F(LibmodbusFrames, that_came_before_a_request_is_sent_are_told_with_the_old
   const int far_side = ::open(pty.device().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   ASSERT_GE(far_side, 0);
   for (modbus_rtu::ExchangeNumber number = 1; number <= 200; ++number) {
-    send(number, "01 03 32 00 00 01");
-    request_at(pty, 8);
+    ask(pty, number);
     answer(pty, "01 03 02 00 01");  // too late for its exchange, and yet before the next
     int waiting = 0;
     ASSERT_TRUE(
@@ -173,8 +161,7 @@ TEST_F(LibmodbusFrames, a_core_that_has_no_time_is_kept_from_a_flood_and_told_wh
       << diary.frames.size() << " frames and " << diary.noise << " bytes";
   EXPECT_GT(diary.noise, 0u);
   EXPECT_THAT(diary.frames, Each("0: 01 03 02 C0 37"));
-  send(1, "01 03 32 00 00 01");
-  EXPECT_EQ(request_at(pty, 8), "01 03 32 00 00 01 8A B2");
+  ask(pty);
 }
 
 TEST_F(LibmodbusFrames, a_slave_that_babbles_keeps_no_request_from_leaving) {
@@ -215,39 +202,38 @@ class LibmodbusHalfFrames : public LibmodbusFrames {
   void SetUp() override { open_at(pty.device(), modbus_rtu::kAdapterLatency); }
   void expect_that_all_is_well() {
     diary.frames.clear();
-    send(100, "01 03 32 00 00 01");
-    request_at(pty, 8);
+    ask(pty, 100);
     answer(pty, "01 03 02 C0 37");
     expect_frames({"100: 01 03 02 C0 37"});
+    diary.frames.clear();
+  }
+  /// These bytes are noise to the last, and what is asked next is answered.
+  void expect_noise_alone(const ByteRow& bytes) {
+    SCOPED_TRACE(hex_text(bytes));
+    diary.noise = 0;
+    answer(pty, bytes);
+    expect_noise(bytes.size());
+    EXPECT_THAT(diary.frames, IsEmpty());
+    expect_that_all_is_well();
   }
 };
 
 TEST_F(LibmodbusHalfFrames, are_noise_when_the_rest_does_not_come) {
   const ByteRow whole = with_crc("01 03 04 C3 50 00 00");
   for (std::size_t size = 1; size < whole.size(); ++size) {
-    diary.noise = 0;
-    answer(pty, ByteRow(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
-    expect_noise(size);
-    EXPECT_THAT(diary.frames, IsEmpty());
-    expect_that_all_is_well();
-    diary.frames.clear();
+    expect_noise_alone({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
   }
 }
 
-TEST_F(LibmodbusHalfFrames, are_noise_when_their_length_has_suffered) {
-  const ByteRow whole = with_crc("01 03 02 C0 37");
+TEST_F(LibmodbusHalfFrames, are_noise_when_their_length_has_suffered_or_libmodbus_cannot_measure_it) {
   for (const std::size_t at : {1U, 2U}) {
     for (int bit = 0; bit < 8; ++bit) {
-      ByteRow bad = whole;
+      ByteRow bad = with_crc("01 03 02 C0 37");
       bad[at] = static_cast<Byte>(bad[at] ^ (1 << bit));
-      diary.noise = 0;
-      answer(pty, bad);
-      expect_noise(bad.size());
-      EXPECT_THAT(diary.frames, IsEmpty()) << hex_text(bad);
-      expect_that_all_is_well();
-      diary.frames.clear();
+      expect_noise_alone(bad);
     }
   }
+  expect_noise_alone(with_crc("01 2B 0E 01 01 00 00 01 00 03 41 42 43"));
 }
 
 TEST_F(LibmodbusHalfFrames, that_drip_in_are_not_waited_for_to_their_end) {
@@ -263,13 +249,6 @@ TEST_F(LibmodbusHalfFrames, that_drip_in_are_not_waited_for_to_their_end) {
   expect_that_all_is_well();
 }
 
-TEST_F(LibmodbusHalfFrames, of_a_function_that_libmodbus_cannot_measure_are_noise_to_the_last_byte) {
-  const ByteRow identification = with_crc("01 2B 0E 01 01 00 00 01 00 03 41 42 43");
-  answer(pty, identification);
-  expect_noise(identification.size());
-  expect_that_all_is_well();
-}
-
 TEST_F(LibmodbusHalfFrames, an_answer_after_any_noise_and_a_silence_is_heard) {
   std::uint32_t random = 1;
   for (int i = 0; i < 50; ++i) {
@@ -279,16 +258,12 @@ TEST_F(LibmodbusHalfFrames, an_answer_after_any_noise_and_a_silence_is_heard) {
       const auto byte = static_cast<Byte>(random >> 24);
       noise.push_back(byte == 0xA5 ? Byte{0} : byte);  // not the byte by which half frames are measured
     }
-    diary.noise = 0;
-    answer(pty, noise);
-    expect_noise(noise.size());
-    expect_that_all_is_well();
+    expect_noise_alone(noise);
   }
 }
 
 TEST_F(LibmodbusHalfFrames, an_answer_after_noise_is_heard_without_anything_being_sent_in_between) {
-  send(1, "01 03 32 00 00 01");
-  request_at(pty, 8);
+  ask(pty);
   answer(pty, from_hex("01 83 02 00 00"));
   expect_noise(5);
   EXPECT_TRUE(await([&] {
@@ -302,10 +277,8 @@ TEST_F(LibmodbusHalfFrames, an_answer_after_noise_is_heard_without_anything_bein
 
 TEST_F(LibmodbusHalfFrames, an_answer_glued_to_noise_is_lost_or_heard_and_never_another) {
   for (const char* noise : {"00", "FF", "00 00", "01", "01 03", "01 03 02", "55 55 55 55 55", "01 83 02 00 00"}) {
-    diary.frames.clear();
     diary.noise = 0;
-    send(1, "01 03 32 00 00 01");
-    request_at(pty, 8);
+    ask(pty);
     const ByteRow all = from_hex(noise) + with_crc("01 03 02 C0 37");
     answer(pty, all);
     EXPECT_TRUE(await([&] { return diary.noise + 7 * diary.frames.size() == all.size(); })) << noise;

@@ -78,6 +78,11 @@ class LibmodbusLinkStage : public testing::Test {
     }));
     return hex_text({reinterpret_cast<const Byte*>(got.data()), got.size()});
   }
+  /// A read of one register, sent under that number and heard at the far end.
+  void ask(const Pty& pty, modbus_rtu::ExchangeNumber number = 1) {
+    send(number, "01 03 32 00 00 01");
+    EXPECT_EQ(request_at(pty, 8), "01 03 32 00 00 01 8A B2");
+  }
   /// What is due on the clock and ready in the loop, and no more.
   void turn() {
     runtime.run_due();

@@ -14,13 +14,6 @@ using testing::StartsWith;
 
 using LibmodbusLinkTest = LibmodbusLinkStage;
 
-TEST_F(LibmodbusLinkTest, opens_and_says_so) {
-  Pty pty;
-  open_at(pty.device());
-  EXPECT_THAT(diary.told, ElementsAre("up"));
-  EXPECT_THAT(log_lines, ElementsAre("info: " + pty.device() + " open, 19200 baud 8N1"));
-}
-
 TEST_F(LibmodbusLinkTest, opens_a_pty_with_parity_each_time_though_no_pty_has_it) {
   Pty pty;
   for (int i = 0; i < 3; ++i) {
@@ -60,8 +53,7 @@ class LibmodbusLinkLoss : public LibmodbusLinkStage {
     ASSERT_TRUE(await([this] { return diary.up(); }));
     EXPECT_LT(runtime.now(), next_second) << "at once, not with the next try of each second";
     diary.frames.clear();
-    send(100, "01 03 32 00 00 01");
-    EXPECT_EQ(request_at(again, 8), "01 03 32 00 00 01 8A B2");
+    ask(again, 100);
     answer(again, "01 03 02 C0 37");
     ASSERT_TRUE(await([this] { return !diary.frames.empty(); }));
     EXPECT_THAT(diary.frames, ElementsAre("100: 01 03 02 C0 37")) << "nothing of before the loss";
@@ -74,17 +66,9 @@ TEST_F(LibmodbusLinkLoss, while_idle) {
   expect_down_and_back();
 }
 
-TEST_F(LibmodbusLinkLoss, while_an_answer_is_awaited) {
-  send(1, "01 03 32 00 00 01");
-  request_at(*pty, 8);
-  pull();
-  expect_down_and_back();
-}
-
-TEST_F(LibmodbusLinkLoss, in_the_middle_of_an_answer) {
+TEST_F(LibmodbusLinkLoss, while_an_answer_is_awaited_or_in_its_middle) {
   // The worker's patience is 20 s here: only the hang-up itself can end its wait.
-  send(1, "01 03 32 00 00 01");
-  request_at(*pty, 8);
+  ask(*pty);
   answer(*pty, from_hex("01 03 02"));
   turn();
   pull();
@@ -164,15 +148,15 @@ TEST_F(LibmodbusLinkTest, a_port_in_use_is_told_and_taken_when_it_is_free) {
   EXPECT_TRUE(await([this] { return diary.up(); }));
 }
 
-TEST_F(LibmodbusLinkTest, opens_anew_when_asked_and_never_from_inside_the_call) {
+TEST_F(LibmodbusLinkTest, opens_and_says_so_and_opens_anew_when_asked_but_never_from_inside_the_call) {
   Pty pty;
   open_at(pty.device());
+  EXPECT_THAT(log_lines, ElementsAre("info: " + pty.device() + " open, 19200 baud 8N1"));
   link->reopen("noise");
   EXPECT_THAT(diary.told, ElementsAre("up"));
   ASSERT_TRUE(await([this] { return diary.told.size() == 3; }));
   EXPECT_THAT(diary.told, ElementsAre("up", "down: " + pty.device() + ": noise", "up"));
-  send(1, "01 03 32 00 00 01");
-  EXPECT_EQ(request_at(pty, 8), "01 03 32 00 00 01 8A B2");
+  ask(pty);
 }
 
 TEST_F(LibmodbusLinkTest, asked_to_open_anew_while_down_it_tries_at_once) {
@@ -230,33 +214,26 @@ TEST_F(LibmodbusLinkTest, may_be_destroyed_from_inside_its_events) {
   }
 }
 
-TEST_F(LibmodbusLinkTest, destroyed_while_an_answer_is_awaited_it_calls_nobody) {
-  Pty pty;
-  open_at(pty.device());
-  send(1, "01 03 32 00 00 01");
-  request_at(pty, 8);
-  link.reset();
-  pass(10s);
-  EXPECT_THAT(diary.told, ElementsAre("up"));
-}
-
-TEST_F(LibmodbusLinkTest, destroyed_with_frames_on_the_way_to_the_core_it_calls_nobody) {
-  Pty pty;
-  open_at(pty.device());
-  for (int i = 0; i < 10; ++i) answer(pty, "01 03 02 C0 37");
-  link.reset();
-  pass(10s);
-  EXPECT_THAT(diary.told, ElementsAre("up"));
-  EXPECT_THAT(diary.frames, IsEmpty());
-}
-
-TEST_F(LibmodbusLinkTest, destroyed_after_it_was_asked_to_open_anew_it_calls_nobody) {
-  Pty pty;
-  open_at(pty.device());
-  link->reopen("noise");
-  link.reset();
-  pass(10s);
-  EXPECT_THAT(diary.told, ElementsAre("up"));
+TEST_F(LibmodbusLinkTest, destroyed_with_a_request_or_frames_or_a_reopening_on_their_way_it_calls_nobody) {
+  const std::pair<const char*, std::function<void(const Pty&)>> states[] = {
+      {"an answer awaited", [this](const Pty& pty) { ask(pty); }},
+      {"frames on the way to the core",
+       [](const Pty& pty) {
+         for (int i = 0; i < 10; ++i) answer(pty, "01 03 02 C0 37");
+       }},
+      {"asked to open anew", [this](const Pty&) { link->reopen("noise"); }},
+  };
+  for (const auto& [what, prepare] : states) {
+    SCOPED_TRACE(what);
+    Pty pty;
+    diary.told.clear();
+    open_at(pty.device());
+    prepare(pty);
+    link.reset();
+    pass(10s);
+    EXPECT_THAT(diary.told, ElementsAre("up"));
+    EXPECT_THAT(diary.frames, IsEmpty());
+  }
 }
 
 TEST_F(LibmodbusLinkTest, destroyed_in_the_middle_of_a_frame_it_ends_within_its_patience) {

@@ -69,8 +69,8 @@ TEST_F(LibmodbusSlaveTest, is_read_and_written_in_all_three_functions) {
 }
 
 TEST_F(LibmodbusSlaveTest, refuses_what_it_does_not_have) {
-  EXPECT_EQ(exchange(read_of(200, 2, 17)), refused(2, false));
-  EXPECT_EQ(exchange(write_of(199, 1, 4, 17)), refused(2, false));
+  EXPECT_EQ(exchange(read_of(200, 2, 17)), refusal_of(2));
+  EXPECT_EQ(exchange(write_of(199, 1, 4, 17)), refusal_of(2));
 }
 
 TEST_F(LibmodbusSlaveTest, answers_two_thousand_reads_in_a_row_rightly) {

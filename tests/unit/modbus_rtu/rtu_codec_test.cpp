@@ -1,6 +1,8 @@
-// Requests built from exchanges, and the values found in replies.
+// Requests built from exchanges, the values found in replies, frames in words, times on the line.
 #include "adapters/modbus_rtu/rtu_codec.hpp"
 
+#include "adapters/modbus_rtu/rtu_text.hpp"
+#include "adapters/modbus_rtu/rtu_timing.hpp"
 #include "tests/unit/modbus_rtu/rtu_frames.hpp"
 
 namespace axisgate::modbus_rtu {
@@ -10,37 +12,23 @@ using namespace test;
 
 const RtuNode kHighFirst{.node = 1, .low_word_first = false};
 
-std::string judged(std::string_view reply, const bus::Exchange& exchange, const RtuNode& node) {
-  return verdict(judge(from_hex(reply), exchange, node));
-}
-std::string shown(const bus::ExchangeResult& result) { return testing::PrintToString(result); }
-
-TEST(RtuRequest, reads_one_register_for_one_and_two_bytes_and_two_for_four) {
+TEST(RtuRequest, of_a_read_reaches_from_the_first_register_of_the_first_object_to_the_last_of_the_last) {
   EXPECT_EQ(request_hex(read_of(0x3500, 1)), "01 03 35 00 00 01");
   EXPECT_EQ(request_hex(read_of(0x3200, 2)), "01 03 32 00 00 01");
   EXPECT_EQ(request_hex(read_of(0x3700, 4)), "01 03 37 00 00 02");
   EXPECT_EQ(request_hex(read_of(0x3200, 0)), "01 03 32 00 00 01") << "of unknown size: one register";
-}
-
-TEST(RtuRequest, reads_from_the_first_register_of_the_first_to_the_last_of_the_last) {
   EXPECT_EQ(request_hex(block_of(108, 2, {{109, 2}})), "01 03 00 6C 00 02");
   EXPECT_EQ(request_hex(block_of(108, 2, {{109, 2}, {117, 4}})), "01 03 00 6C 00 0B");
   EXPECT_EQ(request_hex(block_of(100, 4, {{102, 1}})), "01 03 00 64 00 03");
-}
-
-TEST(RtuRequest, reads_up_to_the_last_register_there_is) {
   EXPECT_EQ(request_hex(read_of(0xFFFF, 2)), "01 03 FF FF 00 01");
   EXPECT_EQ(request_hex(block_of(1000, 2, {{1124, 2}})), "01 03 03 E8 00 7D") << "125 registers, the most there may be";
 }
 
-TEST(RtuRequest, writes_one_register_by_function_6) {
+TEST(RtuRequest, of_a_write_carries_the_bytes_of_its_width_in_the_order_of_the_node) {
   EXPECT_EQ(request_hex(write_of(0x3100, 0x0F, 2)), "01 06 31 00 00 0F");
   EXPECT_EQ(request_hex(write_of(0x3500, 6, 1)), "01 06 35 00 00 06");
   EXPECT_EQ(request_hex(write_of(307, 0xFFFFFE0C, 2)), "01 06 01 33 FE 0C") << "the low two bytes of -500";
   EXPECT_EQ(request_hex(write_of(0x3500, 0xFFFFFFFD, 1)), "01 06 35 00 00 FD") << "the low byte alone";
-}
-
-TEST(RtuRequest, writes_four_bytes_whole_in_the_order_of_the_node) {
   EXPECT_EQ(request_hex(write_of(0x6F00, 0x00085555, 4)), "01 10 6F 00 00 02 04 55 55 00 08");
   EXPECT_EQ(request_hex(write_of(0x6F00, 0x00085555, 4), kHighFirst), "01 10 6F 00 00 02 04 00 08 55 55");
 }
@@ -50,7 +38,7 @@ TEST(RtuRequest, goes_to_the_unit_of_the_exchange) {
   EXPECT_EQ(request_hex(read_of(302, 2, 247)), "F7 03 01 2E 00 01");
 }
 
-TEST(RtuRequest, is_as_long_as_it_says_it_will_be) {
+TEST(RtuRequest, is_as_long_as_it_says_it_will_be_and_so_is_its_reply) {
   EXPECT_EQ(request_bytes(read_of(302)), 8u);
   EXPECT_EQ(reply_bytes(read_of(302)), 7u);
   EXPECT_EQ(reply_bytes(read_of(304, 4)), 9u);
@@ -61,21 +49,19 @@ TEST(RtuRequest, is_as_long_as_it_says_it_will_be) {
   EXPECT_EQ(reply_bytes(write_of(312, 10000, 4)), 8u);
 }
 
-TEST(RtuReply, gives_a_value_as_wide_as_was_asked) {
-  EXPECT_EQ(judged("01 03 02 C0 37", read_of(0x3200, 2), kinco_node()), shown(value_of(0x3200, 2, 0xC037)));
-  EXPECT_EQ(judged("01 03 02 C0 37", read_of(0x3200, 0), kinco_node()), shown(value_of(0x3200, 2, 0xC037)));
-  EXPECT_EQ(judged("01 03 02 FF FD", read_of(0x3500, 1), kinco_node()), shown(value_of(0x3500, 1, 0xFD)))
+TEST(RtuReply, gives_a_value_as_wide_as_was_asked_in_the_order_of_the_node) {
+  EXPECT_EQ(judged(from_hex("01 03 02 C0 37"), read_of(0x3200, 2)), shown(value_of(0x3200, 2, 0xC037)));
+  EXPECT_EQ(judged(from_hex("01 03 02 C0 37"), read_of(0x3200, 0)), shown(value_of(0x3200, 2, 0xC037)));
+  EXPECT_EQ(judged(from_hex("01 03 02 FF FD"), read_of(0x3500, 1)), shown(value_of(0x3500, 1, 0xFD)))
       << "a byte stands in the low half, whatever a sign makes of the high one";
-}
-
-TEST(RtuReply, puts_the_words_together_in_the_order_of_the_node) {
-  EXPECT_EQ(judged("01 03 04 27 10 00 01", read_of(304, 4), kinco_node()), shown(value_of(304, 4, 0x00012710)));
-  EXPECT_EQ(judged("01 03 04 27 10 00 01", read_of(304, 4), kHighFirst), shown(value_of(304, 4, 0x27100001)));
+  const ByteRow two_words = from_hex("01 03 04 27 10 00 01");
+  EXPECT_EQ(judged(two_words, read_of(304, 4)), shown(value_of(304, 4, 0x00012710)));
+  EXPECT_EQ(judged(two_words, read_of(304, 4), kHighFirst), shown(value_of(304, 4, 0x27100001)));
 }
 
 TEST(RtuReply, gives_one_field_for_each_object_of_a_block_and_drops_what_lies_between) {
-  const auto block = block_of(108, 2, {{109, 1}, {112, 4}, {115, 2}});
-  EXPECT_EQ(judged("01 03 10 00 01 AA 02 DE AD BE EF 12 34 56 78 CA FE 00 09", block, kinco_node()),
+  EXPECT_EQ(judged(from_hex("01 03 10 00 01 AA 02 DE AD BE EF 12 34 56 78 CA FE 00 09"),
+                   block_of(108, 2, {{109, 1}, {112, 4}, {115, 2}})),
             shown(values({{{108, 0}, 2, 1}, {{109, 0}, 1, 2}, {{112, 0}, 4, 0x56781234}, {{115, 0}, 2, 9}})));
 }
 
@@ -88,14 +74,48 @@ TEST(RtuReply, gives_the_longest_list_that_an_answer_carries) {
     reply = reply + ByteRow{0, static_cast<Byte>(at)};
     fields.push_back({{at, 0}, 2, at});
   }
-  EXPECT_EQ(verdict(judge(reply, block_of(100, 2, more), kinco_node())), shown(values(fields)));
+  EXPECT_EQ(judged(reply, block_of(100, 2, more)), shown(values(fields)));
 }
 
 TEST(RtuReply, acknowledges_a_write_by_its_echo) {
-  EXPECT_EQ(judged("01 06 31 00 00 0F", write_of(0x3100, 0x0F, 2), kinco_node()), shown({}));
-  EXPECT_EQ(judged("01 06 35 00 00 FD", write_of(0x3500, 0xFFFFFFFD, 1), kinco_node()), shown({}));
-  EXPECT_EQ(judged("01 10 6F 00 00 02", write_of(0x6F00, 0x85555, 4), kinco_node()), shown({}));
+  EXPECT_EQ(judged(from_hex("01 06 35 00 00 FD"), write_of(0x3500, 0xFFFFFFFD, 1)), shown({}));
+  EXPECT_EQ(judged(from_hex("01 10 6F 00 00 02"), write_of(0x6F00, 0x85555, 4)), shown({}));
 }
+
+TEST(RtuText, says_what_is_asked_and_answered) {
+  const auto asked = [](const char* hex) { return describe_request(from_hex(hex)); };
+  const auto answered = [](const char* hex) { return describe_reply(from_hex(hex)); };
+  EXPECT_EQ(asked("01 03 01 30 00 02"), "unit 1: read 2 registers at 304 (0x0130)");
+  EXPECT_EQ(asked("01 03 01 2E 00 01"), "unit 1: read 1 register at 302 (0x012E)");
+  EXPECT_EQ(asked("01 06 01 2C 00 01"), "unit 1: write 300 (0x012C) = 0x0001");
+  EXPECT_EQ(asked("01 10 01 38 00 02 04 27 10 00 00"), "unit 1: write 312 (0x0138) = 0x2710 0x0000");
+  EXPECT_EQ(asked("01 2B 0E 01 00 00 00"), "unit 1: function 0x2B, 7 bytes");
+  EXPECT_EQ(answered("01 03 04 27 10 00 00"), "unit 1: 2 registers = 0x2710 0x0000");
+  EXPECT_EQ(answered("01 06 01 2C 00 01"), "unit 1: written 300 (0x012C) = 0x0001");
+  EXPECT_EQ(answered("01 10 01 38 00 02"), "unit 1: written 2 registers at 312 (0x0138)");
+  EXPECT_EQ(answered("01 83 02"), "unit 1: error 0x83: illegal data address (0x02)");
+  EXPECT_EQ(answered("01 81 FF"), "unit 1: error 0x81: unknown code (0xFF)");
+}
+
+TEST(RtuText, has_a_line_for_any_bytes) {
+  for (std::size_t size = 0; size <= kMaxFrame; ++size) {
+    for (const int function : {0x03, 0x06, 0x10, 0x83, 0x00, 0xFF}) {
+      ByteRow frame(size, 0x11);
+      if (size > 1) frame[1] = static_cast<Byte>(function);
+      for (const std::string& line : {describe_request(frame), describe_reply(frame)}) {
+        EXPECT_FALSE(line.empty());
+        EXPECT_EQ(line.find('\n'), std::string::npos);
+      }
+    }
+  }
+}
+
+static_assert(wire_time(19200, 0, 8, 9) == 8'854'166ns, "iD286pro: a read of two registers takes 8.9 ms at 19200 baud");
+static_assert(wire_time(9600, 1, 1, 0) == 1'145'833ns, "a byte with parity has eleven bits");
+static_assert(wire_time(115200, 0, 0, 0) == 0ns);
+static_assert(wire_time(50, 1, 256, 256) == 112'640ms, "the longest frames on the slowest line do not wrap");
+static_assert(gap_time(19200) == 2'005'208ns && gap_time(9600) == 4'010'416ns);
+static_assert(gap_time(19201) == 1750us && gap_time(3'000'000) == 1750us, "fixed above 19200 baud");
 
 }  // namespace
 }  // namespace axisgate::modbus_rtu

@@ -15,26 +15,25 @@ void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.name; }
 
 class RtuAnswer : public testing::TestWithParam<Pair> {
  protected:
-  [[nodiscard]] Judgement judged(const ByteRow& frame) const { return judge(frame, GetParam().exchange, kinco_node()); }
-  [[nodiscard]] bool taken(const ByteRow& frame) const {
-    return std::holds_alternative<bus::ExchangeResult>(judged(frame));
+  [[nodiscard]] std::optional<bus::ExchangeResult> taken(const ByteRow& frame) const {
+    const Judgement judgement = judge(frame, GetParam().exchange, kinco_node());
+    const auto* result = std::get_if<bus::ExchangeResult>(&judgement);
+    return result == nullptr ? std::nullopt : std::optional(*result);
   }
   const ByteRow reply_ = from_hex(GetParam().reply);
 };
 
-TEST_P(RtuAnswer, is_taken_as_it_is) { EXPECT_TRUE(taken(reply_)) << verdict(judged(reply_)); }
-
-TEST_P(RtuAnswer, is_not_taken_when_cut_short_at_any_byte) {
+TEST_P(RtuAnswer, is_taken_as_it_is_and_neither_shorter_nor_longer_nor_from_another_unit) {
+  EXPECT_TRUE(taken(reply_));
   for (std::size_t size = 0; size < reply_.size(); ++size) {
-    EXPECT_FALSE(taken(ByteRow(reply_.begin(), reply_.begin() + static_cast<std::ptrdiff_t>(size))))
-        << size << " bytes";
+    EXPECT_FALSE(taken({reply_.begin(), reply_.begin() + static_cast<std::ptrdiff_t>(size)})) << size << " bytes";
   }
-}
-
-TEST_P(RtuAnswer, is_not_taken_with_bytes_behind_it) {
   for (std::size_t extra = 1; extra <= kMaxFrame - reply_.size(); ++extra) {
     EXPECT_FALSE(taken(reply_ + ByteRow(extra, 0))) << extra << " more";
   }
+  bus::Exchange other = GetParam().exchange;
+  other.node = 2;
+  EXPECT_EQ(judged(reply_, other, kinco_node(2)), "from another unit");
 }
 
 /// Of a read, the data may be anything; of an error, the code.
@@ -47,24 +46,17 @@ TEST_P(RtuAnswer, is_not_taken_for_this_answer_with_any_byte_changed) {
       if (to == reply_[at]) continue;
       ByteRow changed = reply_;
       changed[at] = static_cast<Byte>(to);
-      const Judgement judgement = judged(changed);
-      const auto* result = std::get_if<bus::ExchangeResult>(&judgement);
+      const auto result = taken(changed);
       if (is_content) {
-        ASSERT_NE(result, nullptr) << "byte " << at << " = " << to;
-        EXPECT_NE(*result, std::get<bus::ExchangeResult>(judged(reply_))) << "another content is another result";
-      } else if (result != nullptr) {
+        ASSERT_TRUE(result) << "byte " << at << " = " << to;
+        EXPECT_NE(result, taken(reply_)) << "another content is another result";
+      } else if (result) {
         // The one way to become another answer: 0x81 and 0x83 both say that a read has failed.
         EXPECT_TRUE(is_error && at == 1 && (to == 0x81 || to == 0x83)) << "byte " << at << " = " << to;
         EXPECT_EQ(result->code, Errc::refused_by_drive);
       }
     }
   }
-}
-
-TEST_P(RtuAnswer, is_not_taken_from_another_unit) {
-  bus::Exchange other = GetParam().exchange;
-  other.node = 2;
-  EXPECT_EQ(verdict(judge(reply_, other, kinco_node(2))), "from another unit");
 }
 
 const Pair kPairs[] = {
@@ -81,19 +73,17 @@ const Pair kPairs[] = {
 INSTANTIATE_TEST_SUITE_P(Each, RtuAnswer, testing::ValuesIn(kPairs),
                          [](const testing::TestParamInfo<Pair>& it) { return std::string(it.param.name); });
 
-std::string judged(std::string_view reply, const bus::Exchange& exchange, const RtuNode& node = kinco_node()) {
-  return verdict(judge(from_hex(reply), exchange, node));
-}
-
 TEST(RtuJudgement, says_why_a_frame_is_not_the_answer) {
-  EXPECT_EQ(judged("02 03 02 C0 37", read_of(0x3200)), "from another unit");
-  EXPECT_EQ(judged("01 06 32 00 00 01", read_of(0x3200)), "another function");
-  EXPECT_EQ(judged("01 03 04 C0 37 00 00", read_of(0x3200)), "another length") << "of a read that asked for two";
-  EXPECT_EQ(judged("01 06 31 00 00 1F", write_of(0x3100, 0x0F, 2)), "another echo");
-  EXPECT_EQ(judged("01 10 6F 00 00 01", write_of(0x6F00, 1, 4)), "another echo");
-  EXPECT_EQ(judged("01 03 02 C0 37 00", read_of(0x3200)), "malformed") << "its count of bytes contradicts its length";
-  EXPECT_EQ(judged("01", read_of(0x3200)), "malformed");
-  EXPECT_EQ(judged("", read_of(0x3200)), "malformed");
+  const auto why = [](const char* reply, const bus::Exchange& exchange) { return judged(from_hex(reply), exchange); };
+  EXPECT_EQ(why("01 06 32 00 00 01", read_of(0x3200)), "another function");
+  EXPECT_EQ(why("01 03 04 C0 37 00 00", read_of(0x3200)), "another length") << "of a read that asked for two";
+  EXPECT_EQ(why("01 06 31 00 00 1F", write_of(0x3100, 0x0F, 2)), "another echo");
+  EXPECT_EQ(why("01 10 6F 00 00 01", write_of(0x6F00, 1, 4)), "another echo");
+  EXPECT_EQ(why("01 03 02 C0 37 00", read_of(0x3200)), "malformed") << "its count of bytes contradicts its length";
+  EXPECT_EQ(why("01", read_of(0x3200)), "malformed");
+  EXPECT_EQ(why("", read_of(0x3200)), "malformed");
+  EXPECT_EQ(why("01 03 02 00 64", read_of(200)), shown(value_of(200, 2, 100)))
+      << "a read of another place with the same length cannot be told apart: why a drive that was late gets a fence";
 }
 
 TEST(RtuJudgement, every_exception_code_is_the_drives_refusal_and_says_whether_it_may_pass) {
@@ -102,22 +92,17 @@ TEST(RtuJudgement, every_exception_code_is_the_drives_refusal_and_says_whether_i
     for (const auto& [function, exchange] : {std::pair(0x83, read_of(0x3200)), std::pair(0x86, write_of(0x3100, 1, 2)),
                                              std::pair(0x90, write_of(0x6F00, 1, 4))}) {
       const ByteRow reply{1, static_cast<Byte>(function), static_cast<Byte>(code)};
-      EXPECT_EQ(verdict(judge(reply, exchange, kinco_node())),
-                testing::PrintToString(refused(static_cast<std::uint32_t>(code), !for_ever)));
+      EXPECT_EQ(judged(reply, exchange), shown(refusal_of(static_cast<std::uint32_t>(code), !for_ever)));
     }
   }
 }
 
 TEST(RtuJudgement, the_error_function_of_a_node_counts_for_its_reads_alone) {
-  EXPECT_EQ(judged("01 81 02", read_of(0x3200)), testing::PrintToString(refused(2, false)));
-  EXPECT_EQ(judged("01 81 02", write_of(0x3100, 1, 2)), "another function");
-  EXPECT_EQ(judged("01 81 02", write_of(0x6F00, 1, 4)), "another function");
-  EXPECT_EQ(judged("01 81 02", read_of(0x3200), stepper_node()), "another function");
-}
-
-TEST(RtuJudgement, a_read_of_another_place_with_the_same_length_cannot_be_told_apart) {
-  // Why a drive that was late gets a fence: the frame itself says nothing more.
-  EXPECT_EQ(judged("01 03 02 00 64", read_of(200)), testing::PrintToString(value_of(200, 2, 100)));
+  const ByteRow reply = from_hex("01 81 02");
+  EXPECT_EQ(judged(reply, read_of(0x3200)), shown(refusal_of(2)));
+  EXPECT_EQ(judged(reply, write_of(0x3100, 1, 2)), "another function");
+  EXPECT_EQ(judged(reply, write_of(0x6F00, 1, 4)), "another function");
+  EXPECT_EQ(judged(reply, read_of(0x3200), stepper_node()), "another function");
 }
 
 TEST(RtuWellFormed, is_what_could_be_a_reply_to_some_request_of_ours) {

@@ -1,74 +1,62 @@
-// Exchanges on the wire: one reply each, none that belongs to another.
-#include "tests/unit/modbus_rtu/rtu_wire_stage.hpp"
+// Modbus RTU's wire. What it shares with others is in tests/unit/bus/wire_rules_test.cpp.
+#include "adapters/modbus_rtu/rtu_wire.hpp"
+
+#include "tests/unit/bus/scripted_links.hpp"
+#include "tests/unit/modbus_rtu/rtu_frames.hpp"
 
 namespace axisgate::test {
 namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::SizeIs;
 
-using RtuWireTest = RtuWireStage;
-
-constexpr const char* kReadStatus = "01 03 32 00 00 01";
 constexpr const char* kStatus = "01 03 02 C0 37";
 const bus::ExchangeResult kStatusValue = value_of(0x3200, 2, 0xC037);
+const bus::Exchange kStopAll = write_of(323, 6, 2, 255);
 
-TEST_F(RtuWireTest, sends_a_request_and_reports_its_answer) {
-  wire->send(read_of(0x3200));
-  EXPECT_THAT(link->sent, ElementsAre(kReadStatus));
-  link->bring(kStatus);
-  EXPECT_THAT(replies, ElementsAre(kStatusValue));
-}
+class RtuWireTest : public WireStage {
+ protected:
+  RtuWireTest() {
+    auto made = std::make_unique<ScriptedRtuLink>();
+    link = made.get();
+    wire = std::make_unique<modbus_rtu::RtuWire>(
+        "lift", std::vector{kinco_node(1), stepper_node(2), modbus_rtu::RtuNode{.node = 3}},
+        modbus_rtu::LineSpeed{.baud = 19200, .parity_bits = 0}, std::move(made), runtime, log);
+    wire->start(*this);
+    link->events->on_link_up();
+    forget();
+  }
+  [[nodiscard]] std::uint32_t late() const { return wire->statistics().late_replies; }
+  ScriptedRtuLink* link = nullptr;
+};
 
 TEST_F(RtuWireTest, each_drive_has_its_own_word_order_and_error_functions) {
   wire->send(read_of(0x3700, 4, 1));
+  EXPECT_THAT(link->sent, ElementsAre("01 03 37 00 00 02"));
   link->bring("01 03 04 00 01 00 02");
   wire->send(read_of(0x3700, 4, 3));
   link->bring("03 03 04 00 01 00 02");
+  wire->send(write_of(0x3100, 0x0F, 2));
+  link->bring("01 86 06");
   wire->send(read_of(0x3700, 4, 1));
   link->bring("01 81 02");
   wire->send(read_of(0x3700, 4, 3));
   link->bring("03 81 02");
-  EXPECT_THAT(replies, ElementsAre(value_of(0x3700, 4, 0x00020001), value_of(0x3700, 4, 0x00010002), refused(2, false)))
+  EXPECT_THAT(replies, ElementsAre(value_of(0x3700, 4, 0x00020001), value_of(0x3700, 4, 0x00010002),
+                                   refusal_of(6, true), refusal_of(2)))
       << "0x81 is no answer of the third drive";
 }
 
-TEST_F(RtuWireTest, an_error_of_the_drive_is_reported_with_its_code) {
-  wire->send(write_of(0x3100, 0x0F, 2));
-  link->bring("01 86 06");
-  EXPECT_THAT(replies, ElementsAre(refused(6, true)));
-}
-
-TEST_F(RtuWireTest, a_second_answer_is_counted_and_not_reported) {
-  wire->send(read_of(0x3200));
-  link->bring(kStatus);
-  link->bring(kStatus);
-  EXPECT_THAT(replies, ElementsAre(kStatusValue));
-  EXPECT_EQ(wire->statistics().late_replies, 1u);
-}
-
-TEST_F(RtuWireTest, an_answer_after_abandon_is_counted_and_not_reported) {
-  wire->send(read_of(0x3200));
-  wire->abandon();
-  link->bring(kStatus);
-  EXPECT_THAT(replies, IsEmpty());
-  EXPECT_EQ(wire->statistics().late_replies, 1u);
-}
-
-TEST_F(RtuWireTest, a_request_that_was_given_up_shall_not_leave_any_more) {
-  wire->send(read_of(0x3200));
-  wire->abandon();
-  EXPECT_THAT(link->withdrawn, ElementsAre(link->newest));
-}
-
-TEST_F(RtuWireTest, what_was_heard_before_the_request_was_sent_does_not_answer_it) {
+TEST_F(RtuWireTest, a_request_given_up_shall_not_leave_and_what_was_heard_before_the_next_does_not_answer_that) {
   wire->send(read_of(0x3200));
   const auto before = link->newest;
   wire->abandon();
+  EXPECT_THAT(link->withdrawn, ElementsAre(before));
   wire->send(read_of(0x3200));
   link->bring(before, kStatus);
   EXPECT_THAT(replies, IsEmpty()) << "all of it fits, but for its time";
-  EXPECT_EQ(wire->statistics().late_replies, 1u);
+  EXPECT_EQ(late(), 1u);
   link->bring(kStatus);
   EXPECT_THAT(replies, ElementsAre(kStatusValue));
 }
@@ -78,62 +66,53 @@ TEST_F(RtuWireTest, a_frame_that_does_not_fit_is_counted_and_the_answer_still_aw
   link->bring("02 03 02 00 01");        // another drive
   link->bring("01 06 31 00 00 0F");     // another function
   link->bring("01 03 04 00 01 00 02");  // another length
-  EXPECT_EQ(wire->statistics().late_replies, 3u);
+  EXPECT_EQ(late(), 3u);
   link->bring("63 03 02 00 01");  // no drive of this line
   link->bring("01 2B 0E");        // nothing we ever ask for
   link->bring("01 03 04 00 01");  // a length that contradicts itself
   EXPECT_EQ(wire->statistics().bad_frames, 3u);
-  EXPECT_EQ(wire->statistics().late_replies, 3u);
+  EXPECT_EQ(late(), 3u);
   EXPECT_THAT(replies, IsEmpty());
   link->bring(kStatus);
   EXPECT_THAT(replies, ElementsAre(kStatusValue));
 }
 
-TEST_F(RtuWireTest, an_echo_of_another_write_is_not_its_acknowledgement) {
-  wire->send(write_of(0x3100, 0x2F, 2));
-  wire->abandon();
-  wire->send(write_of(0x3100, 0x3F, 2));
-  link->bring("01 06 31 00 00 2F");
+TEST_F(RtuWireTest, spoilt_answers_with_pauses_between_them_are_a_bad_frame_each_and_no_babble) {
+  for (int i = 0; i < 10; ++i) {
+    wire->send(read_of(0x3200));
+    link->events->on_bad_frame(link->newest, 7);
+    runtime.advance_by(50ms);
+    wire->abandon();
+  }
+  EXPECT_EQ(wire->statistics().bad_frames, 10u);
+  EXPECT_EQ(wire->statistics().dropped_bytes, 70u);
+  EXPECT_THAT(link->reopened, IsEmpty());
   EXPECT_THAT(replies, IsEmpty());
-  link->bring("01 06 31 00 00 3F");
-  EXPECT_THAT(replies, ElementsAre(bus::ExchangeResult{}));
 }
 
-TEST_F(RtuWireTest, the_bus_may_send_from_inside_a_reply) {
+TEST_F(RtuWireTest, a_link_that_babbles_and_cannot_be_opened_anew_is_given_up_all_the_same) {
+  link->opens_again = false;
+  for (int i = 0; i < 3000; ++i, runtime.advance_by(1ms)) link->events->on_bad_frame(link->newest, 2);
+  ASSERT_THAT(told, SizeIs(1));
+  link->events->on_link_up();
+  runtime.advance_by(2s);
   wire->send(read_of(0x3200));
-  next = read_of(0x3700, 4);
   link->bring(kStatus);
-  link->bring("01 03 04 C3 50 00 00");
-  EXPECT_THAT(replies, ElementsAre(kStatusValue, value_of(0x3700, 4, 50000)));
+  EXPECT_EQ(replies.size(), 1u);
 }
 
-TEST_F(RtuWireTest, frames_nobody_asked_for_are_counted_and_touch_nothing) {
-  for (int i = 0; i < 1000; ++i) link->bring(0, kStatus);
-  EXPECT_THAT(told, IsEmpty());
-  EXPECT_EQ(wire->statistics().late_replies, 1000u);
-  EXPECT_THAT(link->reopened, IsEmpty()) << "whole frames are no noise";
-}
-
-TEST_F(RtuWireTest, a_call_to_all_ends_when_it_has_left_and_is_answered_by_nobody) {
-  const auto stop_all = write_of(323, 6, 2, 255);
-  wire->send(stop_all);
+TEST_F(RtuWireTest, a_call_to_all_ends_when_it_has_left_and_no_drive_that_answers_it_is_believed) {
+  wire->send(kStopAll);
   EXPECT_THAT(link->sent, ElementsAre("FF 06 01 43 00 06"));
+  link->bring("FF 06 01 43 00 06");
+  link->bring("02 06 01 43 00 06");
+  EXPECT_EQ(late(), 2u);
   const Duration leaving = modbus_rtu::wire_time(19200, 0, 8, 0) + modbus_rtu::gap_time(19200);
   runtime.advance_by(leaving - 1ns);
   EXPECT_THAT(replies, IsEmpty());
   runtime.advance_by(1ns);
   EXPECT_THAT(replies, ElementsAre(bus::ExchangeResult{}));
   runtime.advance_by(1h);
-  EXPECT_EQ(replies.size(), 1u);
-}
-
-TEST_F(RtuWireTest, a_drive_that_answers_a_call_to_all_is_counted_and_not_believed) {
-  wire->send(write_of(323, 6, 2, 255));
-  link->bring("FF 06 01 43 00 06");
-  link->bring("02 06 01 43 00 06");
-  EXPECT_THAT(replies, IsEmpty());
-  EXPECT_EQ(wire->statistics().late_replies, 2u);
-  runtime.advance_by(1s);
   EXPECT_EQ(replies.size(), 1u);
 }
 
@@ -144,34 +123,24 @@ TEST_F(RtuWireTest, unit_0_is_all_drives_as_well_and_told_in_the_word_order_of_a
   EXPECT_THAT(replies, ElementsAre(bus::ExchangeResult{}));
 }
 
-TEST_F(RtuWireTest, a_call_to_all_that_was_given_up_or_lost_ends_only_once) {
-  wire->send(write_of(323, 6, 2, 255));
+TEST_F(RtuWireTest, a_call_to_all_that_was_given_up_or_lost_ends_neither_itself_nor_the_next_exchange) {
+  wire->send(kStopAll);
   wire->abandon();
   runtime.advance_by(1s);
-  wire->send(write_of(323, 6, 2, 255));
+  wire->send(kStopAll);
   link->events->on_link_down("/dev/ttyUSB0: hung up");
   runtime.advance_by(1s);
   link->events->on_link_up();
   runtime.advance_by(1s);
-  EXPECT_THAT(replies, IsEmpty());
-}
-
-TEST_F(RtuWireTest, the_end_of_one_call_to_all_does_not_end_the_next_exchange) {
-  wire->send(write_of(323, 6, 2, 255));
+  wire->send(kStopAll);
   wire->abandon();
   wire->send(read_of(0x3200));
   runtime.advance_by(1s);
+  wire->abandon();
+  wire->send(kStopAll);
+  wire.reset();
+  runtime.advance_by(1h);
   EXPECT_THAT(replies, IsEmpty());
-}
-
-TEST_F(RtuWireTest, a_lost_link_takes_the_awaited_answer_along) {
-  wire->send(read_of(0x3200));
-  link->events->on_link_down("/dev/ttyUSB0: hung up");
-  link->events->on_link_up();
-  link->bring(kStatus);
-  EXPECT_THAT(told, ElementsAre("down: /dev/ttyUSB0: hung up", "up"));
-  EXPECT_EQ(wire->statistics().reconnects, 1u);
-  EXPECT_EQ(wire->statistics().late_replies, 1u);
 }
 
 TEST_F(RtuWireTest, decodes_every_frame_into_the_log_when_asked) {
@@ -192,13 +161,6 @@ TEST_F(RtuWireTest, decodes_every_frame_into_the_log_when_asked) {
                   "bus lift: <- 01 06 31 00 00 0F  unit 1: written 12544 (0x3100) = 0x000F  (another function)",
                   "bus lift: <- 7 bytes that are no frame", "bus lift: <- 01 03 02 C0 37  unit 1: 1 register = 0xC037",
                   "bus lift: <- 01 03 02 C0 37  unit 1: 1 register = 0xC037  (not asked for)"));
-}
-
-TEST_F(RtuWireTest, destroyed_with_an_exchange_outstanding_it_calls_nobody) {
-  wire->send(write_of(323, 6, 2, 255));
-  wire.reset();
-  runtime.advance_by(1h);
-  EXPECT_THAT(told, IsEmpty());
 }
 
 }  // namespace

@@ -12,16 +12,11 @@ using testing::StartsWith;
 
 using SerialLinkTest = SerialLinkStage;
 
-TEST_F(SerialLinkTest, opens_and_says_so) {
+TEST_F(SerialLinkTest, opens_and_says_so_and_carries_bytes_both_ways) {
   Pty pty;
   start_at(pty.device());
   EXPECT_THAT(diary.told, ElementsAre("up"));
   EXPECT_THAT(log_lines, ElementsAre("info: " + pty.device() + " open, 38400 baud 8N1"));
-}
-
-TEST_F(SerialLinkTest, carries_bytes_both_ways) {
-  Pty pty;
-  start_at(pty.device());
   link->send(bytes_of("request"));
   EXPECT_EQ(pty.read(), "request") << "in the kernel before send() returns";
   pty.write(std::string_view("\x01\x00\x0D\x11\x13\xFF", 6));
@@ -65,26 +60,19 @@ TEST_F(SerialLinkTest, a_port_that_takes_nothing_is_opened_anew) {
   EXPECT_EQ(diary.told[1], "down: " + pty.device() + ": it takes no bytes");
 }
 
-TEST_F(SerialLinkTest, tells_a_hang_up_once_with_its_reason) {
-  Pty pty;
-  start_at(pty.device());
-  pty.hang_up();
-  EXPECT_TRUE(await([this] { return diary.told.size() > 1; }));
-  pass(5s);
-  EXPECT_THAT(diary.told, ElementsAre("up", StartsWith("down: " + pty.device() + ": ")));
-  link->send(bytes_of("nobody hears this"));
-}
-
-TEST_F(SerialLinkTest, a_hang_up_with_bytes_unsent_is_told_once) {
-  Pty pty;
-  start_at(pty.device());
-  link->send(bytes_of(std::string(serial::SerialLink::kMaxUnsent, 'x')));
-  link->send(bytes_of(std::string(serial::SerialLink::kMaxUnsent, 'x')));
-  pty.hang_up();
-  link->send(bytes_of("x"));
-  EXPECT_TRUE(await([this] { return diary.told.size() > 1; }));
-  turn();
-  EXPECT_THAT(diary.told, SizeIs(2));
+TEST_F(SerialLinkTest, tells_a_hang_up_once_with_its_reason_also_with_bytes_unsent) {
+  for (const bool unsent : {false, true}) {
+    Pty pty;
+    diary.told.clear();
+    start_at(pty.device());
+    for (int i = 0; unsent && i < 2; ++i) link->send(bytes_of(std::string(serial::SerialLink::kMaxUnsent, 'x')));
+    pty.hang_up();
+    link->send(bytes_of("x"));
+    EXPECT_TRUE(await([this] { return diary.told.size() > 1; }));
+    pass(5s);
+    EXPECT_THAT(diary.told, ElementsAre("up", StartsWith("down: " + pty.device() + ": ")));
+    link->send(bytes_of("nobody hears this"));
+  }
 }
 
 TEST_F(SerialLinkTest, comes_back_at_once_when_its_path_appears_though_it_leads_elsewhere) {
@@ -145,22 +133,15 @@ TEST_F(SerialLinkTest, a_port_in_use_is_told_and_taken_when_it_is_free) {
   EXPECT_THAT(diary.told, ElementsAre("up"));
 }
 
-TEST_F(SerialLinkTest, opens_anew_when_asked) {
+TEST_F(SerialLinkTest, opens_anew_when_asked_also_from_inside_its_events) {
   Pty pty;
   start_at(pty.device());
   link->reopen("noise");
   turn();
   EXPECT_THAT(diary.told, ElementsAre("up", "down: " + pty.device() + ": noise", "up"));
-  pty.write("still here");
-  EXPECT_TRUE(await([this] { return diary.received == "still here"; }));
-}
-
-TEST_F(SerialLinkTest, may_be_opened_anew_from_inside_its_events) {
-  Pty pty;
   diary.on_received = [this] { link->reopen("noise"); };
-  start_at(pty.device());
   pty.write("x");
-  EXPECT_TRUE(await([this] { return diary.told.size() == 3; }));
+  EXPECT_TRUE(await([this] { return diary.told.size() == 5; }));
   pty.write("y");
   EXPECT_TRUE(await([this] { return diary.received == "xy"; }));
 }

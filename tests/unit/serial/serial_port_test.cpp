@@ -35,19 +35,17 @@ class SerialPort : public testing::Test {
   OpenedPort port;
 };
 
-TEST_F(SerialPort, is_raw_with_eight_bits_and_no_parity) {
-  open({});
+TEST_F(SerialPort, is_raw_with_eight_bits_and_no_parity_at_any_baud_rate_non_blocking_and_not_inherited) {
+  open({.device = "", .baud = 250'000});
+  EXPECT_EQ(mode().c_ospeed, 250'000u);
+  EXPECT_EQ(mode().c_ispeed, 250'000u);
+  EXPECT_NE(::fcntl(port.descriptor, F_GETFL) & O_NONBLOCK, 0);
+  EXPECT_NE(::fcntl(port.descriptor, F_GETFD) & FD_CLOEXEC, 0);
   EXPECT_EQ(mode().c_lflag, 0u) << "no echo, no lines, no signals";
   EXPECT_EQ(mode().c_oflag, 0u);
   EXPECT_EQ(mode().c_iflag, 0u);
   EXPECT_EQ(mode().c_cflag & (CSIZE | PARENB | CSTOPB | CRTSCTS), static_cast<tcflag_t>(CS8));
   EXPECT_THAT(port.notes, IsEmpty());
-}
-
-TEST_F(SerialPort, takes_any_baud_rate) {
-  open({.device = "", .baud = 250'000});
-  EXPECT_EQ(mode().c_ospeed, 250'000u);
-  EXPECT_EQ(mode().c_ispeed, 250'000u);
 }
 
 TEST_F(SerialPort, a_pty_that_refuses_parity_is_used_all_the_same) {
@@ -56,12 +54,6 @@ TEST_F(SerialPort, a_pty_that_refuses_parity_is_used_all_the_same) {
     ASSERT_GE(port.descriptor, 0);
     ::close(std::exchange(port.descriptor, -1));
   }
-}
-
-TEST_F(SerialPort, is_non_blocking_and_not_inherited) {
-  open({});
-  EXPECT_NE(::fcntl(port.descriptor, F_GETFL) & O_NONBLOCK, 0);
-  EXPECT_NE(::fcntl(port.descriptor, F_GETFD) & FD_CLOEXEC, 0);
 }
 
 TEST_F(SerialPort, forgets_what_came_before_it_was_opened) {
