@@ -1,55 +1,49 @@
-// Each file in invalid/ causes exactly the lines in the .expected file beside it; each in valid/ and deploy/ is taken.
+// Each mistake of mistakes.txt causes exactly its words; each file of valid/ and deploy/ is taken.
 #include <gmock/gmock.h>
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
 #include "gateway/app/check.hpp"
+#include "tests/profiles/mistakes.hpp"
 
 namespace axisgate::app {
 namespace {
 
 namespace fs = std::filesystem;
+using test::Mistake;
+using ::testing::Values;
+using ::testing::ValuesIn;
+
 const fs::path kFolder = fs::path(AXISGATE_SOURCE_DIR) / "tests/config";
-/// Relative, as the tests run in the folder of their files: messages are the same on every machine.
+/// Relative, as the tests run in a folder of the sources: messages are the same on every machine.
 const std::vector<std::string> kProfiles{"../../../schemas/drives"};
 
-std::string content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
+class ConfigWith : public ::testing::TestWithParam<Mistake> {};
 
-std::vector<std::string> json_files(const fs::path& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".json") names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::string sentence(const ::testing::TestParamInfo<std::string>& info) {
-  std::string name = fs::path(info.param).stem().string();
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
-  return name;
-}
-
-class InvalidConfig : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(InvalidConfig, CausesExactlyTheExpectedLines) {
+TEST_P(ConfigWith, IsToldInExactlyTheExpectedWords) {
   fs::current_path(kFolder / "invalid");
-  const LoadResult result = load_config(GetParam(), kProfiles);
-  const auto* faults = std::get_if<std::vector<ConfigFault>>(&result);
-  ASSERT_NE(faults, nullptr) << "taken for right";
-  std::string said;
-  for (const ConfigFault& fault : *faults) said += text(fault) + "\n";
-  EXPECT_EQ(said, content(fs::path(GetParam()).replace_extension(".expected")));
+  const test::OwnFolder folder;
+  const std::string here = folder.path().string() + "/";
+  fs::create_directory(here + "profiles");  // of this name there is a folder and no file
+  const LoadResult result = load_config(folder.write("gateway.json", GetParam().file).string(), kProfiles);
+  std::string told;
+  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) {
+    for (const ConfigFault& fault : *faults) {
+      std::string line = text(fault);
+      for (std::size_t at = 0; (at = line.find(here)) != std::string::npos;) line.erase(at, here.size());
+      if (fault.file == here + "gateway.json") line.erase(0, std::string("gateway.json: ").size());
+      told += line + "\n";
+    }
+  }
+  EXPECT_EQ(told, GetParam().words);
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, InvalidConfig, ::testing::ValuesIn(json_files(kFolder / "invalid")), sentence);
+const auto kName = [](const auto& info) { return test::as_test_name(info.param.name); };
+INSTANTIATE_TEST_SUITE_P(Mistake, ConfigWith, ValuesIn(test::mistakes_of(kFolder)), kName);
+INSTANTIATE_TEST_SUITE_P(No_mistake_as, ConfigWith, ValuesIn(test::bases_of(kFolder)), kName);
+
+TEST(ConfigFiles, NoneOfTheMistakesWasLost) {
+  EXPECT_GE(test::mistakes_of(kFolder).size(), 153U);
+  EXPECT_EQ(test::bases_of(kFolder).size(), 6U);
+}
 
 class ValidConfig : public ::testing::TestWithParam<std::string> {};
 
@@ -63,10 +57,18 @@ TEST_P(ValidConfig, IsTakenAndPlannedBelowItsLinesLimit) {
   EXPECT_FALSE(check(std::get<LoadedConfig>(result)).overloaded);
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, ValidConfig, ::testing::ValuesIn(json_files(kFolder / "valid")), sentence);
+std::vector<std::string> valid_files() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(kFolder / "valid"))
+    if (entry.path().extension() == ".json") names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+const auto kStem = [](const auto& info) { return test::as_test_name(fs::path(info.param).stem().string()); };
+INSTANTIATE_TEST_SUITE_P(Files, ValidConfig, ValuesIn(valid_files()), kStem);
 INSTANTIATE_TEST_SUITE_P(Shipped, ValidConfig,
-                         ::testing::Values("../../../deploy/demo.json", "../../../deploy/example/gateway.json"),
-                         sentence);
+                         Values("../../../deploy/demo.json", "../../../deploy/example/gateway.json"), kStem);
 
 }  // namespace
 }  // namespace axisgate::app

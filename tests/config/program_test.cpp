@@ -1,13 +1,9 @@
 // The real program, given a wrong configuration: exit code 1, each mistake on stderr, and neither port nor device
 // touched.
-#include <gmock/gmock.h>
 #include <sys/inotify.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
+#include "tests/config/program.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -17,57 +13,14 @@ using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-struct Ended {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
-std::string content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
-class Program : public ::testing::Test {
- protected:
-  Program() {
-    std::string name = (fs::temp_directory_path() / "axisgate-config-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    std::ofstream(device_ = folder_ / "device") << "";
-  }
-  ~Program() override { fs::remove_all(folder_); }
-
-  Ended run(const std::string& arguments) const { return run_program(AXISGATE_PROGRAM, arguments); }
-  Ended run_program(const fs::path& program, const std::string& arguments) const {
-    const fs::path out = folder_ / "out";
-    const fs::path err = folder_ / "err";
-    const std::string command =
-        program.string() + " " + arguments + " >" + out.string() + " 2>" + err.string() + " </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(err)};
-  }
-
-  /// One mistake (node 127) beside a device and a port that would be opened if the file were right.
-  fs::path wrong_config() const {
-    const fs::path file = folder_ / "wrong.json";
-    std::ofstream(file) << R"({"modbus_tcp": [{"listen": "127.0.0.1:)" << kPort << R"("}], "buses": [{"name": "a",
-      "adapter": "kinco-serial", "device": ")"
-                        << device_.string() << R"(", "drives": [{"profile": "kinco-jd", "node": 127,
-      "constants": {"peak_current_a": 27.5}, "axes": [{"axis": 1}]}]}]})";
-    return file;
-  }
-
-  static constexpr int kPort = 15987;
-  fs::path folder_;
-  fs::path device_;
-};
+using Program = ProgramTest;
 
 TEST_F(Program, OpensNothingWhereTheConfigurationIsWrong) {
   const int watch = inotify_init1(IN_NONBLOCK);
   ASSERT_GE(watch, 0);
-  ASSERT_GE(inotify_add_watch(watch, device_.c_str(), IN_OPEN), 0);
-  const std::string file = wrong_config().string();
+  const std::string device = write("device", "");
+  ASSERT_GE(inotify_add_watch(watch, device.c_str(), IN_OPEN), 0);
+  const std::string file = write("wrong.json", one_drive(device, 127, ""));
   const std::string told =
       file +
       ": /buses/0/drives/0/node: 127 is the address with which Kinco's PC tool reaches every drive: "
@@ -84,66 +37,51 @@ TEST_F(Program, OpensNothingWhereTheConfigurationIsWrong) {
 }
 
 TEST_F(Program, EndsWithOneOnEachWrongFile) {
-  const fs::path invalid = fs::path(AXISGATE_SOURCE_DIR) / "tests/config/invalid";
-  for (const auto& entry : fs::directory_iterator(invalid)) {
-    if (entry.path().extension() != ".json") continue;
-    const Ended ended = run("run " + entry.path().string());
-    EXPECT_EQ(ended.code, 1) << entry.path();
-    EXPECT_NE(ended.err, "") << entry.path();
-    EXPECT_EQ(ended.out, "") << entry.path();
+  for (const test::Mistake& mistake : test::mistakes_of(fs::path(AXISGATE_SOURCE_DIR) / "tests/config")) {
+    const std::string file = write("wrong.json", mistake.file);
+    const Ended ended = run("run " + file);
+    EXPECT_EQ(ended.code, 1) << mistake.name;
+    EXPECT_THAT(ended.err, HasSubstr(file + ": ")) << mistake.name;
+    EXPECT_EQ(ended.out, "") << mistake.name;
   }
 }
 
 TEST_F(Program, CheckEndsWithOneWhereABusIsOverloaded) {
-  const fs::path file = folder_ / "overloaded.json";
-  std::ofstream(file)
-      << R"({"modbus_tcp": [{"listen": "127.0.0.1:1502"}], "buses": [{"name": "a", "adapter": "kinco-serial",
-      "device": "/dev/ttyUSB0", "poll": {"fast": 5}, "drives": [{"profile": "kinco-jd", "node": 1,
-      "constants": {"peak_current_a": 27.5}, "axes": [{"axis": 1}]}]}]})";
-  const Ended ended = run("check " + file.string());
+  std::string config = one_drive("/dev/ttyUSB0", 1, "");
+  EXPECT_EQ(run("check " + write("right.json", config)).code, 0);
+  config.insert(config.find(R"("drives")"), R"("poll": {"fast": 5}, )");
+  const Ended ended = run("check " + write("overloaded.json", config));
   EXPECT_EQ(ended.code, 1);
   EXPECT_THAT(ended.out, HasSubstr("OVERLOADED"));
   EXPECT_THAT(ended.err, HasSubstr("a bus is planned over 100 %"));
 }
 
 TEST_F(Program, WrongCommandLinesEndWithTwoAndNameTheWord) {
-  Ended ended = run("chekc x.json");
-  EXPECT_EQ(ended.code, 2);
-  EXPECT_THAT(ended.err, HasSubstr("'chekc'"));
-  ended = run("check");
-  EXPECT_EQ(ended.code, 2);
-  EXPECT_THAT(ended.err, HasSubstr("CONFIG"));
-  ended = run("map x.json --format xml");
-  EXPECT_EQ(ended.code, 2);
-  EXPECT_THAT(ended.err, HasSubstr("--format"));
-}
-
-TEST_F(Program, ScanSaysWhatIsWrongWithItsWords) {
-  struct Case {
-    std::string arguments;
-    std::string told;
+  const std::pair<std::string, std::string> cases[] = {
+      {"chekc x.json", "'chekc'"},
+      {"check", "CONFIG"},
+      {"map x.json --format xml", "--format"},
+      {"scan", "DEVICE"},
+      {"scan slcan:", "slcan: must be followed by the path of a serial port"},
+      {"scan /dev/ttyACM0", "a serial CAN adapter is given as slcan:PATH"},
+      {"scan can0 --bitrate 5000", "5000 bit/s is no bit rate of CAN"},
+      {"scan slcan:/dev/ttyACM0 --bitrate 300000", "serial CAN adapters offer 10000, 20000"},
+      {"scan can0 --nodes 0-5", "'0-5' is no node-ID and no range of them"},
+      {"scan can0 --nodes 9-5", "--nodes"},
+      {"scan can0 --timeout-ms 1", "--timeout-ms"},
   };
-  for (const Case& it : {
-           Case{"", "DEVICE"},
-           Case{"slcan:", "slcan: must be followed by the path of a serial port"},
-           Case{"/dev/ttyACM0", "a serial CAN adapter is given as slcan:PATH"},
-           Case{"can0 --bitrate 5000", "5000 bit/s is no bit rate of CAN"},
-           Case{"slcan:/dev/ttyACM0 --bitrate 300000", "serial CAN adapters offer 10000, 20000"},
-           Case{"can0 --nodes 0-5", "'0-5' is no node-ID and no range of them"},
-           Case{"can0 --nodes 9-5", "--nodes"},
-           Case{"can0 --timeout-ms 1", "--timeout-ms"},
-       }) {
-    const Ended ended = run("scan " + it.arguments);
-    EXPECT_EQ(ended.code, 2) << it.arguments;
-    EXPECT_THAT(ended.err, HasSubstr(it.told)) << it.arguments;
-    EXPECT_EQ(ended.out, "") << it.arguments;
+  for (const auto& [arguments, told] : cases) {
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.code, 2) << arguments;
+    EXPECT_THAT(ended.err, HasSubstr(told)) << arguments;
+    EXPECT_EQ(ended.out, "") << arguments;
   }
 }
 
 TEST_F(Program, ScanOfWhatIsNotThereEndsWithTheReason) {
-  Ended ended = run("scan slcan:" + (folder_ / "no-adapter").string());
+  Ended ended = run("scan slcan:" + (folder() / "no-adapter").string());
   EXPECT_EQ(ended.code, 1);
-  EXPECT_EQ(ended.err, (folder_ / "no-adapter").string() +
+  EXPECT_EQ(ended.err, (folder() / "no-adapter").string() +
                            ": No such file or directory\nIs the adapter plugged in, and may you open it (group "
                            "dialout)? ls -l /dev/serial/by-id lists those that are there.\n");
   EXPECT_EQ(ended.out, "");
@@ -189,33 +127,33 @@ TEST_F(Program, ComparesAProfileWithTheMakersEds) {
   EXPECT_THAT(ended.out, HasSubstr("nothing in it contradicts the profile"));
   EXPECT_EQ(ended.err, "");
 
-  const fs::path other = folder_ / "other.eds";
-  std::string text = content(eds);
-  text.replace(text.find("[6041]"), 6, "[6049]");
-  std::ofstream(other) << text;
-  ended = run("profile check " + profile + " --eds " + other.string());
+  std::string other = test::content(eds);
+  other.replace(other.find("[6041]"), 6, "[6049]");
+  const std::string file = write("other.eds", other);
+  ended = run("profile check " + profile + " --eds " + file);
   EXPECT_EQ(ended.code, 1);
-  EXPECT_EQ(ended.err,
-            profile + ": /objects/statusword/at/canopen: " + other.string() + " [6041]: the EDS has no such object\n");
+  EXPECT_EQ(ended.err, profile + ": /objects/statusword/at/canopen: " + file + " [6041]: the EDS has no such object\n");
 
-  std::ofstream(other) << "no EDS at all\n";
-  ended = run("profile check " + profile + " --eds " + other.string());
-  EXPECT_EQ(ended.code, 1);
-  EXPECT_THAT(ended.err, HasSubstr("other.eds: line 1: \"no EDS at all\" is neither [section] nor key=value"));
-  ended = run("profile check " + profile + " --eds " + (folder_ / "none.eds").string());
-  EXPECT_EQ(ended.code, 1);
-  EXPECT_THAT(ended.err, HasSubstr("none.eds: cannot be read: No such file or directory"));
-  ended = run("profile check " AXISGATE_SOURCE_DIR "/schemas/drives/id286pro.json --eds " + eds.string());
-  EXPECT_EQ(ended.code, 1);
-  EXPECT_THAT(ended.err, HasSubstr("/protocols: has no canopen"));
+  write("other.eds", "no EDS at all\n");
+  const std::pair<std::string, std::string> cases[] = {
+      {profile + " --eds " + file, "other.eds: line 1: \"no EDS at all\" is neither [section] nor key=value"},
+      {profile + " --eds " + (folder() / "none.eds").string(), "none.eds: cannot be read: No such file or directory"},
+      {AXISGATE_SOURCE_DIR "/schemas/drives/id286pro.json --eds " + eds.string(), "/protocols: has no canopen"},
+  };
+  for (const auto& [arguments, told] : cases) {
+    ended = run("profile check " + arguments);
+    EXPECT_EQ(ended.code, 1) << arguments;
+    EXPECT_THAT(ended.err, HasSubstr(told)) << arguments;
+  }
 }
 
 TEST_F(Program, FindsItsProfilesWhereItIsInstalled) {
-  fs::create_directories(folder_ / "bin");
-  fs::create_directories(folder_ / "share/axisgate");
-  fs::copy(AXISGATE_PROGRAM, folder_ / "bin/axisgate");
-  fs::copy(fs::path(AXISGATE_SOURCE_DIR) / "schemas", folder_ / "share/axisgate/schemas", fs::copy_options::recursive);
-  const Ended ended = run_program(folder_ / "bin/axisgate", "check " AXISGATE_SOURCE_DIR "/deploy/demo.json");
+  fs::create_directories(folder() / "bin");
+  fs::create_directories(folder() / "share/axisgate");
+  fs::copy(AXISGATE_PROGRAM, folder() / "bin/axisgate");
+  fs::copy(fs::path(AXISGATE_SOURCE_DIR) / "schemas", folder() / "share/axisgate/schemas", fs::copy_options::recursive);
+  const Ended ended =
+      run_command((folder() / "bin/axisgate").string() + " check " AXISGATE_SOURCE_DIR "/deploy/demo.json");
   EXPECT_EQ(ended.code, 0) << ended.err;
 }
 

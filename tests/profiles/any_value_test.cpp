@@ -1,9 +1,5 @@
 // Whatever stands in a profile, reading it ends in faults or in a profile: never in an exception or a crash.
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-
-#include "gateway/drive/json_schema.hpp"
+#include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::drive {
@@ -33,17 +29,15 @@ void read_with(json document, const json::json_pointer& place, const json& value
 }
 
 void expect_no_throw(const std::string& profile, const std::string& protocol, const std::vector<json>& values) {
-  std::ifstream original(valid_file(profile));
-  const json document = json::parse(original);
+  const json document = json::parse(test::content(valid_file(profile)));
   std::vector<json::json_pointer> all;
   places(document, json::json_pointer(), all);
   EXPECT_GE(all.size(), 150U);
-  const std::string file = std::filesystem::path(AXISGATE_BINARY_DIR) / "any-value" / (profile + ".json");
-  std::filesystem::create_directories(std::filesystem::path(file).parent_path());
+  const test::OwnFolder folder;
+  const std::string file = folder.path() / (profile + ".json");
   for (const json::json_pointer& place : all)
     for (const json& value : values)
       ASSERT_NO_THROW(read_with(document, place, value, file, protocol)) << place << " = " << value;
-  std::filesystem::remove(file);
 }
 
 TEST(AnyValue, AtAnyPlaceOfAProfileNeverThrows) {

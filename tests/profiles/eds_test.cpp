@@ -3,9 +3,10 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
 #include <random>
 #include <sstream>
+
+#include "tests/profiles/mistakes.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -15,11 +16,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-std::string made_by_hand() {
-  std::ostringstream text;
-  text << std::ifstream(AXISGATE_SOURCE_DIR "/tests/profiles/eds/kinco-md.eds", std::ios::binary).rdbuf();
-  return text.str();
-}
+std::string made_by_hand() { return test::content(AXISGATE_SOURCE_DIR "/tests/profiles/eds/kinco-md.eds"); }
 
 std::string one_object(const std::string& keys, const std::string& section = "6040") {
   return "[" + section + "]\nParameterName=x\n" + keys;

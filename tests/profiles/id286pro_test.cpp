@@ -1,7 +1,5 @@
 // The shipped iD286pro profile against the manual's register table, conversions and codes.
-#include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
@@ -13,10 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-json vectors(const std::string& part) {
-  std::ifstream file(AXISGATE_SOURCE_DIR "/tests/vectors/id286pro.json");
-  return json::parse(file).at(part);
-}
+json vectors(const std::string& part) { return manual("id286pro").at(part); }
 
 DriveModel id286pro(std::int64_t pulses_per_rev = 10000) {
   ResolveInput input = one_axis("modbus-rtu");

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "tests/profiles/resolving.hpp"
@@ -44,10 +42,7 @@ inline ResolveInput in_mode(const std::string& protocol, std::int64_t mode,
 
 inline DriveModel model(const ResolveInput& input) { return resolved(shipped("keya-kydas4860-2e"), input); }
 
-inline nlohmann::json vectors(const std::string& part) {
-  std::ifstream file(AXISGATE_SOURCE_DIR "/tests/vectors/keya-kydas4860-2e.json");
-  return nlohmann::json::parse(file).at(part);
-}
+inline nlohmann::json vectors(const std::string& part) { return manual("keya-kydas4860-2e").at(part); }
 
 inline ObjectId id(const DriveModel& model, const std::string& name) {
   const auto at =
@@ -61,46 +56,14 @@ inline const ObjectDef& object(const DriveModel& model, const std::string& name)
   return model.object(found);
 }
 
-inline std::vector<std::string> names(const DriveModel& model, const std::vector<ObjectId>& ids) {
-  std::vector<std::string> out;
-  for (const ObjectId one : ids) out.push_back(model.object(one).name);
-  return out;
-}
-
-inline std::string text(const DriveModel& model, const Condition& condition) {
-  std::string out = model.object(condition.object).name;
-  if (condition.mask != 0) out += "&" + std::to_string(condition.mask);
-  out += condition.test == Condition::Test::equals ? "==" : "!=";
-  for (const std::int64_t value : condition.values) out += std::to_string(value);
-  return out;
-}
-
-/// "A.on=1, wait A.fault&1==0": a "?" where a wait may run out, "must" where it is a require.
-inline std::string text(const DriveModel& model, const Steps& steps) {
-  std::string out;
-  for (const Step& step : steps) {
-    out += out.empty() ? "" : ", ";
-    const std::string until = step.verb == Step::Verb::write ? "" : text(model, step.until);
-    if (step.verb == Step::Verb::wait)
-      out += "wait " + until + (step.optional ? "?" : "");
-    else if (step.verb == Step::Verb::require)
-      out += "must " + until;
-    else if (step.source == Step::Source::quantity)
-      out += model.object(step.object).name + "=" + std::string(row(step.quantity).name);
-    else
-      out += model.object(step.object).name + "=" + std::to_string(step.literal);
-  }
-  return out;
-}
-
 /// The steps of a command in a mode; "none" where it is not supported.
 inline std::string steps(const DriveModel& model, std::size_t axis, Command command, std::int16_t mode) {
   const auto& def = model.axes.at(axis).command(command);
   if (!def) return "none";
   for (const CommandDef::Variant& variant : def->variants)
     if (std::find(variant.modes.begin(), variant.modes.end(), mode) != variant.modes.end())
-      return text(model, variant.steps);
-  return def->quick_stop_otherwise ? "quick_stop" : text(model, def->steps);
+      return drive::text(model, variant.steps);
+  return def->quick_stop_otherwise ? "quick_stop" : drive::text(model, def->steps);
 }
 
 }  // namespace axisgate::drive::keya

@@ -40,7 +40,7 @@ TEST(KeyaCommands, EnableNeverTravelsWithAPositionOfZero) {
 TEST(KeyaCommands, OnlyTheSetpointsOfItsOwnModeAreMadeZeroBeforeAnEnable) {
   const auto zeroed = [](const std::string& protocol, std::int64_t mode) {
     const DriveModel model = keya::model(keya::in_mode(protocol, mode));
-    return keya::names(model, model.axes[0].zero_before_enable);
+    return names(model, model.axes[0].zero_before_enable);
   };
   for (const std::string protocol : keya::kFixed) {
     EXPECT_THAT(zeroed(protocol, keya::kSpeed), ElementsAre("A.target_velocity")) << protocol;

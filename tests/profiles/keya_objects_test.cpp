@@ -27,23 +27,21 @@ std::int64_t number_in(const ObjectDef& object, const std::vector<std::uint8_t>&
 
 /// How the manual's own examples call what the profile calls otherwise.
 const std::map<std::string, std::string>& called() {
-  static const std::map<std::string, std::string> kNames{
-      {"fault_m1", "A.fault"},
-      {"fault_m2", "B.fault"},
-      {"fault_a", "A.fault"},
-      {"fault_b", "B.fault"},
-      {"speed_a_rpm", "A.speed"},
-      {"speed_b_rpm", "B.speed"},
-      {"current_a_A", "A.current"},
-      {"current_b_A", "B.current"},
-      {"encoder_a", "A.position"},
-      {"encoder_b", "B.position"},
-      {"voltage_V", "voltage"},
-      {"drive_temp_C", "drive_temperature"},
-      {"version", "program_version"},
-      {"motor_a_temp_C", "A.motor_temperature"},
-      {"motor_b_temp_C", "B.motor_temperature"},
-  };
+  static const std::map<std::string, std::string> kNames{{"fault_m1", "A.fault"},
+                                                         {"fault_m2", "B.fault"},
+                                                         {"fault_a", "A.fault"},
+                                                         {"fault_b", "B.fault"},
+                                                         {"speed_a_rpm", "A.speed"},
+                                                         {"speed_b_rpm", "B.speed"},
+                                                         {"current_a_A", "A.current"},
+                                                         {"current_b_A", "B.current"},
+                                                         {"encoder_a", "A.position"},
+                                                         {"encoder_b", "B.position"},
+                                                         {"voltage_V", "voltage"},
+                                                         {"drive_temp_C", "drive_temperature"},
+                                                         {"version", "program_version"},
+                                                         {"motor_a_temp_C", "A.motor_temperature"},
+                                                         {"motor_b_temp_C", "B.motor_temperature"}};
   return kNames;
 }
 
@@ -176,7 +174,7 @@ TEST(Keya, TheControlFrameIsListedInItsOrderAndWrittenOnly) {
 
 TEST(Keya, NamesOfOnePlaceKnowEachOther) {
   const auto aliases = [](const DriveModel& model, const std::string& name) {
-    return keya::names(model, keya::object(model, name).aliases);
+    return names(model, keya::object(model, name).aliases);
   };
   for (const std::string protocol : {"canopen", "keya-rs232", "keya-rs485"}) {
     const DriveModel model = keya::model(keya::drive(protocol));
@@ -240,7 +238,7 @@ TEST(Keya, MapsTheTpdosTheDriveHasByItself) {
 TEST(Keya, WhatComesUnaskedIsNeverAskedFor) {
   const DriveModel model = keya::model(keya::drive("keya-can"));
   EXPECT_EQ(model.unasked.every, std::chrono::seconds(1));
-  EXPECT_THAT(keya::names(model, model.unasked.objects), testing::UnorderedElementsAre("A.work_mode", "interface"));
+  EXPECT_THAT(names(model, model.unasked.objects), testing::UnorderedElementsAre("A.work_mode", "interface"));
   EXPECT_EQ(keya::object(model, "A.work_mode").address, (bus::ObjectAddress{0x7000, 0, 7}));
   for (const ObjectId object : model.unasked.objects) EXPECT_FALSE(model.object(object).readable);
   for (const std::string protocol : {"canopen", "keya-rs232", "keya-rs485"})

@@ -1,7 +1,5 @@
 // The manuals' conversions of speed, acceleration, current and position, through the shipped profiles.
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "tests/profiles/resolving.hpp"
@@ -11,10 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-json conversions(const std::string& drive) {
-  std::ifstream file(AXISGATE_SOURCE_DIR "/tests/vectors/" + drive + ".json");
-  return json::parse(file)["conversions"];
-}
+json conversions(const std::string& drive) { return manual(drive)["conversions"]; }
 
 DriveModel with(const std::string& drive, std::int64_t counts, const std::string& peak) {
   ResolveInput input = one_axis();

@@ -1,7 +1,5 @@
 // The shipped Kinco profiles against the manuals' object tables: no address, width, sign or access may be mistyped.
-#include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "tests/profiles/resolving.hpp"
 
@@ -10,17 +8,10 @@ namespace {
 
 using nlohmann::json;
 
-json vectors(const std::string& drive) {
-  std::ifstream file(AXISGATE_SOURCE_DIR "/tests/vectors/" + drive + ".json");
-  return json::parse(file);
-}
-
-std::int64_t hex(const json& text) { return std::stoll(text.get<std::string>(), nullptr, 16); }
-
 /// The manual's row of each index and sub-index.
 std::map<bus::ObjectAddress, json> rows_of(const std::string& drive) {
   std::map<bus::ObjectAddress, json> out;
-  const json objects = vectors(drive)["objects"];
+  const json objects = manual(drive)["objects"];
   for (const json& row : objects) {
     if (row["sub"].is_null()) continue;
     const std::int64_t sub = row["sub"].is_string() ? hex(row["sub"]) : row["sub"].get<std::int64_t>();
@@ -29,25 +20,7 @@ std::map<bus::ObjectAddress, json> rows_of(const std::string& drive) {
   return out;
 }
 
-void check_row(const Object& object, const json& row) {
-  SCOPED_TRACE(object.name);
-  if (row["bits"].is_number()) {
-    EXPECT_EQ(object.type.size * 8, row["bits"].get<int>());
-  }
-  const std::string type = row["type"].is_string() ? row["type"].get<std::string>() : "";
-  if (!type.ends_with('?') && (type.starts_with("int") || type.starts_with("uint"))) {
-    EXPECT_EQ(object.type.is_signed, type.starts_with("int")) << type;
-  }
-  const std::string access = row["access"].is_string() ? row["access"].get<std::string>() : "";
-  if (access.starts_with("RO") || (access.starts_with("R") && access.find('W') == std::string::npos)) {
-    EXPECT_FALSE(object.writable) << access;
-  } else if (access.starts_with("RW")) {
-    EXPECT_TRUE(object.readable && object.writable) << access;
-  }
-}
-
 void check_register(const Object& object, const json& row) {
-  SCOPED_TRACE(object.name);
   const auto place = object.places.find("modbus-rtu");
   const bool known =
       row.contains("modbus") && row["modbus"].is_string() && row["modbus"].get<std::string>().starts_with("0x");
@@ -76,6 +49,7 @@ void check_profile(const std::string& drive, std::size_t at_least) {
     const auto row = rows.find(can->second.address);
     if (row == rows.end() && drive == "kinco-jd" && only_named(can->second.address)) continue;
     ASSERT_NE(row, rows.end()) << object.name << " is at an address that the manual does not have";
+    SCOPED_TRACE(object.name);
     check_row(object, row->second);
     if (serial == object.places.end()) continue;  // a CANopen communication object
     EXPECT_EQ(serial->second.address, can->second.address) << object.name;

@@ -1,56 +1,86 @@
-// Every file of tests/profiles and schemas/drives is read as a user's would be.
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
+// Every profile of tests/profiles and schemas/drives is read as a user's would be.
+#include <gmock/gmock.h>
 
+#include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::drive {
 namespace {
 
 namespace fs = std::filesystem;
+using test::Mistake;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+using ::testing::ValuesIn;
 
-std::vector<fs::path> json_files(const std::string& folder) {
-  std::vector<fs::path> out;
-  for (const fs::directory_entry& entry : fs::directory_iterator(AXISGATE_SOURCE_DIR + folder))
-    if (entry.path().extension() == ".json") out.push_back(entry.path());
-  std::sort(out.begin(), out.end());
-  return out;
-}
+const fs::path kFolder = fs::path(AXISGATE_SOURCE_DIR) / "tests/profiles";
 
-std::string content(const fs::path& path) {
-  std::ifstream file(path);
-  std::ostringstream out;
-  out << file.rdbuf();
-  return out.str();
+/// Of `folder`, at least `least` of them.
+void expect_no_faults(const fs::path& folder, int least) {
+  int files = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    EXPECT_EQ(text(load_profile(entry.path().string()).faults), "") << entry.path();
+    ++files;
+  }
+  EXPECT_GE(files, least);
 }
 
 TEST(ProfileFiles, TheShippedProfilesHaveNoFault) {
-  const auto files = json_files("/schemas/drives");
-  EXPECT_GE(files.size(), 5U);
-  for (const fs::path& path : files) EXPECT_EQ(text(load_profile(path.string()).faults), "") << path;
+  expect_no_faults(fs::path(AXISGATE_SOURCE_DIR) / "schemas/drives", 5);
 }
 
-TEST(ProfileFiles, MadeUpProfilesOfOtherKindsOfDrivesHaveNoFault) {
-  const auto files = json_files("/tests/profiles/valid");
-  EXPECT_GE(files.size(), 4U);
-  for (const fs::path& path : files) EXPECT_EQ(text(load_profile(path.string()).faults), "") << path;
+TEST(ProfileFiles, MadeUpProfilesOfOtherKindsOfDrivesHaveNoFault) { expect_no_faults(kFolder / "valid", 5); }
+
+class ProfileWith : public ::testing::TestWithParam<Mistake> {};
+
+/// A file that has its base's name, as the profile in it.
+TEST_P(ProfileWith, IsToldInExactlyTheExpectedWords) {
+  const test::OwnFolder folder;
+  const fs::path file = folder.write(GetParam().base + ".json", GetParam().file);
+  std::string told;
+  for (const Fault& fault : load_profile(file.string()).faults) {
+    EXPECT_EQ(fault.file, file.string());
+    told += text(fault).substr((file.string() + ": ").size()) + "\n";
+  }
+  EXPECT_EQ(told, GetParam().words);
 }
 
-TEST(ProfileFiles, EachMistakeIsToldInTheExpectedWords) {
-  const auto files = json_files("/tests/profiles/invalid");
-  EXPECT_GE(files.size(), 100U);
-  for (const fs::path& path : files) {
-    std::string told;
-    for (Fault fault : load_profile(path.string()).faults) {
-      fault.file = path.filename().string();
-      told += text(fault) + "\n";
-    }
-    fs::path expected = path;
-    expected.replace_extension(".expected");
-    EXPECT_EQ(told, content(expected)) << path;
-    EXPECT_NE(told, "") << path << " was accepted";
+const auto kName = [](const auto& info) { return test::as_test_name(info.param.name); };
+INSTANTIATE_TEST_SUITE_P(Mistake, ProfileWith, ValuesIn(test::mistakes_of(kFolder)), kName);
+INSTANTIATE_TEST_SUITE_P(No_mistake_as, ProfileWith, ValuesIn(test::bases_of(kFolder)), kName);
+
+TEST(ProfileFiles, NoneOfTheMistakesWasLost) {
+  EXPECT_GE(test::mistakes_of(kFolder).size(), 189U);
+  EXPECT_EQ(test::bases_of(kFolder).size(), 5U);
+}
+
+TEST(ProfileFiles, AKeepAliveOfHalfTheWatchdogsTimeIsOftenEnough) {
+  std::string profile = test::content(shipped("keya-kydas4860-2e"));
+  profile.replace(profile.find("\"every_ms\": 300"), 15, "\"every_ms\": 500");
+  const test::OwnFolder folder;
+  EXPECT_EQ(text(load_profile(folder.write("keya-kydas4860-2e.json", profile).string()).faults), "");
+}
+
+TEST(TableOfMistakes, AnEntryThatProvesNothingIsRefused) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"a: replace /name \"minimal\"\n  > words", "changes nothing"},
+      {"a: replace /nome \"other\"\n  > words", "not found"},
+      {"a: rename /name \"other\"\n  > words", "invalid"},
+      {"a: text no such text => other\n  > words", "is not in the base exactly once"},
+      {"a: text \"object\" => \"objects\"\n  > words", "is not in the base exactly once"},
+      {"a: remove /name", "no words for a"},
+      {"a: remove /name\nb: remove /title\n  > words", "line 3: b: remove /title: no words for a"},
+      {"a: remove /name\n  > words\na: remove /title\n  > words", "is a name that was used"},
+      {"a: remove /name\n  > words\nb: remove /name\n  > words", "b is the same file as a"},
+      {"a: remove /name\n  > words\n  remove /title", "changes come before the words"},
+      {"base none\na: remove /name\n  > words", "there is no such base"},
+      {"a remove /name", "is neither a base nor a case"},
+  };
+  for (const auto& [entry, why] : cases) {
+    const std::string table = "base minimal\n" + entry;
+    EXPECT_THAT([&] { return test::mistakes(table, kFolder / "valid"); },
+                ThrowsMessage<std::runtime_error>(HasSubstr(why)))
+        << table;
   }
 }
 

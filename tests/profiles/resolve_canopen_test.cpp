@@ -1,12 +1,8 @@
 // What a CANopen section of a profile comes to: mapping, heartbeats and guarding, what the drive must hold to stop by
 // itself, and the identity that a configuration asks for.
 #include <gmock/gmock.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-
+#include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::drive {
@@ -27,32 +23,19 @@ Raw setup_of(const DriveModel& model) {
   return out;
 }
 
-std::vector<std::string> names(const DriveModel& model, const std::vector<ObjectId>& ids) {
-  std::vector<std::string> out;
-  for (const ObjectId id : ids) out.push_back(model.object(id).name);
-  return out;
-}
-
 DriveModel on_canopen(const std::string& profile) { return resolved(shipped(profile), one_axis("canopen")); }
 
 /// A drive of one TPDO, with changes.
 class CanopenProfile : public ::testing::Test {
  protected:
-  ~CanopenProfile() override { std::filesystem::remove_all(folder_); }
-  LoadedProfile load() {
-    std::ofstream(path_) << profile_.dump();
-    return load_profile(path_);
-  }
+  LoadedProfile load() { return load_profile(folder_.write("canopen-only.json", profile_.dump()).string()); }
   DriveModel model() { return resolved(load(), one_axis("canopen")); }
   nlohmann::json& canopen() { return profile_["protocols"]["canopen"]; }
 
-  /// Of this test alone: others run beside it. The file has the profile's own name.
-  const std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("axisgate-canopen-" + std::to_string(getpid()));
-  const std::string path_ = (std::filesystem::create_directories(folder_), folder_ / "canopen-only.json");
+  const test::OwnFolder folder_;
   nlohmann::json profile_ = [] {
-    std::ifstream file(AXISGATE_SOURCE_DIR "/tests/config/invalid/profiles/canopen-only.json");
-    nlohmann::json out = nlohmann::json::parse(file);
+    const std::string file = AXISGATE_SOURCE_DIR "/tests/config/invalid/profiles/canopen-only.json";
+    nlohmann::json out = nlohmann::json::parse(test::content(file));
     out["protocols"]["canopen"]["tpdo"] = {{{"n", 2}, {"map", {"statusword", "mode"}}}};
     return out;
   }();

@@ -29,34 +29,38 @@ std::string steps(const DriveModel& model, Command command) {
   return def ? written(model, def->steps) : "unsupported";
 }
 
-TEST(KincoCommands, EnableGoesThroughReadyToSwitchOn) {
+struct Commanded {
+  std::string drive;
+  Command command{};
+  std::string steps;
+};
+
+const std::vector<Commanded> kCommanded{
+    // Through "ready to switch on" to "operation enabled".
+    {"kinco-jd", Command::enable,
+     "controlword=6 wait(statusword&111==33,500?) controlword=15 wait(statusword&111==39,2000)"},
+    {"kinco-jd", Command::disable, "controlword=6 wait(statusword&4==0,5000)"},
+    {"kinco-jd", Command::quick_stop, "controlword=11 wait(statusword&36!=36,5000)"},
+    // A rising edge, and disabled at its end.
+    {"kinco-jd", Command::fault_reset, "controlword=6 controlword=128 wait(statusword&8==0,2000) controlword=6"},
+    {"kinco-md", Command::fault_reset, "controlword=6 controlword=134 wait(statusword&8==0,2000) controlword=6"},
+    // On the rise of bit 4, acknowledged by bit 12.
+    {"kinco-md", Command::move_absolute,
+     "controlword=47 wait(statusword&4096==0,200?) controlword=63 wait(statusword&4096==4096,500)"},
+    {"kinco-md", Command::move_relative,
+     "controlword=79 wait(statusword&4096==0,200?) controlword=95 wait(statusword&4096==4096,500)"},
+    {"kinco-jd", Command::home, "controlword=15 controlword=31 wait(statusword&32768==0,200?)"},
+    {"kinco-jd", Command::save_parameters, "save=1 wait(save&0!=1,2000?)"},
+};
+
+TEST(KincoCommands, TakeTheStepsOfTheManuals) {
+  for (const Commanded& it : kCommanded)
+    EXPECT_EQ(steps(resolved(shipped(it.drive), kinco_axis()), it.command), it.steps) << it.drive;
+}
+
+TEST(KincoCommands, AcknowledgingSavingAndSetPosition) {
+  EXPECT_TRUE(resolved(shipped("kinco-md"), kinco_axis()).axes[0].cia402.setpoint_acknowledge);
   const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
-  EXPECT_EQ(steps(model, Command::enable),
-            "controlword=6 wait(statusword&111==33,500?) controlword=15 wait(statusword&111==39,2000)");
-  EXPECT_EQ(steps(model, Command::disable), "controlword=6 wait(statusword&4==0,5000)");
-  EXPECT_EQ(steps(model, Command::quick_stop), "controlword=11 wait(statusword&36!=36,5000)");
-}
-
-TEST(KincoCommands, FaultResetIsARisingEdgeAndEndsDisabled) {
-  EXPECT_EQ(steps(resolved(shipped("kinco-jd"), kinco_axis()), Command::fault_reset),
-            "controlword=6 controlword=128 wait(statusword&8==0,2000) controlword=6");
-  EXPECT_EQ(steps(resolved(shipped("kinco-md"), kinco_axis()), Command::fault_reset),
-            "controlword=6 controlword=134 wait(statusword&8==0,2000) controlword=6");
-}
-
-TEST(KincoCommands, AMoveStartsOnTheRiseOfBitFourAndIsAcknowledgedByBitTwelve) {
-  const DriveModel model = resolved(shipped("kinco-md"), kinco_axis());
-  EXPECT_EQ(steps(model, Command::move_absolute),
-            "controlword=47 wait(statusword&4096==0,200?) controlword=63 wait(statusword&4096==4096,500)");
-  EXPECT_EQ(steps(model, Command::move_relative),
-            "controlword=79 wait(statusword&4096==0,200?) controlword=95 wait(statusword&4096==4096,500)");
-  EXPECT_TRUE(model.axes[0].cia402.setpoint_acknowledge);
-}
-
-TEST(KincoCommands, HomingSavingAndSetPosition) {
-  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
-  EXPECT_EQ(steps(model, Command::home), "controlword=15 controlword=31 wait(statusword&32768==0,200?)");
-  EXPECT_EQ(steps(model, Command::save_parameters), "save=1 wait(save&0!=1,2000?)");
   const auto& set_position = model.axes[0].command(Command::set_position);
   ASSERT_TRUE(set_position);
   EXPECT_TRUE(set_position->zero_only);

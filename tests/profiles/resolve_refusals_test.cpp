@@ -1,25 +1,53 @@
 // What cannot be resolved is refused by name, pointing into the drive's entry of the configuration.
 #include <gmock/gmock.h>
 
+#include <functional>
+
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::drive {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
 
-auto says(const std::string& pointer, const std::string& words) {
-  return testing::AllOf(Field(&Fault::pointer, pointer), Field(&Fault::message, HasSubstr(words)));
-}
+struct Refusal {
+  std::string what;
+  std::string profile;
+  std::function<void(ResolveInput&)> with;  ///< what is changed in an axis that the drive has
+  std::string pointer, words;
+};
 
-TEST(Refusals, ARequiredConstantNamesItsValues) {
-  EXPECT_THAT(
-      refused(valid_file("required-constant"), one_axis()),
-      ElementsAre(says("/constants/counts",
-                       "\"counts\" is required for profile \"required-constant\": counts of the encoder: 2500 or "
-                       "10000")));
+const std::vector<Refusal> kRefusals{
+    {"a required constant that is missing", valid_file("required-constant"),
+     [](ResolveInput& input) { input.constants.clear(); }, "/constants/counts",
+     "\"counts\" is required for profile \"required-constant\": counts of the encoder: 2500 or 10000"},
+    {"an unknown constant", shipped("kinco-jd"),
+     [](ResolveInput& input) { input.constants["encoder_count_per_rev"] = Rational(65536); },
+     "/constants/encoder_count_per_rev", "did you mean \"encoder_counts_per_rev\"?"},
+    {"a constant outside its range", shipped("kinco-jd"),
+     [](ResolveInput& input) { input.constants["encoder_counts_per_rev"] = Rational(0); },
+     "/constants/encoder_counts_per_rev", "must be 16 to 16777216, is 0"},
+    {"a protocol that the drive does not have", shipped("kinco-md"),
+     [](ResolveInput& input) { input.protocol = "keya-can"; }, "/profile",
+     "profile \"kinco-md\" has no protocol \"keya-can\": it has canopen, kinco-serial, modbus-rtu"},
+    {"more axes than the drive has", shipped("kinco-jd"), [](ResolveInput& input) { input.axes.emplace_back(); },
+     "/axes", "is a drive of 1 axes, 2 are configured"},
+    {"a homing method that the drive does not have", shipped("kinco-jd"),
+     [](ResolveInput& input) { input.axes[0].homing_method = static_cast<std::int16_t>(15); }, "/axes/0/homing_method",
+     "this drive has no homing method 15"},
+};
+
+TEST(Refusals, NameThePlaceInTheConfigurationAndWhatIsWrong) {
+  for (const Refusal& it : kRefusals) {
+    SCOPED_TRACE(it.what);
+    ResolveInput input = kinco_axis();
+    it.with(input);
+    EXPECT_THAT(refused(it.profile, input),
+                ElementsAre(AllOf(Field(&Fault::pointer, it.pointer), Field(&Fault::message, HasSubstr(it.words)))));
+  }
 }
 
 TEST(Refusals, AKincoWithoutItsPeakCurrentHasNoCurrentsAndNoTorque) {
@@ -31,47 +59,11 @@ TEST(Refusals, AKincoWithoutItsPeakCurrentHasNoCurrentsAndNoTorque) {
   }
 }
 
-TEST(Refusals, AnUnknownConstantSuggestsTheNearest) {
-  ResolveInput input = kinco_axis();
-  input.constants["encoder_count_per_rev"] = Rational(65536);
-  EXPECT_THAT(refused(shipped("kinco-jd"), input),
-              ElementsAre(says("/constants/encoder_count_per_rev", "did you mean \"encoder_counts_per_rev\"?")));
-}
-
-TEST(Refusals, AConstantOutsideItsRangeIsRefused) {
-  ResolveInput input = kinco_axis();
-  input.constants["encoder_counts_per_rev"] = Rational(0);
-  EXPECT_THAT(refused(shipped("kinco-jd"), input),
-              ElementsAre(says("/constants/encoder_counts_per_rev", "must be 16 to 16777216, is 0")));
-}
-
-TEST(Refusals, AProtocolTheDriveDoesNotHaveIsAMistakeOfTheConfiguration) {
-  ResolveInput input = kinco_axis();
-  input.protocol = "keya-can";
-  EXPECT_THAT(
-      refused(shipped("kinco-md"), input),
-      ElementsAre(says("/profile",
-                       "profile \"kinco-md\" has no protocol \"keya-can\": it has canopen, kinco-serial, modbus-rtu")));
-}
-
-TEST(Refusals, MoreAxesThanTheDriveHasAreRefused) {
-  ResolveInput input = kinco_axis();
-  input.axes.emplace_back();
-  EXPECT_THAT(refused(shipped("kinco-jd"), input),
-              ElementsAre(says("/axes", "is a drive of 1 axes, 2 are configured")));
-}
-
-TEST(Refusals, AHomingMethodTheDriveDoesNotHaveIsRefused) {
-  ResolveInput input = kinco_axis();
-  input.axes[0].homing_method = static_cast<std::int16_t>(15);
-  EXPECT_THAT(refused(shipped("kinco-jd"), input),
-              ElementsAre(says("/axes/0/homing_method", "this drive has no homing method 15")));
-}
-
 TEST(Refusals, AProfileWithMistakesIsNotResolved) {
-  const LoadedProfile loaded = load_profile(AXISGATE_SOURCE_DIR "/tests/profiles/invalid/unknown-object.json");
-  const auto result = resolve(loaded, one_axis());
-  EXPECT_TRUE(std::holds_alternative<std::vector<Fault>>(result));
+  LoadedProfile loaded = load_profile(valid_file("minimal"));
+  ASSERT_TRUE(std::holds_alternative<DriveModel>(resolve(loaded, one_axis())));
+  loaded.faults.push_back({loaded.file, "/title", "is wrong"});
+  EXPECT_TRUE(std::holds_alternative<std::vector<Fault>>(resolve(loaded, one_axis())));
 }
 
 TEST(Refusals, UnitsBeyondSixtyFourBitsAreAFaultAndNoCrash) {

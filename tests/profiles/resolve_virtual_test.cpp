@@ -11,12 +11,6 @@ using testing::Pair;
 
 DriveModel virtual_drive() { return resolved(valid_file("virtual"), one_axis("modbus-rtu")); }
 
-std::vector<std::string> names(const DriveModel& model, const std::vector<ObjectId>& ids) {
-  std::vector<std::string> out;
-  for (const ObjectId id : ids) out.push_back(model.object(id).name);
-  return out;
-}
-
 TEST(VirtualDrive, HasAStatuswordAControlwordAndAModeThatTheGatewayMakes) {
   const DriveModel model = virtual_drive();
   const AxisModel& axis = model.axes[0];

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "gateway/drive/profile_loader.hpp"
@@ -64,6 +66,63 @@ inline const Binding& binding(const DriveModel& model, Quantity quantity) {
   const Binding* found = model.axes.at(0).binding(quantity);
   if (found == nullptr) throw std::runtime_error("quantity not supported");
   return *found;
+}
+
+inline std::vector<std::string> names(const DriveModel& model, const std::vector<ObjectId>& ids) {
+  std::vector<std::string> out;
+  for (const ObjectId id : ids) out.push_back(model.object(id).name);
+  return out;
+}
+
+/// The tables of a drive's manual.
+inline nlohmann::json manual(const std::string& drive) {
+  std::ifstream file(AXISGATE_SOURCE_DIR "/tests/vectors/" + drive + ".json");
+  return nlohmann::json::parse(file);
+}
+
+inline std::int64_t hex(const nlohmann::json& text) { return std::stoll(text.get<std::string>(), nullptr, 16); }
+
+/// Width, sign and access of an object are those of its row in the manual, where that gives them.
+inline void check_row(const Object& object, const nlohmann::json& row) {
+  if (row["bits"].is_number()) {
+    EXPECT_EQ(object.type.size * 8, row["bits"].get<int>());
+  }
+  const std::string type = row["type"].is_string() ? row["type"].get<std::string>() : "";
+  if (!type.ends_with('?') && (type.starts_with("int") || type.starts_with("uint"))) {
+    EXPECT_EQ(object.type.is_signed, type.starts_with("int")) << type;
+  }
+  const std::string access = row["access"].is_string() ? row["access"].get<std::string>() : "";
+  if (access.starts_with("RO") || (access.starts_with("R") && access.find('W') == std::string::npos)) {
+    EXPECT_FALSE(object.writable) << access;
+  } else if (access.starts_with("RW")) {
+    EXPECT_TRUE(object.readable && object.writable) << access;
+  }
+}
+
+inline std::string text(const DriveModel& model, const Condition& condition) {
+  std::string out = model.object(condition.object).name;
+  if (condition.mask != 0) out += "&" + std::to_string(condition.mask);
+  out += condition.test == Condition::Test::equals ? "==" : "!=";
+  for (const std::int64_t value : condition.values) out += std::to_string(value);
+  return out;
+}
+
+/// "A.on=1, wait A.fault&1==0": a "?" where a wait may run out, "must" where it is a require.
+inline std::string text(const DriveModel& model, const Steps& steps) {
+  std::string out;
+  for (const Step& step : steps) {
+    out += out.empty() ? "" : ", ";
+    const std::string until = step.verb == Step::Verb::write ? "" : text(model, step.until);
+    if (step.verb == Step::Verb::wait)
+      out += "wait " + until + (step.optional ? "?" : "");
+    else if (step.verb == Step::Verb::require)
+      out += "must " + until;
+    else if (step.source == Step::Source::quantity)
+      out += model.object(step.object).name + "=" + std::string(row(step.quantity).name);
+    else
+      out += model.object(step.object).name + "=" + std::to_string(step.literal);
+  }
+  return out;
 }
 
 /// What a write of this register value sends to the drive.
