@@ -1,3 +1,4 @@
+// Who is one client, what outlives its connections, and for how long.
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
 
 #include <gtest/gtest.h>
@@ -16,56 +17,50 @@ Peer host(int n) {
   return peer;
 }
 
-TEST(Clients, AreOneForEachConnectionByDefault) {
+class Clients : public ::testing::Test {
+ protected:
+  auto connect(int n, bool by_address = false, Duration at = {}) {
+    return registry.connect(host(n), by_address, kStart + at).client;
+  }
+  template <typename Client>
+  auto disconnect(const Client& client, Duration at = {}) {
+    return registry.disconnect(client, kStart + at);
+  }
   ClientRegistry registry;
-  const auto a = registry.connect(host(1), false, kStart).client;
-  const auto b = registry.connect(host(1), false, kStart).client;
+};
+
+TEST_F(Clients, are_one_for_each_connection_by_default_and_gone_with_it) {
+  const auto a = connect(1);
+  const auto b = connect(1);
   EXPECT_NE(a, b);
   EXPECT_NE(a->id, b->id);
   EXPECT_EQ(a->host, b->host) << "command ids belong to the address";
+  EXPECT_EQ(disconnect(a), a->id);
 }
 
-TEST(Clients, AreOneForAllConnectionsOfAHostWithClientAddress) {
-  ClientRegistry registry;
-  const auto a = registry.connect(host(1), true, kStart).client;
-  const auto b = registry.connect(host(1), true, kStart).client;
-  const auto other = registry.connect(host(2), true, kStart).client;
-  EXPECT_EQ(a, b);
-  EXPECT_NE(a, other);
+TEST_F(Clients, by_address_are_one_for_all_connections_of_a_host) {
+  const auto a = connect(1, true);
+  EXPECT_EQ(a, connect(1, true));
+  EXPECT_NE(a, connect(2, true));
 }
 
-TEST(Clients, OfAConnectionAreGoneWithIt) {
-  ClientRegistry registry;
-  const auto client = registry.connect(host(1), false, kStart).client;
-  EXPECT_EQ(registry.disconnect(client, kStart), client->id);
-}
-
-TEST(Clients, OfAHostOutliveTheirConnectionsAndForgetAfter60s) {
-  ClientRegistry registry;
-  const auto first = registry.connect(host(1), true, kStart).client;
-  EXPECT_EQ(registry.disconnect(first, kStart), std::nullopt);
-  EXPECT_EQ(registry.connect(host(1), true, kStart + 59999ms).client, first);
-  EXPECT_EQ(registry.disconnect(first, kStart + 60s), std::nullopt);
+TEST_F(Clients, of_a_host_outlive_their_connections_and_forget_after_60_s_but_what_they_own) {
+  const auto first = connect(1, true);
+  const auto life = first->life;
+  EXPECT_EQ(disconnect(first), std::nullopt);
+  EXPECT_FALSE(life->connected);
+  EXPECT_EQ(connect(1, true, 59999ms), first);
+  EXPECT_TRUE(life->connected);
+  EXPECT_EQ(disconnect(first, 60s), std::nullopt);
   const auto later = registry.connect(host(1), true, kStart + 120s);
   EXPECT_NE(later.client, first) << "what it wrote is forgotten";
   EXPECT_EQ(later.client->id, first->id) << "but it is nobody else";
+  EXPECT_EQ(later.client->life, life) << "and what it owns is its own";
+  EXPECT_TRUE(life->connected);
   EXPECT_EQ(later.forgotten, std::nullopt) << "a reader's return ends nothing that it commanded before";
 }
 
-TEST(Lives, OfAHostAreKeptWhateverIsForgotten) {
-  ClientRegistry registry;
-  const auto first = registry.connect(host(1), true, kStart).client;
-  const auto life = first->life;
-  registry.disconnect(first, kStart);
-  EXPECT_FALSE(life->connected);
-  const auto later = registry.connect(host(1), true, kStart + 120s).client;
-  ASSERT_NE(later, first) << "what it wrote is forgotten";
-  EXPECT_EQ(later->life, life) << "but what it owns is its own";
-  EXPECT_TRUE(life->connected);
-}
-
-TEST(Lives, TellOfTheNewestConnection) {
-  ClientRegistry registry;
+TEST_F(Clients, lives_tell_of_the_newest_connection) {
   Peer peer = host(1);
   const auto client = registry.connect(peer, true, kStart).client;
   EXPECT_EQ(client->life->role, Role::operator_);
@@ -77,8 +72,7 @@ TEST(Lives, TellOfTheNewestConnection) {
   EXPECT_EQ(client->life->rank, 5);
 }
 
-TEST(Lives, NameConnectionsByAddressAndPortAndHostsByAddress) {
-  ClientRegistry registry;
+TEST_F(Clients, lives_name_connections_by_address_and_port_and_hosts_by_address) {
   Peer peer{.address = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 192, 168, 1, 7}, .port = 51234};
   EXPECT_EQ(registry.connect(peer, false, kStart).client->life->name, "192.168.1.7:51234");
   EXPECT_EQ(registry.connect(peer, true, kStart).client->life->name, "192.168.1.7");
@@ -86,67 +80,55 @@ TEST(Lives, NameConnectionsByAddressAndPortAndHostsByAddress) {
   EXPECT_EQ(registry.connect(peer, false, kStart).client->life->name, "[fe80::1]:51234");
 }
 
-TEST(Lives, OfAHostAreDisconnectedThoughOthersFromItsAddressStay) {
-  ClientRegistry registry;
-  const auto host_client = registry.connect(host(1), true, kStart).client;
-  const auto other = registry.connect(host(1), false, kStart).client;
-  registry.disconnect(host_client, kStart);
+TEST_F(Clients, the_life_of_a_host_ends_though_others_from_its_address_stay) {
+  const auto host_client = connect(1, true);
+  const auto other = connect(1);
+  disconnect(host_client);
   EXPECT_FALSE(host_client->life->connected);
   EXPECT_TRUE(other->life->connected);
 }
 
-TEST(CommandIds, AreKeptPerAddressFor60sAfterItsLastConnectionClosed) {
-  ClientRegistry registry;
-  const auto first = registry.connect(host(1), false, kStart).client;
-  const auto second = registry.connect(host(1), false, kStart).client;
+TEST_F(Clients, command_ids_are_kept_per_address_for_60_s_after_its_last_connection_closed) {
+  const auto first = connect(1);
+  const auto second = connect(1);
   first->host->ids[3].last = 17;
-  registry.disconnect(first, kStart);
+  EXPECT_EQ(connect(2)->last_id(3), std::nullopt) << "another address";
+  disconnect(first);
   EXPECT_EQ(second->last_id(3), 17) << "one connection is left";
-  registry.disconnect(second, kStart + 100s);
-  const auto third = registry.connect(host(1), false, kStart + 159s).client;
+  disconnect(second, 100s);
+  const auto third = connect(1, false, 159s);
   EXPECT_EQ(third->last_id(3), 17);
   EXPECT_EQ(third->last_id(4), std::nullopt) << "per axis";
-  registry.disconnect(third, kStart + 160s);
-  EXPECT_EQ(registry.connect(host(1), false, kStart + 220s).client->last_id(3), std::nullopt);
+  disconnect(third, 160s);
+  EXPECT_EQ(connect(1, false, 220s)->last_id(3), std::nullopt);
 }
 
-TEST(CommandIds, OfAnotherAddressAreNotSeen) {
-  ClientRegistry registry;
-  const auto plc = registry.connect(host(1), false, kStart).client;
-  plc->host->ids[3].last = 17;
-  EXPECT_EQ(registry.connect(host(2), false, kStart).client->last_id(3), std::nullopt);
-}
-
-TEST(Clients, NeverHaveANumberTwice) {
-  ClientRegistry registry;
+TEST_F(Clients, never_have_a_number_twice) {
   ClientId last = 0;
   for (int i = 0; i < 100; ++i) {
-    const auto client = registry.connect(host(i % 3), i % 2 == 0, kStart + i * 100s).client;
+    const auto client = connect(i % 3, i % 2 == 0, i * 100s);
     if (i % 2 == 1) {
       EXPECT_GT(client->id, last);
     }
     last = client->id;
-    registry.disconnect(client, kStart + i * 100s);
+    disconnect(client, i * 100s);
   }
 }
 
-TEST(Hosts, AreForgottenInTheOrderInWhichTheyLeftAndNeverWhileConnected) {
-  ClientRegistry registry;
-  const auto stays = registry.connect(host(0), true, kStart).client;
-  const auto leaves = registry.connect(host(1), true, kStart).client;
-  registry.disconnect(leaves, kStart + 1ms);
+TEST_F(Clients, hosts_are_forgotten_in_the_order_in_which_they_left_and_never_while_connected) {
+  const auto stays = connect(0, true);
+  const auto leaves = connect(1, true);
+  disconnect(leaves, 1ms);
   std::optional<ClientId> forgotten;
   for (int n = 2; !forgotten && n < 3000; ++n) {
     auto connected = registry.connect(host(n), false, kStart + 2ms);
     forgotten = connected.forgotten;
-    registry.disconnect(connected.client, kStart + n * 2us + 2ms);
+    disconnect(connected.client, n * 2us + 2ms);
   }
   EXPECT_EQ(forgotten, leaves->id) << "the first that left";
-  for (int n = 3000; n < 6000; ++n) {
-    registry.disconnect(registry.connect(host(n), false, kStart + 1s).client, kStart + 1s);
-  }
+  for (int n = 3000; n < 6000; ++n) disconnect(connect(n, false, 1s), 1s);
   EXPECT_LE(registry.hosts(), kMaxIdleHosts + 2);
-  EXPECT_EQ(registry.connect(host(0), true, kStart + 1s).client, stays);
+  EXPECT_EQ(connect(0, true, 1s), stays);
 }
 
 }  // namespace

@@ -25,11 +25,7 @@ std::vector<std::string> objects_in(const std::string& reply) {
   return out;
 }
 
-class Identification : public ::testing::Test {
- protected:
-  Desk desk;
-  Line plc{desk};
-};
+using Identification = AtTheDesk;
 
 TEST_F(Identification, BasicNamesVendorProductAndRevision) {
   const std::string reply = plc.ask("2B 0E 01 00");

@@ -1,7 +1,10 @@
+// The rules by which a write acts, on the memory alone (design 3.3, "Edges").
 #include "gateway/upstream/modbus_tcp/edges.hpp"
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <sstream>
 #include <vector>
 
 namespace axisgate::modbus_tcp {
@@ -9,10 +12,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using enum Command;
-
-constexpr Duration kRearm = 1000ms;
-constexpr WriteForm kSingle = WriteForm::single;
-constexpr WriteForm kBlock = WriteForm::block;
 
 constexpr Verdict kNothing = Verdict::nothing;
 constexpr Verdict kActs = Verdict::acts;
@@ -24,114 +23,171 @@ Writing at(WriteForm form, Duration since_start) {
   Writing writing;
   writing.form = form;
   writing.now = Instant{} + since_start;
-  writing.rearm = kRearm;
+  writing.rearm = 1000ms;
   writing.client = kMe;
   return writing;
 }
+Writing single(Duration since_start = 0ms) { return at(WriteForm::single, since_start); }
+Writing block(Duration since_start = 0ms) { return at(WriteForm::block, since_start); }
 
-/// One write of a story: when, how, what, and what comes of it.
-struct Step {
-  Duration at;
-  WriteForm form;
-  int value;
-  Verdict verdict;
-};
-struct Story {
-  const char* sentence;
-  std::vector<Step> steps;
-};
+std::string word(Verdict verdict) { return verdict == kActs ? "acts" : verdict == kNotNew ? "not_new" : ""; }
 
-void play_commands(const std::vector<Story>& stories) {
-  for (const Story& story : stories) {
-    SCOPED_TRACE(story.sentence);
-    EdgeMemory memory;
-    for (const Step& step : story.steps) {
-      EXPECT_EQ(memory.command(Command{static_cast<std::uint8_t>(step.value)}, at(step.form, step.at)), step.verdict)
-          << "value " << step.value << " at " << step.at.count() / 1'000'000 << " ms";
+/// What one write comes to, in a word; "" for nothing.
+using Write = std::function<std::string(const std::string& value, const Writing&)>;
+
+/// Plays the writes of a story, told between commas: "block 0", "single 6 acts", "@999 single 6 not_new": at which
+/// millisecond (10 after the one before where none is told), how, which value, and what comes of it, if anything.
+void play(const char* sentence, const std::string& story, const Write& write) {
+  SCOPED_TRACE(sentence);
+  Duration now = -10ms;
+  std::istringstream steps(story);
+  for (std::string step; std::getline(steps, step, ',');) {
+    SCOPED_TRACE(step);
+    std::istringstream words(step);
+    std::string form;
+    std::string value;
+    std::string outcome;
+    words >> form;
+    now += 10ms;
+    if (form[0] == '@') {
+      now = std::chrono::milliseconds(std::stoi(form.substr(1)));
+      words >> form;
     }
+    words >> value >> outcome;
+    EXPECT_EQ(write(value, form == "single" ? single(now) : block(now)), outcome);
   }
 }
 
-TEST(Edges, OfCommand) {
-  play_commands({
-      {"a block write with an empty memory is only remembered, and says so once",
-       {{0ms, kBlock, 1, kNotNew}, {10ms, kBlock, 1, kNothing}}},
-      {"except a stop that is asserted, which acts",
-       {{0ms, kBlock, 2, kActs}, {10ms, kBlock, 2, kNothing}, {20ms, kBlock, 2, kNothing}}},
-      {"a block write acts if the value differs", {{0ms, kBlock, 0, kNothing}, {10ms, kBlock, 6, kActs}}},
-      {"the same block written for ever starts nothing twice",
-       {{0ms, kBlock, 0, kNothing},
-        {10ms, kBlock, 6, kActs},
-        {20ms, kBlock, 6, kNothing},
-        {5000ms, kBlock, 6, kNothing},
-        {60000ms, kBlock, 6, kNothing}}},
-      {"0 does nothing and arms",
-       {{0ms, kBlock, 0, kNothing}, {10ms, kBlock, 6, kActs}, {20ms, kBlock, 0, kNothing}, {30ms, kBlock, 6, kActs}}},
-      {"from one command to another no 0 is needed",
-       {{0ms, kBlock, 0, kNothing}, {10ms, kBlock, 1, kActs}, {20ms, kBlock, 6, kActs}}},
-      {"a single write acts if the memory is empty", {{0ms, kSingle, 1, kActs}}},
-      {"or the value differs", {{0ms, kSingle, 1, kActs}, {10ms, kSingle, 6, kActs}}},
-      {"two presses within rearm_ms count once", {{0ms, kSingle, 6, kActs}, {999ms, kSingle, 6, kNothing}}},
-      {"a relative move that is not new says so", {{0ms, kSingle, 7, kActs}, {999ms, kSingle, 7, kNotNew}}},
-      {"it acts when it was not written for rearm_ms", {{0ms, kSingle, 6, kActs}, {1000ms, kSingle, 6, kActs}}},
-      {"a press that does not act is a write all the same",
-       {{0ms, kSingle, 6, kActs},
-        {999ms, kSingle, 6, kNothing},
-        {1998ms, kSingle, 6, kNothing},
-        {2998ms, kSingle, 6, kActs}}},
-      {"a block write counts as written too",
-       {{0ms, kBlock, 0, kNothing},
-        {10ms, kBlock, 6, kActs},
-        {20ms, kSingle, 6, kNothing},
-        {1020ms, kSingle, 6, kActs}}},
-      {"a single write of what was only remembered says that it is not new",
-       {{0ms, kBlock, 6, kNotNew}, {10ms, kSingle, 6, kNotNew}}},
-      {"0 arms a single write at once",
-       {{0ms, kSingle, 6, kActs}, {10ms, kSingle, 0, kNothing}, {20ms, kSingle, 6, kActs}}},
-      {"a single 0 does nothing, whatever the memory", {{0ms, kSingle, 0, kNothing}, {5000ms, kSingle, 0, kNothing}}},
-      {"a stop's press is never swallowed", {{0ms, kSingle, 3, kActs}, {10ms, kSingle, 3, kActs}}},
-  });
-}
+struct Story {
+  const char* sentence;
+  const char* steps;
+};
 
-TEST(Edges, OfControlword) {
-  const std::vector<Story> stories{
-      {"a block write with an empty memory is only remembered, also where it would stop by the edge rule",
-       {{0ms, kBlock, 0x0F, kNotNew}, {10ms, kBlock, 0x0F, kNothing}}},
-      {"a 0 from a new connection stops nothing", {{0ms, kBlock, 0, kNothing}, {10ms, kBlock, 0, kNothing}}},
-      {"a block write acts where the value differs, 0 too",
-       {{0ms, kBlock, 0x0F, kNotNew}, {10ms, kBlock, 0, kActs}, {20ms, kBlock, 0, kNothing}, {30ms, kBlock, 6, kActs}}},
-      {"a single write acts with an empty memory", {{0ms, kSingle, 0, kActs}}},
-      {"or after rearm_ms",
-       {{0ms, kSingle, 0x1F, kActs}, {500ms, kSingle, 0x1F, kNothing}, {1500ms, kSingle, 0x1F, kActs}}},
+TEST(Edges, of_command) {
+  const Story stories[] = {
+      {"a block write with an empty memory is only remembered, and says so once", "block 1 not_new, block 1"},
+      {"except a stop that is asserted, which acts", "block 2 acts, block 2, block 2"},
+      {"a block write acts if the value differs", "block 0, block 6 acts"},
+      {"the same block for ever starts nothing twice", "block 0, block 6 acts, block 6, @5000 block 6, @60000 block 6"},
+      {"0 does nothing and arms", "block 0, block 6 acts, block 0, block 6 acts"},
+      {"from one command to another no 0 is needed", "block 0, block 1 acts, block 6 acts"},
+      {"a single write acts if the memory is empty or the value differs", "single 1 acts, single 6 acts"},
+      {"two presses within rearm_ms count once", "single 6 acts, @999 single 6"},
+      {"a relative move that is not new says so", "single 7 acts, @999 single 7 not_new"},
+      {"it acts when it was not written for rearm_ms", "single 6 acts, @1000 single 6 acts"},
+      {"a press that does not act is a write all the same",
+       "single 6 acts, @999 single 6, @1998 single 6, @2998 single 6 acts"},
+      {"a block write counts as written too", "block 0, block 6 acts, single 6, @1020 single 6 acts"},
+      {"what was only remembered is not new in a single write", "block 6 not_new, single 6 not_new"},
+      {"0 arms a single write at once", "single 6 acts, single 0, single 6 acts"},
+      {"a single 0 does nothing, whatever the memory", "single 0, @5000 single 0"},
+      {"a stop's press is never swallowed", "single 3 acts, single 3 acts"},
   };
   for (const Story& story : stories) {
-    SCOPED_TRACE(story.sentence);
     EdgeMemory memory;
-    for (const Step& step : story.steps)
-      EXPECT_EQ(memory.controlword(static_cast<std::uint16_t>(step.value), at(step.form, step.at)), step.verdict)
-          << step.value;
+    play(story.sentence, story.steps, [&](const std::string& value, const Writing& writing) {
+      return word(memory.command(Command{static_cast<std::uint8_t>(std::stoi(value))}, writing));
+    });
+  }
+}
+
+TEST(Edges, of_controlword) {
+  const Story stories[] = {
+      {"a block with an empty memory is only remembered, also where it would stop by the edge rule",
+       "block 15 not_new, block 15"},
+      {"a 0 from a new connection stops nothing", "block 0, block 0"},
+      {"a block write acts where the value differs, 0 too", "block 15 not_new, block 0 acts, block 0, block 6 acts"},
+      {"a single write acts with an empty memory", "single 0 acts"},
+      {"or after rearm_ms", "single 31 acts, @500 single 31, @1500 single 31 acts"},
+  };
+  for (const Story& story : stories) {
+    EdgeMemory memory;
+    play(story.sentence, story.steps, [&](const std::string& value, const Writing& writing) {
+      return word(memory.controlword(static_cast<std::uint16_t>(std::stoi(value)), writing));
+    });
+  }
+}
+
+TEST(Edges, of_coils) {
+  struct CoilStory {
+    const char* sentence;
+    std::size_t coil;
+    const char* steps;
+  };
+  const CoilStory stories[] = {
+      {"enable: 0 -> 1 enables and 1 -> 0 disables", 0, "block 0, block 1 enable, block 0 disable"},
+      {"a level of 1 found in a first block is only remembered", 0, "block 1 not_new, block 1"},
+      {"so is a level of 0", 0, "block 0, block 0"},
+      {"a level of 1 is no standing right", 0, "block 0, block 1 enable, @20000 block 1, @40000 block 1"},
+      {"nor in single writes, however far apart, and these are told", 0,
+       "single 1 enable, @2000 single 1 not_new, @60000 single 1 not_new, single 0 disable, single 1 enable"},
+      {"a single 0 always acts", 0, "single 0 disable, @500 single 0 disable, block 0"},
+      {"fault_reset acts on 0 -> 1 only", 1, "block 0, block 1 fault_reset, block 0, block 1 fault_reset"},
+      {"fault_reset in a first block is only remembered", 1, "block 1 not_new"},
+      {"a button that only ever writes 1 works once per rearm_ms", 1,
+       "single 1 fault_reset, @999 single 1, @1999 single 1 fault_reset"},
+      {"a relative move's button says that it is not new", 5, "single 1 move_relative, @999 single 1 not_new"},
+      {"a 0 arms it at once", 5, "single 1 move_relative, single 0, single 1 move_relative"},
+      {"quick_stop asserted in a first block acts", 2, "block 1 quick_stop, block 1"},
+      {"quick_stop 0 does nothing", 2, "single 0, block 0"},
+      {"a quick_stop's press is never swallowed", 2, "single 1 quick_stop, single 1 quick_stop"},
+      {"halt asserted in a first block acts, and 0 ends it", 3, "block 1 halt, block 1, block 0 end_halt"},
+      {"a halt's press is never swallowed", 3, "single 1 halt, single 1 halt"},
+      {"halt 0 in a first block is only remembered", 3, "block 0, block 1 halt"},
+      {"start_absolute acts on 0 -> 1", 4, "block 0, block 1 move_absolute"},
+      {"home acts on 0 -> 1", 6, "block 0, block 1 home"},
+      {"run_velocity: 1 runs and 0 halts", 7, "block 0, block 1 run_velocity, block 0 end_run"},
+      {"run_velocity in a first block is only remembered, 1 and 0", 7, "block 1 not_new, block 0 end_run"},
+      {"run_velocity needs a 0 first in single writes too", 7,
+       "single 1 not_new, single 1 not_new, single 0 end_run, single 1 run_velocity"},
+  };
+  for (const CoilStory& story : stories) {
+    EdgeMemory memory;
+    play(story.sentence, story.steps, [&](const std::string& value, const Writing& writing) {
+      const CoilAsks asks = memory.coil(coil_rows()[story.coil], value == "1", writing);
+      EXPECT_EQ(asks.verdict == kActs, asks.command != none);
+      return asks.verdict == kActs ? std::string(text(asks.command)) : word(asks.verdict);
+    });
+  }
+}
+
+TEST(Edges, of_command_ids) {
+  // The command's number, and behind the slash the id.
+  const Story stories[] = {
+      {"the first id is only remembered", "block 1/7 not_new, block 1/7, block 1/8 acts"},
+      {"a stop acts with the first id too", "block 3/7 acts, block 3/7"},
+      {"a stop acts if the command differs, though the id does not",
+       "block 0/1, block 1/2 acts, block 2/2 acts, block 3/2 acts, block 3/2"},
+      {"a stop acts if the id differs, though the command does not", "block 3/7 acts, block 3/8 acts, block 3/8"},
+      {"the same id acts once, whatever else is commanded with it", "block 0/1, block 1/2 acts, block 10/2"},
+      {"a new id needs no other command", "block 0/4, block 7/5 acts, block 7/6 acts"},
+      {"an id that went back differs too", "block 0/9, block 1/8 acts"},
+      {"command 0 with an id sets the last id", "block 0/1, block 0/2, block 1/2, block 1/3 acts"},
+  };
+  for (const Story& story : stories) {
+    EdgeMemory memory;
+    CommandIds ids;
+    play(story.sentence, story.steps, [&](const std::string& value, const Writing& writing) {
+      const auto id = static_cast<std::uint16_t>(std::stoi(value.substr(value.find('/') + 1)));
+      return word(memory.command_with_id(Command{static_cast<std::uint8_t>(std::stoi(value))}, id, ids, writing));
+    });
   }
 }
 
 // What ends a motion between two presses of the same command, and what the second press comes to then.
-TEST(Edges, ASingleRepetitionIsNotNewAfterWhatEndedItsAction) {
+TEST(Edges, a_single_repetition_is_not_new_after_what_ended_its_action) {
   struct Ending {
     const char* what;
-    void (*happens)(Endings&);
+    std::function<void(Endings&)> happens;
     Verdict soon;   ///< pressed again within rearm_ms
     Verdict later;  ///< pressed again after it
   };
-  const std::vector<Ending> endings{
+  const Ending endings[] = {
       {"nothing", [](Endings&) {}, kNothing, kActs},
       {"its own stop", [](Endings& e) { e.stopped(kMe); }, kNotNew, kActs},
       {"another client's stop", [](Endings& e) { e.stopped(kOther); }, kNotNew, kNotNew},
       {"the gateway's own stop", [](Endings& e) { e.stopped(0); }, kNotNew, kNotNew},
-      {"another's stop and then its own",
-       [](Endings& e) {
-         e.stopped(kOther);
-         e.stopped(kMe);
-       },
-       kNotNew, kNotNew},
+      {"another's and its own", [](Endings& e) { e.stopped(kOther), e.stopped(kMe); }, kNotNew, kNotNew},
       {"a fault", [](Endings& e) { e.faulted(); }, kNotNew, kNotNew},
       {"a link loss", [](Endings& e) { e.lost(); }, kNotNew, kNotNew},
       {"its own command", [](Endings& e) { e.commanded(kMe); }, kNothing, kActs},
@@ -143,7 +199,7 @@ TEST(Edges, ASingleRepetitionIsNotNewAfterWhatEndedItsAction) {
       EdgeMemory memory;
       Endings history;
       const auto press = [&](Duration when, Command command) {
-        Writing writing = at(kSingle, when);
+        Writing writing = single(when);
         writing.endings = &history;
         return memory.command(command, writing);
       };
@@ -156,117 +212,25 @@ TEST(Edges, ASingleRepetitionIsNotNewAfterWhatEndedItsAction) {
   }
 }
 
-TEST(Edges, AChangedTargetBesideWhatIsNotNewIsTold) {
+TEST(Edges, a_changed_target_beside_what_is_not_new_is_told) {
   EdgeMemory memory;
-  const auto write = [&](WriteForm form, Duration when, std::uint64_t targets) {
-    Writing writing = at(form, when);
+  const auto write = [&](Writing writing, std::uint64_t targets) {
     writing.targets = targets;
     return memory.command(move_absolute, writing);
   };
-  EXPECT_EQ(write(kSingle, 0ms, 1), kActs);
-  EXPECT_EQ(write(kSingle, 300ms, 2), kNotNew) << "another target, the same press";
-  EXPECT_EQ(write(kSingle, 600ms, 2), kNotNew) << "each time";
-  EXPECT_EQ(write(kBlock, 700ms, 3), kNotNew) << "a block that holds the command";
-  EXPECT_EQ(write(kBlock, 710ms, 3), kNothing) << "once";
-  EXPECT_EQ(write(kSingle, 1710ms, 3), kActs);
-  EXPECT_EQ(write(kBlock, 1720ms, 3), kNothing);
-  EXPECT_EQ(write(kBlock, 1730ms, 4), kNotNew);
+  EXPECT_EQ(write(single(0ms), 1), kActs);
+  EXPECT_EQ(write(single(300ms), 2), kNotNew) << "another target, the same press";
+  EXPECT_EQ(write(single(600ms), 2), kNotNew) << "each time";
+  EXPECT_EQ(write(block(700ms), 3), kNotNew) << "a block that has the command";
+  EXPECT_EQ(write(block(710ms), 3), kNothing) << "once";
+  EXPECT_EQ(write(single(1710ms), 3), kActs);
+  EXPECT_EQ(write(block(1720ms), 3), kNothing);
+  EXPECT_EQ(write(block(1730ms), 4), kNotNew);
 }
 
-struct CoilStep {
-  Duration at;
-  WriteForm form;
-  bool value;
-  Command asks;  ///< none: does not act
-  Verdict verdict = asks == none ? kNothing : kActs;
-};
-struct CoilStory {
-  const char* sentence;
-  int coil;
-  std::vector<CoilStep> steps;
-};
-
-TEST(Edges, OfCoils) {
-  const std::vector<CoilStory> stories{
-      {"enable: 0 -> 1 enables and 1 -> 0 disables",
-       0,
-       {{0ms, kBlock, false, none}, {10ms, kBlock, true, enable}, {20ms, kBlock, false, disable}}},
-      {"a level of 1 found in a first block is only remembered",
-       0,
-       {{0ms, kBlock, true, none, kNotNew}, {9ms, kBlock, true, none}}},
-      {"so is a level of 0", 0, {{0ms, kBlock, false, none}, {10ms, kBlock, false, none}}},
-      {"a level of 1 is no standing right, in a block",
-       0,
-       {{0ms, kBlock, false, none},
-        {10ms, kBlock, true, enable},
-        {20s, kBlock, true, none},
-        {40s, kBlock, true, none}}},
-      {"nor in single writes, however far apart, and these are told",
-       0,
-       {{0ms, kSingle, true, enable},
-        {2s, kSingle, true, none, kNotNew},
-        {60s, kSingle, true, none, kNotNew},
-        {61s, kSingle, false, disable},
-        {62s, kSingle, true, enable}}},
-      {"a single 0 always acts",
-       0,
-       {{0ms, kSingle, false, disable}, {500ms, kSingle, false, disable}, {600ms, kBlock, false, none}}},
-      {"fault_reset acts on 0 -> 1 only",
-       1,
-       {{0ms, kBlock, false, none},
-        {10ms, kBlock, true, fault_reset},
-        {20ms, kBlock, false, none},
-        {30ms, kBlock, true, fault_reset}}},
-      {"fault_reset in a first block is only remembered", 1, {{0ms, kBlock, true, none, kNotNew}}},
-      {"a button that only ever writes 1 works once per rearm_ms",
-       1,
-       {{0ms, kSingle, true, fault_reset}, {999ms, kSingle, true, none}, {1999ms, kSingle, true, fault_reset}}},
-      {"a relative move's button says that it is not new",
-       5,
-       {{0ms, kSingle, true, move_relative}, {999ms, kSingle, true, none, kNotNew}}},
-      {"a 0 arms it at once",
-       5,
-       {{0ms, kSingle, true, move_relative}, {50ms, kSingle, false, none}, {100ms, kSingle, true, move_relative}}},
-      {"quick_stop asserted in a first block acts", 2, {{0ms, kBlock, true, quick_stop}, {10ms, kBlock, true, none}}},
-      {"quick_stop 0 does nothing", 2, {{0ms, kSingle, false, none}, {10ms, kBlock, false, none}}},
-      {"a quick_stop's press is never swallowed",
-       2,
-       {{0ms, kSingle, true, quick_stop}, {10ms, kSingle, true, quick_stop}}},
-      {"halt asserted in a first block acts, and 0 ends the halt",
-       3,
-       {{0ms, kBlock, true, halt}, {10ms, kBlock, true, none}, {20ms, kBlock, false, end_halt}}},
-      {"a halt's press is never swallowed", 3, {{0ms, kSingle, true, halt}, {10ms, kSingle, true, halt}}},
-      {"halt 0 in a first block is only remembered", 3, {{0ms, kBlock, false, none}, {10ms, kBlock, true, halt}}},
-      {"start_absolute acts on 0 -> 1", 4, {{0ms, kBlock, false, none}, {10ms, kBlock, true, move_absolute}}},
-      {"home acts on 0 -> 1", 6, {{0ms, kBlock, false, none}, {10ms, kBlock, true, home}}},
-      {"run_velocity: 1 runs and 0 halts",
-       7,
-       {{0ms, kBlock, false, none}, {10ms, kBlock, true, run_velocity}, {20ms, kBlock, false, end_run}}},
-      {"run_velocity in a first block is only remembered, 1 and 0",
-       7,
-       {{0ms, kBlock, true, none, kNotNew}, {10ms, kBlock, false, end_run}}},
-      {"run_velocity needs a 0 first in single writes too",
-       7,
-       {{0ms, kSingle, true, none, kNotNew},
-        {10ms, kSingle, true, none, kNotNew},
-        {20ms, kSingle, false, end_run},
-        {30ms, kSingle, true, run_velocity}}},
-  };
-  for (const CoilStory& story : stories) {
-    SCOPED_TRACE(story.sentence);
-    EdgeMemory memory;
-    const CoilRow& coil = coil_rows()[static_cast<std::size_t>(story.coil)];
-    for (const CoilStep& step : story.steps) {
-      const CoilAsks asks = memory.coil(coil, step.value, at(step.form, step.at));
-      EXPECT_EQ(text(asks.command), text(step.asks)) << step.value << " at " << step.at.count() / 1'000'000 << " ms";
-      EXPECT_EQ(asks.verdict, step.verdict) << step.value << " at " << step.at.count() / 1'000'000 << " ms";
-    }
-  }
-}
-
-TEST(Edges, ALevelThatIsSoAlreadyIsAnsweredNormally) {
+TEST(Edges, a_level_that_is_so_already_is_answered_normally) {
   EdgeMemory memory;
-  Writing writing = at(kSingle, 0ms);
+  Writing writing = single();
   EXPECT_EQ(memory.coil(coil_rows()[0], true, writing).command, enable);
   writing.enabled = true;
   EXPECT_EQ(memory.coil(coil_rows()[0], true, writing).verdict, kNothing);
@@ -276,9 +240,9 @@ TEST(Edges, ALevelThatIsSoAlreadyIsAnsweredNormally) {
   EXPECT_EQ(memory.coil(coil_rows()[7], true, writing).verdict, kNothing);
 }
 
-TEST(Edges, EnableNeedsA0FirstWhileLatchedOrFaulted) {
+TEST(Edges, enable_needs_a_0_first_while_latched_or_faulted) {
   EdgeMemory memory;
-  Writing writing = at(kSingle, 0ms);
+  Writing writing = single();
   writing.needs_zero = true;
   EXPECT_EQ(memory.coil(coil_rows()[0], true, writing).verdict, kNotNew);
   EXPECT_EQ(memory.coil(coil_rows()[0], true, writing).verdict, kNotNew);
@@ -286,93 +250,49 @@ TEST(Edges, EnableNeedsA0FirstWhileLatchedOrFaulted) {
   EXPECT_EQ(memory.coil(coil_rows()[0], true, writing).command, enable);
 }
 
-struct IdStep {
-  Command command;
-  int id;
-  Verdict verdict;
-};
-
-TEST(Edges, OfCommandIds) {
-  const std::vector<std::pair<const char*, std::vector<IdStep>>> stories{
-      {"the first id is only remembered", {{enable, 7, kNotNew}, {enable, 7, kNothing}, {enable, 8, kActs}}},
-      {"a stop acts with the first id too", {{quick_stop, 7, kActs}, {quick_stop, 7, kNothing}}},
-      {"a stop acts if the command differs, though the id does not",
-       {{none, 1, kNothing},
-        {enable, 2, kActs},
-        {disable, 2, kActs},
-        {quick_stop, 2, kActs},
-        {quick_stop, 2, kNothing}}},
-      {"a stop acts if the id differs, though the command does not",
-       {{quick_stop, 7, kActs}, {quick_stop, 8, kActs}, {quick_stop, 8, kNothing}}},
-      {"the same id acts once, whatever else is commanded with it",
-       {{none, 1, kNothing}, {enable, 2, kActs}, {home, 2, kNothing}}},
-      {"an id that went back differs too", {{none, 9, kNothing}, {enable, 8, kActs}}},
-      {"command 0 with an id sets the last id",
-       {{none, 1, kNothing}, {none, 2, kNothing}, {enable, 2, kNothing}, {enable, 3, kActs}}},
-  };
-  for (const auto& [sentence, steps] : stories) {
-    SCOPED_TRACE(sentence);
-    EdgeMemory memory;
-    CommandIds ids;
-    for (const IdStep& step : steps) {
-      const auto id = static_cast<std::uint16_t>(step.id);
-      EXPECT_EQ(memory.command_with_id(step.command, id, ids, at(kBlock, 0ms)), step.verdict) << step.id;
-    }
-  }
-}
-
-TEST(Edges, AnIdThatWasOnlyRememberedIsNotSeen) {
+TEST(Edges, an_id_that_was_only_remembered_is_not_seen) {
   EdgeMemory memory;
   CommandIds ids;
-  static_cast<void>(memory.command_with_id(enable, 7, ids, at(kBlock, 0ms)));
+  static_cast<void>(memory.command_with_id(enable, 7, ids, block()));
   EXPECT_EQ(ids.last, 7);
   EXPECT_EQ(ids.seen, std::nullopt);
-  static_cast<void>(memory.command_with_id(none, 8, ids, at(kBlock, 1ms)));
+  static_cast<void>(memory.command_with_id(none, 8, ids, block(1ms)));
   EXPECT_EQ(ids.seen, 8);
-  static_cast<void>(memory.command_with_id(enable, 9, ids, at(kBlock, 2ms)));
+  static_cast<void>(memory.command_with_id(enable, 9, ids, block(2ms)));
   EXPECT_EQ(ids.seen, 9);
 }
 
-TEST(Edges, AnIdNeedsNeitherADifferentCommandNorAnEmptyMemory) {
+TEST(Edges, what_was_refused_and_did_nothing_is_no_press) {
   EdgeMemory memory;
-  CommandIds ids{4, 4};
-  EXPECT_EQ(memory.command_with_id(move_relative, 5, ids, at(kBlock, 0ms)), kActs);
-  EXPECT_EQ(memory.command_with_id(move_relative, 6, ids, at(kBlock, 1ms)), kActs);
-}
-
-TEST(Edges, WhatWasRefusedAndDidNothingIsNoPress) {
-  EdgeMemory memory;
-  EXPECT_EQ(memory.command(move_absolute, at(kSingle, 0ms)), kActs);
+  EXPECT_EQ(memory.command(move_absolute, single()), kActs);
   memory.forget_presses(Instant{});
-  EXPECT_EQ(memory.command(move_absolute, at(kSingle, 100ms)), kActs);
-  EXPECT_EQ(memory.command(move_absolute, at(kSingle, 200ms)), kNothing);
+  EXPECT_EQ(memory.command(move_absolute, single(100ms)), kActs);
+  EXPECT_EQ(memory.command(move_absolute, single(200ms)), kNothing);
   memory.forget_presses(Instant{} + 200ms);
-  EXPECT_EQ(memory.command(move_absolute, at(kBlock, 300ms)), kNothing) << "a scanner's block is not started by it";
+  EXPECT_EQ(memory.command(move_absolute, block(300ms)), kNothing) << "a scanner's block is not started by it";
 }
 
-TEST(Edges, ABlockOfZerosStopsWhereTheControlwordWasAnother) {
+TEST(Edges, a_block_of_zeros_stops_where_the_controlword_was_another) {
   EdgeMemory memory;
   EXPECT_FALSE(memory.zeros(Instant{})) << "on an empty memory it is only remembered";
   EXPECT_FALSE(memory.command_empty());
-  EXPECT_EQ(memory.controlword(0x0F, at(kBlock, 10ms)), kActs);
+  EXPECT_EQ(memory.controlword(0x0F, block(10ms)), kActs);
   EXPECT_TRUE(memory.zeros(Instant{} + 20ms));
   EXPECT_FALSE(memory.zeros(Instant{} + 30ms));
 }
 
-TEST(Edges, TheLastCommandIsReadBack) {
+TEST(Edges, the_last_command_is_read_back_though_it_did_not_act) {
   EdgeMemory memory;
   EXPECT_EQ(memory.last_command(), 0);
-  static_cast<void>(memory.command(home, at(kBlock, 0ms)));
-  EXPECT_EQ(memory.last_command(), 10) << "remembered, though it did not act";
+  static_cast<void>(memory.command(home, block()));
+  EXPECT_EQ(memory.last_command(), 10);
 }
 
-TEST(Stops, OfControlwordAreBit1Or2ClearAndTheValues6And7) {
-  for (const int value : {0x00, 0x02, 0x04, 0x05, 0x06, 0x07, 0x0B, 0x0D, 0x80, 0x106}) {
+TEST(Stops, of_controlword_are_bit_1_or_2_clear_and_the_values_6_and_7) {
+  for (const int value : {0x00, 0x02, 0x04, 0x05, 0x06, 0x07, 0x0B, 0x0D, 0x80, 0x106})
     EXPECT_TRUE(is_stop_controlword(static_cast<std::uint16_t>(value))) << value;
-  }
-  for (const int value : {0x0F, 0x1F, 0x3F, 0x10F, 0x8F, 0x0E}) {
+  for (const int value : {0x0F, 0x1F, 0x3F, 0x10F, 0x8F, 0x0E})
     EXPECT_FALSE(is_stop_controlword(static_cast<std::uint16_t>(value))) << value;
-  }
 }
 
 }  // namespace

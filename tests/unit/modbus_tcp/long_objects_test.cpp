@@ -1,6 +1,7 @@
 // Function 43/13 with objects that do not fit a PDU: read in parts from one fetch, written in parts as one download.
 #include <gtest/gtest.h>
 
+#include "gateway/upstream/modbus_tcp/object_buffers.hpp"
 #include "tests/unit/modbus_tcp/support/desk.hpp"
 
 namespace axisgate::modbus_tcp::test {
@@ -12,7 +13,7 @@ std::vector<Byte> long_content(std::size_t size) {
   return bytes;
 }
 
-class LongObjects : public ::testing::Test {
+class LongObjects : public AtTheDesk {
  protected:
   static std::string read_at(std::size_t start, std::size_t count = 0, const std::string& object = "10 08 00") {
     return "2B 0D 00 00 01" + object + word(static_cast<std::int64_t>(start)) + word(static_cast<std::int64_t>(count));
@@ -47,9 +48,7 @@ class LongObjects : public ::testing::Test {
     ADD_FAILURE() << "no end: " << reply;
     return out;
   }
-  const ObjectRequest& last() { return desk.port.submitted.back().group.object.value(); }
-  Desk desk;
-  Line plc{desk};
+  const ObjectRequest& asked() { return last().object.value(); }
 };
 
 TEST_F(LongObjects, AreReadInPartsWithOneFetch) {
@@ -83,42 +82,6 @@ TEST_F(LongObjects, OptionsInTheHeaderTakeTheirRoomFromTheData) {
   EXPECT_EQ(load_be16(pdu, 13), 238);
 }
 
-TEST_F(LongObjects, ShortOnesMayBeReadInPartsToo) {
-  desk.port.at_once = {{{}, 0x44332211, 4}};
-  EXPECT_EQ(plc.ask(read_at(0, 2)), "2B 0D 80 00 01 10 08 00 00 00 00 02 11 22");
-  EXPECT_EQ(plc.ask(read_at(2, 2)), "2B 0D 00 00 01 10 08 00 00 02 00 02 33 44");
-}
-
-TEST_F(LongObjects, AHigherStartWithoutAFetchIs0x03) {
-  EXPECT_EQ(plc.ask(read_at(1)), "AB 03");
-  static_cast<void>(fetch(long_content(300)));
-  EXPECT_EQ(plc.ask(read_at(300)), "AB 03") << "behind the end";
-  EXPECT_EQ(plc.ask(read_at(65535)), "AB 03");
-  EXPECT_EQ(plc.ask(read_at(241, 0, "10 08 01")), "AB 03") << "another object";
-  EXPECT_EQ(plc.ask("2B 0D 00 00 02 10 08 00 00 F1 00 00"), "AB 03") << "another axis";
-  EXPECT_EQ(desk.port.submitted.size(), 1U);
-  Line panel(desk, Role::viewer, kPanel);
-  EXPECT_EQ(panel.ask(read_at(241)), "AB 03") << "another client";
-}
-
-TEST_F(LongObjects, AreKeptFor5s) {
-  static_cast<void>(fetch(long_content(300)));
-  desk.runtime.advance_by(4999ms);
-  EXPECT_TRUE(is_done(plc.ask(read_at(241))));
-  desk.runtime.advance_by(1ms);
-  EXPECT_EQ(plc.ask(read_at(241)), "AB 03");
-}
-
-TEST_F(LongObjects, AreForgottenWhenAFetchFailsOrTheyAreWritten) {
-  static_cast<void>(fetch(long_content(300)));
-  desk.port.at_once = {{{Errc::timed_out, 0}}};
-  EXPECT_EQ(plc.ask(read_at(0)), "AB 0B");
-  EXPECT_EQ(plc.ask(read_at(241)), "AB 03") << "it may have changed since";
-  static_cast<void>(fetch(long_content(300)));
-  EXPECT_TRUE(is_done(plc.ask(write_at("01", 0, {1}, "10 08 00"))));
-  EXPECT_EQ(plc.ask(read_at(241)), "AB 03");
-}
-
 TEST_F(LongObjects, MayBeAskedForInOneGo) {
   desk.port.slow = true;
   const auto first = long_content(300);
@@ -149,16 +112,9 @@ TEST_F(LongObjects, AreWrittenInPartsAndDownloadedAtTheLast) {
   EXPECT_TRUE(desk.port.submitted.empty());
   EXPECT_EQ(plc.ask(write_at("01", 482, part(482, 18))), "2B 0D 01 00 01 20 30 00 01 E2 00 00");
   ASSERT_EQ(desk.port.submitted.size(), 1U);
-  EXPECT_EQ(last().size, 0);
-  ASSERT_NE(last().bytes, nullptr);
-  EXPECT_EQ(*last().bytes, content);
-}
-
-TEST_F(LongObjects, OfFourBytesInTwoPartsAreANumber) {
-  EXPECT_TRUE(is_done(plc.ask(write_at("81", 0, {0x10, 0x27}))));
-  EXPECT_TRUE(is_done(plc.ask(write_at("01", 2, {0, 0}))));
-  EXPECT_EQ(last().size, 4);
-  EXPECT_EQ(last().data, 10000U);
+  EXPECT_EQ(asked().size, 0);
+  ASSERT_NE(asked().bytes, nullptr);
+  EXPECT_EQ(*asked().bytes, content);
 }
 
 TEST_F(LongObjects, OfUpTo4KiBAreWritten) {
@@ -177,48 +133,15 @@ TEST_F(LongObjects, OfUpTo4KiBAreWritten) {
     ASSERT_TRUE(is_done(plc.ask(write_at("81", at, {from, from + 240}))));
   }
   EXPECT_TRUE(is_done(plc.ask(write_at("01", at, rest))));
-  EXPECT_EQ(*last().bytes, content);
+  EXPECT_EQ(*asked().bytes, content);
 }
 
-TEST_F(LongObjects, PartsThatDoNotFitTogetherAre0x03AndAllIsDropped) {
-  const auto begin = [&] { EXPECT_TRUE(is_done(plc.ask(write_at("81", 0, {1, 2})))); };
-  const auto is_dropped = [&] { EXPECT_EQ(plc.ask(write_at("01", 2, {3})), "AB 03"); };
-  EXPECT_EQ(plc.ask(write_at("81", 2, {3})), "AB 03") << "no beginning";
-  begin();
-  EXPECT_EQ(plc.ask(write_at("81", 3, {3})), "AB 03") << "a gap";
-  is_dropped();
-  begin();
-  EXPECT_EQ(plc.ask(write_at("01", 1, {3})), "AB 03") << "an overlap";
-  is_dropped();
-  begin();
-  EXPECT_EQ(plc.ask(write_at("01", 2, {3}, "20 30 01")), "AB 03") << "another object";
-  is_dropped();
-  begin();
-  desk.runtime.advance_by(5s);
-  is_dropped();
-  EXPECT_TRUE(desk.port.submitted.empty());
-}
-
-TEST_F(LongObjects, PartsOfTwoClientsNeverMeet) {
-  Line other(desk, Role::engineer, kPanel);
-  EXPECT_TRUE(is_done(plc.ask(write_at("81", 0, {1, 2}))));
-  EXPECT_EQ(other.ask(write_at("01", 2, {9})), "AB 03");
-  EXPECT_TRUE(is_done(plc.ask(write_at("01", 2, {3}))));
-  EXPECT_EQ(hex_text(*last().bytes), "01 02 03");
-}
-
-TEST_F(LongObjects, PartsMayBeSentInOneGo) {
-  desk.port.slow = true;
-  plc.send(write_at("81", 0, {1, 2}));
-  plc.send(write_at("81", 2, {3, 4}));
-  plc.send(write_at("01", 4, {5}));
-  ASSERT_EQ(desk.port.submitted.size(), 1U);
-  EXPECT_EQ(hex_text(*last().bytes), "01 02 03 04 05");
-  EXPECT_TRUE(is_done(plc.reply()));
-  EXPECT_TRUE(is_done(plc.reply()));
-  EXPECT_EQ(plc.reply(), "") << "the last is answered by the drive";
-  desk.port.finish();
-  EXPECT_TRUE(is_done(plc.reply()));
+TEST(ObjectBuffers, keep_few_at_a_time_and_the_oldest_gives_way) {
+  ObjectBuffers buffers;
+  const auto content = std::make_shared<const std::vector<Byte>>(kMaxObjectBytes);
+  for (std::uint16_t i = 0; i <= kMaxKeptObjects; ++i) buffers.keep({1, i, 0}, content, Instant{});
+  EXPECT_EQ(buffers.kept({1, 0, 0}, Instant{}), nullptr);
+  for (std::uint16_t i = 1; i <= kMaxKeptObjects; ++i) EXPECT_NE(buffers.kept({1, i, 0}, Instant{}), nullptr) << i;
 }
 
 }  // namespace

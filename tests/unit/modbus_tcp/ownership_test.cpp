@@ -1,4 +1,4 @@
-// What a client sees of an axis's owner, what its life tells of it, and what a refusal by ownership leaves behind.
+// What a client sees of an axis's owner, and what its life tells of it.
 #include <gtest/gtest.h>
 
 #include "tests/unit/modbus_tcp/support/desk.hpp"
@@ -6,12 +6,8 @@
 namespace axisgate::modbus_tcp::test {
 namespace {
 
-using enum Command;
-
-class OwnerRegisters : public ::testing::Test {
+class OwnerRegisters : public AtTheDesk {
  protected:
-  Desk desk;
-  Line plc{desk};
   Line panel{desk, Role::operator_, kPanel};
 };
 
@@ -85,7 +81,7 @@ TEST_F(Life, BeatsWithAChangedGatewayHeartbeatTheFirstIncluded) {
 TEST_F(Life, BeatsWithAChangedHeartbeatOfTheAxisTheFirstIncluded) {
   const auto beats = [&](std::uint16_t address, int value) {
     EXPECT_TRUE(is_done(plc.write(address, value)));
-    return desk.port.submitted.back().group.beats;
+    return last().beats;
   };
   EXPECT_TRUE(beats(156, 0));
   EXPECT_FALSE(beats(156, 0));
@@ -93,10 +89,10 @@ TEST_F(Life, BeatsWithAChangedHeartbeatOfTheAxisTheFirstIncluded) {
   EXPECT_TRUE(beats(256, 1)) << "each axis has its own";
   EXPECT_FALSE(beats(156, 1));
   EXPECT_TRUE(is_done(plc.write_block(154, "00 00 00 00 00 02")));
-  EXPECT_TRUE(desk.port.submitted.back().group.beats) << "in a block";
+  EXPECT_TRUE(last().beats) << "in a block";
   EXPECT_FALSE(beats(146, 1)) << "no heartbeat in it";
   EXPECT_TRUE(is_done(panel.write(156, 2)));
-  EXPECT_TRUE(desk.port.submitted.back().group.beats) << "the panel's first";
+  EXPECT_TRUE(last().beats) << "the panel's first";
 }
 
 TEST_F(Life, EndsWithTheConnectionBeforeThePortIsTold) {
@@ -135,135 +131,32 @@ TEST_F(Life, OfAHostIsOneForAllItsConnectionsAndNeverGone) {
   EXPECT_EQ(again.life(), life);
 }
 
-/// A port at which another client owns the axis: stops pass, all else is refused.
-class Refused : public OwnerRegisters {
- protected:
-  std::string refuse(const std::string& pdu) {
-    desk.port.at_once = {{{Errc::not_owner, 0}, 0, 0}};
-    const std::string reply = plc.ask(pdu);
-    EXPECT_TRUE(is_exception(reply, 6)) << reply;
-    EXPECT_EQ(plc.read(125), "00 07");
-    desk.runtime.advance_by(100ms);
-    static_cast<void>(desk.port.taken());
-    return reply;
-  }
-  std::vector<Command> accept(const std::string& pdu) {
-    EXPECT_TRUE(is_done(plc.ask(pdu)));
-    desk.runtime.advance_by(100ms);
-    const auto out = commands(desk);
-    static_cast<void>(desk.port.taken());
-    return out;
-  }
-  static std::string row(const char* coils) { return "0F 00 64 00 08 01" + std::string(coils); }
-};
-using Commands = std::vector<Command>;
-
-TEST_F(Refused, AWriteThatDoesNotActIsToldSo) {
-  EXPECT_EQ(refuse("06 00 9A 00 00"), "86 06");
-  EXPECT_EQ(refuse(row("00")), "8F 06");
+TEST_F(Life, ReadsOfAClientThatIsAnAddressAreNoSignOfLife) {
+  desk.settings.client_is_address = true;
+  Line monitor(desk, Role::operator_, kPanel);
+  EXPECT_TRUE(is_done(monitor.write(156, 1)));
+  const auto life = last().life;
+  desk.runtime.advance_by(1s);
+  static_cast<void>(monitor.read(100, 40));
+  EXPECT_NE(life->last_request, desk.runtime.now());
+  EXPECT_TRUE(is_done(monitor.write(156, 2)));
+  EXPECT_EQ(life->last_request, desk.runtime.now());
 }
 
-TEST_F(Refused, AScannersLevelStartsNothingOnTheDayOnWhichTheAxisIsFree) {
-  EXPECT_EQ(accept(row("00")), Commands{});
-  refuse(row("01"));
-  refuse(row("01"));
-  EXPECT_EQ(accept(row("01")), Commands{}) << "the axis is free now";
-  EXPECT_EQ(accept(row("00")), Commands{disable}) << "it is its own level now, and its fall is a stop";
-  EXPECT_EQ(accept(row("01")), Commands{enable});
-}
-
-TEST_F(Refused, TheNext0To1Acts) {
-  EXPECT_EQ(accept(row("00")), Commands{});
-  refuse(row("81"));
-  refuse(row("00"));
-  EXPECT_EQ(accept(row("81")), (Commands{enable, run_velocity}));
-  refuse("06 00 9A 00 06");
-  EXPECT_EQ(accept("06 00 9A 00 06"), Commands{move_absolute}) << "a press in vain is not the press that counts";
-}
-
-TEST_F(Refused, ACommandInABlockActsAfter0) {
-  const std::string rest = "10 00 9A 00 02 04 00 00 00 00";
-  const std::string move = "10 00 9A 00 02 04 00 06 00 00";
-  EXPECT_EQ(accept(rest), Commands{});
-  refuse(move);
-  EXPECT_EQ(accept(move), Commands{}) << "the axis is free now";
-  EXPECT_EQ(accept(rest), Commands{});
-  EXPECT_EQ(accept(move), Commands{move_absolute});
-}
-
-TEST_F(Refused, AButtonInARowOfCoilsThatWasPressedInVainStopsNobodyWhenItIsLetGo) {
-  EXPECT_EQ(accept(row("00")), Commands{});
-  refuse(row("81"));
-  EXPECT_EQ(accept(row("00")), Commands{});
-}
-
-TEST_F(Refused, ASingle0AlwaysStops) {
-  for (const char* press : {"05 00 64 FF 00", "05 00 6B FF 00"}) {
-    refuse(press);
-    EXPECT_EQ(accept(std::string(press).substr(0, 8) + " 00 00").size(), 1U) << press;
-  }
-}
-
-TEST_F(Refused, ALevelThatWasItsOwnBeforeStillStopsByItsFall) {
-  EXPECT_EQ(accept(row("00")), Commands{});
-  EXPECT_EQ(accept(row("01")), Commands{enable});
-  refuse(row("01"));  // another client has taken the axis over
-  EXPECT_EQ(accept(row("00")), Commands{disable}) << "a stop is open to everybody";
-}
-
-TEST_F(Refused, AJogInVainNeitherHoldsNorEndsAnything) {
-  EXPECT_EQ(accept("05 00 6C 00 00"), Commands{jog_end});
-  refuse("05 00 6C FF 00");
-  EXPECT_EQ(accept("05 00 6C FF 00"), Commands{}) << "held: the axis knows that nothing jogs";
-  EXPECT_EQ(accept("05 00 6C 00 00"), Commands{jog_end});
-  EXPECT_EQ(accept("05 00 6C FF 00"), Commands{jog_forward}) << "its next 0 -> 1";
-}
-
-TEST_F(Refused, AStopPassesAndTheRestOfItsRowIsRefused) {
-  EXPECT_EQ(accept(row("00")), Commands{});
-  desk.port.at_once = {{{}, 0, 0}, {{Errc::not_owner, 0}, 0, 0}};
-  EXPECT_EQ(plc.ask(row("09")), "8F 06");
-  EXPECT_EQ(commands(desk), (Commands{halt, enable}));
-  EXPECT_EQ(plc.read(125), "00 07");
-  static_cast<void>(desk.port.taken());
-  desk.runtime.advance_by(100ms);
-  EXPECT_EQ(accept(row("00")), Commands{end_halt}) << "of its own halt, but nothing of the enable in vain";
-}
-
-TEST_F(Refused, IsAnsweredAtOnceWhereWritesArePosted) {
-  desk.settings.posted_writes = true;
-  EXPECT_EQ(refuse("06 00 92 00 01"), "86 06");
-  EXPECT_EQ(refuse("06 00 9A 00 00"), "86 06") << "also where nothing acts";
-  EXPECT_EQ(refuse("05 00 64 FF 00"), "85 06");
-}
-
-TEST_F(Refused, IsToldLaterAsWell) {
-  desk.port.slow = true;
-  EXPECT_EQ(plc.write_coil(100, true), "");
-  desk.port.finish({Errc::not_owner, 0});
-  EXPECT_EQ(plc.reply(), "85 06");
-  desk.port.slow = false;
-  static_cast<void>(desk.port.taken());
-  EXPECT_EQ(accept("0F 00 64 00 08 01 00"), Commands{}) << "a press in vain";
-}
-
-TEST_F(Refused, ByFunctions22And23And4313AsByAnyWrite) {
-  EXPECT_EQ(refuse("16 00 8C 00 00 00 0F"), "96 06");
-  EXPECT_EQ(refuse("17 00 64 00 01 00 92 00 01 02 00 07"), "97 06");
-  desk.port.at_once = {{{Errc::not_owner, 0}, 0, 0}};
-  EXPECT_EQ(plc.ask("2B 0D 01 00 01 60 64 00 00 00 00 02 01 02"), "AB 06");
-}
-
-TEST_F(Refused, AMailboxWriteEndsWithIt) {
-  desk.port.at_once = {{{Errc::not_owner, 0}, 0, 0}};
-  EXPECT_EQ(plc.write_block(180, "00 02 60 64 00 00 00 04"), "90 06");
-  EXPECT_EQ(plc.read(186), "00 03") << "failed";
-}
-
-TEST_F(Refused, AnAcceptedWriteThatDoesNotActLeavesTheResultRegisters) {
-  refuse("06 00 92 00 01");
-  EXPECT_EQ(accept("06 00 9A 00 00"), Commands{});
-  EXPECT_EQ(plc.read(125), "00 07");
+TEST_F(Life, AChangedGatewayHeartbeatTakesOverTheOrphansOfItsOwnHand) {
+  EXPECT_TRUE(is_done(plc.write(156, 1)));
+  desk.axis(1).lease = {.owner = last().life, .running = true, .renewed = desk.runtime.now()};
+  plc.session().on_closed(desk.runtime.now());
+  desk.port.submitted.clear();
+  EXPECT_TRUE(is_done(panel.write(8, 1)));
+  EXPECT_EQ(desk.asked(), "-") << "another address";
+  Line again(desk);
+  EXPECT_TRUE(is_done(again.write(8, 1)));
+  ASSERT_EQ(desk.port.submitted.size(), 1U);
+  EXPECT_TRUE(last().is_write && last().beats);
+  EXPECT_EQ(desk.asked(), "nothing") << "of axis 1";
+  EXPECT_TRUE(is_done(again.write(8, 1)));
+  EXPECT_EQ(desk.asked(), "-") << "unchanged";
 }
 
 }  // namespace

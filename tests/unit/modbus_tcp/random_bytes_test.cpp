@@ -48,58 +48,33 @@ std::vector<Byte> any_pdu(Random& random) {
   const auto put_data = [&](std::uint64_t count) {
     for (std::uint64_t i = 0; i < count; ++i) pdu.push_back(random.chance(1, 2) ? Byte{0} : any_byte(random));
   };
-  switch (pdu[0]) {
-    case 5:
-      put_address();
-      put(random.chance(1, 2) ? 0xFF00 : 0);
-      break;
-    case 8:
-      put(random.below(18));
-      put(0);
-      break;
-    case 15: {
-      const std::uint64_t count = 1 + random.below(20);
-      put_address();
-      put(count);
-      pdu.push_back(static_cast<Byte>((count + 7) / 8));
-      put_data((count + 7) / 8);
-      break;
-    }
-    case 16: {
-      const std::uint64_t count = 1 + random.below(20);
-      put_address();
-      put(count);
-      pdu.push_back(static_cast<Byte>(2 * count));
-      put_data(2 * count);
-      break;
-    }
-    case 22:
-      put_address();
-      put_data(4);
-      break;
-    case 23: {
-      const std::uint64_t count = 1 + random.below(20);
-      put_address();
+  const auto put_sized_data = [&](bool bits) {
+    const std::uint64_t count = 1 + random.below(20);
+    const std::uint64_t size = bits ? (count + 7) / 8 : 2 * count;
+    put(count);
+    pdu.push_back(static_cast<Byte>(size));
+    put_data(size);
+  };
+  const Byte function = pdu[0];
+  if (function == 8) {
+    put(random.below(18));
+    put(0);
+  } else if (function == 43 && random.chance(1, 2)) {
+    put_reference(random, pdu);
+  } else if (function == 43) {
+    pdu.insert(pdu.end(), {14, static_cast<Byte>(random.below(6))});
+    put_data(1);
+  } else {
+    put_address();
+    if (function == 5) put(random.chance(1, 2) ? 0xFF00 : 0);
+    if (function == 15 || function == 16) put_sized_data(function == 15);
+    if (function == 22) put_data(4);
+    if (function == 23) {
       put(1 + random.below(125));
       put_address();
-      put(count);
-      pdu.push_back(static_cast<Byte>(2 * count));
-      put_data(2 * count);
-      break;
+      put_sized_data(false);
     }
-    case 43:
-      if (random.chance(1, 2)) {
-        put_reference(random, pdu);
-        break;
-      }
-      pdu.push_back(14);
-      pdu.push_back(static_cast<Byte>(random.below(6)));
-      put_data(1);
-      break;
-    default:
-      put_address();
-      put(1 + random.below(130));
-      break;
+    if (pdu.size() == 3) put(1 + random.below(130));
   }
   if (random.chance(1, 10)) pdu.resize(1 + random.below(40));
   return pdu;

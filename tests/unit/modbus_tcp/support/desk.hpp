@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <iomanip>
 #include <memory>
+#include <sstream>
 #include <string>
 
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
@@ -37,7 +39,50 @@ class Desk {
   }
 
   AxisImage& axis(AxisNumber n) { return *image.find(n); }
+  /// What the port was given since the last time, a group between commas: "target_torque=7 mode=1, axis 5: enable
+  /// id=2", "target_position=7+" where it asks only beside the command, "nothing" for a group that asks for nothing,
+  /// "-" for no group at all.
+  std::string asked() {
+    std::string out;
+    for (const auto& [number, group] : port.taken())
+      out += (out.empty() ? "" : ", ") + (number == 1 ? "" : "axis " + std::to_string(number) + ": ") + told(group);
+    return out.empty() ? "-" : out;
+  }
   SessionContext context() { return {settings, image, port, registry, log, &runtime}; }
+
+  static std::string told(const Group& group) {
+    std::string out;
+    const auto add = [&out](const auto&... parts) {
+      std::ostringstream text;
+      ((text << (out.empty() ? "" : " ")) << ... << parts);
+      out += text.str();
+    };
+    for (const Setpoint& each : group.setpoints)
+      add(quantity_table()[static_cast<std::size_t>(each.quantity)].name, '=', each.value,
+          each.with_command ? "+" : "");
+    if (group.mode) add("mode=", *group.mode);
+    if (group.controlword) {
+      add("controlword=", std::uppercase, std::hex, *group.controlword, group.single_controlword ? " alone" : "");
+    }
+    if (group.set_position_value) add("set_position_value=", *group.set_position_value);
+    if (group.jog_velocity) add("jog_velocity=", *group.jog_velocity);
+    if (group.command != Command::none) add(text(group.command));
+    if (group.command != Command::none && group.command_id != 0) add("id=", group.command_id);
+    if (group.jog_again) add("again ", text(*group.jog_again));
+    if (group.object) add(told(*group.object));
+    return out.empty() && asks_nothing(group) ? "nothing" : out;
+  }
+  /// "reads 6064.00", "reads 6064.00/4", "writes 6040.00/2=F", "writes 2000.07: 01 02 03".
+  static std::string told(const ObjectRequest& object) {
+    std::ostringstream out;
+    out << (object.write ? "writes " : "reads ") << std::uppercase << std::hex << std::setfill('0') << std::setw(4)
+        << object.index << '.' << std::setw(2) << int{object.subindex};
+    if (object.size != 0) out << '/' << int{object.size};
+    if (object.count != 0) out << " of " << object.count;
+    if (object.write && object.bytes) out << ": " << hex_text(*object.bytes);
+    if (object.write && !object.bytes) out << '=' << object.data;
+    return out.str();
+  }
 
   axisgate::test::ManualRuntime runtime;
   ListenerSettings settings;
@@ -121,5 +166,13 @@ inline std::vector<Command> commands(Desk& desk) {
     if (each.group.command != Command::none) out.push_back(each.group.command);
   return out;
 }
+
+/// A desk with one engineer's connection.
+class AtTheDesk : public ::testing::Test {
+ protected:
+  const Group& last() { return desk.port.submitted.back().group; }
+  Desk desk;
+  Line plc{desk};
+};
 
 }  // namespace axisgate::modbus_tcp::test

@@ -50,9 +50,9 @@ class FakeCommandPort : public CommandPort {
   void finish(const Outcome& outcome = {}, std::uint32_t data = 0, std::uint8_t size = 0) {
     finish_with({outcome, data, size});
   }
-  void finish_with(const GroupResult& result) {
-    const GroupCallback callback = std::move(waiting.front());
-    waiting.pop_front();
+  void finish_with(const GroupResult& result, std::size_t place = 0) {
+    const GroupCallback callback = std::move(waiting.at(place));
+    waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(place));
     callback(result);
   }
   /// Takes the record of what was submitted.
