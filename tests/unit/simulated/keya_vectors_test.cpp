@@ -1,12 +1,14 @@
 // Every frame of Keya's own protocols in the sheet against the simulated drive, read from tests/vectors.
-#include <gmock/gmock.h>
-
-#include "tests/unit/simulated/keya_bench.hpp"
+#include "tests/unit/simulated/scenes.hpp"
 
 namespace axisgate::simulated {
 namespace {
 
-constexpr std::uint16_t enable_index = 0x200D;
+constexpr const char* sheet = "keya-kydas4860-2e";
+
+Bytes bytes_in(const nlohmann::json& vector) {
+  return from_hex(vector.value("hex_corrected", vector.at("hex").get<std::string>()));
+}
 
 std::optional<std::int64_t> told(const nlohmann::json& decoded, std::initializer_list<const char*> names) {
   for (const char* name : names) {
@@ -45,13 +47,6 @@ void hold(KeyaDrive& drive, const nlohmann::json& told_by) {
 // 501 and -498 rpm of 1500.
 constexpr std::int32_t value_a = 3340, value_b = -3320;
 
-template <class Repeat>
-void run_up(KeyaDrive& drive, Repeat repeat) {
-  for (int i = 0; i < 10; ++i) repeat();
-  ASSERT_EQ(drive.at(motor_a).rpm(), 501);
-  ASSERT_EQ(drive.at(motor_b).rpm(), -498);
-}
-
 std::int64_t mode_for(const nlohmann::json& decoded) {
   const std::string command = decoded.value("command", "");
   const std::string mode = decoded.value("mode", command);
@@ -59,195 +54,232 @@ std::int64_t mode_for(const nlohmann::json& decoded) {
   return mode == "position" ? 4 : 1;
 }
 
-TEST(KeyaCanVectors, EveryRequestOfTheSheetIsAnsweredAndActedOn) {
-  int requests = 0;
-  const auto rows = keya_vectors("keya-can", "request");
-  for (const auto& vector : rows) {
-    SCOPED_TRACE(vector.at("id").get<std::string>());
-    const auto& decoded = vector.at("decoded");
-    KeyaCanBench bench(a_keya({{20, mode_for(decoded)}, {50, mode_for(decoded)}}));
-    const Bytes request = bytes_of_vector(vector);
-    const std::uint8_t sub = request[3];
-    const KeyaMotorName motor = sub == 2 ? motor_b : motor_a;
-    const std::string command = decoded.value("command", "");
-    if (!command.empty() && command != "enable") {
-      ASSERT_TRUE(bench.write(enable_index, sub));
-    }
-    const auto reply = bench.ask(request);
-    ++requests;
-    ASSERT_TRUE(reply.has_value());
-    EXPECT_EQ(Bytes(reply->begin(), reply->begin() + 4), (Bytes{0x60, request[1], request[2], request[3]}));
-    if (command.empty()) continue;
-    EXPECT_EQ(Bytes(reply->begin() + 4, reply->end()), Bytes(4, 0));
-    EXPECT_EQ(bench.drive().enabled(motor), command != "disable");
-    const std::int64_t value = decoded.value("value", 0);
-    const bool turns = command == "speed" || command == "torque";
-    EXPECT_EQ(bench.drive().at(motor).value(), turns ? value : 0);
-    EXPECT_EQ(bench.drive().moves(motor), command == "position" && value != 0 ? 1U : 0U);
+// The drive of the sheet on one of its interfaces.
+class Keya {
+ public:
+  Keya(const KeyaOptions& options, std::optional<KeyaWiring> wiring) {
+    if (wiring) serial_ = std::make_unique<KeyaBench>(*wiring, std::vector{options});
+    if (!wiring) can_ = std::make_unique<CanBench>(std::vector<CanDriveOptions>{KeyaCanDrive{options}});
   }
+  KeyaDrive& drive() { return serial_ ? serial_->line.drive(0) : *can_->line.keya(0); }
+  Bytes ask(const Bytes& request) {
+    if (serial_) return serial_->exchange(request);
+    BusFrame frame = bus_frame(keya_can::command + 1, request);
+    frame.extended = true;
+    can_->received.clear();
+    can_->send(frame);
+    return can_->heard(keya_can::reply + 1);
+  }
+  void pass(Time time) { serial_ ? serial_->pass(time) : can_->pass(time); }
+  // By the world, as if commanded.
+  void run_up() {
+    drive().enable(motor_a, KeyaMode::speed, Time{});
+    drive().enable(motor_b, KeyaMode::speed, Time{});
+    for (int i = 0; i < 10; ++i) {
+      EXPECT_TRUE(drive().set_value(motor_a, value_a, KeyaMode::speed, now_));
+      EXPECT_TRUE(drive().set_value(motor_b, value_b, KeyaMode::speed, now_));
+      pass(milliseconds(500));
+      now_ += milliseconds(500);
+    }
+    ASSERT_EQ(drive().at(motor_a).rpm(), 501);
+    ASSERT_EQ(drive().at(motor_b).rpm(), -498);
+  }
+
+ private:
+  std::unique_ptr<KeyaBench> serial_;
+  std::unique_ptr<CanBench> can_;
+  Time now_{};
+};
+
+KeyaOptions in_mode(std::int64_t mode) { return a_keya({{20, mode}, {50, mode}}); }
+
+TEST(keya_can_sheet, every_request_is_answered_and_acted_on) {
+  int requests = 0;
+  each_vector(sheet, "keya-can", "request", [&](const nlohmann::json& vector) {
+    const auto& decoded = vector.at("decoded");
+    Keya keya(in_mode(mode_for(decoded)), std::nullopt);
+    const Bytes request = bytes_in(vector);
+    const KeyaMotorName motor = request[3] == 2 ? motor_b : motor_a;
+    const std::string command = decoded.value("command", "");
+    if (!command.empty() && command != "enable") keya.drive().enable(motor, std::nullopt, Time{});
+    const Bytes reply = keya.ask(request);
+    ++requests;
+    ASSERT_EQ(reply.size(), 8U);
+    EXPECT_EQ(Bytes(reply.begin(), reply.begin() + 4), (Bytes{0x60, request[1], request[2], request[3]}));
+    if (command.empty()) return;
+    EXPECT_EQ(Bytes(reply.begin() + 4, reply.end()), Bytes(4, 0));
+    EXPECT_EQ(keya.drive().enabled(motor), command != "disable");
+    const std::int64_t value = decoded.value("value", 0);
+    EXPECT_EQ(keya.drive().at(motor).value(), command == "speed" || command == "torque" ? value : 0);
+    EXPECT_EQ(keya.drive().moves(motor), command == "position" && value != 0 ? 1U : 0U);
+  });
   EXPECT_EQ(requests, 41);
 }
 
-TEST(KeyaCanVectors, EveryReplyOfTheSheetIsReproduced) {
+TEST(keya_can_sheet, every_reply_is_reproduced) {
   int replies = 0;
-  const auto rows = keya_vectors("keya-can", "response");
-  for (const auto& vector : rows) {
-    const std::string id = vector.at("id");
-    if (id == "can-heartbeat-derived") continue;
-    SCOPED_TRACE(id);
+  each_vector(sheet, "keya-can", "response", [&](const nlohmann::json& vector) {
+    if (vector.at("id") == "can-heartbeat-derived") return;
     const auto& decoded = vector.at("decoded");
-    const Bytes expected = bytes_of_vector(vector);
-    const bool torque = expected[1] == 0x01 && expected[2] == 0x20;
-    const bool position = expected[1] == 0x02 && expected[2] == 0x20;
-    KeyaCanBench bench(a_keya({{20, torque ? 2 : position ? 3 : 1}, {50, torque ? 2 : position ? 3 : 1}}));
-    hold(bench.drive(), decoded);
-    if (decoded.contains("speed_m1_rpm")) {
-      (void)bench.write(enable_index, 1);
-      (void)bench.write(enable_index, 2);
-      run_up(bench.drive(), [&] {
-        EXPECT_TRUE(bench.write(0x2000, 1, value_a));
-        EXPECT_TRUE(bench.write(0x2000, 2, value_b));
-        bench.pass(milliseconds(500));
-      });
-    }
-    Bytes request{expected[2] == 0x20 ? std::uint8_t{0x23} : std::uint8_t{0x40}, expected[1], expected[2], expected[3]};
+    const Bytes expected = bytes_in(vector);
+    const bool commands = expected[2] == 0x20;
+    Keya keya(in_mode(commands && expected[1] == 1 ? 2 : commands && expected[1] == 2 ? 3 : 1), std::nullopt);
+    hold(keya.drive(), decoded);
+    if (decoded.contains("speed_m1_rpm")) keya.run_up();
+    Bytes request{commands ? std::uint8_t{0x23} : std::uint8_t{0x40}, expected[1], expected[2], expected[3]};
     request.resize(8);
-    EXPECT_EQ(bench.ask(request), expected);
+    EXPECT_EQ(keya.ask(request), expected);
     ++replies;
-  }
+  });
   EXPECT_EQ(replies, 17);
 }
 
-TEST(KeyaCanVectors, TheHeartbeatOfTheSheetComesEachSecond) {
-  KeyaCanBench bench(a_keya());
-  Bytes expected;
-  const auto rows = keya_vectors("keya-can", "response");
-  for (const auto& vector : rows) {
-    if (vector.at("id") != "can-heartbeat-derived") continue;
-    expected = bytes_of_vector(vector);
+TEST(keya_can_sheet, its_heartbeat_comes_each_second) {
+  each_vector(sheet, "keya-can", "response", [&](const nlohmann::json& vector) {
+    if (vector.at("id") != "can-heartbeat-derived") return;
+    CanBench bench({KeyaCanDrive{a_keya()}});
     nlohmann::json held = vector.at("decoded");
     held.erase("fault_m1");  // bit 0 alone: disabled
-    hold(bench.drive(), held);
-  }
-  expected[6] = 0x21;  // the sheet's example is of an analog drive; this one is commanded by CAN
-  bench.pass(milliseconds(999));
-  EXPECT_TRUE(bench.heard(keya_can::heartbeat + 1).empty());
-  bench.pass(milliseconds(2001));
-  EXPECT_THAT(bench.heard(keya_can::heartbeat + 1), testing::ElementsAre(expected, expected, expected));
+    hold(*bench.line.keya(0), held);
+    Bytes expected = bytes_in(vector);
+    expected[6] = 0x21;  // the sheet's example is of an analog drive; this one is commanded by CAN
+    bench.pass(milliseconds(999));
+    EXPECT_TRUE(bench.received.empty());
+    bench.pass(milliseconds(2001));
+    EXPECT_EQ(bench.received.size(), 3U);
+    EXPECT_EQ(bench.heard(keya_can::heartbeat + 1), expected);
+  });
 }
 
 struct Serial {
   KeyaWiring wiring;
   const char* protocol;
   int controls;
-  int queries;
-  int replies;
 };
 
-class KeyaSerialVectors : public testing::TestWithParam<Serial> {
+class KeyaSerialSheet : public testing::TestWithParam<Serial> {
  protected:
   std::size_t shift() const { return GetParam().wiring == KeyaWiring::rs485 ? 1 : 0; }
 };
 
-TEST_P(KeyaSerialVectors, EveryControlFrameOfTheSheetIsObeyedWithoutAReply) {
+TEST_P(KeyaSerialSheet, every_control_frame_is_obeyed_and_every_query_answered_whose_reply_is_documented) {
   int controls = 0;
-  const auto rows = keya_vectors(GetParam().protocol, "request");
-  for (const auto& vector : rows) {
-    const auto& decoded = vector.at("decoded");
-    if (!decoded.contains("enable_code")) continue;
-    SCOPED_TRACE(vector.at("id").get<std::string>());
-    const std::int64_t mode = mode_for(decoded);
-    KeyaBench bench(GetParam().wiring, {a_keya({{20, mode}, {50, mode}})});
-    EXPECT_TRUE(bench.exchange(bytes_of_vector(vector)).empty());
-    ++controls;
-    const int code = decoded.at("enable_code");
-    EXPECT_EQ(bench.drive().enabled(motor_a), (code & 1) != 0);
-    EXPECT_EQ(bench.drive().enabled(motor_b), (code & 2) != 0);
-    for (const KeyaMotorName motor : keya_motors) {
-      const std::int64_t value = decoded.at(motor == motor_a ? "motor_a" : "motor_b");
-      if (!bench.drive().enabled(motor)) continue;
-      if (mode == 4) {
-        EXPECT_EQ(bench.drive().moves(motor), value != 0 ? 1U : 0U);
-      } else {
-        EXPECT_EQ(bench.drive().at(motor).value(), value);
-      }
-    }
-  }
-  EXPECT_EQ(controls, GetParam().controls);
-}
-
-TEST_P(KeyaSerialVectors, EveryQueryOfTheSheetIsAnsweredWithItsCodeUnlessItsReplyIsNotDocumented) {
   int queries = 0;
-  const auto rows = keya_vectors(GetParam().protocol, "request");
-  for (const auto& vector : rows) {
+  each_vector(sheet, GetParam().protocol, "request", [&](const nlohmann::json& vector) {
     const auto& decoded = vector.at("decoded");
-    if (decoded.contains("enable_code")) continue;
-    SCOPED_TRACE(vector.at("id").get<std::string>());
-    KeyaBench bench(GetParam().wiring, {a_keya()});
-    const Bytes request = bytes_of_vector(vector);
-    const Bytes reply = bench.exchange(request);
-    ++queries;
-    if (request[1 + shift()] == 0x01 || request[1 + shift()] == 0x04) {
-      EXPECT_TRUE(reply.empty());
-      continue;
+    const Bytes request = bytes_in(vector);
+    const bool is_control = decoded.contains("enable_code");
+    const std::int64_t mode = is_control ? mode_for(decoded) : 1;
+    Keya keya(in_mode(mode), GetParam().wiring);
+    const Bytes reply = keya.ask(request);
+    if (!is_control) {
+      ++queries;
+      const bool documented = request[1 + shift()] != 0x01 && request[1 + shift()] != 0x04;
+      ASSERT_EQ(reply.size(), documented ? keya_frame_length : 0U);
+      EXPECT_TRUE(!documented || std::equal(request.begin(), request.begin() + (shift() != 0 ? 3 : 2), reply.begin()));
+      return;
     }
-    ASSERT_EQ(reply.size(), keya_frame_length);
-    const auto head = static_cast<std::ptrdiff_t>(2 + shift());
-    EXPECT_EQ(Bytes(reply.begin(), reply.begin() + head), Bytes(request.begin(), request.begin() + head));
-  }
-  EXPECT_EQ(queries, GetParam().queries);
+    ++controls;
+    EXPECT_TRUE(reply.empty());
+    const int code = decoded.at("enable_code");
+    for (const KeyaMotorName motor : keya_motors) {
+      const bool first = motor == motor_a;
+      EXPECT_EQ(keya.drive().enabled(motor), (code & (first ? 1 : 2)) != 0);
+      if (!keya.drive().enabled(motor)) continue;
+      const std::int64_t value = decoded.at(first ? "motor_a" : "motor_b");
+      EXPECT_EQ(keya.drive().moves(motor), mode == 4 && value != 0 ? 1U : 0U);
+      EXPECT_TRUE(mode == 4 || keya.drive().at(motor).value() == value);
+    }
+  });
+  EXPECT_EQ(controls, GetParam().controls);
+  EXPECT_EQ(queries, 10);
 }
 
-TEST_P(KeyaSerialVectors, EveryReplyOfTheSheetIsReproduced) {
+TEST_P(KeyaSerialSheet, every_reply_is_reproduced) {
   int replies = 0;
-  const auto rows = keya_vectors(GetParam().protocol, "response");
-  for (const auto& vector : rows) {
-    const std::string id = vector.at("id");
-    if (id == "rs232-heartbeat-derived") continue;
-    SCOPED_TRACE(id);
+  each_vector(sheet, GetParam().protocol, "response", [&](const nlohmann::json& vector) {
     const auto& decoded = vector.at("decoded");
-    const Bytes expected = bytes_of_vector(vector);
+    const Bytes expected = bytes_in(vector);
+    ++replies;
+    if (vector.at("id") == "rs232-heartbeat-derived") {
+      KeyaOptions options = a_keya();
+      options.heartbeat = milliseconds(100);
+      KeyaBench bench(GetParam().wiring, {options});
+      hold(bench.line.drive(0), decoded);
+      bench.pass(milliseconds(100));
+      EXPECT_EQ(bench.received, expected);
+      return;
+    }
     // The control state of the sheet is that of an analog drive, which answers queries all the same.
     std::map<int, std::int64_t> parameters;
     if (decoded.contains("control_mode")) parameters[19] = decoded.at("control_mode").get<std::int64_t>();
-    KeyaBench bench(GetParam().wiring, {a_keya(parameters)});
-    hold(bench.drive(), decoded);
-    if (decoded.contains("speed_a_rpm")) {
-      run_up(bench.drive(), [&] {
-        if (shift() != 0) bench.control_at(1, 3, value_a, value_b);
-        if (shift() == 0) bench.control(3, value_a, value_b);
-        bench.pass(milliseconds(500));
-      });
-    }
-    Bytes request(expected.begin(), expected.begin() + static_cast<std::ptrdiff_t>(2 + shift()));
-    request.resize(keya_frame_length);
-    KeyaFrame frame{};
-    std::copy(request.begin(), request.end(), frame.begin());
-    if (shift() != 0) frame = seal_keya(frame);
-    EXPECT_EQ(bench.exchange(Bytes(frame.begin(), frame.end())), expected);
-    ++replies;
-  }
-  EXPECT_EQ(replies, GetParam().replies);
+    Keya keya(a_keya(parameters), GetParam().wiring);
+    hold(keya.drive(), decoded);
+    if (decoded.contains("speed_a_rpm")) keya.run_up();
+    KeyaFrame request{};
+    std::copy_n(expected.begin(), 2 + shift(), request.begin());
+    if (shift() != 0) request = seal_keya(request);
+    EXPECT_EQ(keya.ask({request.begin(), request.end()}), expected);
+  });
+  EXPECT_EQ(replies, shift() != 0 ? 8 : 9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Wirings, KeyaSerialVectors,
-                         testing::Values(Serial{KeyaWiring::rs232, "keya-rs232", 23, 10, 8},
-                                         Serial{KeyaWiring::rs485, "keya-rs485", 27, 10, 8}),
-                         [](const auto& it) { return it.param.wiring == KeyaWiring::rs232 ? "Rs232" : "Rs485"; });
+INSTANTIATE_TEST_SUITE_P(wirings, KeyaSerialSheet,
+                         testing::Values(Serial{KeyaWiring::rs232, "keya-rs232", 23},
+                                         Serial{KeyaWiring::rs485, "keya-rs485", 27}),
+                         [](const auto& it) { return it.param.wiring == KeyaWiring::rs232 ? "rs232" : "rs485"; });
 
-TEST(KeyaSerialVectors, TheHeartbeatOfTheSheetComesOnRs232) {
-  KeyaOptions options = a_keya();
-  options.heartbeat = milliseconds(100);
-  KeyaBench bench(KeyaWiring::rs232, {options});
-  Bytes expected;
-  const auto rows = keya_vectors("keya-rs232", "response");
-  for (const auto& vector : rows) {
-    if (vector.at("id") != "rs232-heartbeat-derived") continue;
-    expected = bytes_of_vector(vector);
-    hold(bench.drive(), vector.at("decoded"));
-  }
-  bench.pass(milliseconds(100));
-  EXPECT_EQ(bench.received(), expected);
+std::uint8_t node_in(const nlohmann::json& vector, std::uint32_t base) {
+  return static_cast<std::uint8_t>(hex_number(vector.at("can_id")) - base);
+}
+
+TEST(keya_canopen_sheet, every_request_is_answered) {
+  int answered = 0;
+  each_vector(sheet, "canopen-sdo", "request", [&](const nlohmann::json& vector) {
+    const Bytes request = bytes_in(vector);
+    const std::uint8_t node = node_in(vector, cob::sdo_request);
+    CanBench bench({KeyaCanopenDrive{a_keya({}, node)}});
+    const Bytes reply = bench.sdo(request, node);
+    ASSERT_EQ(reply.size(), 8U);
+    EXPECT_EQ(Bytes(reply.begin() + 1, reply.begin() + 4), Bytes(request.begin() + 1, request.begin() + 4));
+    EXPECT_THAT(reply[0], request[0] == 0x40 ? testing::AnyOf(0x43, 0x4B, 0x4F) : testing::AnyOf(0x60, 0x60, 0x60));
+    const std::string meaning = vector.at("decoded").value("meaning", "");
+    EXPECT_EQ(bench.line.keya(0)->enabled(motor_a), meaning.starts_with("enable motor A"));
+    EXPECT_EQ(bench.line.keya(0)->enabled(motor_b), meaning.starts_with("enable motor B"));
+    ++answered;
+  });
+  EXPECT_EQ(answered, 30);
+}
+
+TEST(keya_canopen_sheet, every_reply_is_reproduced) {
+  int replies = 0;
+  each_vector(sheet, "canopen-sdo", "response", [&](const nlohmann::json& vector) {
+    const Bytes expected = bytes_in(vector);
+    const std::uint8_t node = node_in(vector, cob::sdo_reply);
+    CanBench bench({KeyaCanopenDrive{a_keya({}, node)}});
+    Bytes request{0x40, expected[1], expected[2], expected[3], 0, 0, 0, 0};
+    const ObjectKey key{static_cast<std::uint16_t>(expected[1] | expected[2] << 8), expected[3]};
+    const std::uint32_t told = little_endian(CanView(expected).subspan(4));
+    if (expected[0] == 0x80) {
+      bench.line.faults(0).abort_code = told;
+      bench.line.faults(0).next(DriveFault::exception);
+    } else if (expected[0] == 0x60) {
+      const auto held = bench.line.node(0).peek(key, bench.now);
+      ASSERT_TRUE(held.has_value());
+      request = sdo_request(sdo_write(held->size()), key, little_endian(*held));
+    } else if (key.index == 0x2011) {
+      bench.line.keya(0)->inject_fault(motor_a, 0x0800);
+    } else if (key.index == 0x2012) {  // 150 rpm: 10 % of rated
+      bench.sdo(sdo_request(0x23, {0x607A, 0}, 0x030D2001), node);
+      bench.sdo(sdo_request(0x23, {0x6081, 0}, 1000), node);
+      bench.pass(milliseconds(900));
+    } else {
+      ASSERT_EQ(bench.line.node(0).poke(key, told, bench.now), 0U);
+    }
+    EXPECT_EQ(bench.sdo(request, node), expected);
+    ++replies;
+  });
+  EXPECT_EQ(replies, 18);
 }
 
 }  // namespace
