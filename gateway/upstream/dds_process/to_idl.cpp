@@ -1,5 +1,5 @@
-#include "gateway/upstream/dds_process/steady.hpp"
 #include "gateway/upstream/dds_process/to_idl.hpp"
+#include "gateway/upstream/dds_process/steady.hpp"
 
 namespace axisgate::dds {
 
