@@ -1,4 +1,4 @@
-#include "tests/bench/answering_can.hpp"
+#include "tests/bench/answering_line.hpp"
 
 #include "tests/bench/lawicel_text.hpp"
 #include "tests/simulated/can_line.hpp"

@@ -1,6 +1,5 @@
 #include "tests/bench/answering_line.hpp"
 
-#include "tests/bench/answering_can.hpp"
 #include "tests/simulated/frame_receiver.hpp"
 #include "tests/simulated/kinco_drive.hpp"
 #include "tests/simulated/kinco_rtu.hpp"

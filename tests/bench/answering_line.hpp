@@ -36,4 +36,7 @@ class AnsweringLine {
 [[nodiscard]] std::unique_ptr<AnsweringLine> make_answering_line(LineProtocol protocol, int drives,
                                                                  simulated::Time now);
 
+/// Of CAN alone, which make_answering_line() makes as well.
+[[nodiscard]] std::unique_ptr<AnsweringLine> make_answering_can(LineProtocol protocol, int drives, simulated::Time now);
+
 }  // namespace axisgate::bench

@@ -1,6 +1,8 @@
 #include "tests/bench/axis_traffic.hpp"
 
 #include <array>
+#include <random>
+#include <stdexcept>
 #include <thread>
 
 namespace axisgate::bench {
@@ -57,6 +59,42 @@ bool read_object(ModbusClient& client, int axis, const DriveObject& object, std:
     if (status != kBusy) return status == kDone;
     if (pause.count() > 0) std::this_thread::sleep_for(pause);
   }
+}
+
+BusyClients::Turn writing(int parameter) {
+  return [writer = ParameterWriter(1, parameter)](ModbusClient& client) mutable {
+    static_cast<void>(writer.write(client));
+  };
+}
+
+BusyClients::Turn reading(int number, LineProtocol protocol, std::chrono::microseconds pause) {
+  return [object = readable_object(number, protocol), pause](ModbusClient& client) {
+    static_cast<void>(read_object(client, 1, object, pause));
+  };
+}
+
+std::vector<BusyClients::Turn> readers_and_writers(int clients, int writers, LineProtocol protocol) {
+  constexpr std::chrono::milliseconds kAskAgain{20};
+  std::vector<BusyClients::Turn> turns;
+  for (int i = 0; i < clients; ++i) turns.push_back(i < writers ? writing(i) : reading(i, protocol, kAskAgain));
+  return turns;
+}
+
+Samples write_times(std::uint16_t port, std::chrono::milliseconds lasting, std::chrono::milliseconds pause) {
+  using SteadyClock = std::chrono::steady_clock;
+  ModbusClient client(port);
+  ParameterWriter writer(1, 0);
+  std::minstd_rand random(1);
+  std::uniform_int_distribution<int> pauses(1000 * static_cast<int>(pause.count()),
+                                            2000 * static_cast<int>(pause.count()));
+  Samples milliseconds;
+  for (const auto end = SteadyClock::now() + lasting; SteadyClock::now() < end;) {
+    std::this_thread::sleep_for(std::chrono::microseconds(pauses(random)));
+    const auto began = SteadyClock::now();
+    if (writer.write(client) != 0) throw std::runtime_error("a write was refused");
+    milliseconds.push_back(std::chrono::duration<double, std::milli>(SteadyClock::now() - began).count());
+  }
+  return milliseconds;
 }
 
 }  // namespace axisgate::bench

@@ -6,8 +6,10 @@
 #include <chrono>
 #include <cstdint>
 
+#include "tests/bench/busy_clients.hpp"
 #include "tests/bench/line_protocol.hpp"
 #include "tests/bench/modbus_client.hpp"
+#include "tests/bench/report.hpp"
 
 namespace axisgate::bench {
 
@@ -36,5 +38,17 @@ class ParameterWriter {
 /// Through registers 80 to 88; asks for the result at once, and then again after each pause. True: the drive answered.
 [[nodiscard]] bool read_object(ModbusClient& client, int axis, const DriveObject& object,
                                std::chrono::microseconds pause = {});
+
+/// What a busy client does over and over on axis 1.
+[[nodiscard]] BusyClients::Turn writing(int parameter);
+[[nodiscard]] BusyClients::Turn reading(int number, LineProtocol protocol, std::chrono::microseconds pause);
+/// So many clients; the first `writers` of them write, the others read, and do not ask a mailbox again at once: that
+/// would measure the Modbus server instead.
+[[nodiscard]] std::vector<BusyClients::Turn> readers_and_writers(int clients, int writers, LineProtocol protocol);
+
+/// Milliseconds of each parameter write of axis 1 in `lasting`, each a `pause` or up to two after the one before, so
+/// that they keep no step with the polls. Throws std::runtime_error when one is refused.
+[[nodiscard]] Samples write_times(std::uint16_t port, std::chrono::milliseconds lasting,
+                                  std::chrono::milliseconds pause);
 
 }  // namespace axisgate::bench

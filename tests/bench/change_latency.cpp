@@ -1,14 +1,9 @@
-#include "tests/bench/change_latency.hpp"
-
-#include <fmt/format.h>
-
 #include <map>
 #include <vector>
 
-#include "tests/bench/figures.hpp"
+#include "tests/bench/benches.hpp"
 #include "tests/bench/gateway_process.hpp"
 #include "tests/bench/modbus_client.hpp"
-#include "tests/bench/server_process.hpp"
 
 namespace axisgate::bench {
 namespace {
@@ -56,17 +51,7 @@ void change_latency(const BenchOptions& options, LineProtocol protocol) {
     if (found != seen.first.end() && found->second > turn.asked_at)
       latencies.push_back(static_cast<double>(found->second - turn.asked_at) / 1000);
   }
-  fmt::print(
-      "From a TPDO with another position to the reply that shows it, a client that reads without a pause; "
-      "microseconds\n"
-      "{:<34} {:>8} {:>9} {:>9} {:>9}\n",
-      "", "samples", "median", "p99", "worst");
-  const auto print = [](const char* what, const std::vector<double>& samples) {
-    fmt::print("{:<34} {:>8} {:>9} {:>9} {:>9}\n", what, samples.size(), shown(median(samples)),
-               shown(quantile(samples, 0.99)), shown(quantile(samples, 1)));
-  };
-  print("frame sent to register seen", latencies);
-  print("of this: a Modbus read, by itself", seen.reads);
+  options.report.rows("TPDO sent to register seen, us", latencies, "one read", seen.reads);
 }
 
 }  // namespace axisgate::bench

@@ -1,7 +1,5 @@
 #include "tests/bench/closed_loop_clients.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/tcp.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -9,57 +7,17 @@
 #include <array>
 #include <cerrno>
 #include <stdexcept>
-#include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
+
+#include "tests/bench/modbus_client.hpp"
 
 namespace axisgate::bench {
 namespace {
 
+using Events = std::array<epoll_event, 128>;
+
 [[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
-
-class Client {
- public:
-  explicit Client(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    const int on = 1;
-    ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(port);
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if (::connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) fail("connect");
-  }
-  ~Client() {
-    if (socket_ >= 0) ::close(socket_);
-  }
-  Client(Client&& other) noexcept : socket_(std::exchange(other.socket_, -1)), received_(other.received_) {}
-  Client(const Client&) = delete;
-  Client& operator=(const Client&) = delete;
-  Client& operator=(Client&&) = delete;
-
-  [[nodiscard]] int socket() const { return socket_; }
-  void ask(Bytes request) const {
-    if (::send(socket_, request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
-      fail("send");
-  }
-  /// True: the reply is whole.
-  bool take(std::size_t reply_size) {
-    std::array<Byte, 512> part;
-    const ssize_t got = ::recv(socket_, part.data(), part.size(), MSG_DONTWAIT);
-    if (got == 0) throw std::runtime_error("the server closed a connection");
-    if (got < 0) fail("recv");
-    received_ += static_cast<std::size_t>(got);
-    if (received_ > reply_size) throw std::runtime_error("the server's reply is too long");
-    if (received_ < reply_size) return false;
-    received_ = 0;
-    return true;
-  }
-
- private:
-  int socket_;
-  std::size_t received_ = 0;
-};
 
 class EpollSet {
  public:
@@ -73,7 +31,7 @@ class EpollSet {
     event.data.u32 = index;
     if (::epoll_ctl(descriptor_, EPOLL_CTL_ADD, socket, &event) != 0) fail("epoll_ctl");
   }
-  [[nodiscard]] int wait(std::array<epoll_event, 128>& events) const {
+  [[nodiscard]] int wait(Events& events) const {
     const int ready = ::epoll_wait(descriptor_, events.data(), static_cast<int>(events.size()), 2000);
     if (ready == 0) throw std::runtime_error("no reply for 2 s");
     return ready;
@@ -83,34 +41,62 @@ class EpollSet {
   int descriptor_;
 };
 
+struct Client {
+  ModbusClient connection;
+  std::size_t received = 0;
+
+  void ask(Bytes request) const {
+    if (::send(connection.socket(), request.data(), request.size(), MSG_NOSIGNAL) != std::ssize(request)) fail("send");
+  }
+  /// True: the reply is whole.
+  bool take(std::size_t reply_size) {
+    std::array<Byte, 512> part;
+    const ssize_t got = ::recv(connection.socket(), part.data(), part.size(), MSG_DONTWAIT);
+    if (got == 0) throw std::runtime_error("the server closed a connection");
+    if (got < 0) fail("recv");
+    received += static_cast<std::size_t>(got);
+    if (received > reply_size) throw std::runtime_error("the server's reply is too long");
+    const bool whole = received == reply_size;
+    if (whole) received = 0;
+    return whole;
+  }
+};
+
 }  // namespace
 
-double replies_per_second(const Load& load) {
+ReadRequest::ReadRequest(std::uint16_t address, std::uint16_t registers)
+    : bytes{0, 1, 0, 0, 0, 6, 0xFF, 3}, reply_size(9U + 2U * registers) {
+  store_be16(bytes, 8, address);
+  store_be16(bytes, 10, registers);
+}
+
+double replies_per_second(std::uint16_t port, const ReadRequest& request, int count,
+                          std::chrono::milliseconds lasting) {
   using Clock = std::chrono::steady_clock;
   std::vector<Client> clients;
   const EpollSet ready_set;
-  for (int i = 0; i < load.clients; ++i) {
-    clients.emplace_back(load.port);
-    ready_set.add(clients.back().socket(), static_cast<std::uint32_t>(i));
+  for (int i = 0; i < count; ++i) {
+    clients.push_back({ModbusClient(port)});
+    ready_set.add(clients.back().connection.socket(), static_cast<std::uint32_t>(i));
   }
-  for (const Client& client : clients) client.ask(load.request);
+  for (const Client& client : clients) client.ask(request.bytes);
 
-  const auto counted_from = Clock::now() + load.lasting / 10;
-  const auto end = counted_from + load.lasting;
+  const auto counted_from = Clock::now() + lasting / 10;
+  const auto end = counted_from + lasting;
   std::uint64_t replies = 0;
-  std::array<epoll_event, 128> events;
+  Events events;
   for (;;) {
     const int ready = ready_set.wait(events);
     const auto now = Clock::now();
     if (now >= end) break;
     for (int i = 0; i < ready; ++i) {
       Client& client = clients[events[static_cast<std::size_t>(i)].data.u32];
-      if (!client.take(load.reply_size)) continue;
+      if (!client.take(request.reply_size)) continue;
       if (now >= counted_from) ++replies;
-      client.ask(load.request);
+      client.ask(request.bytes);
     }
   }
-  return static_cast<double>(replies) / std::chrono::duration<double>(load.lasting).count();
+  return static_cast<double>(replies) / std::chrono::duration<double>(lasting).count();
 }
 
 }  // namespace axisgate::bench

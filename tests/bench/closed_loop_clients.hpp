@@ -2,6 +2,7 @@
 // Promises the same work for every server that is measured. Never looks into a reply but at its length.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -10,15 +11,15 @@
 
 namespace axisgate::bench {
 
-struct Load {
-  std::uint16_t port = 0;
-  Bytes request;
-  std::size_t reply_size = 0;
-  int clients = 1;
-  std::chrono::milliseconds lasting{1000};
+/// FC 3.
+struct ReadRequest {
+  ReadRequest(std::uint16_t address, std::uint16_t registers);
+  std::array<Byte, 12> bytes;
+  std::size_t reply_size;
 };
 
 /// Replies per second over all clients, after a tenth of the time to get going. Throws std::runtime_error.
-[[nodiscard]] double replies_per_second(const Load& load);
+[[nodiscard]] double replies_per_second(std::uint16_t port, const ReadRequest& request, int clients,
+                                        std::chrono::milliseconds lasting);
 
 }  // namespace axisgate::bench

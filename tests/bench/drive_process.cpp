@@ -2,20 +2,15 @@
 
 #include <poll.h>
 #include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
-#include <cstdio>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 
 #include "tests/axisgate_sim/can_socket.hpp"
 #include "tests/axisgate_sim/pty.hpp"
 #include "tests/bench/answering_line.hpp"
-#include "tests/bench/server_process.hpp"
 
 namespace axisgate::bench {
 namespace {
@@ -118,37 +113,20 @@ class Responder {
 DriveProcess::DriveProcess(const DriveLines& shape, const std::string& folder) : shape_(shape) {
   for (int i = 0; i < shape.lines; ++i)
     devices_.push_back((shape.protocol == LineProtocol::vcan ? "vcan" : folder + "/line") + std::to_string(i));
-  int ready[2];
-  if (::pipe(ready) != 0) throw std::runtime_error("no pipe");
-  std::fflush(nullptr);
-  process_ = ::fork();
-  if (process_ < 0) throw std::runtime_error("no process");
-  if (process_ == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const auto serve = [this](const ServerProcess::Ready& ready) {
     ::prctl(PR_SET_TIMERSLACK, 1UL);  // else replies would come 50 us late
-    stay_on_processor(shape.processor);
-    try {
-      std::vector<Line> lines;
-      for (const std::string& device : devices_)
-        lines.push_back({opened(device, shape.protocol),
-                         make_answering_line(shape.protocol, shape.drives_per_line, steady_now()), std::nullopt});
-      static_cast<void>(!::write(ready[1], "", 1));
-      Responder(std::move(lines), shape, *tap_.operator->()).serve();
-    } catch (const std::exception& error) {
-      std::fprintf(stderr, "drives: %s\n", error.what());
-    }
-    ::_exit(1);
-  }
-  ::close(ready[1]);
-  char byte = 0;
-  const bool there = ::read(ready[0], &byte, 1) == 1;
-  ::close(ready[0]);
-  if (!there) throw std::runtime_error("the simulated drives did not start");
+    std::vector<Line> lines;
+    for (const std::string& device : devices_)
+      lines.push_back({opened(device, shape_.protocol),
+                       make_answering_line(shape_.protocol, shape_.drives_per_line, steady_now()), std::nullopt});
+    ready(0);
+    Responder(std::move(lines), shape_, *tap_.operator->()).serve();
+  };
+  process_.emplace(serve, shape.processor);
 }
 
 DriveProcess::~DriveProcess() {
-  ::kill(process_, SIGKILL);
-  ::waitpid(process_, nullptr, 0);
+  process_.reset();
   for (const std::string& device : devices_)
     if (device.find('/') != std::string::npos) static_cast<void>(::unlink(device.c_str()));
 }

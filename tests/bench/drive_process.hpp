@@ -3,14 +3,14 @@
 // every exchange in the tap. Never outlives the bench, and never echoes, breaks or delays a frame.
 #pragma once
 
-#include <sys/types.h>
-
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tests/bench/exchange_tap.hpp"
 #include "tests/bench/line_protocol.hpp"
+#include "tests/bench/process.hpp"
 
 namespace axisgate::bench {
 
@@ -42,7 +42,7 @@ class DriveProcess {
   DriveLines shape_;
   std::vector<std::string> devices_;
   SharedTap tap_;
-  pid_t process_ = -1;
+  std::optional<ServerProcess> process_;
 };
 
 }  // namespace axisgate::bench

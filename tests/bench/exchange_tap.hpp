@@ -5,6 +5,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -52,6 +53,21 @@ class SharedTap {
 
  private:
   ExchangeTap* tap_;
+};
+
+/// How many exchanges a second there are from now on.
+class ExchangeRate {
+ public:
+  explicit ExchangeRate(const ExchangeTap& tap) : tap_(tap), before_(tap.recorded()) {}
+  [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+  [[nodiscard]] double exchanges() const { return static_cast<double>(tap_.recorded() - before_); }
+  [[nodiscard]] double per_second() const { return exchanges() / seconds(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const ExchangeTap& tap_;
+  std::uint64_t before_;
+  Clock::time_point began_ = Clock::now();
 };
 
 }  // namespace axisgate::bench

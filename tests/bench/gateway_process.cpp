@@ -1,22 +1,17 @@
 #include "tests/bench/gateway_process.hpp"
 
 #include <arpa/inet.h>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <stdexcept>
 #include <thread>
 
 #include "tests/bench/modbus_client.hpp"
-#include "tests/bench/server_process.hpp"
 
 namespace axisgate::bench {
 namespace {
@@ -82,33 +77,20 @@ GatewayProcess::GatewayProcess(const std::string& program, const std::string& fo
   const std::string log = folder + "/gateway.log";
   std::ofstream(config) << fmt::format("{{\"modbus_tcp\": [{{\"listen\": \"127.0.0.1:{}\"{}{}}}],\n\"buses\": [{}]}}\n",
                                        port_, listener.empty() ? "" : ", ", listener, buses);
-  begin(program, config, log, processor);
+  process_.emplace(
+      processor,
+      [&] {
+        become(program, {"run", config, "--log-level", "warning"}, log);
+      },
+      SIGTERM);
   try {
     await_axes();
   } catch (const std::exception& error) {
-    ::kill(process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
     throw std::runtime_error(fmt::format("{}; it said:\n{}", error.what(), text_of(log)));
   }
 }
 
-void GatewayProcess::begin(const std::string& program, const std::string& config, const std::string& log,
-                           unsigned processor) {
-  std::fflush(nullptr);
-  process_ = ::fork();
-  if (process_ < 0) throw std::runtime_error("no process");
-  if (process_ != 0) return;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  stay_on_processor(processor);
-  const int out = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  ::dup2(out, STDOUT_FILENO);
-  ::dup2(out, STDERR_FILENO);
-  ::execl(program.c_str(), "axisgate", "run", config.c_str(), "--log-level", "warning", nullptr);
-  std::perror(program.c_str());
-  ::_exit(127);
-}
-
-void GatewayProcess::await_axes() const {
+void GatewayProcess::await_axes() {
   const auto end = SteadyClock::now() + std::chrono::seconds(30);
   int online = 0;
   while (SteadyClock::now() < end) {
@@ -122,27 +104,22 @@ void GatewayProcess::await_axes() const {
         ready += client.read(static_cast<std::uint16_t>(100 * axis + 18), 1).front() == 2 ? 1 : 0;
       if (ready == axes_) return;
     } catch (const std::exception&) {
-      if (::waitpid(process_, nullptr, WNOHANG) == process_) throw std::runtime_error("the gateway ended");
+      if (process_->ended()) throw std::runtime_error("the gateway ended");
     }
   }
   throw std::runtime_error(fmt::format("{} of {} axes online after 30 s", online, axes_));
 }
 
-GatewayProcess::~GatewayProcess() {
-  ::kill(process_, SIGTERM);
-  ::waitpid(process_, nullptr, 0);
-}
-
 std::chrono::nanoseconds GatewayProcess::processor_time() const {
   clockid_t clock{};
   timespec time{};
-  if (::clock_getcpuclockid(process_, &clock) != 0 || ::clock_gettime(clock, &time) != 0)
+  if (::clock_getcpuclockid(process_->id(), &clock) != 0 || ::clock_gettime(clock, &time) != 0)
     throw std::runtime_error("the gateway's processor time is not told");
   return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
 GatewayProcess::Memory GatewayProcess::memory() const {
-  std::ifstream in(fmt::format("/proc/{}/status", process_));
+  std::ifstream in(fmt::format("/proc/{}/status", process_->id()));
   Memory memory;
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with("VmRSS:")) memory.resident = std::stoul(line.substr(6));

@@ -3,14 +3,14 @@
 // Never listens on anything but loopback.
 #pragma once
 
-#include <sys/types.h>
-
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "tests/bench/drive_process.hpp"
+#include "tests/bench/process.hpp"
 
 namespace axisgate::bench {
 
@@ -30,9 +30,6 @@ class GatewayProcess {
   /// `buses`: as a configuration has them, with axes 1 to `axes`; `listener`: further keys of its listener.
   GatewayProcess(const std::string& program, const std::string& folder, const std::string& buses, int axes,
                  unsigned processor = 0, const std::string& listener = {});
-  ~GatewayProcess();
-  GatewayProcess(const GatewayProcess&) = delete;
-  GatewayProcess& operator=(const GatewayProcess&) = delete;
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] int axes() const { return axes_; }
@@ -45,12 +42,11 @@ class GatewayProcess {
   [[nodiscard]] Memory memory() const;
 
  private:
-  void begin(const std::string& program, const std::string& config, const std::string& log, unsigned processor);
-  void await_axes() const;
+  void await_axes();
 
   int axes_ = 0;
   std::uint16_t port_ = 0;
-  pid_t process_ = -1;
+  std::optional<Process> process_;
 };
 
 }  // namespace axisgate::bench

@@ -1,13 +1,10 @@
-#include "tests/bench/idle_can.hpp"
-
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdio>
 #include <thread>
 
+#include "tests/bench/benches.hpp"
 #include "tests/bench/gateway_process.hpp"
-#include "tests/bench/line_protocol.hpp"
 #include "tests/bench/modbus_client.hpp"
 #include "tests/bench/simulator_process.hpp"
 
@@ -51,22 +48,17 @@ void measure(const Setting& setting, const BenchOptions& options) {
   const double seconds = std::chrono::duration<double>(SteadyClock::now() - began).count();
   const double busy = std::chrono::duration<double>(gateway.processor_time() - processor_before).count();
   const auto load = client.read(50'001, 1).front();
-  fmt::print("{:<44} {:>14.1f} {:>12.1f} {:>14.1f}\n", setting.what, (counter(client, kRequests) - before) / seconds,
-             static_cast<double>(load) / 10, 100 * busy / seconds);
-  std::fflush(stdout);
+  options.report.row(fmt::format("{}: SDO requests/s", setting.what), (counter(client, kRequests) - before) / seconds);
+  options.report.row(fmt::format("{}: bus load, %", setting.what), static_cast<double>(load) / 10);
+  options.report.row(fmt::format("{}: processor, %", setting.what), 100 * busy / seconds);
 }
 
 }  // namespace
 
 void idle_can(const BenchOptions& options) {
-  fmt::print(
-      "Drives online, disabled, standing, polled as by default (20, 100, 1000 ms), 500 kbit/s; TPDOs carry the state\n"
-      "{:<44} {:>14} {:>12} {:>14}\n",
-      "", "SDO requests/s", "bus load %", "processor %");
   const std::string ld2 = entry("leadshine-ld2-can", 1), jd = entry("kinco-jd", 2), md = entry("kinco-md", 3);
-  const std::array settings{
-      Setting{"a Leadshine LD2-CAN", "ld2@1", ld2, 1},
-      Setting{"a Leadshine LD2-CAN, a Kinco JD, a Kinco MD", "ld2@1,jd@2,md@3", ld2 + ", " + jd + ", " + md, 3}};
+  const std::array settings{Setting{"a Leadshine LD2-CAN", "ld2@1", ld2, 1},
+                            Setting{"an LD2-CAN, a JD, an MD", "ld2@1,jd@2,md@3", ld2 + ", " + jd + ", " + md, 3}};
   for (const Setting& setting : settings) measure(setting, options);
 }
 

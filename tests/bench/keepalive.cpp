@@ -1,18 +1,15 @@
-#include "tests/bench/keepalive.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
+#include "tests/bench/benches.hpp"
 #include "tests/bench/busy_clients.hpp"
-#include "tests/bench/figures.hpp"
 #include "tests/bench/motor_stage.hpp"
-#include "tests/bench/server_process.hpp"
 
 namespace axisgate::bench {
 namespace {
@@ -74,7 +71,8 @@ std::vector<double> gaps_of(const std::vector<TappedCommand>& commands, std::uin
   return gaps;
 }
 
-void measure(MotorStage& stage, Load load, milliseconds lasting) {
+void measure(const BenchOptions& options, MotorStage& stage, Load load) {
+  const milliseconds lasting(options.quick ? 1000 : 30'000);
   constexpr milliseconds kGettingGoing{100};
   BusyClients clients(stage.port());
   // The owner's own reads, which keep both leases alive when nobody else does.
@@ -86,45 +84,33 @@ void measure(MotorStage& stage, Load load, milliseconds lasting) {
   if (load != Load::none) add_busy_clients(clients, stage.drive(0).protocol, load);
   std::this_thread::sleep_for(kGettingGoing);
   const auto began = steady_now();
-  const std::uint64_t turns = clients.turns();
   std::this_thread::sleep_for(lasting);
   const auto ended = steady_now();
-  const double seconds = std::chrono::duration<double>(ended - began).count();
-  const double rate = static_cast<double>(clients.turns() - turns) / seconds;
   const auto commands = stage.tap(0).since(began);
   clients.stop();
   const auto gaps = gaps_of(commands, kFirstMotor | kSecondMotor, ended);
   double worst_of_one = 0;
   for (const std::uint8_t motor : {kFirstMotor, kSecondMotor})
     worst_of_one = std::max(worst_of_one, quantile(gaps_of(commands, motor, ended), 1));
-  fmt::print("{:<14} {:<16} {:>8.0f} {:>7} {:>8.1f} {:>8.1f} {:>8.1f} {:>10.1f} {:>6} {:>6} {:>8}\n",
-             stage.drive(0).name, kLoads[static_cast<std::size_t>(load)], rate, gaps.size(), median(gaps),
-             quantile(gaps, 0.99), quantile(gaps, 1), worst_of_one,
-             std::ranges::count_if(gaps, [](double gap) { return gap > kBoundMs; }), stage.ask(0, "trips"),
-             stage.ask(0, "enabled"));
-  std::fflush(stdout);
+  // Each is due one at half of its 300 ms.
+  const std::string what = fmt::format("{}, {}", stage.drive(0).name, kLoads[static_cast<std::size_t>(load)]);
+  options.report.row(what + ": median gap, ms", median(gaps), Beside{"due", 150});
+  options.report.row(what + ": worst gap of one motor, ms", worst_of_one, Beside{"bound", kBoundMs});
+  if (const std::string trips = stage.ask(0, "trips"); trips != "0")
+    throw std::runtime_error(fmt::format("{}: the drive tripped, {} times", what, trips));
 }
 
 }  // namespace
 
 void keepalive(const BenchOptions& options) {
-  constexpr milliseconds kQuickly{1000}, kFull{30'000};
   stay_on_processor(1);
-  fmt::print(
-      "Both motors run. Each is due a command every 300 ms and gets one at half of that, 150 ms, if the line is free;\n"
-      "the bound is 500 ms, and after 1000 ms the drive trips. Polled as by default. Milliseconds between commands as\n"
-      "they arrive at the drive, to either motor; then the worst between two to the same one. Clients read both axes\n"
-      "without a pause; half of them also write speeds, half have the drive asked for an object.\n"
-      "{:<14} {:<16} {:>8} {:>7} {:>8} {:>8} {:>8} {:>10} {:>6} {:>6} {:>8}\n",
-      "", "clients", "turns/s", "gaps", "median", "p99", "worst", "one motor", ">500", "trips", "enabled");
   for (const MotionProtocol protocol :
        {MotionProtocol::keya_rs232, MotionProtocol::keya_can, MotionProtocol::keya_canopen}) {
     // One owner for all connections, so that 32 of them may write.
     MotorStage stage(options, {motor_drive(protocol)}, {2000, R"("client": "address")"});
     std::vector<ModbusClient> owners;
     for (int axis = 1; axis <= kAxes; ++axis) owners.push_back(running_axis(stage.port(), axis));
-    for (const Load load : {Load::none, Load::same_speeds, Load::new_speeds})
-      measure(stage, load, options.quick ? kQuickly : kFull);
+    for (const Load load : {Load::none, Load::same_speeds, Load::new_speeds}) measure(options, stage, load);
   }
 }
 

@@ -1,19 +1,15 @@
-#include "tests/bench/lease_expiry.hpp"
-
 #include <fmt/format.h>
 
 #include <array>
 #include <chrono>
-#include <cstdio>
 #include <exception>
 #include <random>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
-#include "tests/bench/figures.hpp"
+#include "tests/bench/benches.hpp"
 #include "tests/bench/motor_stage.hpp"
-#include "tests/bench/server_process.hpp"
 
 namespace axisgate::bench {
 namespace {
@@ -63,12 +59,12 @@ Waits waits_of(MotorStage& stage, std::size_t line, int runs) {
   return waits;
 }
 
-void print(std::string_view name, const Waits& waits) {
+void print(Report& report, std::string_view name, const Waits& waits) {
   for (std::size_t death = 0; death < waits.size(); ++death) {
-    const double worst = quantile(waits[death], 1);
-    fmt::print("{:<22} {:<14} {:>10.1f} {:>10.1f} {:>10.1f} {:>9.1f} %\n", name, kDeaths[death],
-               quantile(waits[death], 0), median(waits[death]), worst,
-               100 * worst / static_cast<double>(kLease.count()));
+    const std::string what = fmt::format("{}, the client {}", name, kDeaths[death]);
+    const Beside lease{"lease", static_cast<double>(kLease.count())};
+    report.row(what + ": median ms", median(waits[death]), lease);
+    report.row(what + ": worst ms", worst(waits[death]), lease);
   }
 }
 
@@ -77,13 +73,7 @@ void print(std::string_view name, const Waits& waits) {
 void lease_expiry(const BenchOptions& options) {
   stay_on_processor(1);
   const int runs = options.times(10);
-  fmt::print(
-      "A client dies while its motor runs: lease {} ms, renewed by any request, then quick_stop (goal: within 110 %).\n"
-      "From the sending of its last request to the first frame on the wire that stops the motor; deaths of each kind: "
-      "{}.\n"
-      "All lines hang on one gateway, and their clients die at times of their own.\n"
-      "{:<22} {:<14} {:>10} {:>10} {:>10} {:>11}\n",
-      kLease.count(), runs, "milliseconds", "the client", "least", "median", "worst", "of lease");
+  // All lines hang on one gateway, and their clients die at times of their own.
   const std::span<const MotorDrive> drives = motor_drives();
   MotorStage stage(options, {drives.begin(), drives.end()}, {static_cast<int>(kLease.count()), {}});
   std::vector<Waits> waits(stage.lines());
@@ -104,7 +94,7 @@ void lease_expiry(const BenchOptions& options) {
     } catch (const std::exception& error) {
       throw std::runtime_error(fmt::format("{}: {}", stage.drive(line).name, error.what()));
     }
-    print(stage.drive(line).name, waits[line]);
+    print(options.report, stage.drive(line).name, waits[line]);
   }
 }
 

@@ -1,30 +1,18 @@
 // axisgate-bench: the figures of the design's section 8, each as a ratio to a bare loop of the same run.
 #include <fmt/format.h>
-#include <net/if.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include "tests/bench/babbling_bus.hpp"
-#include "tests/bench/bench_options.hpp"
-#include "tests/bench/change_latency.hpp"
-#include "tests/bench/delayed_drive.hpp"
-#include "tests/bench/figures.hpp"
-#include "tests/bench/footprint.hpp"
-#include "tests/bench/idle_can.hpp"
-#include "tests/bench/immediate_drive.hpp"
-#include "tests/bench/keepalive.hpp"
-#include "tests/bench/lease_expiry.hpp"
-#include "tests/bench/modbus_reads.hpp"
-#include "tests/bench/mute_neighbour.hpp"
-#include "tests/bench/shared_polling.hpp"
-#include "tests/bench/stop_latency.hpp"
+#include "tests/bench/benches.hpp"
 
 namespace {
 
@@ -34,7 +22,6 @@ struct Bench {
   std::string_view name;
   std::string_view what;
   void (*run)(const BenchOptions&);
-  bool needs_vcan = false;
 };
 
 template <void (*bench)(const BenchOptions&, LineProtocol), LineProtocol protocol>
@@ -50,15 +37,12 @@ constexpr std::array kBenches{
     Bench{"immediate", "P2: time added to an exchange with a drive that answers at once", on<immediate_drive, kKinco>},
     Bench{"delayed", "P2: share of a bare loop's rate with a drive that answers after 5 ms", on<delayed_drive, kKinco>},
     Bench{"stops", "P4: exchanges before a stop, behind 32 busy clients", on<stop_latency, kKinco>},
-    Bench{"reads", "P5: Modbus reads per second beside a bare Asio echo server",
-          [](const BenchOptions& options) {
-            modbus_reads(options.quick ? ReadsOptions{3, 100} : ReadsOptions{});
-          }},
+    Bench{"reads", "P5: Modbus reads per second beside a bare Asio echo server", modbus_reads},
     Bench{"sharing", "P6: exchanges on the bus with 0, 1 and 32 reading clients", on<shared_polling, kKinco>},
     Bench{"footprint", "P8: memory and processor time", footprint},
     Bench{"rtu-immediate", "P2 on Modbus RTU, beside libmodbus in a loop", on<immediate_drive, kRtu>},
     Bench{"rtu-delayed", "P2 on Modbus RTU, drives that answer at once and after 5 ms", on<delayed_drive, kRtu>},
-    Bench{"rtu-mute", "P3: a live drive's writes beside a dead one, on Modbus RTU", on<mute_neighbour, kRtu>},
+    Bench{"rtu-dead", "P3: a live drive's writes beside a dead one, on Modbus RTU", on<dead_neighbour, kRtu>},
     Bench{"rtu-stops", "P4 on Modbus RTU", on<stop_latency, kRtu>},
     Bench{"rtu-sharing", "P6 on Modbus RTU", on<shared_polling, kRtu>},
     Bench{"slcan-immediate", "P2 on CANopen behind a serial adapter, beside its text in a loop",
@@ -69,10 +53,10 @@ constexpr std::array kBenches{
     Bench{"keepalive", "gaps between the commands that keep a Keya's motors alive, with 0 and 32 busy clients",
           keepalive},
     Bench{"lease", "from a client's death to the stop on the wire, on every protocol", lease_expiry},
-    Bench{"vcan-immediate", "P2 on CANopen, beside a raw CAN socket in a loop", on<immediate_drive, kVcan>, true},
-    Bench{"vcan-delayed", "P2 on CANopen, nodes that answer at once and after 5 ms", on<delayed_drive, kVcan>, true},
-    Bench{"vcan-change", "from a TPDO to the register that shows it", on<change_latency, kVcan>, true},
-    Bench{"vcan-babble", "what a babbling node costs the other bus", babbling_bus, true},
+    Bench{"vcan-immediate", "P2 on CANopen, beside a raw CAN socket in a loop", on<immediate_drive, kVcan>},
+    Bench{"vcan-delayed", "P2 on CANopen, nodes that answer at once and after 5 ms", on<delayed_drive, kVcan>},
+    Bench{"vcan-change", "from a TPDO to the register that shows it", on<change_latency, kVcan>},
+    Bench{"vcan-babble", "what a babbling node costs the other bus", babbling_bus},
 };
 
 /// A folder for one run; gone with the object.
@@ -93,60 +77,59 @@ class RunFolder {
   std::string path_;
 };
 
+constexpr std::string_view kUsage =
+    "usage: axisgate-bench [--quick] [--json FILE] [--axisgate PROGRAM] BENCH...\n"
+    "--json adds each row to a file; --quick shows in seconds that they work: its figures mean nothing.\n"
+    "Those of vcan want an interface vcan0. All are run by tests/bench/run.\n";
+
 int help(int status) {
-  fmt::print(
-      "usage: axisgate-bench [--quick] [--axisgate PROGRAM] [BENCH...]\nWithout a name, all of these run, those of "
-      "vcan where\n"
-      "there is an interface vcan0 (tests/vcan/in_guest -- axisgate-bench ...):\n");
+  fmt::print("{}", kUsage);
   for (const Bench& bench : kBenches) fmt::print("  {:<16} {}\n", bench.name, bench.what);
-  fmt::print("--quick shows in seconds that they work; its figures mean nothing.\n");
   return status;
 }
 
-const Bench* find(std::string_view name) {
-  for (const Bench& bench : kBenches)
-    if (bench.name == name) return &bench;
-  return nullptr;
-}
-
-void run(const std::vector<const Bench*>& chosen, BenchOptions options) {
-  const RunFolder folder;
-  options.folder = folder.path();
+/// How many could not be measured: the others are, nevertheless.
+int failures(const std::vector<const Bench*>& chosen, const BenchOptions& options) {
+  int failed = 0;
   for (const Bench* bench : chosen) {
-    fmt::print("--- {}: {}\n", bench->name, load_of_the_machine());
-    std::fflush(stdout);
-    bench->run(options);
+    options.report.begin(bench->name);
+    try {
+      bench->run(options);
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "axisgate-bench: {}: {}\n", bench->name, error.what());
+      ++failed;
+    }
   }
-  fmt::print("--- end: {}\n", load_of_the_machine());
+  return failed;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  BenchOptions options;
-  options.program = AXISGATE_PROGRAM;
+  std::string program = AXISGATE_PROGRAM, json;
+  bool quick = false;
   std::vector<const Bench*> chosen;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     if (word == "--help") return help(0);
-    if (word == "--quick") {
-      options.quick = true;
-    } else if (word == "--axisgate" && i + 1 < argc) {
-      options.program = argv[++i];
-    } else if (const Bench* bench = find(word)) {
-      chosen.push_back(bench);
-    } else {
+    const auto bench = std::ranges::find(kBenches, word, &Bench::name);
+    if (word == "--quick")
+      quick = true;
+    else if (word == "--json" && i + 1 < argc)
+      json = argv[++i];
+    else if (word == "--axisgate" && i + 1 < argc)
+      program = argv[++i];
+    else if (bench != kBenches.end())
+      chosen.push_back(&*bench);
+    else
       return help(2);
-    }
   }
-  if (chosen.empty())
-    for (const Bench& bench : kBenches)
-      if (!bench.needs_vcan || ::if_nametoindex("vcan0") != 0) chosen.push_back(&bench);
   try {
-    run(chosen, options);
+    Report report(json);
+    const RunFolder folder;
+    return failures(chosen, {report, program, folder.path(), quick}) == 0 ? 0 : 1;
   } catch (const std::exception& error) {
     fmt::print(stderr, "axisgate-bench: {}\n", error.what());
     return 1;
   }
-  return 0;
 }

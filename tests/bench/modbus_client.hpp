@@ -22,6 +22,7 @@ class ModbusClient {
   ModbusClient& operator=(const ModbusClient&) = delete;
   ModbusClient& operator=(ModbusClient&&) = delete;
 
+  [[nodiscard]] int socket() const { return socket_; }
   /// FC 3. An exception is an error here.
   std::vector<std::uint16_t> read(std::uint16_t address, std::uint16_t count);
   /// FC 16 and FC 5: the exception code, 0 for none.

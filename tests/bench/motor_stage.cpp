@@ -86,8 +86,10 @@ ModbusClient running_axis(std::uint16_t port, int axis) {
   const auto at = [block](int offset) { return static_cast<std::uint16_t>(block + offset); };
   const auto end = std::chrono::steady_clock::now() + kPatience;
   for (;;) {
-    // A new connection each time: on one that has written a coil the same value again is no edge.
+    // A new connection each time: it owns nothing and has written nothing.
     ModbusClient client(port);
+    // A coil that moves the axis acts on 1 after a 0 alone; one that enables it does after a stop.
+    for (const int coil : {kRunVelocity, kEnable}) static_cast<void>(client.write_coil(at(coil), false));
     const int enabled = client.write_coil(at(kEnable), true);
     const int set = enabled != 0 ? 0 : client.write(at(kTargetVelocityOffset), registers_of(kRunningVelocity));
     const int runs = enabled != 0 || set != 0 ? 0 : client.write_coil(at(kRunVelocity), true);

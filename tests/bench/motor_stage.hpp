@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/bench/bench_options.hpp"
+#include "tests/bench/benches.hpp"
 #include "tests/bench/gateway_process.hpp"
 #include "tests/bench/modbus_client.hpp"
 #include "tests/bench/simulator_process.hpp"

@@ -1,22 +1,16 @@
 #include "tests/bench/simulator_process.hpp"
 
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <sys/un.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 #include <thread>
 #include <utility>
-
-#include "tests/bench/server_process.hpp"
 
 namespace axisgate::bench {
 namespace {
@@ -44,52 +38,28 @@ std::string answer_to(int socket, const std::string& path, const std::string& li
 }  // namespace
 
 SimulatorProcess::SimulatorProcess(const std::vector<std::string>& lines, std::string control)
-    : control_(std::move(control)) {
-  begin(lines);
-  std::vector<std::string> paths;
-  for (const std::string& line : lines) paths.push_back(line.substr(0, line.find(':')));
-  if (!control_.empty()) paths.push_back(control_);
-  try {
-    await(paths);
-  } catch (...) {
-    ::kill(process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
-    throw;
-  }
+    : control_(std::move(control)),
+      process_(
+          1,
+          [&] {
+            std::vector<std::string> words;
+            for (const std::string& line : lines) words.insert(words.end(), {"--line", line});
+            if (!control_.empty()) words.insert(words.end(), {"--control", control_});
+            go_before_others();
+            become(AXISGATE_SIM, words, "/dev/null");
+          },
+          SIGTERM) {
+  for (const std::string& line : lines) await(line.substr(0, line.find(':')));
+  if (!control_.empty()) await(control_);
 }
 
-void SimulatorProcess::begin(const std::vector<std::string>& lines) {
-  std::vector<const char*> words{"axisgate-sim"};
-  for (const std::string& line : lines) words.insert(words.end(), {"--line", line.c_str()});
-  if (!control_.empty()) words.insert(words.end(), {"--control", control_.c_str()});
-  words.push_back(nullptr);
-  std::fflush(nullptr);
-  process_ = ::fork();
-  if (process_ < 0) throw std::runtime_error("no process");
-  if (process_ != 0) return;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  stay_on_processor(1);
-  go_before_others();
-  static_cast<void>(!::freopen("/dev/null", "w", stdout));
-  ::execv(AXISGATE_SIM, const_cast<char* const*>(words.data()));
-  std::perror(AXISGATE_SIM);
-  ::_exit(127);
-}
-
-void SimulatorProcess::await(const std::vector<std::string>& paths) const {
+void SimulatorProcess::await(const std::string& path) {
   const auto end = std::chrono::steady_clock::now() + kPatience;
-  for (const std::string& path : paths) {
-    while (!std::filesystem::exists(path)) {
-      if (std::chrono::steady_clock::now() > end || ::waitpid(process_, nullptr, WNOHANG) == process_)
-        throw std::runtime_error("the simulator made no " + path);
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+  while (!std::filesystem::exists(path)) {
+    if (std::chrono::steady_clock::now() > end || process_.ended())
+      throw std::runtime_error("the simulator made no " + path);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-}
-
-SimulatorProcess::~SimulatorProcess() {
-  ::kill(process_, SIGTERM);
-  ::waitpid(process_, nullptr, 0);
 }
 
 std::string SimulatorProcess::ask(std::string_view line) const {

@@ -3,11 +3,11 @@
 // Never understands a line or an answer: those are the simulator's.
 #pragma once
 
-#include <sys/types.h>
-
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "tests/bench/process.hpp"
 
 namespace axisgate::bench {
 
@@ -16,19 +16,15 @@ class SimulatorProcess {
   /// `lines`: each as `--line` takes it, PATH:DRIVES. `control`: where its socket shall be; empty: none.
   /// Throws std::runtime_error when a port does not appear.
   explicit SimulatorProcess(const std::vector<std::string>& lines, std::string control = {});
-  ~SimulatorProcess();
-  SimulatorProcess(const SimulatorProcess&) = delete;
-  SimulatorProcess& operator=(const SimulatorProcess&) = delete;
 
   /// What it answers to this line of its control socket, without the "ok". Throws std::runtime_error on any other.
   [[nodiscard]] std::string ask(std::string_view line) const;
 
  private:
-  void begin(const std::vector<std::string>& lines);
-  void await(const std::vector<std::string>& paths) const;
+  void await(const std::string& path);
 
   std::string control_;
-  pid_t process_ = -1;
+  Process process_;
 };
 
 }  // namespace axisgate::bench

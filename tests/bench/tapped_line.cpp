@@ -9,7 +9,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "tests/bench/server_process.hpp"
+#include "tests/bench/process.hpp"
 
 namespace axisgate::bench {
 

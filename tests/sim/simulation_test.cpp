@@ -1,5 +1,5 @@
-// 50 seeds of 60 virtual seconds, each followed by a quiet tail in which everything must come back. Replay one seed
-// with `simulate --seed N`.
+// 12 seeds of 60 virtual seconds, each followed by a quiet tail in which everything must come back; tests/soak/run
+// --seeds takes as many as it is told. Replay one seed with `simulate --seed N`.
 #include <gtest/gtest.h>
 
 #include "tests/sim/world.hpp"
@@ -17,7 +17,9 @@ TEST_P(Seeds, KeepEveryInvariantAndComeBack) {
   // A run in which nothing happened proves nothing.
   EXPECT_GT(world.asked().replies, 500U) << world.summary();
 }
-INSTANTIATE_TEST_SUITE_P(Simulation, Seeds, testing::Range<std::uint64_t>(1, 51));
+// Of the first 50: each mixture of lines, each wiring of Kinco drives, and those with the most late replies, bad frames
+// and timeouts.
+INSTANTIATE_TEST_SUITE_P(Simulation, Seeds, testing::Values(1, 3, 5, 7, 9, 10, 12, 20, 23, 37, 43, 45));
 
 TEST(Simulation, GivesTheSameHashForTheSameSeedAndAnotherForAnother) {
   const auto hash = [](std::uint64_t seed) {

@@ -21,6 +21,7 @@ class NoCommands final : public CommandPort {
   }
   void client_gone(ClientId) override {}
   bool holds(AxisNumber, Quantity, std::int64_t) const override { return false; }
+  bool owner_asks(AxisNumber, ClientId, Quantity, std::int64_t) const override { return false; }
   std::int32_t set_position_value(AxisNumber) const override { return 0; }
 };
 

@@ -14,7 +14,7 @@
 #include "gateway/upstream/dds_process/participant.hpp"
 #include "tests/bench/dds/changing_image.hpp"
 #include "tests/bench/dds/subscriber.hpp"
-#include "tests/bench/figures.hpp"
+#include "tests/bench/report.hpp"
 
 namespace {
 
@@ -70,15 +70,7 @@ class BareWriter {
   axisgate::AxisState sample_;
 };
 
-void print(const char* what, const std::vector<double>& samples) {
-  fmt::print("{:<52} {:>8} {:>9.1f} {:>9.1f} {:>9.1f}\n", what, samples.size(), median(samples),
-             quantile(samples, 0.99), quantile(samples, 1.0));
-  std::fflush(stdout);
-}
-
-void append(std::vector<double>& to, const std::vector<double>& more) { to.insert(to.end(), more.begin(), more.end()); }
-
-void latency(bool quick) {
+void latency(Report& report, bool quick) {
   const milliseconds lasting(quick ? 300 : 4000);
   const int rounds = quick ? 1 : 5;
   BareWriter bare(domain_of(0));
@@ -89,7 +81,7 @@ void latency(bool quick) {
   of_image.await_first_sample();
   bare.write_for(milliseconds(200));
   of_bare.await_first_sample();
-  std::vector<double> bare_samples, image_samples;
+  Samples bare_samples, image_samples;
   for (int round = 0; round < rounds; ++round) {
     image.change(false);
     of_bare.forget();
@@ -100,13 +92,8 @@ void latency(bool quick) {
     std::this_thread::sleep_for(lasting);
     append(image_samples, of_image.latencies());
   }
-  fmt::print("A change each {} us, in turns, {}\n{:<52} {:>8} {:>9} {:>9} {:>9}\n", kEvery.count(),
-             load_of_the_machine(), "", "samples", "median us", "p99 us", "worst us");
-  print("bare: write() to a subscriber in another process", bare_samples);
-  print("change of the image to the same subscriber", image_samples);
-  fmt::print("added: median {:.1f} us, p99 {:.1f} us (goal: at most 50 us more)\n",
-             median(image_samples) - median(bare_samples),
-             quantile(image_samples, 0.99) - quantile(bare_samples, 0.99));
+  // A change each 2 ms, the two in turns; the bare one is write() to the same subscriber. Goal: 50 us more.
+  report.rows("change of the image to a subscriber, us", image_samples, "bare writer", bare_samples);
 }
 
 struct Usage {
@@ -132,7 +119,7 @@ Usage usage_of(pid_t pid) {
           resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1024 * 1024)};
 }
 
-void load(bool quick) {
+void load(Report& report, bool quick) {
   const milliseconds lasting(quick ? 1000 : 20'000);
   ChangingImage image({domain_of(1), 64, std::chrono::microseconds(10'000), milliseconds(10)});
   Subscriber subscriber(domain_of(1));
@@ -145,33 +132,47 @@ void load(bool quick) {
   std::this_thread::sleep_for(lasting);
   const Usage core_after = usage_of(::getpid()), process_after = usage_of(image.process());
   const auto changes = static_cast<double>(image.changes() - before);
-  const std::vector<double> received = subscriber.latencies();
+  const Samples received = subscriber.latencies();
   const double seconds = std::chrono::duration<double>(lasting).count();
-  fmt::print("64 axes, each changed 100 times a second, one subscriber, {}\n", load_of_the_machine());
-  fmt::print("changes {:.0f}/s, samples received {:.0f}/s\n", changes / seconds,
-             static_cast<double>(received.size()) / seconds);
-  fmt::print("gateway's half (image, face, socket): {:.1f} % of a core, {:.1f} MiB resident (with this bench in it)\n",
-             100 * (core_after.processor_s - core.processor_s) / seconds, core_after.resident_mib);
-  fmt::print("axisgate-dds: {:.1f} % of a core, {:.1f} MiB resident\n",
-             100 * (process_after.processor_s - process.processor_s) / seconds, process_after.resident_mib);
-  fmt::print("latency: median {:.1f} us, p99 {:.1f} us\n", median(received), quantile(received, 0.99));
+  // 64 axes, each changed 100 times a second, one subscriber. The gateway's half has this bench in it.
+  report.row("samples received, 1/s", static_cast<double>(received.size()) / seconds,
+             Beside{"changes", changes / seconds});
+  report.row("gateway's half, % of a core", 100 * (core_after.processor_s - core.processor_s) / seconds);
+  report.row("axisgate-dds, % of a core", 100 * (process_after.processor_s - process.processor_s) / seconds);
+  report.row("axisgate-dds, resident MiB", process_after.resident_mib);
+  report.row("latency, median us", median(received));
+  report.row("latency, p99 us", quantile(received, 0.99));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  const bool quick = !words.empty() && words.front() == "--quick";
-  const std::string bench = words.empty() ? "" : words.back();
+  std::vector<std::string> words(argv + 1, argv + argc);
   try {
     if (words.size() == 2 && words[0] == "subscribe")
       return subscribe(static_cast<std::uint32_t>(std::stoul(words[1])));
-    if (bench == "latency") return latency(quick), 0;
-    if (bench == "load") return load(quick), 0;
+    const bool quick = std::erase(words, "--quick") != 0;
+    std::string json;
+    if (words.size() > 2 && words[0] == "--json") {
+      json = words[1];
+      words.erase(words.begin(), words.begin() + 2);
+    }
+    Report report(json);
+    bool known = !words.empty();
+    for (const std::string& bench : words) {
+      report.begin(bench);
+      if (bench == "dds-latency")
+        latency(report, quick);
+      else if (bench == "dds-load")
+        load(report, quick);
+      else
+        known = false;
+    }
+    if (known) return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "axisgate-dds-bench: {}\n", error.what());
     return 1;
   }
-  fmt::print(stderr, "usage: axisgate-dds-bench [--quick] latency|load\n");
+  fmt::print(stderr, "usage: axisgate-dds-bench [--quick] [--json FILE] dds-latency|dds-load...\n");
   return 2;
 }
