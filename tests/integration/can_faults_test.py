@@ -120,6 +120,7 @@ class Doubt(OneOfThree):
         for turns, axis in enumerate(self.axes, 1):
             self.targets[axis.number] = turns * TURN // 2
             self.move(axis)
+            axis.until(position_actual=self.targets[axis.number])  # a drive says "reached" a little before it stands
             axis.command("disable")
             axis.until_input("moving", False)
             axis.set(profile_velocity=(600 + turns) * RPM, profile_acceleration=30000 + 1000 * turns)

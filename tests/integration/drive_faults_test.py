@@ -77,6 +77,7 @@ class Line(Story):
         for turns, axis in enumerate(self.axes, 1):
             self.targets[axis.number] = turns * TURN // 2
             self.move(axis)
+            axis.until(position_actual=self.targets[axis.number])  # a drive says "reached" a little before it stands
             axis.command("disable")
             axis.until_input("moving", False)
             axis.set(profile_velocity=(600 + turns) * RPM)
