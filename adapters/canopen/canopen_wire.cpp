@@ -45,6 +45,7 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   void arm();
   void send_command(const bus::Exchange& exchange);
   void send_step(std::uint8_t node, const SdoStep& step);
+  void send_heartbeat(Instant now);
   void transmit(const can::CanFrame& frame, bool urgent = false);
   void transmit(std::uint8_t node, const SdoFrames& frames);
   void on_reply_frame(Node& node, Bytes bytes, Instant now);
@@ -62,6 +63,7 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   SdoClient sdo_;
   HeartbeatPlan heartbeat_;
   PeriodPlan sync_;
+  bool tells_to_listen_ = false;  ///< the outstanding request sets a drive's time for our heartbeat
   /// What ends without an answer ends with the next turn of the loop, never inside send().
   std::optional<bus::ExchangeResult> owed_;
   Instant watch_again_ = kLongAgo;
@@ -126,6 +128,8 @@ void CanopenWire::send(const bus::Exchange& exchange) {
   if (exchange.access == bus::Access::write && exchange.object.index == kProducerHeartbeatTime) {
     if (Node* node = find(exchange.node)) node->unasked.on_changed_by_us();
   }
+  constexpr std::uint16_t kConsumerHeartbeatTime = 0x1016;
+  tells_to_listen_ = exchange.access == bus::Access::write && exchange.object.index == kConsumerHeartbeatTime;
   send_step(exchange.node, sdo_.begin(exchange));
 }
 
@@ -180,6 +184,10 @@ void CanopenWire::transmit(const can::CanFrame& frame, bool urgent) {
   link_->send(frame, urgent);
 }
 
+void CanopenWire::send_heartbeat(Instant now) {
+  for (const can::CanFrame& frame : heartbeat_.due(now, settings_.own_node)) transmit(frame);
+}
+
 // --- What we hear ---------------------------------------------------------------------------------------------------
 
 void CanopenWire::on_link_up() {
@@ -187,7 +195,7 @@ void CanopenWire::on_link_up() {
   up_ = true;
   sdo_.reset();
   for (Node& node : nodes_) node.unasked.link_up(now);
-  heartbeat_.link_up(now);
+  heartbeat_.begin(now);
   sync_.begin(now);
   if (std::exchange(ever_up_, true)) ++statistics_.reconnects;
   timer_->expires_at(now);  // our first heartbeat goes out before anything else is due
@@ -235,6 +243,12 @@ void CanopenWire::on_reply_frame(Node& node, Bytes bytes, Instant now) {
       return;
     case SdoClient::Heard::What::mine:
       transmit(node.number, heard.step.frames);
+      // A consumer watches from the first heartbeat on (CiA 301 7.2.8.2.2): until then our death would go unnoticed.
+      if (heard.step.over && std::exchange(tells_to_listen_, false)) {
+        heartbeat_.begin(now);
+        send_heartbeat(now);
+        arm();
+      }
       // Last: the bus may send its next request from inside this call.
       if (heard.step.over) events_->on_reply(*heard.step.over);
       return;
@@ -251,7 +265,7 @@ void CanopenWire::tell(Node& node, const Unasked::News& news) {
 void CanopenWire::on_timer() {
   if (!up_) return;
   const Instant now = runtime_.now();
-  for (const can::CanFrame& frame : heartbeat_.due(now, settings_.own_node)) transmit(frame);
+  send_heartbeat(now);
   if (sync_.due(now)) transmit(can::data_frame(kSyncId, {}));
   watch_nodes(now);
   const auto owed = std::exchange(owed_, std::nullopt);

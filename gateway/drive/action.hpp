@@ -36,7 +36,7 @@ struct Action {
   ObjectId copy_of = kNoObject;  ///< write: the newest number of this object instead
   Condition until;               ///< wait: must hold on a sample asked for after the last acknowledgement
   Duration limit{};              ///< wait
-  bool optional = false;         ///< a wait that runs out is no failure
+  bool optional = false;         ///< no failure: a wait that runs out, a write of what the drive says it does not have
   Errc otherwise = Errc::not_reached;
   Mark mark{};
 

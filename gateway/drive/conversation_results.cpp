@@ -5,6 +5,18 @@
 
 namespace axisgate::drive {
 
+namespace {
+
+constexpr std::uint32_t kNoSuchObject = 0x06020000,
+                        kNoSuchSubindex = 0x06090011;  // CiA 301 table 22; Kinco's serial too
+constexpr std::uint32_t kModbusIllegalAddress = 2;
+
+bool is_not_there(std::uint32_t detail) {
+  return detail == kNoSuchObject || detail == kNoSuchSubindex || detail == kModbusIllegalAddress;
+}
+
+}  // namespace
+
 // --- Results -------------------------------------------------------------------------------------------------------
 
 void Conversation::on_result(const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
@@ -50,6 +62,10 @@ void Conversation::on_write(const Action& action, const bus::ExchangeResult& res
       pop();
       return;
     case Errc::refused_by_drive:
+      if (action.optional && is_not_there(result.detail)) {
+        pop();
+        return;
+      }
       if (!repeat_stop()) fail(Errc::refused_by_drive, result.detail);
       return;
     default:
@@ -99,7 +115,7 @@ void Conversation::on_read(ObjectId object, const bus::ExchangeResult& result) {
 
 // What the drive said, as CiA 301 would have said it (design 3.1, FC 43/13).
 std::uint32_t Conversation::abort_code(std::uint32_t detail) const {
-  constexpr std::uint32_t kGeneral = 0x08000000, kNoSuchObject = 0x06020000, kModbusIllegalAddress = 2;
+  constexpr std::uint32_t kGeneral = 0x08000000;
   if (is_canopen(core_.drive) || detail == kNoSuchObject) return detail;
   return core_.drive.fence.by_length && detail == kModbusIllegalAddress ? kNoSuchObject : kGeneral;
 }

@@ -55,7 +55,6 @@ class Unplugged(CanStory):
         self.begin()
         for axis in self.axes:
             self.prepare(axis)
-        self.let_heartbeats_pass()  # a gateway that was never heard is not missed
 
     def pull(self, axis):
         self.ask("connect DRIVE off", axis.number)

@@ -62,6 +62,25 @@ TEST_F(CanopenWireTest, the_heartbeat_begins_with_one_boot_up_and_keeps_its_peri
   EXPECT_THAT(link->sent, ElementsAre(kHeartbeat)) << "a boot-up would tell the drives that their master was reset";
 }
 
+TEST_F(CanopenWireTest, a_drive_that_was_told_to_listen_hears_a_heartbeat_before_anything_else) {
+  begin({.name = "can0", .own_heartbeat = 100ms, .nodes = {{.node = 1}}});
+  runtime.advance_by(30ms);
+  clear();
+  wire->send(write_of(0x1017, 100, 2));
+  bring(0x581, "60 17 10 00 00 00 00 00");
+  EXPECT_THAT(link->sent, testing::Not(testing::Contains(kHeartbeat)));
+  clear();
+  wire->send(write_of(0x1016, 0x007F012C, 4));
+  EXPECT_THAT(link->sent, testing::Not(testing::Contains(kHeartbeat))) << "it does not listen yet";
+  clear();
+  bring(0x581, "60 16 10 00 00 00 00 00");
+  EXPECT_THAT(link->sent, ElementsAre(kHeartbeat));
+  runtime.advance_by(99ms);
+  EXPECT_THAT(link->sent, ElementsAre(kHeartbeat)) << "the period begins anew";
+  runtime.advance_by(1ms);
+  EXPECT_THAT(link->sent, ElementsAre(kHeartbeat, kHeartbeat));
+}
+
 TEST_F(CanopenWireTest, sync_is_sent_in_its_period_and_carries_nothing_and_without_periods_nothing_is_sent_unasked) {
   make({.name = "can0", .sync = 10ms, .nodes = {{.node = 1}}});
   link->events->on_link_up();

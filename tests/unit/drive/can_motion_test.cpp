@@ -50,6 +50,31 @@ TEST_P(CanMotion, AbsoluteMovesEndWhereTheyWereSent) {
   }
 }
 
+TEST_P(CanMotion, ARefusedReadOfTheVelocityBringsNoOldVelocityBackWithAnEnable) {
+  ASSERT_EQ(rig.stage.ask(1, with_command(Command::run_velocity, {{Quantity::target_velocity, 300'000}})).outcome.code,
+            Errc::ok);
+  auto& link = rig.stage.can_link(0);
+  bool refused = false;
+  link.on_traffic = [&](bool to_drive, const can::CanFrame& frame) {
+    const bool reads_velocity =
+        to_drive && frame.id == 0x601 && frame.data[0] == 0x40 && frame.data[1] == 0xFF && frame.data[2] == 0x60;
+    if (!reads_velocity || refused) return;
+    refused = true;
+    link.fate = CanLinkSim::Fate::refused;
+  };
+  Group read;
+  read.object = ObjectRequest{.index = 0x60FF, .size = 4};
+  read.role = Role::engineer;
+  ASSERT_NE(rig.stage.ask(1, read).outcome.code, Errc::ok);
+  ASSERT_TRUE(refused);
+  ASSERT_EQ(command(Command::quick_stop), Errc::ok);
+  ASSERT_TRUE(stands());
+  ASSERT_EQ(command(Command::enable), Errc::ok);
+  rig.stage.run(2s);
+  EXPECT_LT(std::llabs(value(Quantity::velocity_actual)), 1'000);
+  EXPECT_FALSE(rig.axis().has(AxisInput::moving));
+}
+
 TEST_P(CanMotion, AMoveToWhereItStandsIsDoneToo) {
   fast();
   write(Quantity::target_position, 3'000);
