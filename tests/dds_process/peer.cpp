@@ -96,7 +96,12 @@ class FastWriter : public Writer<Sample>, private fastdds::DataWriterListener {
  public:
   FastWriter(fastdds::Publisher* publisher, fastdds::Topic* topic, const fastdds::DataWriterQos& qos)
       : publisher_(publisher), writer_(publisher->create_datawriter(topic, qos, this)) {}
-  ~FastWriter() override { publisher_->delete_datawriter(writer_); }
+  ~FastWriter() override {
+    // Fast DDS 2.9.1 frees a writer's samples while its heartbeat still goes through them, and then goes on for hours
+    // (StatefulWriter::add_gaps_for_holes_in_history_). Nobody is sent a heartbeat where all is acknowledged.
+    writer_->wait_for_acknowledgments(Duration_t(5));
+    publisher_->delete_datawriter(writer_);
+  }
 
   bool write(Sample sample) override { return writer_->write(&sample); }
   bool wait_matched() override {

@@ -112,7 +112,7 @@ class Twins(OneOfThree):
 
 
 class Doubt(OneOfThree):
-    timings = {"timeout_ms": 150}
+    timings = {"timeout_ms": 300}
 
     def stand_somewhere(self):
         """Every value of every axis differs from its neighbour's; they are known to be so."""
@@ -143,7 +143,7 @@ class Doubt(OneOfThree):
 
     def test_late_replies(self):
         self.stand_somewhere()
-        self.ask("late DRIVE 400 0.3", 2)
+        self.ask("late DRIVE 500 0.3", 2)
         self.watch_until(lambda now: now["late_replies"] >= 5)
         self.healed()
         self.assert_goes_on(*self.others)

@@ -17,7 +17,7 @@ class FactoryFresh(Story):
     lines = {"lift": "jd@1+fresh"}
 
     def buses(self):
-        return [bus(self.path("lift"), drive("jd", 1, 1), timeout_ms=None)]
+        return [bus(self.path("lift"), drive("jd", 1, 1))]
 
     def commission(self, *options, answer=""):
         return self.command_line("commission", self.config, "1", *options, answer=answer)

@@ -1,7 +1,7 @@
 """Drives of three makers' types on one Modbus RTU line: each moves, one is in trouble and its neighbours go on, the cable is pulled."""
 import cable_test
 from cable_test import NEVER_SENT, OUTCOME_UNKNOWN, Cable
-from drive_faults_test import FAR, RPM, Line
+from drive_faults_test import FAR, RPM, TIMEOUT, Line
 from modbus import ALARM_ADOPTED, DISABLED, FAILED, NO_ANSWER, NO_PATH, ONLINE, STANDSTILL
 from processes import until
 from stage import bus, drive, main
@@ -40,7 +40,7 @@ class Neighbours(ThreeMakers):
         self.move(self.middle)
 
     def test_one_is_late(self):
-        self.tell_late(200)
+        self.tell_late(TIMEOUT + 100)
 
     def test_one_babbles(self):
         self.stand_somewhere()

@@ -29,11 +29,9 @@ def drive(kind, node, axis, **more):
 
 
 def bus(device, *drives, **more):
-    """Waits for an answer longer than a machine that is busy with something else keeps a simulated drive from giving it, unless a
-    story needs the gateway's own timeout (None)."""
-    keys = {"name": os.path.basename(device), "adapter": "kinco-serial", "device": device, "rs485": "off", "timeout_ms": 1000,
+    """Waits for an answer longer than a machine that is busy with something else keeps a simulated drive from giving it."""
+    return {"name": os.path.basename(device), "adapter": "kinco-serial", "device": device, "rs485": "off", "timeout_ms": 1000,
             "drives": list(drives), **more}
-    return {name: value for name, value in keys.items() if value is not None}
 
 
 class Simulator(Program):
