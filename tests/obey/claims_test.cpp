@@ -10,14 +10,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kDisable = 2, kNotOwner = 7;
-
-PlantOptions with_leases() {
-  PlantOptions options;
-  options.lease = LeaseRules{};
-  return options;
-}
-
 /// A target of the axis's kind, and the command that goes there; each ends within a test's time or is a speed.
 struct Aim {
   std::uint16_t row;
@@ -136,7 +128,6 @@ TEST_P(WithoutLeases, TargetsThatChangeAreTakenFromEveryone) {
 }
 
 TEST_P(WithoutLeases, SetpointsBesideACommandThatIsRefusedAreTakenOnlyIfTheyWouldBeWithoutIt) {
-  constexpr std::int64_t kEnable = 1;
   ASSERT_EQ(b_.command(0, 1), kOk);
   Rows rows = plant_.profile_rows();
   rows[there_.row] = there_.value;

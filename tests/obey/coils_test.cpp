@@ -10,8 +10,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kEnable = 1, kQuickStop = 3;
-
 class Coils : public testing::TestWithParam<Subject> {
  protected:
   Coils() { plant_.ready(); }
@@ -42,7 +40,6 @@ TEST_P(Coils, EnableOnAnEmptyMemoryDoesNotClearAStopLatch) {
   plant_.run(1s);
   EXPECT_EQ(a_.coil(coil::enable, true), kNotNow);
   EXPECT_EQ(a_.result(), kNotNew);
-  constexpr std::int64_t kStopLatched = 5;
   EXPECT_EQ(a_.word(shown::axis_state), kStopLatched);
   EXPECT_EQ(a_.coil(coil::enable, false), kOk);
   EXPECT_EQ(a_.coil(coil::enable, true), kOk);

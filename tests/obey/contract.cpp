@@ -8,7 +8,6 @@
 namespace axisgate::test::obey {
 namespace {
 
-constexpr std::int64_t kClose = 8;        // counts of a coarse encoder, in 1/10000 turn
 constexpr std::int64_t kSpeedShare = 50;  // one part in so many
 constexpr std::int64_t kSlowest = 1'500;  // a drive that counts whole rpm
 

@@ -6,13 +6,11 @@
 namespace axisgate::test::obey {
 namespace {
 
-constexpr std::int64_t kClose = 8;  // counts of a coarse encoder, in 1/10000 turn
 constexpr std::int64_t kJustBegunMs = 250;
 constexpr std::int64_t kRearmMs = 1000, kRearmUnsureMs = 150;
 constexpr std::array<std::uint16_t, 11> kZeroLeaves{41, 47, 48, 50, 52, 58, 62, 64, 66, 70, 76};  // A6
 
 bool is_stop(std::int64_t command) { return command >= 2 && command <= 4; }  // A2
-bool is_start(std::int64_t command) { return command >= 6 && command <= 8; }
 
 }  // namespace
 

@@ -29,6 +29,8 @@ class Readings {
   std::size_t next_ = 0;
 };
 
+[[nodiscard]] constexpr bool is_start(std::int64_t command) { return command >= kMove && command <= kRun; }
+
 class Judge {
  public:
   Judge(const ContractOptions& options, World& world, Readings& readings, const Seen& seen, std::size_t client)

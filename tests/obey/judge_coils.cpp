@@ -3,11 +3,6 @@
 #include "tests/obey/judge.hpp"
 
 namespace axisgate::test::obey {
-namespace {
-
-bool is_start(std::int64_t command) { return command >= 6 && command <= 8; }
-
-}  // namespace
 
 // A1, level coils: 0 enable, 3 halt, 7 run_velocity, 8 and 9 jog.
 Judge::Edge Judge::level_edge(std::uint16_t number, std::int64_t value, bool single) {

@@ -8,15 +8,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kTakeOver = 14, kNotOwner = 7, kStopLatched = 5;
-
-PlantOptions leases(bool by_address) {
-  PlantOptions options;
-  options.lease = LeaseRules{};  // 2 s, quick_stop, any request
-  options.listener.client_is_address = by_address;
-  return options;
-}
-
 class Life : public testing::TestWithParam<Subject> {
  protected:
   void start(Plant& plant, Client& client) {
@@ -33,7 +24,7 @@ class Life : public testing::TestWithParam<Subject> {
 };
 
 TEST_P(Life, IsNotShownByReadsWhileTheAxisIsDisabled) {
-  Plant plant(GetParam(), leases(false));
+  Plant plant(GetParam(), with_leases());
   plant.ready_but_disabled();
   ASSERT_EQ(plant.set_endless(plant.a), kOk);
   ASSERT_EQ(plant.b.word(shown::owner), kAnother);
@@ -45,7 +36,7 @@ TEST_P(Life, IsNotShownByReadsWhileTheAxisIsDisabled) {
 }
 
 TEST_P(Life, IsNotShownByAnIdleScannersBlockWhileTheAxisIsDisabled) {
-  Plant plant(GetParam(), leases(false));
+  Plant plant(GetParam(), with_leases());
   plant.ready_but_disabled();
   const Write block = scanned(plant);
   ASSERT_EQ(plant.a.write(block), kOk);
@@ -55,7 +46,7 @@ TEST_P(Life, IsNotShownByAnIdleScannersBlockWhileTheAxisIsDisabled) {
 }
 
 TEST_P(Life, IsShownByWhatAsksWhileTheAxisIsDisabled) {
-  Plant plant(GetParam(), leases(false));
+  Plant plant(GetParam(), with_leases());
   plant.ready_but_disabled();
   for (int i = 0; i < 25; ++i) {
     ASSERT_EQ(plant.set_endless(plant.a), kOk);  // a single write always asks
@@ -65,7 +56,7 @@ TEST_P(Life, IsShownByWhatAsksWhileTheAxisIsDisabled) {
 }
 
 TEST_P(Life, IsShownByReadsWhileTheAxisIsEnabled) {
-  Plant plant(GetParam(), leases(false));
+  Plant plant(GetParam(), with_leases());
   plant.ready();
   start(plant, plant.a);
   for (int i = 0; i < 30; ++i) {
@@ -77,7 +68,7 @@ TEST_P(Life, IsShownByReadsWhileTheAxisIsEnabled) {
 }
 
 TEST_P(Life, OfAnAddressIsNotShownByReads) {
-  Plant plant(GetParam(), leases(true));
+  Plant plant(GetParam(), with_leases(true));
   plant.ready();
   start(plant, plant.a);
   const auto monitor = plant.connection_from(Plant::kHostOfA);
@@ -90,7 +81,7 @@ TEST_P(Life, OfAnAddressIsNotShownByReads) {
 }
 
 TEST_P(Life, OfAnAddressIsShownByWrites) {
-  Plant plant(GetParam(), leases(true));
+  Plant plant(GetParam(), with_leases(true));
   plant.ready();
   start(plant, plant.a);
   plant.scan(plant.a, scanned(plant), 4s);
@@ -99,7 +90,7 @@ TEST_P(Life, OfAnAddressIsShownByWrites) {
 }
 
 TEST_P(Life, OfASilentOwnerIsNotEndedByAnotherConnectionOfItsAddress) {
-  Plant plant(GetParam(), leases(false));
+  Plant plant(GetParam(), with_leases());
   plant.ready();
   start(plant, plant.a);
   const auto other = plant.connection_from(Plant::kHostOfA);
@@ -113,7 +104,7 @@ TEST_P(Life, OfASilentOwnerIsNotEndedByAnotherConnectionOfItsAddress) {
 }
 
 TEST_P(Life, OfAnOrphanGoesOnWithAnyWriteOfItsAddressAndRole) {
-  Plant plant(GetParam(), leases(false));
+  Plant plant(GetParam(), with_leases());
   plant.ready();
   start(plant, plant.a);
   plant.a.disconnect();
@@ -129,7 +120,7 @@ TEST_P(Life, OfAnOrphanGoesOnWithAnyWriteOfItsAddressAndRole) {
 }
 
 TEST_P(Life, OfAnOrphanGoesOnWithAChangedHeartbeat) {
-  Plant plant(GetParam(), leases(false));
+  Plant plant(GetParam(), with_leases());
   plant.ready();
   start(plant, plant.a);
   plant.a.disconnect();
@@ -142,7 +133,7 @@ TEST_P(Life, OfAnOrphanGoesOnWithAChangedHeartbeat) {
 }
 
 TEST_P(Life, OfAnOrphanIsNotTakenByAnotherAddress) {
-  Plant plant(GetParam(), leases(false));
+  Plant plant(GetParam(), with_leases());
   plant.ready();
   start(plant, plant.a);
   plant.a.disconnect();
@@ -154,7 +145,7 @@ TEST_P(Life, OfAnOrphanIsNotTakenByAnotherAddress) {
 }
 
 TEST_P(Life, OfAnotherConnectionOfTheAddressEndsByCommandFourteenWithoutRank) {
-  Plant plant(GetParam(), leases(false));
+  Plant plant(GetParam(), with_leases());
   plant.ready();
   start(plant, plant.a);
   const auto other = plant.connection_from(Plant::kHostOfA);
@@ -165,7 +156,7 @@ TEST_P(Life, OfAnotherConnectionOfTheAddressEndsByCommandFourteenWithoutRank) {
 }
 
 TEST_P(Life, OfAnotherAddressDoesNotEndByCommandFourteenWithoutRank) {
-  Plant plant(GetParam(), leases(false));
+  Plant plant(GetParam(), with_leases());
   plant.ready();
   start(plant, plant.a);
   EXPECT_EQ(plant.b.command(kTakeOver), kNotNow);

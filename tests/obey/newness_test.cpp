@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kEnable = 1, kDisable = 2, kQuickStop = 3, kRelative = 7, kDone = 2;
+constexpr std::int64_t kDone = 2;
 
 class Newness : public testing::TestWithParam<Subject> {
  protected:
@@ -196,7 +196,6 @@ TEST_P(Newness, OfAFirstPairIsToldAsLongAsItIsScanned) {
 class NewTargets : public testing::TestWithParam<Subject> {
  protected:
   NewTargets() { plant_.ready(); }
-  static constexpr std::int64_t kMove = 6;
   Plant plant_{GetParam()};
   Client& a_ = plant_.a;
 };

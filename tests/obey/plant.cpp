@@ -9,7 +9,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kEnable = 1, kRelease = 13;
 constexpr std::int64_t kProfileVelocity = 600'000, kRamp = 30'000;  // 600 rpm; 3000 rpm/s
 
 void expect(bool what, const std::string& why) {

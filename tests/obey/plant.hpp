@@ -17,6 +17,12 @@ struct PlantOptions {
   modbus_tcp::ListenerSettings listener{};
   std::uint64_t seed = 1;
 };
+/// Leases of 2 s, quick_stop, any request.
+[[nodiscard]] inline PlantOptions with_leases(bool client_is_address = false) {
+  PlantOptions options{.lease = LeaseRules{}};
+  options.listener.client_is_address = client_is_address;
+  return options;
+}
 
 class Plant {
  public:
@@ -80,7 +86,5 @@ class Plant {
 inline constexpr std::int64_t kFar = 150'000, kNear = 20'000, kAway = -60'000;
 inline constexpr std::int64_t kEndless = 20'000'000;
 inline constexpr std::int64_t kSpeed = 150'000, kOtherSpeed = -90'000;
-/// Of positions, in 1/10000 turn: a count of the coarsest encoder, and rounding.
-inline constexpr std::int64_t kClose = 8;
 
 }  // namespace axisgate::test::obey

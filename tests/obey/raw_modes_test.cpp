@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kVelocityMode = 3, kTorqueMode = 4, kSomeTorque = 200;  // 20 % of rated
+constexpr std::int64_t kTorqueMode = 4, kSomeTorque = 200;  // 20 % of rated
 
 class RawVelocity : public testing::TestWithParam<Subject> {
  protected:

@@ -9,8 +9,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kEnable = 1, kDisable = 2, kQuickStop = 3, kHalt = 4, kStandstill = 1, kStopLatched = 5;
-
 class Stops : public testing::TestWithParam<Subject> {
  protected:
   Stops() { plant_.ready(); }

@@ -11,8 +11,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kEnable = 1, kQuickStop = 3, kHalt = 4, kMove = 6, kRun = 8, kHome = 10;
-
 class Targets : public testing::TestWithParam<Subject> {
  protected:
   Targets() { plant_.ready(); }
@@ -132,7 +130,6 @@ TEST_P(Targets, TakenBackWhileStopLatchedAreNotMovedTo) {
 }
 
 TEST_P(Targets, ChangedWhileDisabledAreUsedByTheNextStart) {
-  constexpr std::int64_t kDisable = 2;
   move_to(a_, kFar);
   ASSERT_EQ(a_.command(kDisable), kOk);
   ASSERT_TRUE(plant_.comes_to_stand());

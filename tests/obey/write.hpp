@@ -19,6 +19,13 @@ inline constexpr std::uint16_t controlword = 40, mode = 41, target_position = 42
                                homing_acceleration = 66, quick_stop_deceleration = 70, max_velocity = 76;
 }  // namespace row
 
+/// Of row 54.
+inline constexpr std::int64_t kEnable = 1, kDisable = 2, kQuickStop = 3, kHalt = 4, kMove = 6, kRelative = 7, kRun = 8,
+                              kHome = 10, kRelease = 13, kTakeOver = 14;
+inline constexpr std::int64_t kVelocityMode = 3;  ///< of row 41
+/// Of positions, in 1/10000 turn: a count of the coarsest encoder, and rounding.
+inline constexpr std::int64_t kClose = 8;
+
 namespace coil {
 inline constexpr std::uint16_t enable = 0, fault_reset = 1, quick_stop = 2, halt = 3, start_absolute = 4,
                                start_relative = 5, home = 6, run_velocity = 7, jog_forward = 8, jog_reverse = 9;

@@ -11,15 +11,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kEnable = 1, kMove = 6, kRun = 8, kVelocityMode = 3;
 const Write kZeros = block(row::controlword, row::heartbeat, {});
 const Write kFewerZeros = block(row::controlword, row::command, {});
-
-PlantOptions with_leases() {
-  PlantOptions options;
-  options.lease = LeaseRules{};
-  return options;
-}
 
 class Zeros : public testing::TestWithParam<Subject> {
  protected:

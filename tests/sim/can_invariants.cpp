@@ -15,8 +15,6 @@ constexpr std::uint32_t kNodeBits = 0x7F;
 /// One and a half heartbeats of 1000 ms, or three guarding frames each 500 ms, with what the two watches are slow by.
 constexpr Duration kLongestSilence = std::chrono::milliseconds(2200);
 
-std::uint64_t mix(std::uint64_t hash, std::uint64_t value) { return (hash ^ value) * 0x100000001B3U; }
-
 bool between(std::uint32_t id, std::uint32_t base) { return id > base && id <= base + kNodeBits; }
 
 bool is_sdo_request(const can::CanFrame& frame) { return !frame.remote && between(frame.id, cob::sdo_request); }

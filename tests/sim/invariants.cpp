@@ -13,8 +13,6 @@ bool sums_to_zero(Bytes window) {
   return (sum & 0xFF) == 0;
 }
 
-std::uint64_t mix(std::uint64_t hash, std::uint64_t value) { return (hash ^ value) * 0x100000001B3U; }
-
 std::size_t width_of(Byte response) { return response == 0x43 ? 4 : response == 0x4B ? 2 : response == 0x4F ? 1 : 0; }
 
 }  // namespace

@@ -8,8 +8,6 @@ namespace {
 constexpr std::uint16_t kMbapLength = 7;
 constexpr std::size_t kMaxUnanswered = 3;
 
-std::uint64_t mix(std::uint64_t hash, std::uint64_t value) { return (hash ^ value) * 0x100000001B3U; }
-
 }  // namespace
 
 ModbusClient::ModbusClient(const modbus_tcp::SessionContext& context, Runtime& runtime, std::uint64_t seed,

@@ -16,6 +16,11 @@
 
 namespace axisgate::test {
 
+/// FNV-1a, one value on.
+[[nodiscard]] constexpr std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
+  return (hash ^ value) * 0x100000001B3U;
+}
+
 /// What the clients have asked for, for those who check.
 struct Asked {
   struct Enable {

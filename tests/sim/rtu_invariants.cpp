@@ -8,8 +8,6 @@ namespace {
 constexpr std::uint16_t kSteppersControl = 323, kSteppersSpeed = 306;
 constexpr std::uint16_t kServosControl = 0x3100, kServosSpeed = 0x4A00;
 
-std::uint64_t mix(std::uint64_t hash, std::uint64_t value) { return (hash ^ value) * 0x100000001B3U; }
-
 /// Absolute and relative move, speed, both jogs, homing (iD286pro 5).
 bool begins_motion(std::uint16_t command) { return (command >= 1 && command <= 5) || command == 12; }
 

@@ -1,14 +1,9 @@
 // What a CAN bus is planned with, by the shipped profiles: frames as long as they can be, requests only for what no
 // TPDO brings, inhibit times that leave the line to requests; and what `check` says of it.
 #include <gmock/gmock.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-
-#include "gateway/app/bus_budget.hpp"
 #include "gateway/app/check.hpp"
-#include "gateway/app/config_loader.hpp"
+#include "tests/unit/app/one_bus.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -33,21 +28,8 @@ std::string several(const std::string& profile, int count) {
 
 LoadedConfig load_bus(const std::string& drives, const std::string& more = R"(, "bitrate": 500000)",
                       const std::string& device = "can0") {
-  const auto file = std::filesystem::temp_directory_path() / ("axisgate-can-" + std::to_string(getpid()) + ".json");
-  std::ofstream(file) << R"({"modbus_tcp": [{"listen": "127.0.0.1:1502"}], "buses": [{"name": "cell", "adapter":
-    "canopen", "device": ")"
-                      << device << '"' << more << R"(, "drives": [)" << drives << "]}]}";
-  LoadResult result = load_config(file, {AXISGATE_SOURCE_DIR "/schemas/drives"});
-  std::filesystem::remove(file);
-  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) {
-    for (const ConfigFault& fault : *faults) ADD_FAILURE() << text(fault);
-    std::abort();
-  }
-  return std::move(std::get<LoadedConfig>(result));
+  return load_one_bus(R"("name": "cell", "adapter": "canopen", "device": ")" + device + '"' + more, drives);
 }
-
-const BusConfig& bus_of(const LoadedConfig& loaded) { return loaded.config.buses.at(0); }
-BusBudget plan_of(const LoadedConfig& loaded) { return plan_bus(timing_of(bus_of(loaded)), loaded.models.at(0)); }
 
 TEST(CanBus, AFrameIsCountedWithEveryBitThatStuffingCanAdd) {
   EXPECT_EQ(can_frame_time(1000000, 8), microseconds(135));

@@ -1,14 +1,9 @@
 // What a bus with Keya drives is planned with, by the shipped profile: one query for the values of both motors, control
 // frames that nobody answers, keep-alives and heartbeats; and what `check` says of it.
 #include <gmock/gmock.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-
-#include "gateway/app/bus_budget.hpp"
 #include "gateway/app/check.hpp"
-#include "gateway/app/config_loader.hpp"
+#include "tests/unit/app/one_bus.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -26,21 +21,8 @@ std::string drive(int node) {
 }
 
 LoadedConfig load_bus(const std::string& adapter, const std::string& drives, const std::string& more = "") {
-  const auto file = std::filesystem::temp_directory_path() / ("axisgate-keya-" + std::to_string(getpid()) + ".json");
-  std::ofstream(file) << R"({"modbus_tcp": [{"listen": "127.0.0.1:1502"}], "buses": [{"name": "agv", "device": "agv0",
-    "adapter": ")" << adapter
-                      << '"' << more << R"(, "drives": [)" << drives << "]}]}";
-  LoadResult result = load_config(file, {AXISGATE_SOURCE_DIR "/schemas/drives"});
-  std::filesystem::remove(file);
-  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) {
-    for (const ConfigFault& fault : *faults) ADD_FAILURE() << text(fault);
-    std::abort();
-  }
-  return std::move(std::get<LoadedConfig>(result));
+  return load_one_bus(R"("name": "agv", "device": "agv0", "adapter": ")" + adapter + '"' + more, drives);
 }
-
-const BusConfig& bus_of(const LoadedConfig& loaded) { return loaded.config.buses.at(0); }
-BusBudget plan_of(const LoadedConfig& loaded) { return plan_bus(timing_of(bus_of(loaded)), loaded.models.at(0)); }
 
 TEST(KeyaBus, AFrameOnCanIsCountedWithEveryBitThatStuffingCanAdd) {
   EXPECT_EQ(extended_frame_time(1000000, 8), microseconds(160));

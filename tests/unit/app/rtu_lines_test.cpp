@@ -1,14 +1,9 @@
 // What a Modbus RTU line is planned with, by the shipped profiles: lengths of its own for each exchange, runs of
 // registers as one request, and timeouts and periods that follow from the drives on it.
 #include <gmock/gmock.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-
-#include "gateway/app/bus_budget.hpp"
 #include "gateway/app/check.hpp"
-#include "gateway/app/config_loader.hpp"
+#include "tests/unit/app/one_bus.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -24,21 +19,9 @@ constexpr const char* kJd =
     R"({"profile": "kinco-jd", "node": 1, "constants": {"peak_current_a": 27.5}, "axes": [{"axis": 1}]})";
 
 LoadedConfig load_line(const std::string& drives, const std::string& more = "") {
-  const auto file = std::filesystem::temp_directory_path() / ("axisgate-rtu-" + std::to_string(getpid()) + ".json");
-  std::ofstream(file) << R"({"modbus_tcp": [{"listen": "127.0.0.1:1502"}], "buses": [{"name": "line-a", "adapter":
-    "modbus-rtu", "device": "/dev/ttyS1")"
-                      << more << R"(, "drives": [)" << drives << "]}]}";
-  LoadResult result = load_config(file, {AXISGATE_SOURCE_DIR "/schemas/drives"});
-  std::filesystem::remove(file);
-  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) {
-    for (const ConfigFault& fault : *faults) ADD_FAILURE() << text(fault);
-    std::abort();
-  }
-  return std::move(std::get<LoadedConfig>(result));
+  return load_one_bus(R"("name": "line-a", "adapter": "modbus-rtu", "device": "/dev/ttyS1")" + more, drives);
 }
 
-const BusConfig& bus_of(const LoadedConfig& loaded) { return loaded.config.buses.at(0); }
-BusBudget plan_of(const LoadedConfig& loaded) { return plan_bus(timing_of(bus_of(loaded)), loaded.models.at(0)); }
 std::string both() { return std::string(kJd) + ", " + kStepper; }
 
 /// At 19200 baud without parity; the frames of both directions together.

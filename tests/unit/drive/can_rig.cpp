@@ -1,8 +1,8 @@
 #include "tests/unit/drive/can_rig.hpp"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+
+#include "tests/unit/drive/rig.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -43,7 +43,7 @@ CanRig::CanRig(const std::vector<CanType>& types) : CanRig(can_line_of(options_o
 
 CanRig::CanRig(GatewayStage::Line line) : stage({std::move(line)}) {}
 
-void CanRig::online() { ASSERT_TRUE(stage.come_online()); }
+void CanRig::online() { expect(stage.come_online(), "the axes never came online"); }
 
 bool CanRig::becomes_operational(std::size_t position) {
   return stage.run_until([&] {
@@ -53,8 +53,8 @@ bool CanRig::becomes_operational(std::size_t position) {
 }
 
 void CanRig::enable(AxisNumber number) {
-  ASSERT_EQ(stage.command(number, Command::enable).outcome.code, Errc::ok);
-  ASSERT_TRUE(stage.axis(number).has(AxisInput::enabled));
+  expect(stage.command(number, Command::enable).outcome.code == Errc::ok, "not enabled");
+  expect(axis(number).has(AxisInput::enabled), "not shown as enabled");
 }
 
 std::vector<SdoRequest> CanRig::requests() {

@@ -1,7 +1,6 @@
 #include "tests/unit/drive/drive_table_rig.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace axisgate::test {
 namespace {
@@ -12,10 +11,6 @@ using simulated::KeyaWiring;
 
 constexpr std::uint16_t kOriginSignal = 11;  // function of an iD286pro's input (5)
 constexpr int kModeOfA = 20, kModeOfB = 50;  // parameters of a Keya (7)
-
-void expect(bool what, const char* why) {
-  if (!what) throw std::runtime_error(why);
-}
 
 simulated::KeyaOptions keya_options(Subject subject) {
   simulated::KeyaOptions options;

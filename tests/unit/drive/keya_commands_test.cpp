@@ -13,8 +13,6 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr std::int64_t kRpm = 1'000;  // register units
-constexpr std::int64_t kRpm150 = 150 * kRpm;
-constexpr std::int64_t kRaw150 = 1'000;  // a tenth of the rated speed
 
 class KeyaCommands : public testing::TestWithParam<Speech> {
  protected:

@@ -10,8 +10,6 @@ using namespace std::chrono_literals;
 using drive::ControlFrame;
 using drive::MotorShows;
 
-constexpr std::int64_t kRpm150 = 150'000, kRaw150 = 1'000;
-
 KeyaOptions composed(std::int16_t mode = 3) { return {.speech = Speech::composed, .modes = {mode}}; }
 
 /// Both motors run, A forwards and B backwards.

@@ -13,34 +13,26 @@ using namespace std::chrono_literals;
 using testing::Each;
 using testing::IsEmpty;
 
-constexpr std::int64_t kRpm150 = 150'000, kRaw150 = 1'000;
-constexpr Duration kPeriod = 500ms;
-
 class KeyaKeepAlive : public testing::TestWithParam<Speech> {
  protected:
   [[nodiscard]] KeyaOptions options(std::int16_t mode = 3) const {
-    return {.speech = GetParam(), .modes = {mode}, .keep_alive = kPeriod};
+    return {.speech = GetParam(), .modes = {mode}, .keep_alive = kKeepAlivePeriod};
   }
 };
 INSTANTIATE_TEST_SUITE_P(Speeches, KeyaKeepAlive, testing::Values(Speech::single, Speech::composed),
                          [](const auto& p) { return p.param == Speech::single ? "single" : "composed"; });
 
-void run_motor(KeyaRig& rig, bus::AxisSlot slot) {
-  rig.enable(slot);
-  rig.run_at(slot, kRpm150);
-}
-
 TEST_P(KeyaKeepAlive, ARunningMotorGoesOnAtItsSpeedAsLongAsNobodyStopsIt) {
   KeyaRig rig(options());
   rig.online();
-  run_motor(rig, 0);
+  rig.enable_and_run(0);
   rig.mark();
   rig.motor(0).moves.clear();
   rig.run(20s);
   EXPECT_TRUE(rig.motor(0).enabled);
   EXPECT_TRUE(rig.enabled(0));
   EXPECT_THAT(rig.motor(0).moves, Each(kRaw150));
-  EXPECT_LE(longest_gap(rig.heard(1)), kPeriod);
+  EXPECT_LE(longest_gap(rig.heard(1)), kKeepAlivePeriod);
   EXPECT_LE(rig.writes().size(), 100U) << "at half its period, no oftener";
   EXPECT_EQ(rig.motor(0).enables, 1);
   EXPECT_EQ(rig.motor(1).enables, 0);
@@ -103,7 +95,7 @@ TEST_P(KeyaKeepAlive, AModeThatIsNotListedIsLeftToTheDrivesWatchdog) {
 TEST_P(KeyaKeepAlive, WritesOfClientsTakeItsPlace) {
   KeyaRig rig(options());
   rig.online();
-  run_motor(rig, 0);
+  rig.enable_and_run(0);
   rig.mark();
   for (int i = 1; i <= 30; ++i) {
     ASSERT_EQ(KeyaRig::code(rig.write(0, Quantity::target_velocity, i * 15'000)), Errc::ok);
@@ -162,7 +154,7 @@ TEST_P(KeyaKeepAlive, ItEndsWithTheLeaseAndTheDriveStopsByItself) {
 TEST_P(KeyaKeepAlive, AMotorThatHasTrippedIsSentNothingMore) {
   KeyaRig rig(options());
   rig.online();
-  run_motor(rig, 0);
+  rig.enable_and_run(0);
   for (const int at : {0, 100, 249}) {
     rig.run(std::chrono::milliseconds(at));
     rig.motor(0).enabled = false;
@@ -173,15 +165,15 @@ TEST_P(KeyaKeepAlive, AMotorThatHasTrippedIsSentNothingMore) {
     rig.motor(0).faults = 0;
     rig.run(3s);
     EXPECT_EQ(rig.motor(0).enables, enables) << "nor when its fault has gone by itself";
-    run_motor(rig, 0);
+    rig.enable_and_run(0);
   }
 }
 
 // Where one frame carries the enable of both motors, the state is looked at by the very exchange before it.
 TEST(KeyaKeepAliveFrame, RightBeforeItTheStateIsAskedFor) {
-  KeyaRig rig({.speech = Speech::composed, .keep_alive = kPeriod});
+  KeyaRig rig({.speech = Speech::composed, .keep_alive = kKeepAlivePeriod});
   rig.online();
-  run_motor(rig, 0);
+  rig.enable_and_run(0);
   rig.mark();
   rig.run(5s);
   const auto sent = rig.since_mark();
@@ -196,10 +188,10 @@ TEST(KeyaKeepAliveFrame, RightBeforeItTheStateIsAskedFor) {
 }
 
 TEST(KeyaKeepAliveFrame, AMotorThatTripsAnInstantBeforeIsNotTurnedOnAgain) {
-  KeyaRig rig({.speech = Speech::composed, .keep_alive = kPeriod});
+  KeyaRig rig({.speech = Speech::composed, .keep_alive = kKeepAlivePeriod});
   rig.online();
-  run_motor(rig, 0);
-  run_motor(rig, 1);
+  rig.enable_and_run(0);
+  rig.enable_and_run(1);
   // Every query but that of the state is answered while B trips right before the look.
   rig.mark();
   ASSERT_TRUE(rig.run_until([&] { return !rig.writes().empty(); }));
@@ -213,7 +205,7 @@ TEST(KeyaKeepAliveFrame, AMotorThatTripsAnInstantBeforeIsNotTurnedOnAgain) {
 TEST_P(KeyaKeepAlive, AStopThatWaitsOrIsUnderWayEndsIt) {
   KeyaRig rig(options());
   rig.online();
-  run_motor(rig, 0);
+  rig.enable_and_run(0);
   ASSERT_TRUE(rig.run_until([&] { return rig.motor(0).moves.size() > 6; })) << "repeated some times";
   rig.motor(0).moves.clear();
   rig.run(249ms);
@@ -227,9 +219,9 @@ TEST_P(KeyaKeepAlive, AStopThatWaitsOrIsUnderWayEndsIt) {
 }
 
 TEST(KeyaKeepAliveSingle, AnUnsureSetPointIsNotRepeated) {
-  KeyaRig rig({.keep_alive = kPeriod});
+  KeyaRig rig({.keep_alive = kKeepAlivePeriod});
   rig.online();
-  run_motor(rig, 0);
+  rig.enable_and_run(0);
   rig.wire->fate = [](const bus::Exchange& e) {
     return e.access == bus::Access::write ? Fate::reply_lost : Fate::answered;
   };
@@ -242,9 +234,9 @@ TEST(KeyaKeepAliveSingle, AnUnsureSetPointIsNotRepeated) {
 }
 
 TEST(KeyaKeepAliveSingle, ALostRepetitionIsTriedAgainInTime) {
-  KeyaRig rig({.keep_alive = kPeriod});
+  KeyaRig rig({.keep_alive = kKeepAlivePeriod});
   rig.online();
-  run_motor(rig, 0);
+  rig.enable_and_run(0);
   int left = 2;
   rig.wire->fate = [&](const bus::Exchange& e) {
     return e.access == bus::Access::write && left-- > 0 ? Fate::muted : Fate::answered;
@@ -256,9 +248,9 @@ TEST(KeyaKeepAliveSingle, ALostRepetitionIsTriedAgainInTime) {
 }
 
 TEST(KeyaKeepAliveSingle, ARefusedRepetitionIsNotTriedAgainAtOnce) {
-  KeyaRig rig({.keep_alive = kPeriod});
+  KeyaRig rig({.keep_alive = kKeepAlivePeriod});
   rig.online();
-  run_motor(rig, 0);
+  rig.enable_and_run(0);
   rig.wire->fate = [](const bus::Exchange& e) {
     return e.access == bus::Access::write ? Fate::refused : Fate::answered;
   };
@@ -283,7 +275,7 @@ TEST_P(KeyaKeepAlive, ADriveFoundEnabledIsNotKeptSo) {
 TEST_P(KeyaKeepAlive, ASilentDriveIsSentNothing) {
   KeyaRig rig(options());
   rig.online();
-  run_motor(rig, 0);
+  rig.enable_and_run(0);
   rig.wire->fate = [](const bus::Exchange& e) { return e.access == bus::Access::read ? Fate::muted : Fate::answered; };
   ASSERT_TRUE(rig.run_until([&] { return rig.axis(0).link_state == LinkState::suspect; }));
   rig.mark();
@@ -294,7 +286,7 @@ TEST_P(KeyaKeepAlive, ASilentDriveIsSentNothing) {
 // --- The rule alone ------------------------------------------------------------------------------------------------
 
 TEST(KeepAliveRule, IsDueAtHalfThePeriodAfterTheNewestControlWriteOfItsMotor) {
-  const drive::DriveModel model = keya_model({.keep_alive = kPeriod});
+  const drive::DriveModel model = keya_model({.keep_alive = kKeepAlivePeriod});
   const auto find = [&](const std::string& name) {
     const auto at =
         std::find_if(model.objects.begin(), model.objects.end(), [&](const auto& o) { return o.name == name; });
@@ -304,22 +296,22 @@ TEST(KeepAliveRule, IsDueAtHalfThePeriodAfterTheNewestControlWriteOfItsMotor) {
   const Instant start = Instant{} + 1h;
   keep.written(find("A.velocity"), start);
   keep.written(find("B.velocity"), start + 100ms);
-  EXPECT_EQ(keep.due(0), start + kPeriod / 2);
-  EXPECT_EQ(keep.due(1), start + 100ms + kPeriod / 2);
-  keep.failed(0, start + kPeriod / 2);
-  EXPECT_GT(keep.due(0), start + kPeriod / 2);
-  EXPECT_LT(keep.due(0), start + kPeriod);
+  EXPECT_EQ(keep.due(0), start + kKeepAlivePeriod / 2);
+  EXPECT_EQ(keep.due(1), start + 100ms + kKeepAlivePeriod / 2);
+  keep.failed(0, start + kKeepAlivePeriod / 2);
+  EXPECT_GT(keep.due(0), start + kKeepAlivePeriod / 2);
+  EXPECT_LT(keep.due(0), start + kKeepAlivePeriod);
   keep.reset();
   EXPECT_EQ(keep.due(0), kLongAgo);
 }
 
 TEST(KeepAliveRule, AFrameOfBothMotorsCountsForBoth) {
-  const drive::DriveModel model = keya_model({.speech = Speech::composed, .keep_alive = kPeriod});
+  const drive::DriveModel model = keya_model({.speech = Speech::composed, .keep_alive = kKeepAlivePeriod});
   drive::KeepAlive keep(model);
   const Instant start = Instant{} + 1h;
   keep.written(model.composed.front(), start);
-  EXPECT_EQ(keep.due(0), start + kPeriod / 2);
-  EXPECT_EQ(keep.due(1), start + kPeriod / 2);
+  EXPECT_EQ(keep.due(0), start + kKeepAlivePeriod / 2);
+  EXPECT_EQ(keep.due(1), start + kKeepAlivePeriod / 2);
 }
 
 }  // namespace

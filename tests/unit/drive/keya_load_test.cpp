@@ -8,20 +8,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kRpm150 = 150'000, kRaw150 = 1'000;
-constexpr Duration kPeriod = 500ms;
-
 class KeyaUnderLoad : public testing::TestWithParam<Speech> {
  protected:
-  [[nodiscard]] KeyaOptions options() const { return {.speech = GetParam(), .keep_alive = kPeriod}; }
+  [[nodiscard]] KeyaOptions options() const { return {.speech = GetParam(), .keep_alive = kKeepAlivePeriod}; }
 };
 INSTANTIATE_TEST_SUITE_P(Speeches, KeyaUnderLoad, testing::Values(Speech::single, Speech::composed),
                          [](const auto& p) { return p.param == Speech::single ? "single" : "composed"; });
-
-void run_motor(KeyaRig& rig, bus::AxisSlot slot) {
-  rig.enable(slot);
-  rig.run_at(slot, kRpm150);
-}
 
 /// Clients that never rest: each asks anew as soon as it has its answer.
 class Crowd {
@@ -59,8 +51,8 @@ Group mailbox_read(std::uint16_t index, std::uint8_t size) {
 TEST_P(KeyaUnderLoad, ThirtyTwoBusyClientsOfTheOtherMotorDelayItByNothingThatCounts) {
   KeyaRig rig(options());
   rig.online();
-  run_motor(rig, 0);
-  run_motor(rig, 1);
+  rig.enable_and_run(0);
+  rig.enable_and_run(1);
   rig.mark();
   Crowd crowd(rig, 32, [](int client, int round) -> std::pair<bus::AxisSlot, Group> {
     if (client % 4 == 0) return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + round % 50), 4)};
@@ -70,7 +62,7 @@ TEST_P(KeyaUnderLoad, ThirtyTwoBusyClientsOfTheOtherMotorDelayItByNothingThatCou
   crowd.run(10s);
   const auto instants = rig.heard(1);
   EXPECT_GE(instants.size(), 20U);
-  EXPECT_LE(longest_gap(instants), kPeriod);
+  EXPECT_LE(longest_gap(instants), kKeepAlivePeriod);
   EXPECT_TRUE(rig.motor(0).enabled);
   EXPECT_EQ(rig.motor(0).value, kRaw150);
 }
@@ -78,26 +70,26 @@ TEST_P(KeyaUnderLoad, ThirtyTwoBusyClientsOfTheOtherMotorDelayItByNothingThatCou
 TEST_P(KeyaUnderLoad, ThirtyTwoBusyReadersDelayItByNothingThatCounts) {
   KeyaRig rig(options());
   rig.online();
-  run_motor(rig, 0);
+  rig.enable_and_run(0);
   rig.mark();
   Crowd crowd(rig, 32, [](int client, int round) -> std::pair<bus::AxisSlot, Group> {
     return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + 100 * client + round % 100), 4)};
   });
   crowd.run(10s);
-  EXPECT_LE(longest_gap(rig.heard(1)), kPeriod);
+  EXPECT_LE(longest_gap(rig.heard(1)), kKeepAlivePeriod);
   EXPECT_LE(rig.motor(0).enables, 1);
 }
 
 TEST_P(KeyaUnderLoad, AQueueThatIsFullDoesNotKeepItFromItsTurn) {
   KeyaRig rig(options());
   rig.online();
-  run_motor(rig, 0);
+  rig.enable_and_run(0);
   rig.mark();
   Crowd crowd(rig, 72, [](int client, int round) -> std::pair<bus::AxisSlot, Group> {
     return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + client), round % 2 == 0 ? 4 : 2)};
   });
   crowd.run(2s);
-  EXPECT_LE(longest_gap(rig.heard(1)), kPeriod);
+  EXPECT_LE(longest_gap(rig.heard(1)), kKeepAlivePeriod);
   EXPECT_TRUE(rig.motor(0).enabled);
 }
 

@@ -259,6 +259,11 @@ void KeyaRig::run_at(bus::AxisSlot slot, std::int64_t velocity) {
     throw std::runtime_error("does not run");
 }
 
+void KeyaRig::enable_and_run(bus::AxisSlot slot) {
+  enable(slot);
+  run_at(slot, kRpm150);
+}
+
 std::vector<Sent> KeyaRig::since_mark() const {
   return {wire->sent.begin() + static_cast<std::ptrdiff_t>(marked_), wire->sent.end()};
 }

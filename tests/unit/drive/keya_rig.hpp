@@ -24,6 +24,10 @@ enum class Speech : std::uint8_t { single, composed };
 inline constexpr std::uint16_t kFaultQuery = 0x2112, kSpeedQuery = 0x2103, kPositionQuery = 0x2104,
                                kTemperatureQuery = 0x210F, kValue = 0x2000, kTorqueValue = 0x2001,
                                kPositionValue = 0x2002, kDisable = 0x200C, kEnable = 0x200D;
+/// A tenth of the rated speed, in units of the register map and of the drive.
+inline constexpr std::int64_t kRpm150 = 150'000, kRaw150 = 1'000;
+inline constexpr Duration kKeepAlivePeriod = std::chrono::milliseconds(500);
+
 /// Object names as in the model: "A.fault", "B.velocity".
 struct KeyaOptions {
   Speech speech = Speech::single;
@@ -116,6 +120,7 @@ class KeyaRig {
   /// Enabled, and, with a velocity, running at it (0.001 rpm).
   void enable(bus::AxisSlot slot);
   void run_at(bus::AxisSlot slot, std::int64_t velocity);
+  void enable_and_run(bus::AxisSlot slot);  ///< at kRpm150
   void run(Duration time);
   bool run_until(const std::function<bool()>& condition, Duration limit = std::chrono::seconds(5));
   /// What the drive is given to do, without waiting for it.

@@ -8,8 +8,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kRpm150 = 150'000;
-
 enum class Start : std::uint8_t { disabled, enabled, running };
 
 struct Talk {

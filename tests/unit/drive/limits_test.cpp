@@ -17,14 +17,6 @@ RigOptions limited() {
   return options;
 }
 
-Group raw(std::uint16_t word) {
-  Group group;
-  group.client = 7;
-  group.controlword = word;
-  group.single_controlword = true;
-  return group;
-}
-
 TEST(Limits, HoldForEveryWayIn) {
   Rig rig(KincoType::jd, limited());
   rig.bring_to(enabled);
@@ -41,8 +33,8 @@ TEST(Limits, HoldForEveryWayIn) {
   EXPECT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 6'000}})).outcome.code,
             Errc::bad_value);
   EXPECT_TRUE(rig.writes_of(kControlword).empty()) << "known before sending";
-  ASSERT_EQ(rig.ask(raw(0x004F)).outcome.code, Errc::ok);
-  EXPECT_EQ(rig.ask(raw(0x005F)).outcome.code, Errc::bad_value);
+  ASSERT_EQ(rig.ask(with_controlword(0x004F)).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.ask(with_controlword(0x005F)).outcome.code, Errc::bad_value);
 }
 
 TEST(Limits, OfATargetThatTheDriveHoldsFromElsewhereHoldToo) {
@@ -50,12 +42,12 @@ TEST(Limits, OfATargetThatTheDriveHoldsFromElsewhereHoldToo) {
   rig.motor().poke({0x607A, 0}, 500'000);
   rig.online();
   ASSERT_EQ(rig.write(Quantity::mode, 1).outcome.code, Errc::ok);
-  ASSERT_EQ(rig.ask(raw(0x0006)).outcome.code, Errc::ok);
-  ASSERT_EQ(rig.ask(raw(0x000F)).outcome.code, Errc::ok);
+  ASSERT_EQ(rig.ask(with_controlword(0x0006)).outcome.code, Errc::ok);
+  ASSERT_EQ(rig.ask(with_controlword(0x000F)).outcome.code, Errc::ok);
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.motor_enabled(); }));
   rig.stage.run(100ms);
-  ASSERT_EQ(rig.ask(raw(0x002F)).outcome.code, Errc::ok);
-  EXPECT_EQ(rig.ask(raw(0x003F)).outcome.code, Errc::bad_value);
+  ASSERT_EQ(rig.ask(with_controlword(0x002F)).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.ask(with_controlword(0x003F)).outcome.code, Errc::bad_value);
   EXPECT_EQ(rig.command(Command::move_absolute).outcome.code, Errc::bad_value);
   EXPECT_FALSE(rig.turns());
 }

@@ -2,12 +2,12 @@
 #include <gmock/gmock.h>
 
 #include "gateway/drive/motion.hpp"
+#include "tests/unit/drive/alone.hpp"
 
 namespace axisgate::drive {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr Instant kStart = Instant{} + 1h;
 constexpr Duration kTimeout = 60s;
 
 struct Stage {

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/drive/alone.hpp"
+
 namespace axisgate::drive {
 namespace {
 
 using namespace std::chrono_literals;
 using enum State402;
 using End = OwedStop::End;
-
-constexpr Instant kStart{1h};
 
 TEST(OwedStop, IsNotSentBeforeTheAxisWasReadEnabledAfterIt) {
   OwedStop owed;

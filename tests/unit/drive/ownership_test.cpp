@@ -3,6 +3,7 @@
 
 #include "gateway/drive/jog.hpp"
 #include "gateway/drive/ownership.hpp"
+#include "tests/unit/drive/alone.hpp"
 #include "tests/unit/drive/clients.hpp"
 
 namespace axisgate::drive {
@@ -11,8 +12,6 @@ namespace {
 using namespace std::chrono_literals;
 using test::client;
 using Taken = Ownership::Taken;
-
-constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
 
 struct Owned : testing::Test {
   Lease lease;

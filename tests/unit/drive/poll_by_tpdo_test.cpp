@@ -2,13 +2,12 @@
 #include <gtest/gtest.h>
 
 #include "gateway/drive/poll_plan.hpp"
+#include "tests/unit/drive/alone.hpp"
 
 namespace axisgate::drive {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr Instant kStart{1h};
 
 /// One object of class fast (20 ms).
 DriveModel one_value() {

@@ -3,6 +3,7 @@
 
 #include "gateway/drive/nvm_budget.hpp"
 #include "gateway/drive/read_blocks.hpp"
+#include "tests/unit/drive/alone.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -35,10 +36,6 @@ DriveModel registers() {
   add(105, 2, PollClass::slow);
   add(110, 2, PollClass::fast);
   return model;
-}
-
-bus::Exchange reading(std::uint16_t index, std::uint8_t size = 2) {
-  return {1, bus::Access::read, {index, 0}, size, 0};
 }
 
 std::vector<int> registers_of(const bus::Exchange& exchange) {
@@ -121,8 +118,6 @@ TEST(ReadBlocks, ThePlanListsEachRequestOnce) {
   for (const PlannedRead& read : planned_reads(registers())) firsts.push_back(read.exchange.object.index);
   EXPECT_THAT(firsts, testing::UnorderedElementsAre(100, 105, 110));
 }
-
-constexpr Instant kStart = Instant{} + 1h;
 
 TEST(NvmBudget, TenAtOnceThenOneAMinute) {
   NvmBudget budget;

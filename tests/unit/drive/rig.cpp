@@ -1,7 +1,6 @@
 #include "tests/unit/drive/rig.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace axisgate::test {
 namespace {
@@ -26,10 +25,6 @@ std::vector<GatewayStage::Line> lines(KincoType type, const RigOptions& options)
   std::vector<GatewayStage::Line> out;
   out.push_back(std::move(line));
   return out;
-}
-
-void expect(bool what, const char* why) {
-  if (!what) throw std::runtime_error(why);
 }
 
 }  // namespace
@@ -175,6 +170,14 @@ Group with_command(Command command, std::initializer_list<Setpoint> list) {
   group.client = 7;
   for (const Setpoint& sp : list) group.setpoints.push_back(sp);
   group.command = command;
+  return group;
+}
+
+Group with_controlword(std::uint16_t word, bool single) {
+  Group group;
+  group.client = 7;
+  group.controlword = word;
+  group.single_controlword = single;
   return group;
 }
 

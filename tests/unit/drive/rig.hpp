@@ -3,6 +3,7 @@
 // right: the tests do.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -91,9 +92,16 @@ class Rig {
   std::size_t marked_ = 0;
 };
 
+/// Throws where a rig does not come to where its test begins.
+inline void expect(bool what, const char* why) {
+  if (!what) throw std::runtime_error(why);
+}
+
 /// A group of set-points alone.
 [[nodiscard]] Group setpoints(std::initializer_list<Setpoint> list);
 /// A group with a command and set-points.
 [[nodiscard]] Group with_command(Command command, std::initializer_list<Setpoint> list = {});
+/// A raw controlword; `single`: in a write of its own.
+[[nodiscard]] Group with_controlword(std::uint16_t word, bool single = true);
 
 }  // namespace axisgate::test

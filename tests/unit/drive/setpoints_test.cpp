@@ -12,14 +12,6 @@ using enum Situation;
 
 constexpr std::uint16_t kProfileVelocity = 0x6081;
 
-Group raw(std::uint16_t word) {
-  Group group;
-  group.client = 7;
-  group.controlword = word;
-  group.single_controlword = true;
-  return group;
-}
-
 TEST(Unchanged, IsNotSentAgainAndAnsweredAtOnce) {
   Rig rig(KincoType::jd);
   rig.bring_to(enabled);
@@ -112,8 +104,8 @@ TEST(TargetPosition, IsHeldWhileAMoveRunsAndSentWithTheStart) {
     if (by_command) {
       ASSERT_EQ(rig.command(Command::move_absolute).outcome.code, Errc::ok);
     } else {
-      ASSERT_EQ(rig.ask(raw(0x002F)).outcome.code, Errc::ok);
-      ASSERT_EQ(rig.ask(raw(0x003F)).outcome.code, Errc::ok);
+      ASSERT_EQ(rig.ask(with_controlword(0x002F)).outcome.code, Errc::ok);
+      ASSERT_EQ(rig.ask(with_controlword(0x003F)).outcome.code, Errc::ok);
     }
     EXPECT_EQ(rig.writes_of(kTargetPosition).size(), 1U);
     EXPECT_EQ(rig.axis().motion_state, MotionState::active);
@@ -127,7 +119,7 @@ TEST(TargetPosition, NeverMovesADriveThatFollowsIt) {
   Rig rig(KincoType::jd);
   rig.bring_to(enabled);
   ASSERT_EQ(rig.write(Quantity::target_position, 0).outcome.code, Errc::ok);
-  ASSERT_EQ(rig.ask(raw(0x103F)).outcome.code, Errc::ok);
+  ASSERT_EQ(rig.ask(with_controlword(0x103F)).outcome.code, Errc::ok);
   ASSERT_EQ(rig.write(Quantity::target_position, 40'000).outcome.code, Errc::ok);
   EXPECT_FALSE(rig.turns());
   // And a distance is not taken for a place.
@@ -211,8 +203,8 @@ TEST(RelativeMove, IsRefusedWhileMovingAndNeverAdded) {
   rig.bring_to(moving);
   EXPECT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 1'000}})).outcome.code,
             Errc::busy);
-  EXPECT_EQ(rig.ask(raw(0x004F)).outcome.code, Errc::ok);
-  EXPECT_EQ(rig.ask(raw(0x005F)).outcome.code, Errc::busy);
+  EXPECT_EQ(rig.ask(with_controlword(0x004F)).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.ask(with_controlword(0x005F)).outcome.code, Errc::busy);
   EXPECT_EQ(rig.count(kControlword, 0x5F), 0U);
 }
 

@@ -3,23 +3,17 @@
 
 #include <map>
 
+#include "tests/unit/drive/failures.hpp"
 #include "tests/unit/drive/rig.hpp"
 
 namespace axisgate::test {
 namespace {
 
 using namespace std::chrono_literals;
-using simulated::DriveFault;
 using enum Situation;
 
-enum class Failure : std::uint8_t { muted, reply_lost, reply_late, refused, cut_before, cut_after, restarted };
-constexpr std::array kFailures{Failure::muted,      Failure::reply_lost, Failure::reply_late, Failure::refused,
-                               Failure::cut_before, Failure::cut_after,  Failure::restarted};
-const char* text_of(Failure failure) {
-  static constexpr std::array kNames{"muted",      "reply lost", "reply late", "refused",
-                                     "cut before", "cut after",  "restarted"};
-  return kNames[static_cast<std::size_t>(failure)];
-}
+constexpr std::array kSerialFailures{Failure::muted,      Failure::reply_lost, Failure::reply_late, Failure::refused,
+                                     Failure::cut_before, Failure::cut_after,  Failure::restarted};
 
 struct Conversation {
   std::string name;
@@ -77,56 +71,12 @@ std::size_t exchanges_of(KincoType type, const Conversation& talk) {
   return rig.requests().size();
 }
 
-bool allowed(Failure failure, Errc code, bool is_stop) {
-  switch (failure) {
-    case Failure::muted:
-    case Failure::reply_lost:
-    case Failure::reply_late:
-      // Read back, or the write did not happen, or it was the mailbox's own, which nobody can read back for it.
-      return code == Errc::ok || code == Errc::timed_out;
-    case Failure::refused:
-      return code == Errc::ok || code == Errc::refused_by_drive || (is_stop && code == Errc::timed_out);
-    case Failure::cut_before:
-    case Failure::cut_after:
-      // Done: it was the poll behind the last exchange that was cut. Offline: it was the poll before the first.
-      return code == Errc::ok || code == Errc::link_lost || code == Errc::offline;
-    case Failure::restarted:
-      // A drive that comes back as nothing it was asked to be; 0x04 where a state check came first.
-      return code == Errc::ok || code == Errc::link_lost || code == Errc::offline || code == Errc::timed_out ||
-             code == Errc::not_reached || code == Errc::state_unsuitable;
-  }
-  return false;
-}
-
 void fail_at(Rig& rig, std::size_t step, Failure failure) {
   auto& link = rig.stage.link(0);
   link.on_traffic = [&rig, &link, failure, left = step](bool to_drive, Bytes) mutable {
     if (!to_drive || left-- != 0) return;
     left = SIZE_MAX;
-    switch (failure) {
-      case Failure::muted:
-        rig.faults().next(DriveFault::mute);
-        break;
-      case Failure::reply_lost:
-        rig.faults().next(DriveFault::lose);
-        break;
-      case Failure::reply_late:
-        rig.faults().late_by = 150ms;
-        rig.faults().next(DriveFault::late);
-        break;
-      case Failure::refused:
-        link.fate = SimLink::Fate::refused;
-        break;
-      case Failure::cut_before:
-        link.fate = SimLink::Fate::cut_before;
-        break;
-      case Failure::cut_after:
-        link.fate = SimLink::Fate::cut_after;
-        break;
-      case Failure::restarted:
-        rig.faults().next(DriveFault::restart);
-        break;
-    }
+    fail_now(link, rig.faults(), failure);
   };
 }
 
@@ -209,12 +159,10 @@ TEST_P(EachStepFails, EndsOnceAsTheContractSaysAndRecovers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Failures, EachStepFails,
-                         testing::Combine(testing::Values(KincoType::jd, KincoType::md), testing::ValuesIn(kFailures)),
+                         testing::Combine(testing::Values(KincoType::jd, KincoType::md),
+                                          testing::ValuesIn(kSerialFailures)),
                          [](const auto& case_of) {
-                           std::string out =
-                               test::name(std::get<0>(case_of.param)) + "_" + text_of(std::get<1>(case_of.param));
-                           std::ranges::replace(out, ' ', '_');
-                           return out;
+                           return test::name(std::get<0>(case_of.param)) + "_" + text_of(std::get<1>(case_of.param));
                          });
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint16_t kAcceleration = 303, kPositioningSpeed = 306, kSpeed = 307, kTarget = 313, kControl = 323;
+constexpr std::uint16_t kAcceleration = 303, kPositioningSpeed = 306, kTarget = 313;
 
 // What only this drive needs -----------------------------------------------------------------------------------------
 
@@ -25,8 +25,8 @@ TEST(Stepper, FollowingExternalPulsesItRefusesToBeEnabledAndSaysWhy) {
 
 TEST(Stepper, FoundRunningItIsAdoptedAndNothingIsWrittenToIt) {
   StepperRig rig;
-  ASSERT_EQ(rig.motor().poke(kSpeed, 200), simulated::RtuException::none);
-  ASSERT_EQ(rig.motor().poke(kControl, 3), simulated::RtuException::none);
+  ASSERT_EQ(rig.motor().poke(kSpeedRegister, 200), simulated::RtuException::none);
+  ASSERT_EQ(rig.motor().poke(kControlRegister, 3), simulated::RtuException::none);
   rig.online();
   EXPECT_NE(rig.axis().alarms & bit(AxisAlarm::adopted_running), 0U);
   EXPECT_TRUE(rig.axis().has(AxisInput::enabled));
@@ -93,7 +93,7 @@ TEST(Stepper, TheMailboxReachesAnyRegister) {
   for (std::uint16_t i = 0; i < 8; ++i)
     ASSERT_EQ(rig.code(rig.mailbox_write(static_cast<std::uint16_t>(1024 + i), 2, 100U + i)), Errc::ok) << i;
   EXPECT_EQ(rig.mailbox_read(1030, 2).object_data, 106U);
-  EXPECT_EQ(rig.mailbox_read(kControl, 2).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.mailbox_read(kControlRegister, 2).outcome.code, Errc::ok);
 }
 
 TEST(Stepper, TheDrivesOwnCommandsByTheMailboxKnowTheGateAndTheLatch) {
@@ -101,11 +101,11 @@ TEST(Stepper, TheDrivesOwnCommandsByTheMailboxKnowTheGateAndTheLatch) {
   rig.online();
   rig.enable();
   ASSERT_EQ(rig.code(rig.write(Quantity::target_position, 20'000)), Errc::ok);
-  ASSERT_EQ(rig.code(rig.mailbox_write(kControl, 2, 1)), Errc::ok);
+  ASSERT_EQ(rig.code(rig.mailbox_write(kControlRegister, 2, 1)), Errc::ok);
   EXPECT_EQ(rig.axis().motion_state, MotionState::active) << "it is the same command";
-  ASSERT_EQ(rig.code(rig.mailbox_write(kControl, 2, 7)), Errc::ok);
+  ASSERT_EQ(rig.code(rig.mailbox_write(kControlRegister, 2, 7)), Errc::ok);
   EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched));
-  EXPECT_EQ(rig.code(rig.mailbox_write(kControl, 2, 1)), Errc::state_unsuitable);
+  EXPECT_EQ(rig.code(rig.mailbox_write(kControlRegister, 2, 1)), Errc::state_unsuitable);
 }
 
 TEST(Stepper, TheMailboxCannotWriteHalfATargetBehindTheLimits) {

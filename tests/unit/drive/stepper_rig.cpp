@@ -1,7 +1,6 @@
 #include "tests/unit/drive/stepper_rig.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace axisgate::test {
 namespace {
@@ -18,10 +17,6 @@ std::vector<GatewayStage::Line> lines(const StepperOptions& options) {
   std::vector<GatewayStage::Line> out;
   out.push_back(std::move(line));
   return out;
-}
-
-void expect(bool what, const char* why) {
-  if (!what) throw std::runtime_error(why);
 }
 
 GroupResult object(GatewayStage& stage, bool write, std::uint16_t address, std::uint8_t size, std::uint32_t data) {

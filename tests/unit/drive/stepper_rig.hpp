@@ -13,6 +13,9 @@ struct StepperOptions {
   drive::ResolveAxis axis{};
 };
 
+/// Registers (5).
+inline constexpr std::uint16_t kSpeedRegister = 307, kControlRegister = 323;
+
 class StepperRig {
  public:
   explicit StepperRig(StepperOptions options = {});

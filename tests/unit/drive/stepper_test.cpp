@@ -9,8 +9,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint16_t kSpeed = 307, kControl = 323;
-
 TEST(Stepper, ComesOnlineWithTheQuantitiesOfItsManualAndACiA402State) {
   StepperRig rig;
   rig.online();
@@ -56,7 +54,7 @@ TEST(Stepper, EnableOpensTheGateAndNothingMoves) {
   EXPECT_EQ(rig.axis().alarms & bit(AxisAlarm::cannot_deenergise), 0U);
   rig.stage.run(1s);
   EXPECT_EQ(rig.motor().starts().size(), 0U);
-  EXPECT_EQ(rig.motor().peek(kSpeed), 0) << "a speed set-point from before starts nothing later";
+  EXPECT_EQ(rig.motor().peek(kSpeedRegister), 0) << "a speed set-point from before starts nothing later";
 }
 
 TEST(Stepper, DisableStopsClosesTheGateAndSaysThatTorqueStays) {
@@ -77,9 +75,9 @@ TEST(Stepper, NothingMovesBeforeAnEnable) {
   rig.online();
   for (const Command command : {Command::move_absolute, Command::run_velocity, Command::home, Command::set_position})
     EXPECT_EQ(rig.code(rig.command(command)), Errc::state_unsuitable) << text(command);
-  EXPECT_EQ(rig.code(rig.mailbox_write(kControl, 2, 1)), Errc::state_unsuitable) << "nor by the back door";
-  EXPECT_EQ(rig.code(rig.mailbox_write(kControl, 2, 16)), Errc::state_unsuitable) << "a stored program";
-  EXPECT_EQ(rig.code(rig.mailbox_write(kControl, 2, 4)), Errc::state_unsuitable) << "jog";
+  EXPECT_EQ(rig.code(rig.mailbox_write(kControlRegister, 2, 1)), Errc::state_unsuitable) << "nor by the back door";
+  EXPECT_EQ(rig.code(rig.mailbox_write(kControlRegister, 2, 16)), Errc::state_unsuitable) << "a stored program";
+  EXPECT_EQ(rig.code(rig.mailbox_write(kControlRegister, 2, 4)), Errc::state_unsuitable) << "jog";
   rig.stage.run(500ms);
   EXPECT_TRUE(rig.motor().starts().empty());
 }
@@ -183,7 +181,7 @@ TEST(Stepper, QuickStopLatchesAndOnlyAnEnableEndsIt) {
   rig.enable();
   rig.run_at(600'000);
   ASSERT_EQ(rig.code(rig.command(Command::quick_stop)), Errc::ok);
-  EXPECT_EQ(rig.motor().peek(kControl), 7) << "the emergency stop, not the slow one";
+  EXPECT_EQ(rig.motor().peek(kControlRegister), 7) << "the emergency stop, not the slow one";
   EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched));
   EXPECT_EQ(rig.axis()[Quantity::statusword].value & 0x6F, 0x07) << "it stands, energised";
   ASSERT_TRUE(rig.stands());

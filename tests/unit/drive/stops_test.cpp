@@ -10,14 +10,6 @@ using namespace std::chrono_literals;
 using simulated::DriveFault;
 using enum Situation;
 
-Group raw(std::uint16_t word, bool single = true) {
-  Group group;
-  group.client = 7;
-  group.controlword = word;
-  group.single_controlword = single;
-  return group;
-}
-
 Group of(ClientId client, Group group) {
   group.client = client;
   return group;
@@ -279,9 +271,9 @@ TEST(Stops, NothingResumesWhenAHaltEnds) {
 }
 
 TEST(Latch, IsSetEvenWhereNothingCanBeSent) {
-  for (const Situation away : {offline, link_down}) {
+  for (const Situation from : {offline, link_down}) {
     Rig rig(KincoType::jd);
-    rig.bring_to(away);
+    rig.bring_to(from);
     EXPECT_EQ(rig.command(Command::quick_stop).outcome.code, Errc::offline);
     EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched));
     EXPECT_NE(rig.axis().alarms & bit(AxisAlarm::stop_latched), 0U);
@@ -291,12 +283,12 @@ TEST(Latch, IsSetEvenWhereNothingCanBeSent) {
 TEST(Latch, IsLeftByAnEnableOrByTheTwoRawSteps) {
   Rig rig(KincoType::jd);
   rig.bring_to(latched);
-  EXPECT_EQ(rig.ask(raw(0x000F)).outcome.code, Errc::state_unsuitable);
-  EXPECT_EQ(rig.ask(raw(0x0080)).outcome.code, Errc::ok) << "a stop passes";
-  EXPECT_EQ(rig.ask(raw(0x000F)).outcome.code, Errc::state_unsuitable);
-  EXPECT_EQ(rig.ask(raw(0x0006)).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.ask(with_controlword(0x000F)).outcome.code, Errc::state_unsuitable);
+  EXPECT_EQ(rig.ask(with_controlword(0x0080)).outcome.code, Errc::ok) << "a stop passes";
+  EXPECT_EQ(rig.ask(with_controlword(0x000F)).outcome.code, Errc::state_unsuitable);
+  EXPECT_EQ(rig.ask(with_controlword(0x0006)).outcome.code, Errc::ok);
   EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched));
-  EXPECT_EQ(rig.ask(raw(0x000F)).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.ask(with_controlword(0x000F)).outcome.code, Errc::ok);
   EXPECT_FALSE(rig.axis().has(AxisInput::stop_latched));
   EXPECT_TRUE(rig.stage.run_until([&] { return rig.motor_enabled(); }));
   EXPECT_FALSE(rig.turns());

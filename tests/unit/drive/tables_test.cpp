@@ -4,6 +4,7 @@
 #include "gateway/drive/admission.hpp"
 #include "gateway/drive/fence.hpp"
 #include "gateway/drive/poll_plan.hpp"
+#include "tests/unit/drive/alone.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -51,8 +52,6 @@ TEST(Cia402, EachControlwordAsksForOneThing) {
   }
 }
 
-constexpr Instant kStart = Instant{} + 1h;
-
 DriveModel five_objects() {
   DriveModel model;
   for (std::uint16_t i = 0; i < 5; ++i) {
@@ -63,10 +62,6 @@ DriveModel five_objects() {
   }
   model.fence.candidates = {{1}, {2}, {3}};
   return model;
-}
-
-bus::Exchange reading(std::uint16_t index, std::uint8_t size = 2) {
-  return {1, bus::Access::read, {index, 0}, size, 0};
 }
 
 TEST(Fence, NeverUsesAnObjectWhoseReplyMayStillCome) {

@@ -2,14 +2,13 @@
 #include <gmock/gmock.h>
 
 #include "gateway/drive/virtual_axis.hpp"
+#include "tests/unit/drive/alone.hpp"
 
 namespace axisgate::drive {
 namespace {
 
 using namespace std::chrono_literals;
 using Seen = VirtualAxis::Seen;
-
-constexpr Instant kStart = Instant{} + 1h;
 
 class Machine {
  public:

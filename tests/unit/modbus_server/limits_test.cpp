@@ -9,8 +9,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr std::uint16_t kPositionOfAxis1 = 102;
-
 /// Reads through `client`, whatever the others do.
 void expect_served(TestClient& client) {
   client.send(read_request(1, kPositionOfAxis1, 2));

@@ -26,6 +26,7 @@ inline constexpr std::chrono::seconds kPatience{20};
 [[nodiscard]] std::vector<Byte> read_request(std::uint16_t transaction, std::uint16_t address, std::uint16_t count);
 /// FC 6.
 [[nodiscard]] std::vector<Byte> write_request(std::uint16_t transaction, std::uint16_t address, std::uint16_t value);
+inline constexpr std::uint16_t kPositionOfAxis1 = 102;
 [[nodiscard]] inline std::size_t read_reply_size(std::uint16_t count) { return 9U + 2U * count; }
 
 class Served {

@@ -5,7 +5,6 @@
 namespace axisgate::test {
 namespace {
 
-constexpr std::uint16_t kPositionOfAxis1 = 102;
 constexpr std::uint16_t kTargetTorqueOfAxis1 = 146;
 
 std::vector<Byte> position_reply(std::uint16_t transaction) {
