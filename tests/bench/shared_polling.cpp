@@ -5,6 +5,7 @@
 #include "tests/bench/benches.hpp"
 #include "tests/bench/closed_loop_clients.hpp"
 #include "tests/bench/gateway_process.hpp"
+#include "tests/bench/modbus_client.hpp"
 
 namespace axisgate::bench {
 
