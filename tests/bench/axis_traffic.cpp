@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/bench/exchange_tap.hpp"
+
 namespace axisgate::bench {
 namespace {
 
@@ -32,8 +34,6 @@ constexpr std::array<Readable, 16> kObjects{{{{0x6041, 0, 2}, 0x3200},
                                              {{0x60FF, 0, 4}, 0x6F00},
                                              {{0x6073, 0, 2}, 0x3D00},
                                              {{0x6080, 0, 2}, 0x4900}}};
-
-std::uint16_t address_of(int axis, int offset) { return static_cast<std::uint16_t>(100 * axis + offset); }
 
 }  // namespace
 
@@ -81,7 +81,6 @@ std::vector<BusyClients::Turn> readers_and_writers(int clients, int writers, Lin
 }
 
 Samples write_times(std::uint16_t port, std::chrono::milliseconds lasting, std::chrono::milliseconds pause) {
-  using SteadyClock = std::chrono::steady_clock;
   ModbusClient client(port);
   ParameterWriter writer(1, 0);
   std::minstd_rand random(1);

@@ -24,7 +24,6 @@
 namespace axisgate::bench {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
 using Sdo = std::array<std::uint8_t, 8>;
 
 /// A gateway that was ended in the middle of an exchange leaves a reply behind that comes later.

@@ -14,6 +14,8 @@
 
 namespace axisgate::bench {
 
+inline constexpr int kBusyClients = 32;
+
 class BusyClients {
  public:
   using Turn = std::function<void(ModbusClient&)>;

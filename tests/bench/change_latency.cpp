@@ -8,8 +8,6 @@
 namespace axisgate::bench {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
-
 constexpr std::uint16_t kPosition = 102;  // of axis 1
 constexpr std::uint32_t kUnitsPerTurn = 10'000;
 

@@ -12,12 +12,12 @@
 namespace axisgate::bench {
 namespace {
 
-struct Load {
+struct ClientMix {
   const char* what;
   std::vector<BusyClients::Turn> clients;
 };
 
-std::vector<Load> loads(LineProtocol protocol) {
+std::vector<ClientMix> loads(LineProtocol protocol) {
   return {{"1 client writes parameters", {writing(0)}},
           {"1 client reads objects", {reading(1, protocol, {})}},
           {"32 clients read objects", readers_and_writers(32, 0, protocol)},
@@ -33,7 +33,7 @@ double bare_rate(const DriveProcess& drives, std::chrono::milliseconds lasting) 
          std::accumulate(microseconds.begin(), microseconds.end(), 0.0);
 }
 
-double gateway_rate(const Load& load, const BenchOptions& options, const DriveProcess& drives,
+double gateway_rate(const ClientMix& load, const BenchOptions& options, const DriveProcess& drives,
                     std::chrono::milliseconds lasting) {
   const GatewayProcess gateway(options.program, options.folder, drives, {});
   BusyClients clients(gateway.port());
@@ -46,7 +46,7 @@ double gateway_rate(const Load& load, const BenchOptions& options, const DrivePr
   return at_drive;
 }
 
-void measure(const Load& load, const BenchOptions& options, const DriveProcess& drives) {
+void measure(const ClientMix& load, const BenchOptions& options, const DriveProcess& drives) {
   // On CAN two nodes one after the other, so each for less long.
   const bool can = is_can(drives.shape().protocol);
   const auto lasting = options.lasting(std::chrono::milliseconds(can ? 1000 : 3000));
@@ -70,7 +70,7 @@ void delayed_drive(const BenchOptions& options, LineProtocol protocol) {
     shape.reply_after = std::chrono::milliseconds(delay_ms);
     shape.protocol = protocol;
     const DriveProcess drives(shape, options.folder);
-    for (const Load& load : loads(protocol)) measure(load, options, drives);
+    for (const ClientMix& load : loads(protocol)) measure(load, options, drives);
   }
 }
 

@@ -17,8 +17,6 @@ namespace {
 
 using simulated::Time;
 
-Time steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
-
 std::unique_ptr<simulated::Port> opened(const std::string& device, LineProtocol protocol) {
   if (protocol == LineProtocol::vcan) return std::make_unique<simulated::CanSocket>(device);
   return std::make_unique<simulated::Pty>(device);

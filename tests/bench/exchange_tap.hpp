@@ -11,6 +11,9 @@
 
 namespace axisgate::bench {
 
+using SteadyClock = std::chrono::steady_clock;
+[[nodiscard]] inline std::chrono::nanoseconds steady_now() { return SteadyClock::now().time_since_epoch(); }
+
 struct TappedExchange {
   std::int64_t asked_at = 0;     ///< ns of the steady clock: the request's last byte was read
   std::int64_t answered_at = 0;  ///< just before the reply was written
@@ -59,15 +62,14 @@ class SharedTap {
 class ExchangeRate {
  public:
   explicit ExchangeRate(const ExchangeTap& tap) : tap_(tap), before_(tap.recorded()) {}
-  [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+  [[nodiscard]] double seconds() const { return std::chrono::duration<double>(SteadyClock::now() - began_).count(); }
   [[nodiscard]] double exchanges() const { return static_cast<double>(tap_.recorded() - before_); }
   [[nodiscard]] double per_second() const { return exchanges() / seconds(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
   const ExchangeTap& tap_;
   std::uint64_t before_;
-  Clock::time_point began_ = Clock::now();
+  SteadyClock::time_point began_ = SteadyClock::now();
 };
 
 }  // namespace axisgate::bench

@@ -12,7 +12,7 @@
 namespace axisgate::bench {
 namespace {
 
-constexpr int kClients = 8;
+constexpr int kEverydayClients = 8;
 
 /// Reads every axis, writes to one and reads an object, ten times a second.
 BusyClients::Turn everyday(int client, int axes) {
@@ -39,9 +39,9 @@ void measure_memory(const BenchOptions& options, int lines, int drives_per_line)
   options.report.row(fmt::format("{} drives on {} lines, no clients, resident MiB", axes, lines), resident_mib(gateway),
                      goal(kGoalMib));
   BusyClients clients(gateway.port());
-  for (int i = 0; i < kClients; ++i) clients.add(everyday(i, axes));
+  for (int i = 0; i < kEverydayClients; ++i) clients.add(everyday(i, axes));
   std::this_thread::sleep_for(options.lasting(std::chrono::milliseconds(5000)));
-  options.report.row(fmt::format("{} drives on {} lines, {} clients, resident MiB", axes, lines, kClients),
+  options.report.row(fmt::format("{} drives on {} lines, {} clients, resident MiB", axes, lines, kEverydayClients),
                      resident_mib(gateway), goal(kGoalMib));
   clients.stop();
 }

@@ -16,8 +16,6 @@
 namespace axisgate::bench {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
-
 std::uint16_t free_port() {
   const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in here{};

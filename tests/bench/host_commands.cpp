@@ -14,7 +14,7 @@ namespace axisgate::bench {
 namespace {
 
 using simulated::Time;
-using Octets = std::span<const std::uint8_t>;
+using OctetView = std::span<const std::uint8_t>;
 
 constexpr std::uint16_t kControlword = 0x6040, kTargetVelocity = 0x60FF;  // CiA 402
 
@@ -76,7 +76,7 @@ class KeyaSerialCommands final : public HostCommands {
     constexpr std::size_t kValueSize = 4;
     const auto frame = receiver_.receive(byte, now);
     if (!frame || frame->front() != simulated::keya_start::control) return std::nullopt;
-    const Octets bytes(*frame);
+    const OctetView bytes(*frame);
     HostCommand command{kFirstMotor | kSecondMotor, 0};
     for (std::size_t motor = 0; motor < 2; ++motor) {
       const auto bit = static_cast<std::uint8_t>(1U << motor);
@@ -117,7 +117,7 @@ class CanopenCommands final : public LawicelCommands {
     const auto frame = lawicel_frame(line);
     if (!frame || frame->id != kRequest || frame->data[0] >> 5 != kDownload) return std::nullopt;
     const auto index = static_cast<std::uint16_t>(frame->data[1] | frame->data[2] << 8);
-    const std::uint32_t value = simulated::little_endian(Octets(frame->data).subspan(4));
+    const std::uint32_t value = simulated::little_endian(OctetView(frame->data).subspan(4));
     return keya_ ? keya_command(index, value) : cia402_command(index, value);
   }
 

@@ -11,8 +11,6 @@
 namespace axisgate::bench {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
-
 struct Setting {
   const char* what;
   std::string simulated;

@@ -8,8 +8,6 @@
 namespace axisgate::bench {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
-
 constexpr unsigned kHostProcessor = 0;  // gateway and bare loop; drive and clients are on the other
 
 /// Microseconds of each `action` in the time given.

@@ -15,9 +15,7 @@ namespace axisgate::bench {
 namespace {
 
 using std::chrono::milliseconds;
-constexpr int kClients = 32;
 constexpr int kAxes = 2;
-constexpr std::uint16_t kRegisters = 39;
 constexpr double kBoundMs = 500;
 
 /// What the clients write: nothing, the speeds that the drive holds already (which are not sent, so that only the
@@ -35,13 +33,11 @@ Speed speed_object(MotionProtocol protocol) {
   return protocol == MotionProtocol::keya_canopen ? Speed{0x2012, 0} : Speed{0x2102, 0};
 }
 
-std::uint16_t address_of(int axis, int offset) { return static_cast<std::uint16_t>(100 * axis + offset); }
-
 constexpr std::uint32_t kOtherSpeed = 10'000;  // more, in 1/1000 rpm
 
 /// Half of them write, half make the drive be asked; all read, and each turns from one axis to the other.
 void add_busy_clients(BusyClients& clients, MotionProtocol protocol, Load load) {
-  for (int i = 0; i < kClients; ++i)
+  for (int i = 0; i < kBusyClients; ++i)
     clients.add([i, load, protocol, turn = 0U](ModbusClient& client) mutable {
       const int axis = 1 + static_cast<int>(++turn % kAxes);
       static_cast<void>(client.read(address_of(axis, 0), kRegisters));

@@ -16,7 +16,6 @@ namespace {
 
 using std::chrono::milliseconds;
 constexpr milliseconds kLease{1000};
-constexpr std::uint16_t kRegisters = 39;
 
 enum class Death : std::uint8_t { closes, resets, falls_silent };
 constexpr std::array<std::string_view, 3> kDeaths{"closes", "resets", "falls silent"};

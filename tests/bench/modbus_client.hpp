@@ -42,6 +42,10 @@ class ModbusClient {
   std::vector<Byte> reply_;
 };
 
+inline constexpr std::uint16_t kRegisters = 39;  ///< of an axis, from its first on
+[[nodiscard]] constexpr std::uint16_t address_of(int axis, int offset) {
+  return static_cast<std::uint16_t>(100 * axis + offset);
+}
 /// A u32 as the gateway wants it.
 [[nodiscard]] constexpr std::array<std::uint16_t, 2> registers_of(std::uint32_t value) {
   return {static_cast<std::uint16_t>(value >> 16), static_cast<std::uint16_t>(value & 0xFFFF)};

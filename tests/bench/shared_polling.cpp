@@ -5,11 +5,12 @@
 #include "tests/bench/benches.hpp"
 #include "tests/bench/closed_loop_clients.hpp"
 #include "tests/bench/gateway_process.hpp"
+#include "tests/bench/modbus_client.hpp"
 
 namespace axisgate::bench {
 
 void shared_polling(const BenchOptions& options, LineProtocol protocol) {
-  constexpr std::uint16_t kAxis = 100, kRegisters = 39;
+  constexpr std::uint16_t kAxis = 100;
   stay_on_processor(1);
   DriveLines shape;
   shape.reply_after = std::chrono::milliseconds(1);

@@ -12,8 +12,6 @@
 namespace axisgate::bench {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
-constexpr int kClients = 32;
 constexpr std::uint16_t kQuickStop = 102;  // coil of axis 1
 
 struct Stops {
@@ -48,7 +46,7 @@ void measure(const BenchOptions& options, LineProtocol protocol, std::chrono::na
   const DriveProcess drives(shape, options.folder);
   const GatewayProcess gateway(options.program, options.folder, drives, {});
   BusyClients clients(gateway.port());
-  for (const auto& turn : readers_and_writers(kClients, ParameterWriter::kParameters, protocol)) clients.add(turn);
+  for (const auto& turn : readers_and_writers(kBusyClients, ParameterWriter::kParameters, protocol)) clients.add(turn);
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   ModbusClient client(gateway.port());
   Stops stops;

@@ -13,8 +13,6 @@
 
 namespace axisgate::bench {
 
-std::chrono::nanoseconds steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
-
 TappedLine::TappedLine(const std::string& link, const std::string& drive, MotionProtocol protocol)
     : gateway_(link),
       drive_(::open(drive.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)),

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/axisgate_sim/pty.hpp"
+#include "tests/bench/exchange_tap.hpp"
 #include "tests/bench/host_commands.hpp"
 
 namespace axisgate::bench {
@@ -53,7 +54,5 @@ class TappedLine {
   bool overflowed_ = false;
   std::thread thread_;
 };
-
-[[nodiscard]] std::chrono::nanoseconds steady_now();
 
 }  // namespace axisgate::bench

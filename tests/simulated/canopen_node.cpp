@@ -7,11 +7,9 @@ namespace {
 
 constexpr ObjectKey guard_time{0x100C, 0};
 constexpr ObjectKey life_factor{0x100D, 0};
-constexpr ObjectKey heartbeat_time{0x1017, 0};
 constexpr ObjectKey sync_id{0x1005, 0};
 constexpr ObjectKey emergency_id{0x1014, 0};
 constexpr ObjectKey loss_reaction{0x6007, 0};
-constexpr std::uint16_t consumer_entries = 0x1016;
 constexpr std::uint32_t identifier_bits = 0x7FF;
 
 }  // namespace

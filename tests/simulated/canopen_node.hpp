@@ -73,6 +73,8 @@ class CanopenNode final : public CanNode, private ObjectAccess {
   std::string describe() const override { return device_->describe(); }
 
  private:
+  static constexpr ObjectKey heartbeat_time{0x1017, 0};
+  static constexpr std::uint16_t consumer_entries = 0x1016;
   struct Cell {
     std::uint32_t value;
     std::uint8_t width;

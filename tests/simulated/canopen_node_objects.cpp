@@ -6,9 +6,7 @@ namespace {
 
 constexpr ObjectKey error_register{0x1001, 0};
 constexpr std::uint16_t error_history = 0x1003;
-constexpr ObjectKey heartbeat_time{0x1017, 0};
 constexpr ObjectKey node_number{0x100B, 0};  // a Kinco's own
-constexpr std::uint16_t consumer_entries = 0x1016;
 
 }  // namespace
 

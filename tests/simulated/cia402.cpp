@@ -8,14 +8,14 @@ namespace {
 using enum Cia402State;
 using enum Cia402Command;
 
-struct Transition {
+struct TransitionRule {
   Cia402State from;
   Cia402Command command;
   Cia402State to;
 };
 
 // Numbers as in CiA 402. 0x06 means "motor off" in every state (JD 6.1, MD 8.1), hence the row out of quick stop.
-constexpr std::array<Transition, 18> transitions{{
+constexpr std::array<TransitionRule, 18> transitions{{
     {switch_on_disabled, shutdown, ready_to_switch_on},         // 2
     {switch_on_disabled, switch_on, switched_on},               // 2 and 3 in one
     {switch_on_disabled, enable_operation, operation_enabled},  // 2, 3 and 4 in one: the printed RS232 sequences
@@ -69,7 +69,7 @@ Cia402Command command_in(std::uint16_t controlword) {
 
 std::optional<Cia402State> next_state(Cia402State from, Cia402Command command, bool only_from_ready) {
   if (only_from_ready && from == switch_on_disabled && command != shutdown) return std::nullopt;
-  for (const Transition& row : transitions) {
+  for (const TransitionRule& row : transitions) {
     if (row.from == from && row.command == command) return row.to;
   }
   return std::nullopt;

@@ -49,7 +49,6 @@ bool Id286pro::can_obey(std::uint16_t command) const {
 
 void Id286pro::obey(std::uint16_t command, std::uint64_t tag) {
   if (!can_obey(command)) return;
-  using Task = Id286proMotion::Task;
   if (begins_motion(command)) {
     starts_.push_back({now_, tag, command});
     if (starts_.size() > start_limit) starts_.pop_front();
@@ -57,9 +56,9 @@ void Id286pro::obey(std::uint16_t command, std::uint64_t tag) {
   const FinePosition travel = registers_.get(313) * fine_per_count;
   switch (command) {
     case absolute_move:
-      return motion_.move(Task::absolute, travel, profile(registers_.get(306)));
+      return motion_.move(Id286proMotion::Task::absolute, travel, profile(registers_.get(306)));
     case relative_move:
-      return motion_.move(Task::relative, axis_.demand() + travel, profile(registers_.get(306)));
+      return motion_.move(Id286proMotion::Task::relative, axis_.demand() + travel, profile(registers_.get(306)));
     case speed_mode:
       return motion_.run(speed_of(registers_.get(307)), profile(0));
     case jog_forward:

@@ -8,7 +8,7 @@ constexpr std::int64_t most_negative = -2'147'483'648;
 constexpr std::int64_t most_positive = 2'147'483'647;
 
 // Defaults the sheet leaves open (0201 to 0245, 0305, 0429 and its like): a plausible figure, never relied upon.
-constexpr Id286proRow rows[] = {
+constexpr Id286proRow register_rows[] = {
     // status (class 01)
     {100, 1, false, Saved::read_only},                                  // motor current, 0.001 A
     {101, 1, false, Saved::read_only},                                  // input voltage, 0.01 V
@@ -72,10 +72,10 @@ std::int64_t value_of(const Id286proRow& row, std::uint32_t raw) {
 
 }  // namespace
 
-std::span<const Id286proRow> id286pro_rows() { return rows; }
+std::span<const Id286proRow> id286pro_rows() { return register_rows; }
 
 Id286proRegisters::Id286proRegisters() {
-  for (const Id286proRow& row : rows) cells_[row.number] = {&row, row.initial, row.initial, 0};
+  for (const Id286proRow& row : register_rows) cells_[row.number] = {&row, row.initial, row.initial, 0};
 }
 
 const Id286proRow* Id286proRegisters::row_at(std::uint16_t number) const {

@@ -9,7 +9,7 @@ using enum Keep;
 
 // Defaults the sheet leaves open (6081, 6073, 6099, 609A, 6079, 60F7:0B): a plausible figure, never relied upon.
 // Signs marked `?` in the sheet are taken as the sheet shows them.
-constexpr ObjectEntry entries[] = {
+constexpr ObjectEntry jd_motion_entries[] = {
     // JD 4.1 control and mode
     {0x6040, 0x00, u16, rw, ram},             // control word
     {0x6041, 0x00, u16, ro, ram},             // status word
@@ -139,6 +139,6 @@ constexpr ObjectEntry entries[] = {
 
 }  // namespace
 
-std::span<const ObjectEntry> jd_motion_objects() { return entries; }
+std::span<const ObjectEntry> jd_motion_objects() { return jd_motion_entries; }
 
 }  // namespace axisgate::simulated

@@ -8,7 +8,7 @@ using enum Access;
 using enum Keep;
 
 // Loop, I/O, analog, motor and power stage: kept as values, without effect on the simulated motion but for 2010.
-constexpr ObjectEntry entries[] = {
+constexpr ObjectEntry jd_setup_entries[] = {
     // JD 4.7 velocity loop and auto-tuning
     {0x60F9, 0x01, u16, rw, eeprom, 100, 0, 32767},   // velocity loop proportional gain 0
     {0x60F9, 0x02, i16, rw, eeprom, 2, 0, 16384},     // velocity loop integral gain 0
@@ -119,6 +119,6 @@ constexpr ObjectEntry entries[] = {
 
 }  // namespace
 
-std::span<const ObjectEntry> jd_setup_objects() { return entries; }
+std::span<const ObjectEntry> jd_setup_objects() { return jd_setup_entries; }
 
 }  // namespace axisgate::simulated

@@ -5,7 +5,7 @@
 namespace axisgate::simulated {
 namespace {
 
-struct Row {
+struct VendorObject {
   std::uint16_t index;
   std::uint8_t sub;
   std::uint8_t width;
@@ -13,7 +13,7 @@ struct Row {
 };
 
 // From 2000h on (6.4). 2003h and 2004h are named in a mapping alone: a word each.
-constexpr std::array<Row, 29> rows{{
+constexpr std::array<VendorObject, 29> vendor_objects{{
     {0x2000, 0, 2, false}, {0x2003, 0, 2, false}, {0x2004, 0, 2, false}, {0x2010, 0, 2, false}, {0x2011, 0, 2, false},
     {0x2012, 0, 2, false}, {0x2013, 0, 2, false}, {0x2014, 0, 2, false}, {0x2015, 0, 2, false}, {0x2016, 0, 4, false},
     {0x2017, 0, 2, false}, {0x2020, 0, 2, false}, {0x2021, 0, 2, false}, {0x2022, 0, 2, false}, {0x2023, 0, 2, false},
@@ -22,14 +22,15 @@ constexpr std::array<Row, 29> rows{{
     {0x6083, 0, 4, true},  {0x6084, 0, 4, true},  {0x6099, 1, 4, true},  {0x6099, 2, 4, true},
 }};
 
-const Row* find(ObjectKey key) {
-  const auto found =
-      std::ranges::find_if(rows, [key](const Row& row) { return row.index == key.index && row.sub == key.sub; });
-  return found == rows.end() ? nullptr : &*found;
+const VendorObject* find(ObjectKey key) {
+  const auto found = std::ranges::find_if(
+      vendor_objects, [key](const VendorObject& row) { return row.index == key.index && row.sub == key.sub; });
+  return found == vendor_objects.end() ? nullptr : &*found;
 }
 
 std::uint32_t absent(ObjectKey key) {
-  const bool known = std::ranges::any_of(rows, [key](const Row& row) { return row.index == key.index; });
+  const bool known =
+      std::ranges::any_of(vendor_objects, [key](const VendorObject& row) { return row.index == key.index; });
   return known ? sdo_abort::no_such_sub : abort_of(Refusal::no_such_object);
 }
 
@@ -123,14 +124,14 @@ std::int64_t KeyaCanopen::value_of(ObjectKey key) const {
 }
 
 ObjectReply KeyaCanopen::read(ObjectKey key, Time now) {
-  const Row* row = find(key);
+  const VendorObject* row = find(key);
   if (row == nullptr) return {absent(key), {}};
   drive_.advance(now);
   return {0, little_endian(static_cast<std::uint32_t>(value_of(key)), row->width)};
 }
 
 std::uint32_t KeyaCanopen::write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) {
-  const Row* row = find(key);
+  const VendorObject* row = find(key);
   if (row == nullptr) return absent(key);
   if (!row->writable) return abort_of(Refusal::read_only);
   if (bytes.size() != row->width) return abort_of(Refusal::wrong_width);
@@ -205,7 +206,7 @@ std::uint32_t KeyaCanopen::take_data(KeyaMotorName motor, std::int32_t value, st
 }
 
 bool KeyaCanopen::may_be_mapped(ObjectKey key, PdoDirection direction) const {
-  const Row* row = find(key);
+  const VendorObject* row = find(key);
   return row != nullptr && (direction == PdoDirection::from_drive || row->writable);
 }
 

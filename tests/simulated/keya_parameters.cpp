@@ -7,7 +7,7 @@
 namespace axisgate::simulated {
 namespace {
 
-constexpr std::array<KeyaParameterRow, 26> rows{{
+constexpr std::array<KeyaParameterRow, 26> parameter_rows{{
     {1, 10, 2, 32},          {2, 1500, 80, 3500}, {3, 150, 10, 500}, {4, 2500, 1000, 50000}, {13, 30, 1, 200},
     {17, 0, 0, 1},           {19, 1, 1, 8},       {20, 1, 1, 4},     {21, 2, 0, 0xFF},       {22, 1, 1, 12},
     {23, 85, 1, 200},        {24, 30, 1, 200},    {25, 120, 1, 200}, {26, 0, 0, 3},          {27, 10, 1, 30},
@@ -18,15 +18,15 @@ constexpr std::array<KeyaParameterRow, 26> rows{{
 
 }  // namespace
 
-std::span<const KeyaParameterRow> keya_parameter_rows() { return rows; }
+std::span<const KeyaParameterRow> keya_parameter_rows() { return parameter_rows; }
 
 const KeyaParameterRow* find_keya_parameter(int number) {
-  const auto found = std::ranges::find(rows, number, &KeyaParameterRow::number);
-  return found == rows.end() ? nullptr : &*found;
+  const auto found = std::ranges::find(parameter_rows, number, &KeyaParameterRow::number);
+  return found == parameter_rows.end() ? nullptr : &*found;
 }
 
 KeyaParameters::KeyaParameters(const KeyaOptions& options, KeyaInterface plugged) {
-  for (const KeyaParameterRow& row : rows) values_[row.number] = row.initial;
+  for (const KeyaParameterRow& row : parameter_rows) values_[row.number] = row.initial;
   values_[19] = static_cast<std::int64_t>(plugged);
   for (const auto& [number, value] : options.parameters) {
     const KeyaParameterRow* row = find_keya_parameter(number);

@@ -3,7 +3,6 @@
 namespace axisgate::simulated {
 namespace {
 
-constexpr ObjectKey controlword{0x6040, 0};
 constexpr std::uint16_t first_word = 0x0006;
 constexpr std::uint16_t unknown_alarm = 0x1000;  // CiA 301's "generic error"
 
@@ -50,7 +49,7 @@ ObjectReply KincoCan::read(ObjectKey key, Time now) {
 }
 
 std::uint32_t KincoCan::write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) {
-  if (key == controlword && bytes.size() == 2 && waits_for_first_word_) {
+  if (key == KincoDrive::controlword && bytes.size() == 2 && waits_for_first_word_) {
     if (little_endian(bytes) != first_word) return 0;  // ignored: neither obeyed nor refused
     waits_for_first_word_ = false;
   }

@@ -18,6 +18,7 @@ namespace axisgate::simulated {
 class KincoDrive {
  public:
   static constexpr std::size_t transition_limit = 10000;  // the oldest are forgotten
+  static constexpr ObjectKey controlword{0x6040, 0};
 
   explicit KincoDrive(const DriveOptions& options);
   KincoDrive(const KincoDrive&) = delete;  // the axis refers to the mechanics in here

@@ -7,7 +7,6 @@
 namespace axisgate::simulated {
 namespace {
 
-constexpr ObjectKey controlword{0x6040, 0};
 constexpr ObjectKey mode_of_operation{0x6060, 0};
 constexpr ObjectKey password{0x2FFD, 0};
 

@@ -7,7 +7,6 @@ namespace axisgate::simulated {
 namespace {
 
 constexpr std::int64_t milliseconds_per_second = 1000;
-constexpr std::int64_t save_word = 0x5A5A;
 
 }  // namespace
 

@@ -10,8 +10,6 @@ constexpr int positive_limit_input = 2;
 constexpr int negative_limit_input = 3;
 constexpr int home_input = 4;
 constexpr int stop_input = 6;
-constexpr std::int64_t full_torque = 3000;  // 0.1 %; what the drive can give (3.5, 6072h)
-constexpr std::int64_t save_word = 0x5A5A;
 constexpr ObjectKey save_trigger{0x3002, 0};
 constexpr ObjectKey save_status{0x3003, 0};
 constexpr std::uint16_t following_alarm = 0x8611;

@@ -82,6 +82,9 @@ class LeadshineDrive final : public CanDevice {
   std::int64_t units_per_revolution() const;                                                     // P (4.1)
 
  private:
+  static constexpr std::int64_t full_torque = 3000;  // 0.1 %; what the drive can give (3.5, 6072h)
+  static constexpr std::int64_t save_word = 0x5A5A;
+
   // leadshine_drive.cpp: power, time
   void power_up();
   void tick(Time at);

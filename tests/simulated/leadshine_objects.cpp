@@ -9,7 +9,7 @@ using enum ObjectType;
 using enum Access;
 using enum Keep;
 
-constexpr ObjectEntry entries[] = {
+constexpr ObjectEntry leadshine_object_entries[] = {
     {0x3000, 0x00, u16, ro, ram},                               // I/O signal status
     {0x3001, 0x00, u16, ro, ram},                               // state transition flag
     {0x3002, 0x00, u16, rw, ram},                               // EEPROM save trigger
@@ -143,6 +143,6 @@ constexpr ObjectEntry entries[] = {
 
 }  // namespace
 
-std::span<const ObjectEntry> leadshine_objects() { return entries; }
+std::span<const ObjectEntry> leadshine_objects() { return leadshine_object_entries; }
 
 }  // namespace axisgate::simulated

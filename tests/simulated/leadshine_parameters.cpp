@@ -8,7 +8,7 @@ using enum ObjectType;
 using enum Access;
 using enum Keep;
 
-constexpr ObjectEntry entries[] = {
+constexpr ObjectEntry leadshine_parameter_entries[] = {
     {0x2000, 0x00, u16, rw, eeprom, 0, 0, 2000},        // Pr0.00 model-following bandwidth
     {0x2001, 0x00, u16, rw, eeprom, 8, 0, 8},           // Pr0.01 control mode
     {0x2002, 0x00, u16, rw, eeprom, 0, 0, 2},           // Pr0.02 real-time auto tuning
@@ -155,6 +155,6 @@ constexpr ObjectEntry entries[] = {
 
 }  // namespace
 
-std::span<const ObjectEntry> leadshine_parameters() { return entries; }
+std::span<const ObjectEntry> leadshine_parameters() { return leadshine_parameter_entries; }
 
 }  // namespace axisgate::simulated

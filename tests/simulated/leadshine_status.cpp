@@ -9,7 +9,6 @@ namespace {
 
 using enum Cia402State;
 
-constexpr std::int64_t full_torque = 3000;
 constexpr std::uint16_t ready_to_start = 0x0020;
 
 }  // namespace

@@ -10,7 +10,7 @@ using enum Keep;
 // Defaults the sheet leaves open (6060, 6081, 6099, 609A, 6085, 605A..605E, the DIN functions of MD 12.9): a plausible
 // figure, never relied upon. Widths it leaves open (607F, 6068, 60F5, 60F9.1A, 60F9.1C, 6510.0B): CiA 402's, or the
 // JD's.
-constexpr ObjectEntry entries[] = {
+constexpr ObjectEntry md_motion_entries[] = {
     // MD A control and mode
     {0x6040, 0x00, u16, rw, ram},           // control word
     {0x6041, 0x00, u16, ro, ram},           // status word
@@ -77,6 +77,6 @@ constexpr ObjectEntry entries[] = {
 
 }  // namespace
 
-std::span<const ObjectEntry> md_motion_objects() { return entries; }
+std::span<const ObjectEntry> md_motion_objects() { return md_motion_entries; }
 
 }  // namespace axisgate::simulated

@@ -9,7 +9,7 @@ using enum Keep;
 
 // DIN functions at delivery stand in a lost figure (MD 12.9): DIN1 enable and DIN3 mode control are assumed, since MD
 // 4.5 tells the user to remove both before a bus is used.
-constexpr ObjectEntry entries[] = {
+constexpr ObjectEntry md_setup_entries[] = {
     // MD D multi-segment position and speed
     {0x2020, 0x01, i32, rw, eeprom},  // multi-segment position 0
     {0x2020, 0x02, i32, rw, eeprom},  // multi-segment position 1
@@ -94,6 +94,6 @@ constexpr ObjectEntry entries[] = {
 
 }  // namespace
 
-std::span<const ObjectEntry> md_setup_objects() { return entries; }
+std::span<const ObjectEntry> md_setup_objects() { return md_setup_entries; }
 
 }  // namespace axisgate::simulated

@@ -4,11 +4,8 @@
 namespace axisgate::simulated {
 namespace {
 
-constexpr std::size_t segment_bytes = 7;
 constexpr std::uint8_t last_in_transfer = 0x80;
 constexpr std::uint8_t longest_block = 127;
-
-ObjectKey key_in(CanView request) { return {static_cast<std::uint16_t>(request[1] | request[2] << 8), request[3]}; }
 
 }  // namespace
 

@@ -3,7 +3,6 @@
 namespace axisgate::simulated {
 namespace {
 
-constexpr std::size_t segment_bytes = 7;
 constexpr std::uint8_t size_indicated = 0x01;
 constexpr std::uint8_t expedited = 0x02;
 constexpr std::uint8_t toggle_bit = 0x10;
@@ -19,8 +18,6 @@ enum class Service : std::uint8_t {
   block_upload = 5,
   block_download = 6,
 };
-
-ObjectKey key_in(CanView request) { return {static_cast<std::uint16_t>(request[1] | request[2] << 8), request[3]}; }
 
 CanBytes with_object(std::uint8_t command, ObjectKey key, CanView data, std::size_t size = longest_can_frame) {
   CanBytes reply{command, static_cast<std::uint8_t>(key.index), static_cast<std::uint8_t>(key.index >> 8), key.sub};

@@ -32,6 +32,7 @@ class SdoServer {
   SdoFacts& facts() { return facts_; }
 
  private:
+  static constexpr std::size_t segment_bytes = 7;
   enum class Stage : std::uint8_t { idle, download, upload, block_download, block_end, block_upload, block_closing };
   using Replies = std::vector<CanBytes>;
 
@@ -46,6 +47,9 @@ class SdoServer {
   Replies abort(std::uint32_t code);
   CanBytes plain(std::uint8_t command) const;
   void begin(CanView request, Stage stage);
+  static ObjectKey key_in(CanView request) {
+    return {static_cast<std::uint16_t>(request[1] | request[2] << 8), request[3]};
+  }
 
   SdoFacts facts_;
   Stage stage_ = Stage::idle;

@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using bus::NodeState;
-using Kind = bus::Notice::Kind;
+using NoticeKind = bus::Notice::Kind;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
@@ -24,10 +24,10 @@ class NodeWatchTest : public testing::Test {
     due();
   }
   /// A frame of error control, as it is on the wire; what was told of it.
-  std::vector<std::pair<Kind, NodeState>> hear(Byte byte) {
+  std::vector<std::pair<NoticeKind, NodeState>> hear(Byte byte) {
     const auto told = watch.on_error_control(*decode_error_control(std::array{byte}), runtime.now());
     ignored = !told;
-    std::vector<std::pair<Kind, NodeState>> all;
+    std::vector<std::pair<NoticeKind, NodeState>> all;
     if (told) {
       for (const bus::Notice& notice : *told) all.emplace_back(notice.kind, notice.state);
     }
@@ -60,7 +60,7 @@ TEST_F(NodeWatchTest, the_first_heartbeat_every_change_of_state_and_each_one_tha
                                               {0x05, NodeState::operational},     {0x04, NodeState::stopped},
                                               {0x04, NodeState::stopped},         {0x05, NodeState::operational},
                                               {0x02, NodeState::unknown}};  // a state it passes through
-  for (const auto& [byte, state] : heard) EXPECT_THAT(hear(byte), ElementsAre(std::pair(Kind::present, state)));
+  for (const auto& [byte, state] : heard) EXPECT_THAT(hear(byte), ElementsAre(std::pair(NoticeKind::present, state)));
   hear(0x05);
   EXPECT_THAT(hear(0x05), IsEmpty());
 }
@@ -85,15 +85,15 @@ TEST_F(NodeWatchTest, a_heartbeat_is_overdue_after_one_and_a_half_periods_and_th
   }
   EXPECT_TRUE(after(1ms).gone);
   EXPECT_FALSE(after(1h).gone) << "told once";
-  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(Kind::present, NodeState::operational))) << "and back again";
+  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(NoticeKind::present, NodeState::operational))) << "and back again";
 }
 
 TEST_F(NodeWatchTest, a_boot_up_is_told_and_ends_the_watch_until_the_next_heartbeat) {
   watch_with({.node = 3, .heartbeat = 500ms});
   hear(0x05);
-  EXPECT_THAT(hear(0x00), ElementsAre(std::pair(Kind::started, NodeState::pre_operational)));
+  EXPECT_THAT(hear(0x00), ElementsAre(std::pair(NoticeKind::started, NodeState::pre_operational)));
   EXPECT_EQ(watch.next_deadline(), kNever) << "its heartbeat may be off now";
-  EXPECT_THAT(hear(0x7F), ElementsAre(std::pair(Kind::present, NodeState::pre_operational)));
+  EXPECT_THAT(hear(0x7F), ElementsAre(std::pair(NoticeKind::present, NodeState::pre_operational)));
   EXPECT_EQ(watch.next_deadline(), runtime.now() + 850ms);
 }
 
@@ -101,7 +101,7 @@ TEST_F(NodeWatchTest, a_call_makes_the_next_sign_of_life_news) {
   watch_with({.node = 3, .heartbeat = 500ms});
   hear(0x05);
   watch.call();
-  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(Kind::present, NodeState::operational)));
+  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(NoticeKind::present, NodeState::operational)));
   EXPECT_THAT(hear(0x05), IsEmpty());
 }
 
@@ -131,7 +131,7 @@ TEST_F(NodeGuarding, a_guarding_frame_is_due_at_once_and_in_every_guard_time) {
 }
 
 TEST_F(NodeGuarding, answers_that_toggle_keep_the_node_present) {
-  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(Kind::present, NodeState::operational)));
+  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(NoticeKind::present, NodeState::operational)));
   Byte answer = 0x05;
   for (int i = 0; i < 10; ++i) {
     EXPECT_FALSE(after(200ms).gone);

@@ -13,12 +13,11 @@ namespace {
 using namespace std::chrono_literals;
 using test::beat;
 using test::guid;
+using test::kStart;
 using test::writer_gone;
 using test::writer_there;
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
 
 struct Writers : testing::Test {
   ProcessImage image;

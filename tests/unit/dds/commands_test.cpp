@@ -10,8 +10,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kDone = 2, kUnsuitable = 9, kNotSupported = 16, kBadValue = 17, kBusy = 19;
-
 struct OfAxis : testing::TestWithParam<AxisNumber> {
   DdsRig rig;
   AxisNumber axis = GetParam();

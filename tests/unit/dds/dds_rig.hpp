@@ -15,6 +15,9 @@ namespace axisgate::test {
 
 /// A CiA 402 servo (Kinco JD by its own protocol), and a virtual axis (iD286pro on Modbus RTU).
 inline constexpr AxisNumber kServo = 1, kStepper = 2;
+/// Of command_result.
+inline constexpr int kDone = 2, kRefused = 3, kNotOwner = 7, kUnsuitable = 9, kNotSupported = 16, kBadValue = 17,
+                     kBusy = 19;
 
 struct DdsRigOptions {
   LeaseRules lease{};

@@ -4,15 +4,15 @@
 #include "gateway/upstream/dds/dds_face.hpp"
 #include "gateway/upstream/dds/event_feed.hpp"
 #include "gateway/upstream/dds/state_feed.hpp"
+#include "tests/unit/dds/samples.hpp"
 
 namespace axisgate::dds {
 namespace {
 
 using namespace std::chrono_literals;
+using test::kStart;
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
 
 struct Fed : testing::Test {
   StateFeed feed{10ms, 1000ms};

@@ -11,7 +11,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint8_t kForward = 31, kReverse = 32, kEnd = 33;
-constexpr int kDone = 2, kNotOwner = 7, kUnsuitable = 9, kBadValue = 17;
 constexpr std::uint8_t kNotNew = 10;  // command_result not_new: held in vain
 
 struct Jogged : testing::TestWithParam<AxisNumber> {

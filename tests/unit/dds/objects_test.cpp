@@ -9,8 +9,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kDone = 2, kRefused = 3, kNotOwner = 7;
-
 dds::ObjectRequestRecord read(const dds::Guid& writer, std::uint16_t index, std::uint8_t size,
                               AxisNumber axis = kServo) {
   return {writer, axis, 0, false, index, 0, size, 0, {}};

@@ -10,8 +10,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kDone = 2, kNotOwner = 7;
-
 Group setpoint(std::int64_t velocity) {
   Group group;
   group.setpoints.push_back({Quantity::target_velocity, velocity});

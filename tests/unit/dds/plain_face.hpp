@@ -12,8 +12,6 @@
 
 namespace axisgate::test {
 
-inline constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
-
 /// An axis that has everything, and is there.
 inline AxisImage& add_axis(ProcessImage& image, AxisNumber number) {
   AxisImage& axis = image.add_axis(number, "axis " + std::to_string(number), 0);

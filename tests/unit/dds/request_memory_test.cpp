@@ -11,9 +11,8 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::guid;
+using test::kStart;
 using Seen = RequestMemory::Seen;
-
-constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
 
 TEST(RequestMemory, ARequestThatComesAgainIsKnownForTenSeconds) {
   RequestMemory memory(kMaxRequestsKept, kRequestsKept);

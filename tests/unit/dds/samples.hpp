@@ -3,9 +3,12 @@
 // right.
 #pragma once
 
+#include "gateway/core/clock.hpp"
 #include "gateway/upstream/dds_link/records.hpp"
 
 namespace axisgate::test {
+
+inline constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
 
 /// The `entity`-th writer of the `participant`-th participant.
 [[nodiscard]] inline dds::Guid guid(std::uint8_t participant, std::uint8_t entity = 1) {

@@ -42,8 +42,8 @@ class Scene {
   std::uint8_t station() { return static_cast<std::uint8_t>(1 + random_.below(2)); }
   std::uint32_t any_data() { return static_cast<std::uint32_t>(random_.next()); }
   Frame answer() {
-    static constexpr std::array kValues{Command::value_1, Command::value_2, Command::value_4, Command::error};
-    const Command command = exchange_.access == bus::Access::read ? kValues.at(random_.below(4))
+    static constexpr std::array kReplies{Command::value_1, Command::value_2, Command::value_4, Command::error};
+    const Command command = exchange_.access == bus::Access::read ? kReplies.at(random_.below(4))
                             : random_.chance(1, 4)                ? Command::error
                                                                   : Command::written;
     return {.node = exchange_.node, .command = command, .object = exchange_.object, .data = any_data()};

@@ -68,6 +68,9 @@ inline KeyaOptions a_keya(std::map<int, std::int64_t> parameters = {}, std::uint
   return options;
 }
 
+// Its two motors in this mode.
+inline KeyaOptions in_mode(std::int64_t mode) { return a_keya({{20, mode}, {50, mode}}); }
+
 inline constexpr KeyaMotorName motor_a = KeyaMotorName::a, motor_b = KeyaMotorName::b;
 
 // What counts in most tests is what the drives do, not the line's timing.

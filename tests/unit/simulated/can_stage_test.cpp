@@ -10,7 +10,7 @@ using simulated::BusFrame;
 using simulated::KincoType;
 namespace cob = simulated::cob;
 
-struct Told final : can::CanLinkEvents {
+struct CanTold final : can::CanLinkEvents {
   void on_link_up() override { events.emplace_back("up"); }
   void on_link_down(std::string_view why) override { events.emplace_back("down: " + std::string(why)); }
   void on_frame(const can::CanFrame& frame, Instant received) override {
@@ -42,7 +42,7 @@ class CanLinkSimTest : public testing::Test {
   }
 
   ManualRuntime runtime;
-  Told told;
+  CanTold told;
   CanLinkSim link{runtime, {}, 1};
 };
 
@@ -101,7 +101,7 @@ TEST_P(CanStage, ADriveComesOnlineEnablesAndStops) {
 INSTANTIATE_TEST_SUITE_P(Drives, CanStage, testing::Values("ld2", "jd", "md"),
                          [](const auto& type) { return std::string(type.param); });
 
-std::vector<simulated::CanDriveOptions> one_of_each() {
+std::vector<simulated::CanDriveOptions> one_can_drive_of_each() {
   simulated::KincoCanDrive jd;
   jd.drive.station = 2;
   simulated::KincoCanDrive md;
@@ -111,7 +111,7 @@ std::vector<simulated::CanDriveOptions> one_of_each() {
 }
 
 TEST(CanStageOfAll, AllThreeKindsMoveOnOneBusAndOneRequestIsOutstandingAtMost) {
-  GatewayStage stage({can_line_of(one_of_each(), 1)});
+  GatewayStage stage({can_line_of(one_can_drive_of_each(), 1)});
   ASSERT_TRUE(stage.come_online()) << testing::PrintToString(stage.log());
   for (AxisNumber axis = 1; axis <= 3; ++axis) {
     SCOPED_TRACE(axis);
@@ -130,7 +130,7 @@ TEST(CanStageOfAll, AllThreeKindsMoveOnOneBusAndOneRequestIsOutstandingAtMost) {
 }
 
 TEST(CanStageOfAll, ALinkThatGoesAndARestartedDriveComeBack) {
-  GatewayStage stage({can_line_of(one_of_each(), 1)});
+  GatewayStage stage({can_line_of(one_can_drive_of_each(), 1)});
   ASSERT_TRUE(stage.come_online());
   stage.can_link(0).bus_off();
   EXPECT_TRUE(stage.run_until([&] { return stage.axis(3).link_state == LinkState::link_down; }));

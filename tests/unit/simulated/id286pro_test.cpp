@@ -14,7 +14,7 @@ Maker with_stored(std::map<std::uint16_t, std::int64_t> stored) {
 
 void external(Id286proOptions& it) { it.internal_pulses = false; }
 
-const Case registers[] = {
+const Case id286pro_registers_cases[] = {
     {"a_hole_is_refused", {id286pro()}, R"(
         > 01 03 00 6A 00 03 < 01 83 02; > 01 03 01 F4 00 01 < 01 83 02; > 01 03 FF FF 00 02 < 01 83 02
         107 := 1 -> 2)"},
@@ -66,7 +66,7 @@ const Case registers[] = {
         109 = 2; restarts = 1)"},
 };
 
-const Case motion[] = {
+const Case id286pro_motion_cases[] = {
     // 10 revolutions at 20 rev/s with ramps of 500 rev/s^2: 0.5 s and 0.04 s. Direction by the target alone.
     {"an_absolute_move_ends_exactly_on_its_target_with_the_speed_it_was_given", {id286pro()}, R"(
         306 := 2000; 313 := -100000; 109 = 2; 323 := 1; 109 = 3; pass 200ms; 119 = -2000
@@ -126,7 +126,7 @@ const Case motion[] = {
       {"29"}}},
 };
 
-const Case stops[] = {
+const Case id286pro_stops_cases[] = {
     {"the_soft_limits_end_the_way", {id286pro()}, R"(
         317 := 15000; 319 := -4000; 313 := 50000; 323 := 1; stands; 117 = 15000; 323 := 5; stands; 117 = -4000
         323 := 5; pass 100ms; 117 = -4000; 323 := 4; pass 10ms; 117 > -4000)"},
@@ -190,7 +190,7 @@ Scene homing_machine(const Row& row) {
   return rtu({it})(row);
 }
 
-const Case homing[] = {
+const Case id286pro_homing_cases[] = {
     {"a_mode_ends_on_the_edge_of_its_signal_and_reads_zero_there",
      {homing_machine},
      R"(
@@ -213,10 +213,10 @@ const Case homing[] = {
      {{"411 := 1"}, {"323 := 11"}}},
 };
 
-INSTANTIATE_TEST_SUITE_P(id286pro_registers, Scripts, testing::ValuesIn(registers), name_of_case);
-INSTANTIATE_TEST_SUITE_P(id286pro_motion, Scripts, testing::ValuesIn(motion), name_of_case);
-INSTANTIATE_TEST_SUITE_P(id286pro_stops, Scripts, testing::ValuesIn(stops), name_of_case);
-INSTANTIATE_TEST_SUITE_P(id286pro_homing, Scripts, testing::ValuesIn(homing), name_of_case);
+INSTANTIATE_TEST_SUITE_P(id286pro_registers, Scripts, testing::ValuesIn(id286pro_registers_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(id286pro_motion, Scripts, testing::ValuesIn(id286pro_motion_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(id286pro_stops, Scripts, testing::ValuesIn(id286pro_stops_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(id286pro_homing, Scripts, testing::ValuesIn(id286pro_homing_cases), name_of_case);
 
 // Every reply of the sheet comes out, byte for byte, when the drive holds what it tells; the one whose printed CRC is
 // wrong, as corrected.

@@ -9,7 +9,7 @@ namespace {
 using simulated::KeyaMotorName;
 using simulated::KeyaWiring;
 
-struct Told final : bus::ByteLinkEvents {
+struct BytesTold final : bus::ByteLinkEvents {
   void on_link_up() override { events.emplace_back("up"); }
   void on_link_down(std::string_view why) override { events.emplace_back("down: " + std::string(why)); }
   void on_bytes(Bytes bytes) override { received.insert(received.end(), bytes.begin(), bytes.end()); }
@@ -29,7 +29,7 @@ class KeyaLinkSimTest : public testing::Test {
   static constexpr std::array<Byte, 12> ask_voltage{0xED, 0x05};
 
   ManualRuntime runtime;
-  Told told;
+  BytesTold told;
   KeyaLinkSim link{runtime, {KeyaWiring::rs232, 115200}, 1};
 };
 

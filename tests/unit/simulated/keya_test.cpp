@@ -9,8 +9,6 @@ namespace {
 
 constexpr KeyaWiring rs232 = KeyaWiring::rs232, rs485 = KeyaWiring::rs485;
 
-KeyaOptions in_mode(std::int64_t mode) { return a_keya({{20, mode}, {50, mode}}); }
-
 // TPDOs come after their periods alone.
 KeyaOptions periodic(std::map<int, std::int64_t> parameters = {}) {
   KeyaOptions options = a_keya(std::move(parameters));
@@ -32,7 +30,7 @@ Scene enable_with_zero(const Row& row) {
   return keya_canopen(options)(row);
 }
 
-const Case drive[] = {
+const Case keya_drive_cases[] = {
     {"on_can_the_watchdog_trips_after_1000_ms_without_a_command_and_not_before", {keya_own_can()}, R"(
         200D.01 := 1; 2000.01 := 5000; pass 999ms; a.faults = 0; 2000.01 := 5000; pass 1s; trips = 0; pass 1ms
         trips = 1
@@ -124,7 +122,7 @@ const Case drive[] = {
      {{"1", "1234"}, {"0", "0"}}},
 };
 
-const Case lines[] = {
+const Case keya_lines_cases[] = {
     {"what_is_wrong_on_can_meets_silence",
      {keya_own_can()},
      "> $1 <; handled = 0; > 40 00 21 01 00 00 00 00; arrived = 1",
@@ -174,7 +172,7 @@ const Case lines[] = {
         heartbeat 100; late_by 300; fault late; query 7; pass 250ms; arrived = 24; pass 100ms; arrived = 48)"},
 };
 
-const Case canopen[] = {
+const Case keya_canopen_cases[] = {
     {"its_dictionary_has_no_identity",
      {keya_canopen()},
      "> 601#40$1000000000 < 581#80$100000206",
@@ -218,9 +216,9 @@ const Case canopen[] = {
         pass 1001ms; 1A00.01 = 0x20110010; nmt 1; 1A00.01 := 0x20120010 -> 0x08000022)"},
 };
 
-INSTANTIATE_TEST_SUITE_P(keya_drive, Scripts, testing::ValuesIn(drive), name_of_case);
-INSTANTIATE_TEST_SUITE_P(keya_lines, Scripts, testing::ValuesIn(lines), name_of_case);
-INSTANTIATE_TEST_SUITE_P(keya_canopen, Scripts, testing::ValuesIn(canopen), name_of_case);
+INSTANTIATE_TEST_SUITE_P(keya_drive, Scripts, testing::ValuesIn(keya_drive_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(keya_lines, Scripts, testing::ValuesIn(keya_lines_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(keya_canopen, Scripts, testing::ValuesIn(keya_canopen_cases), name_of_case);
 
 TEST(keya, refuses_what_the_manual_does_not_have) {
   EXPECT_THROW(KeyaDrive(a_keya({{20, 5}}), KeyaInterface::can), std::invalid_argument);

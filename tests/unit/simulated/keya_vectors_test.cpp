@@ -4,7 +4,7 @@
 namespace axisgate::simulated {
 namespace {
 
-constexpr const char* sheet = "keya-kydas4860-2e";
+constexpr const char* keya_sheet = "keya-kydas4860-2e";
 
 Bytes bytes_in(const nlohmann::json& vector) {
   return from_hex(vector.value("hex_corrected", vector.at("hex").get<std::string>()));
@@ -91,11 +91,9 @@ class Keya {
   Time now_{};
 };
 
-KeyaOptions in_mode(std::int64_t mode) { return a_keya({{20, mode}, {50, mode}}); }
-
 TEST(keya_can_sheet, every_request_is_answered_and_acted_on) {
   int requests = 0;
-  each_vector(sheet, "keya-can", "request", [&](const nlohmann::json& vector) {
+  each_vector(keya_sheet, "keya-can", "request", [&](const nlohmann::json& vector) {
     const auto& decoded = vector.at("decoded");
     Keya keya(in_mode(mode_for(decoded)), std::nullopt);
     const Bytes request = bytes_in(vector);
@@ -118,7 +116,7 @@ TEST(keya_can_sheet, every_request_is_answered_and_acted_on) {
 
 TEST(keya_can_sheet, every_reply_is_reproduced) {
   int replies = 0;
-  each_vector(sheet, "keya-can", "response", [&](const nlohmann::json& vector) {
+  each_vector(keya_sheet, "keya-can", "response", [&](const nlohmann::json& vector) {
     if (vector.at("id") == "can-heartbeat-derived") return;
     const auto& decoded = vector.at("decoded");
     const Bytes expected = bytes_in(vector);
@@ -135,7 +133,7 @@ TEST(keya_can_sheet, every_reply_is_reproduced) {
 }
 
 TEST(keya_can_sheet, its_heartbeat_comes_each_second) {
-  each_vector(sheet, "keya-can", "response", [&](const nlohmann::json& vector) {
+  each_vector(keya_sheet, "keya-can", "response", [&](const nlohmann::json& vector) {
     if (vector.at("id") != "can-heartbeat-derived") return;
     CanBench bench({KeyaCanDrive{a_keya()}});
     nlohmann::json held = vector.at("decoded");
@@ -165,7 +163,7 @@ class KeyaSerialSheet : public testing::TestWithParam<Serial> {
 TEST_P(KeyaSerialSheet, every_control_frame_is_obeyed_and_every_query_answered_whose_reply_is_documented) {
   int controls = 0;
   int queries = 0;
-  each_vector(sheet, GetParam().protocol, "request", [&](const nlohmann::json& vector) {
+  each_vector(keya_sheet, GetParam().protocol, "request", [&](const nlohmann::json& vector) {
     const auto& decoded = vector.at("decoded");
     const Bytes request = bytes_in(vector);
     const bool is_control = decoded.contains("enable_code");
@@ -197,7 +195,7 @@ TEST_P(KeyaSerialSheet, every_control_frame_is_obeyed_and_every_query_answered_w
 
 TEST_P(KeyaSerialSheet, every_reply_is_reproduced) {
   int replies = 0;
-  each_vector(sheet, GetParam().protocol, "response", [&](const nlohmann::json& vector) {
+  each_vector(keya_sheet, GetParam().protocol, "response", [&](const nlohmann::json& vector) {
     const auto& decoded = vector.at("decoded");
     const Bytes expected = bytes_in(vector);
     ++replies;
@@ -235,7 +233,7 @@ std::uint8_t node_in(const nlohmann::json& vector, std::uint32_t base) {
 
 TEST(keya_canopen_sheet, every_request_is_answered) {
   int answered = 0;
-  each_vector(sheet, "canopen-sdo", "request", [&](const nlohmann::json& vector) {
+  each_vector(keya_sheet, "canopen-sdo", "request", [&](const nlohmann::json& vector) {
     const Bytes request = bytes_in(vector);
     const std::uint8_t node = node_in(vector, cob::sdo_request);
     CanBench bench({KeyaCanopenDrive{a_keya({}, node)}});
@@ -253,7 +251,7 @@ TEST(keya_canopen_sheet, every_request_is_answered) {
 
 TEST(keya_canopen_sheet, every_reply_is_reproduced) {
   int replies = 0;
-  each_vector(sheet, "canopen-sdo", "response", [&](const nlohmann::json& vector) {
+  each_vector(keya_sheet, "canopen-sdo", "response", [&](const nlohmann::json& vector) {
     const Bytes expected = bytes_in(vector);
     const std::uint8_t node = node_in(vector, cob::sdo_reply);
     CanBench bench({KeyaCanopenDrive{a_keya({}, node)}});

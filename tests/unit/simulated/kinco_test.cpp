@@ -18,7 +18,7 @@ DriveOptions in_chain(KincoType type, std::uint8_t station) {
 
 void on_rs485(LineOptions& line) { line.wiring = Wiring::rs485; }
 
-const Case wire[] = {
+const Case kinco_wire_cases[] = {
     {"another_station_a_wrong_sum_and_a_frame_that_broke_off_meet_silence", {jd(), md()}, R"(
         6041@2 silent; > 01 2B 40 60 00 2F 00 00 00 06 <; handled = 0
         > 01 40 41 60 00 00 00 <; pass 25ms; 6041 & 0x40 = 0x40)"},
@@ -60,7 +60,7 @@ const Case wire[] = {
         6510.0C := 0; store; 6510.0C = 0; reboot; 6041 silent)"},
 };
 
-const Case inputs[] = {
+const Case kinco_inputs_cases[] = {
     // JD 1.4, MD 6.1: DIN1 and DIN3 block the bus.
     {"a_fresh_drive_acknowledges_and_stays_as_its_inputs_say", {jd(fresh), md(fresh)}, R"(
         6040 := 0x0F; pass 10ms; 6041 & 0x6F = 0x21; 6040 = 6; handled = 1
@@ -90,7 +90,7 @@ const Case inputs[] = {
     {"outputs_tell_ready_and_error", {jd()}, "2010.14 & 1 = 1; inject 1 0x80; 2010.14 & 0x41 = 0x40"},
 };
 
-const Case states[] = {
+const Case kinco_states_cases[] = {
     {"walks_up_and_down", {jd()}, R"(
         6041 = 0x4050; control 06; 6041 & 0x6F = 0x21; control 07; 6041 & 0x6F = 0x23; control 0F; 6041 & 0x6F = 0x27
         control 07; pass 5ms; 6041 & 0x6F = 0x23; control 06; 6041 & 0x6F = 0x21; control 00; 6041 & 0x4F = 0x40)"},
@@ -142,7 +142,7 @@ const Case states[] = {
         2010.06 := 0x10; 2010.19 := 0; home_here; 60FF := 100rpm; 6060 := 3; pass 1s; 2602 = 0x0200)"},
 };
 
-const Case eeprom[] = {
+const Case kinco_eeprom_cases[] = {
     {"a_store_keeps_parameters_and_a_restart_loses_the_rest", {jd()}, R"(
         6083 := 50000; reboot; 6083 = 100000
         6083 := 50000; 6060 := 1; 2FF0.09 := 100; 6071 := 50; 607A := 1234; store; stores = 1; reboot
@@ -173,7 +173,7 @@ const Case eeprom[] = {
      "2000 := 1; store; reboot; 6041 & 0x6F = 0x27; cause = 0"},
 };
 
-const Case motion[] = {
+const Case kinco_motion_cases[] = {
     // 100 rps/s at 10000 counts; 600 rpm do not fit 0.01 rpm in 16 bits.
     {"acceleration_is_as_the_sheet_converts_it", {jd()}, R"(
         6060 := 3; 6083 := 16384; 60FF := 600rpm; control 0F; pass 50ms; 60F9.19 ~ 30000 1000
@@ -206,7 +206,7 @@ const Case motion[] = {
 };
 
 // The sequences the manuals print, with the statuswords they print (JD 6.2, 6.4; MD 8.2, 8.4).
-const Case printed[] = {
+const Case kinco_printed_cases[] = {
     {"a_jd_homes_on_the_next_index_pulse_and_says_c037", {jd()}, R"(
         > 01 2B 40 60 00 0F 00 00 00 25; > 01 2F 60 60 00 06 00 00 00 0A; > 01 2F 98 60 00 21 00 00 00 B7
         > 01 23 99 60 01 55 55 08 00 30; > 01 23 99 60 02 00 40 06 00 9B; 6041 = 0x4037
@@ -263,7 +263,7 @@ void without_home_switch(DriveOptions& it) {
   it.mechanics.home_to.reset();
 }
 
-const Case homing[] = {
+const Case kinco_homing_cases[] = {
     // Switches are seen at millisecond steps: 20 rpm are 3.4 counts each.
     {"each_method_finds_its_reference_from_every_start",
      {jd(machine)},
@@ -304,13 +304,13 @@ const Case homing[] = {
         6060 := 6; 6098 := 17; control 0F 1F; pass 200ms; control 0F; pass 5s; 6041 & 0xA000 = 0; 60F9.19 = 0)"},
 };
 
-INSTANTIATE_TEST_SUITE_P(kinco_wire, Scripts, testing::ValuesIn(wire), name_of_case);
-INSTANTIATE_TEST_SUITE_P(kinco_inputs, Scripts, testing::ValuesIn(inputs), name_of_case);
-INSTANTIATE_TEST_SUITE_P(kinco_states, Scripts, testing::ValuesIn(states), name_of_case);
-INSTANTIATE_TEST_SUITE_P(kinco_eeprom, Scripts, testing::ValuesIn(eeprom), name_of_case);
-INSTANTIATE_TEST_SUITE_P(kinco_motion, Scripts, testing::ValuesIn(motion), name_of_case);
-INSTANTIATE_TEST_SUITE_P(kinco_printed, Scripts, testing::ValuesIn(printed), name_of_case);
-INSTANTIATE_TEST_SUITE_P(kinco_homing, Scripts, testing::ValuesIn(homing), name_of_case);
+INSTANTIATE_TEST_SUITE_P(kinco_wire, Scripts, testing::ValuesIn(kinco_wire_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(kinco_inputs, Scripts, testing::ValuesIn(kinco_inputs_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(kinco_states, Scripts, testing::ValuesIn(kinco_states_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(kinco_eeprom, Scripts, testing::ValuesIn(kinco_eeprom_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(kinco_motion, Scripts, testing::ValuesIn(kinco_motion_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(kinco_printed, Scripts, testing::ValuesIn(kinco_printed_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(kinco_homing, Scripts, testing::ValuesIn(kinco_homing_cases), name_of_case);
 
 TEST(trapezoid, ends_exactly_on_every_target_from_every_speed) {
   Random random(3);

@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 using simulated::DriveFault;
 
 /// Keeps what the link told.
-struct Told final : modbus_rtu::RtuLinkEvents {
+struct RtuTold final : modbus_rtu::RtuLinkEvents {
   void on_link_up() override { words.push_back("up"); }
   void on_link_down(std::string_view why) override { words.push_back("down " + std::string(why)); }
   void on_frame(modbus_rtu::ExchangeNumber newest, Bytes frame) override {
@@ -20,7 +20,7 @@ struct Told final : modbus_rtu::RtuLinkEvents {
   }
   void on_bad_frame(modbus_rtu::ExchangeNumber, std::size_t bytes) override { bad += bytes; }
 
-  explicit Told(Runtime& of) : runtime(of) {}
+  explicit RtuTold(Runtime& of) : runtime(of) {}
   Runtime& runtime;
   std::vector<std::string> words;
   std::vector<std::vector<Byte>> frames;
@@ -44,7 +44,7 @@ class RtuLinkStage : public testing::Test {
 
   ManualRuntime runtime;
   RtuLinkSim link{runtime, {}, 1};
-  Told told{runtime};
+  RtuTold told{runtime};
 };
 
 TEST_F(RtuLinkStage, AFrameArrivesWhenTheLineSaysAndNamesTheRequestBeforeIt) {
@@ -130,7 +130,7 @@ TEST_F(RtuLinkStage, ReopeningGoesDownAndUpAndLosesWhatIsUnderWay) {
   EXPECT_THAT(told.words, testing::ElementsAre("up", "down noise", "up"));
 }
 
-std::vector<simulated::RtuDriveOptions> one_of_each() {
+std::vector<simulated::RtuDriveOptions> one_rtu_drive_of_each() {
   simulated::KincoRtuDrive jd;
   jd.drive.station = 1;
   simulated::KincoRtuDrive md;
@@ -142,7 +142,7 @@ std::vector<simulated::RtuDriveOptions> one_of_each() {
 }
 
 TEST(RtuStage, AllThreeKindsComeOnlineOnOneLineAndMove) {
-  GatewayStage stage({rtu_line_of(one_of_each(), 1)});
+  GatewayStage stage({rtu_line_of(one_rtu_drive_of_each(), 1)});
   ASSERT_TRUE(stage.come_online());
   for (AxisNumber axis = 1; axis <= 3; ++axis) {
     SCOPED_TRACE(axis);
@@ -158,7 +158,7 @@ TEST(RtuStage, AllThreeKindsComeOnlineOnOneLineAndMove) {
 }
 
 TEST(RtuStage, ACableThatIsPulledAndPluggedBringsAllAxesBack) {
-  GatewayStage stage({rtu_line_of(one_of_each(), 1), line_of(simulated::KincoType::jd, 9)});
+  GatewayStage stage({rtu_line_of(one_rtu_drive_of_each(), 1), line_of(simulated::KincoType::jd, 9)});
   ASSERT_TRUE(stage.come_online());
   stage.rtu_link(0).unplug();
   EXPECT_TRUE(stage.run_until([&] { return stage.axis(3).link_state == LinkState::link_down; }, 1s));
@@ -168,7 +168,7 @@ TEST(RtuStage, ACableThatIsPulledAndPluggedBringsAllAxesBack) {
 }
 
 TEST(RtuStage, ADriveOfAnotherKindIsToldApart) {
-  GatewayStage stage({rtu_line_of(one_of_each(), 1)});
+  GatewayStage stage({rtu_line_of(one_rtu_drive_of_each(), 1)});
   EXPECT_THROW((void)stage.drive(0, 2), std::invalid_argument);
   EXPECT_THROW((void)stage.id286pro(0, 0), std::invalid_argument);
 }
