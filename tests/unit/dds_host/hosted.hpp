@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,30 +19,48 @@
 
 namespace axisgate::dds {
 
-/// The same clock and timers with time that runs faster, for what takes seconds.
-class FasterRuntime final : public Runtime {
+/// The real clock and timers, and time that a test may leave out: where nothing can happen in it but what is waited
+/// for.
+class SkippingRuntime final : public Runtime {
  public:
-  FasterRuntime(boost::asio::io_context& io, int factor) : inner_(io), factor_(factor) {}
-  [[nodiscard]] Instant now() const override { return Instant(inner_.now().time_since_epoch() * factor_); }
+  explicit SkippingRuntime(boost::asio::io_context& io) : inner_(io) {}
+  [[nodiscard]] Instant now() const override { return inner_.now() + skipped_; }
   [[nodiscard]] std::unique_ptr<Timer> make_timer(std::function<void()> on_expiry) override {
-    return std::make_unique<Faster>(inner_.make_timer(std::move(on_expiry)), factor_);
+    return std::make_unique<Skipping>(*this, std::move(on_expiry));
+  }
+  void skip(Duration time) {
+    skipped_ += time;
+    for (Skipping* timer : timers_) timer->arm();
   }
 
  private:
-  class Faster final : public Timer {
+  class Skipping final : public Timer {
    public:
-    Faster(std::unique_ptr<Timer> inner, int factor) : inner_(std::move(inner)), factor_(factor) {}
+    Skipping(SkippingRuntime& runtime, std::function<void()> on_expiry)
+        : runtime_(runtime), inner_(runtime.inner_.make_timer([this, on_expiry = std::move(on_expiry)] {
+            deadline_ = kNever;
+            on_expiry();
+          })) {
+      runtime_.timers_.insert(this);
+    }
+    ~Skipping() override { runtime_.timers_.erase(this); }
     void expires_at(Instant deadline) override {
-      if (deadline == kNever || deadline == kLongAgo) return inner_->expires_at(deadline);
-      inner_->expires_at(Instant(deadline.time_since_epoch() / factor_ + Duration(1)));
+      deadline_ = deadline;
+      arm();
+    }
+    void arm() {
+      const bool moves = deadline_ != kNever && deadline_ != kLongAgo;
+      inner_->expires_at(moves ? deadline_ - runtime_.skipped_ : deadline_);
     }
 
    private:
+    SkippingRuntime& runtime_;
     std::unique_ptr<Timer> inner_;
-    int factor_;
+    Instant deadline_ = kNever;
   };
   AsioRuntime inner_;
-  int factor_;
+  Duration skipped_{};
+  std::set<Skipping*> timers_;
 };
 
 /// Accepts everything at once.
@@ -66,10 +85,9 @@ class Hosted : public ::testing::Test {
     unsetenv("AXISGATE_DDS_PROGRAM");
   }
 
-  /// `speed`: how many seconds of the server pass in one.
-  void start(const std::string& behaviour, int speed = 1) {
+  void start(const std::string& behaviour) {
     behave(behaviour);
-    runtime = std::make_unique<FasterRuntime>(io, speed);
+    runtime = std::make_unique<SkippingRuntime>(io);
     server = std::make_unique<DdsServer>(io, *runtime, settings, image, events, axes, log,
                                          DdsReports{[this](EventKind kind, std::string text) {
                                                       told.push_back({kind, std::move(text)});
@@ -96,6 +114,13 @@ class Hosted : public ::testing::Test {
   [[nodiscard]] bool run_until_told(std::size_t events_told) {
     return run_until([&] { return told.size() >= events_told; });
   }
+  /// Where a program that hangs is waited for: a second is over at once, as often as it takes.
+  [[nodiscard]] bool skip_until_told(std::size_t events_told) {
+    return run_until([&] {
+      if (told.size() < events_told) runtime->skip(std::chrono::seconds(1));
+      return told.size() >= events_told;
+    });
+  }
   [[nodiscard]] bool run_until_said(const std::string& line) {
     return run_until([&] { return std::find(lines.begin(), lines.end(), line) != lines.end(); });
   }
@@ -110,7 +135,7 @@ class Hosted : public ::testing::Test {
     std::string text;
   };
   boost::asio::io_context io{1};
-  std::unique_ptr<Runtime> runtime;
+  std::unique_ptr<SkippingRuntime> runtime;
   DdsSettings settings;
   ProcessImage image;
   EventRing events;
