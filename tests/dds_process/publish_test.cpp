@@ -121,6 +121,11 @@ TEST(PublishedState, LastOneOfEachAxisReachesALateJoiner) {
     for (std::uint16_t axis = 1; axis <= kAxes; ++axis) child.send(state_of(axis, sequence));
   }
   Peer peer;
+  auto early = peer.reader<AxisState>("axisgate/axis_state", {.transient_local = true, .depth = 0});
+  for (std::optional<AxisState> got; !got || got->axis() != kAxes || got->sequence_number() != 3;) {
+    got = early->next();
+    ASSERT_TRUE(got);
+  }
   auto states = peer.reader<AxisState>("axisgate/axis_state", kLastState);
   std::map<std::uint16_t, std::uint32_t> newest;
   while (newest.size() < kAxes) {
@@ -164,6 +169,11 @@ TEST(PublishedEvents, LastSixteenOfEachAxisReachALateJoiner) {
   }
   child.send(EventRecord{.axis = 0, .at = now_ns(CLOCK_MONOTONIC), .number = 21, .kind = 5, .code = 0, .text = "up"});
   Peer peer;
+  auto early = peer.reader<AxisEvent>("axisgate/axis_event", {.transient_local = true, .depth = 0});
+  for (std::optional<AxisEvent> got; !got || got->number() != 21;) {
+    got = early->next();
+    ASSERT_TRUE(got);
+  }
   auto events = peer.reader<AxisEvent>("axisgate/axis_event", {.transient_local = true, .depth = 16});
   std::vector<std::uint64_t> numbers;
   std::uint64_t of_gateway = 0;

@@ -21,7 +21,7 @@ class KeyaProgram : public ProgramBench {
     (void)!::write(port.get(), bytes.data(), bytes.size());
   }
   bool comes_true(const std::string& line, const std::string& answer) const {
-    for (int i = 0; i < 500 && control(line) != answer; ++i) std::this_thread::sleep_for(milliseconds(10));
+    for (int i = 0; i < 6000 && control(line) != answer; ++i) std::this_thread::sleep_for(milliseconds(10));
     return control(line) == answer;
   }
 };

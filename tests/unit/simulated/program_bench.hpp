@@ -61,7 +61,7 @@ class ProgramBench : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
   bool wait_for_log(const std::string& text) const {
-    for (int i = 0; i < 500 && log().find(text) == std::string::npos; ++i) {
+    for (int i = 0; i < 6000 && log().find(text) == std::string::npos; ++i) {
       std::this_thread::sleep_for(milliseconds(10));
     }
     return log().find(text) != std::string::npos;
@@ -85,7 +85,7 @@ class ProgramBench : public testing::Test {
   Descriptor open_port(const char* name) const {
     return Descriptor(::open((folder / name).c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK));
   }
-  static Bytes exchange(const Descriptor& port, const Bytes& request, std::size_t length, int timeout_ms = 2000) {
+  static Bytes exchange(const Descriptor& port, const Bytes& request, std::size_t length, int timeout_ms = 60000) {
     (void)!::write(port.get(), request.data(), request.size());
     Bytes reply;
     while (reply.size() < length) {

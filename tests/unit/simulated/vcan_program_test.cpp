@@ -34,7 +34,7 @@ class VcanProgram : public ProgramBench {
   Bytes receive() {
     pollfd ready{socket.get(), POLLIN, 0};
     Bytes bytes(socket_frame_bytes);
-    if (::poll(&ready, 1, 10000) <= 0 || ::read(socket.get(), bytes.data(), bytes.size()) <= 0) return {};
+    if (::poll(&ready, 1, 60000) <= 0 || ::read(socket.get(), bytes.data(), bytes.size()) <= 0) return {};
     return bytes;
   }
   static Bytes on_socket(const BusFrame& frame) {
