@@ -128,6 +128,18 @@ TEST(Lease, ADisabledAxisOnlyLosesItsOwner) {
   EXPECT_TRUE(axis.rig.writes().empty());
 }
 
+TEST(Lease, AnEnableThatIsUnderWayWhenItRunsOutIsStopped) {
+  RigOptions options = leased();
+  options.lease->timeout = 20ms;
+  options.reply_delay = 15ms;
+  LeasedAxis axis(options);
+  const auto enable = axis.rig.stage.begin(1, axis.from(axis.plc, with_command(Command::enable)));
+  axis.rig.stage.run(2s);
+  EXPECT_TRUE(enable->has_value());
+  EXPECT_FALSE(axis.rig.motor_enabled()) << "nobody owns it";
+  EXPECT_TRUE(axis.latched());
+}
+
 TEST(Lease, AnotherClientIsRefusedButMayAlwaysStop) {
   LeasedAxis axis;
   axis.run(axis.plc);
@@ -139,6 +151,17 @@ TEST(Lease, AnotherClientIsRefusedButMayAlwaysStop) {
   EXPECT_EQ(axis.command(axis.panel, Command::quick_stop), Errc::ok);
   EXPECT_TRUE(axis.rig.axis().lease.owned_by(1)) << "a stop does not move the lease";
   EXPECT_FALSE(axis.rig.turns());
+}
+
+TEST(Lease, WhatAStopHasDroppedUnsentItsOwnerAsksForAnew) {
+  LeasedAxis axis;
+  const auto enable = axis.rig.stage.begin(1, axis.from(axis.plc, with_command(Command::enable)));
+  ASSERT_TRUE(axis.rig.stage.run_until([&] { return !axis.rig.writes().empty(); }));
+  const auto target = axis.rig.stage.begin(1, axis.from(axis.plc, setpoints({{Quantity::target_position, 77}})));
+  EXPECT_FALSE(axis.rig.stage.gateway().owner_asks(1, 1, Quantity::target_position, 77)) << "it waits";
+  EXPECT_EQ(axis.command(axis.panel, Command::disable), Errc::ok);
+  EXPECT_EQ((*target)->outcome.code, Errc::dropped_by_stop);
+  EXPECT_TRUE(axis.rig.stage.gateway().owner_asks(1, 1, Quantity::target_position, 77));
 }
 
 TEST(Lease, AStopOfAnotherClientIsCarriedOutAndWhatStandsBesideItRefused) {
@@ -340,24 +363,69 @@ TEST(JogOnAnAxis, AnotherClientsStopEndsItForGood) {
 }
 
 TEST(JogOnAnAxis, EndsAtThePositionLimitOfAHomedAxis) {
-  RigOptions options = leased();
-  options.axis.position_limits = Range{-30'000, 30'000};
-  options.axis.homing_method = 35;
-  JoggedAxis axis(options);
-  EXPECT_EQ(axis.command(axis.plc, Command::home), Errc::ok);
-  ASSERT_TRUE(axis.rig.stage.run_until([&] {
-    axis.plc->last_request = axis.rig.stage.runtime().now();
-    return axis.rig.axis().has(AxisInput::homed);
-  }));
+  for (const bool of_the_drive : {false, true}) {
+    RigOptions options = leased();
+    if (!of_the_drive) options.axis.position_limits = Range{-30'000, 30'000};
+    options.axis.homing_method = 35;
+    JoggedAxis axis(options);
+    const Group limits = setpoints({{Quantity::position_limit_min, -30'000}, {Quantity::position_limit_max, 30'000}});
+    EXPECT_EQ(axis.ask(axis.plc, of_the_drive ? limits : Group{}), Errc::ok);
+    EXPECT_EQ(axis.command(axis.plc, Command::home), Errc::ok);
+    ASSERT_TRUE(axis.rig.stage.run_until([&] {
+      axis.plc->last_request = axis.rig.stage.runtime().now();
+      return axis.rig.axis().has(AxisInput::homed);
+    }));
+    EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+    axis.hold(Command::jog_forward, 10s);
+    EXPECT_FALSE(axis.rig.turns());
+    const std::int64_t end = axis.rig.axis()[Quantity::position_actual].value;
+    EXPECT_LE(end, 30'000);
+    EXPECT_GT(end, 20'000);
+    EXPECT_TRUE(axis.rig.has_event(EventKind::warning, "halted at the position limit"));
+    EXPECT_EQ(axis.ask(axis.plc, with_command(Command::move_absolute, {{Quantity::target_position, 30'000}})),
+              Errc::ok);
+    axis.keep(axis.plc, 4s);
+    EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::state_unsuitable) << "it stands at the limit";
+    EXPECT_EQ(axis.command(axis.plc, Command::jog_reverse), Errc::ok);
+    axis.hold(Command::jog_reverse, 1s);
+    EXPECT_LT(axis.speed(), 0) << "back is open";
+  }
+}
+
+TEST(JogOnAnAxis, TheButtonOfAnotherClientDoesNotEndIt) {
+  JoggedAxis axis;
   EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
-  axis.hold(Command::jog_forward, 10s);
-  EXPECT_FALSE(axis.rig.turns());
-  const std::int64_t end = axis.rig.axis()[Quantity::position_actual].value;
-  EXPECT_LE(end, 30'000);
-  EXPECT_GT(end, 20'000);
-  EXPECT_EQ(axis.command(axis.plc, Command::jog_reverse), Errc::ok);
-  axis.hold(Command::jog_reverse, 1s);
-  EXPECT_LT(axis.speed(), 0) << "back is open";
+  axis.hold(Command::jog_forward, 1s);
+  EXPECT_EQ(axis.ask(axis.panel, with_command(Command::jog_end), false), Errc::ok);
+  axis.hold(Command::jog_forward, 1s);
+  EXPECT_TRUE(axis.rig.turns());
+}
+
+TEST(JogOnAnAxis, OfARunThatAFaultHasEndedIsOverAndTheHeldButtonIsToldSo) {
+  JoggedAxis axis;
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+  axis.hold(Command::jog_forward, 1s);
+  axis.rig.motor().inject_fault(1, 0x0020);
+  axis.hold(Command::jog_forward, 400ms);
+  axis.rig.motor().clear_fault_cause(1, 0x0020);
+  EXPECT_EQ(axis.command(axis.plc, Command::fault_reset), Errc::ok);
+  EXPECT_EQ(axis.command(axis.plc, Command::enable), Errc::ok);
+  EXPECT_EQ(axis.rig.axis().level_coils >> 8 & 3U, 0U);
+  Group again;
+  again.jog_again = Command::jog_forward;
+  EXPECT_EQ(axis.ask(axis.plc, again), Errc::not_new);
+}
+
+TEST(JogOnAnAxis, IsHaltedWhenItsOwnerReleasesTheAxis) {
+  RigOptions options = leased();
+  options.axis.jog_timeout = 60s;
+  JoggedAxis axis(options);
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+  axis.hold(Command::jog_forward, 1s);
+  EXPECT_EQ(axis.command(axis.plc, Command::release), Errc::ok);
+  axis.rig.stage.run(1500ms);
+  EXPECT_FALSE(axis.rig.turns()) << "before anybody's lease has run out";
+  EXPECT_FALSE(axis.latched());
 }
 
 }  // namespace
