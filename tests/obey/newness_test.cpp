@@ -246,6 +246,24 @@ TEST_P(NewTargets, OfARelativeMoveThatIsNotNewAreNeverAdded) {
   EXPECT_LE(std::abs(at - kNear), kClose) << at;
 }
 
+TEST(NewAfterALoss, ARelativeMoveIsOnlyWhenZeroWasWrittenSince) {
+  Plant plant(Subject::jd_serial);
+  plant.ready();
+  ASSERT_EQ(plant.a.row(row::target_position, kNear), kOk);
+  ASSERT_EQ(plant.a.command(kRelative), kOk);
+  const std::int64_t at = plant.comes_to_rest_at();
+  plant.stage.link(0).unplug();
+  plant.run(500ms);
+  plant.stage.link(0).plug();
+  plant.run(10s);
+  EXPECT_EQ(plant.a.command(kRelative), kNotNow);
+  EXPECT_EQ(plant.a.result(), kNotNew);
+  EXPECT_LE(std::abs(plant.comes_to_rest_at() - at), kClose);
+  EXPECT_EQ(plant.a.command(0), kOk);
+  EXPECT_EQ(plant.a.command(kRelative), kOk);
+  EXPECT_LE(std::abs(plant.comes_to_rest_at() - at - kNear), kClose);
+}
+
 TEST_P(NewTargets, InABlockBesideAHeldCommandAreToldOnceAndNotMovedTo) {
   Rows rows = plant_.profile_rows();
   ASSERT_EQ(a_.command(0), kOk);

@@ -192,6 +192,14 @@ TEST_F(SdoTransfer, a_server_that_waited_too_long_ends_its_chain_and_is_no_secon
   EXPECT_THAT(server.aborts_heard, IsEmpty()) << "there is nothing left to abort";
 }
 
+TEST_F(SdoTransfer, a_node_that_restarts_between_two_parts_has_no_chain_to_go_on_with) {
+  const bus::Exchange goes_on = open_chain();
+  bring(0x701, "00");
+  const std::size_t sent = link->sent.size();
+  EXPECT_EQ(exchange(goes_on), refusal_of(0x08000022, true));
+  EXPECT_EQ(link->sent.size(), sent);
+}
+
 TEST_F(SdoTransfer, a_server_that_answers_an_abort_is_no_second_device) {
   server.objects[kObject] = content_of(100);
   EXPECT_EQ(exchange(read_of(kObject)), refusal_of(0x06070010));

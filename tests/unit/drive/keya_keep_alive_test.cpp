@@ -218,6 +218,19 @@ TEST_P(KeyaKeepAlive, AStopThatWaitsOrIsUnderWayEndsIt) {
   EXPECT_FALSE(rig.motor(0).enabled);
 }
 
+TEST(KeyaKeepAliveSingle, AMotorThatIsSlowToTurnOffIsNotToldItsSpeedWhileItIsToldTo) {
+  KeyaRig rig({.keep_alive = kKeepAlivePeriod});
+  rig.online();
+  rig.enable_and_run(0);
+  rig.wire->acted = [&](const bus::Exchange& e) {
+    if (e.object.index == kDisable) rig.motor(0).enabled = true;
+  };
+  rig.motor(0).moves.clear();
+  const auto stop = rig.begin(0, KeyaRig::group_of(Command::disable));
+  ASSERT_TRUE(rig.run_until([&] { return stop->has_value(); }));
+  EXPECT_THAT(rig.motor(0).moves, Each(0));
+}
+
 TEST(KeyaKeepAliveSingle, AnUnsureSetPointIsNotRepeated) {
   KeyaRig rig({.keep_alive = kKeepAlivePeriod});
   rig.online();

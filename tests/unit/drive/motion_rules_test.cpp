@@ -45,6 +45,22 @@ TEST(MotionRules, AMoveEndsWhenTheDriveSaysSoAfterItsStart) {
   EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::standstill);
 }
 
+TEST(MotionRules, WhereNothingAcknowledgesASetPointReachedMustFallFirst) {
+  Stage s;
+  s.facts.acknowledges = false;
+  s.facts.target_reached = s.facts.moving = true;
+  s.see();
+  s.start(MotionKind::discrete);
+  s.see();
+  EXPECT_EQ(s.motion.state(), MotionState::active) << "that was the move before";
+  EXPECT_TRUE(s.motion.target_reached_masked());
+  s.facts.target_reached = false;
+  s.see();
+  s.facts.target_reached = true;
+  s.see();
+  EXPECT_EQ(s.motion.state(), MotionState::completed);
+}
+
 TEST(MotionRules, EverythingThatEndsAMotionForGoodEndsItForGood) {
   const std::vector<std::pair<std::function<void(Stage&)>, MotionState>> ends{
       {[](Stage& s) { s.motion.stop(false, s.facts.at); }, MotionState::aborted},
@@ -55,13 +71,14 @@ TEST(MotionRules, EverythingThatEndsAMotionForGoodEndsItForGood) {
     for (const auto& [end, how] : ends) {
       Stage s;
       s.motion.want(Quantity::target_velocity, {1'000});
+      s.motion.want(Quantity::target_torque, {300});
       s.motion.want(Quantity::target_position, {2'000});
       s.start(kind);
       s.see();
       end(s);
       EXPECT_EQ(s.motion.running(), MotionKind::none);
       EXPECT_EQ(s.motion.state(), how);
-      EXPECT_FALSE(s.motion.wanted(Quantity::target_velocity));
+      EXPECT_FALSE(s.motion.wanted(Quantity::target_velocity) || s.motion.wanted(Quantity::target_torque));
       EXPECT_TRUE(s.motion.wanted(Quantity::target_position)) << "a place is no start";
     }
   }
@@ -73,6 +90,16 @@ TEST(MotionRules, AReplacedMotionIsNotEndedForGood) {
   s.start(MotionKind::velocity);
   s.start(MotionKind::discrete);
   EXPECT_TRUE(s.motion.wanted(Quantity::target_velocity));
+}
+
+TEST(MotionRules, AChangeOfTheModeEndsWhatRanInTheModeBefore) {
+  Stage s;
+  s.start(MotionKind::velocity);
+  s.motion.mode_changed();
+  s.see();
+  EXPECT_EQ(s.motion.state(), MotionState::aborted);
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::standstill);
+  EXPECT_FALSE(s.motion.target_acts_now(Quantity::target_velocity, s.facts, false));
 }
 
 TEST(MotionRules, TargetsWrittenWhileDisabledAreKeptForTheStart) {
@@ -141,7 +168,11 @@ TEST(MotionRules, HomingEndsByReferenceByErrorOrByTime) {
   s.start(MotionKind::homing);
   s.see();
   EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::homing) << "the bit may be that of the homing before";
+  s.facts.moving = true;
   s.see(600ms);
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::homing) << "it still moves";
+  s.facts.moving = false;
+  s.see();
   EXPECT_EQ(s.motion.state(), MotionState::completed);
   s.start(MotionKind::homing);
   s.facts.reference = false;

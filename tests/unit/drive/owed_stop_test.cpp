@@ -60,6 +60,8 @@ TEST(OwedStop, WaitsForTheEndOfAFaultReaction) {
 TEST(OwedStop, AQuickStopThatIsShownByItsStateNeedsNothingMore) {
   OwedStop owed;
   owed.accepted(StopKind::quick_stop, 1);
+  EXPECT_EQ(owed.state_read(quick_stop_active, 2), End::none) << "it was not sent: another one has led there";
+  EXPECT_EQ(owed.due(kStart), StopKind::quick_stop);
   owed.sending();
   EXPECT_EQ(owed.state_read(quick_stop_active, 2), End::shown);
 }

@@ -95,6 +95,28 @@ TEST(Stops, TwoWaitingIdenticalOnesAreOneOnTheWire) {
   EXPECT_EQ(rig.count(kControlword, 0x06), 1U);
 }
 
+TEST(Stops, OneThatComesWhileAnotherRampsIsSentAndWhatEnablesComesWhenBothAreOver) {
+  Rig rig(KincoType::md);
+  rig.bring_to(running);
+  rig.motor().poke({0x605B, 0}, 1);
+  rig.motor().poke({0x6084, 0}, 20'000);
+  const auto first = rig.stage.begin(1, of(1, with_command(Command::disable)));
+  ASSERT_TRUE(rig.stage.run_until([&] { return rig.count(kControlword, 0x06) == 1; }));
+  const auto second = rig.stage.begin(1, of(2, with_command(Command::disable)));
+  rig.stage.run(50ms);
+  EXPECT_EQ(rig.count(kControlword, 0x06), 2U);
+  const auto enable = rig.stage.begin(1, of(1, with_command(Command::enable)));
+  rig.stage.run(50ms);
+  ASSERT_TRUE(rig.motor_enabled()) << "it still ramps";
+  EXPECT_FALSE(enable->has_value()) << "an answer would tell of before the stop";
+  ASSERT_TRUE(rig.stage.run_until([&] { return enable->has_value(); }));
+  EXPECT_EQ((*first)->outcome.code, Errc::ok);
+  EXPECT_EQ((*second)->outcome.code, Errc::ok);
+  EXPECT_EQ((*enable)->outcome.code, Errc::ok);
+  EXPECT_TRUE(rig.motor_enabled());
+  EXPECT_FALSE(rig.turns());
+}
+
 TEST(Stops, AreSentThreeTimesAtMostUntilTheStateShows) {
   // A drive that acknowledges but never leaves the state: the DIN that holds the enable outranks the bus.
   Rig rig(KincoType::jd);

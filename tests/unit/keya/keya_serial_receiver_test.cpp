@@ -122,6 +122,14 @@ TEST_F(KeyaReceiver, on_rs485_a_code_that_no_query_has_is_no_frame) {
   EXPECT_THAT(take("E0 01 04 00 00 00 00 00 00 00 00 E5"), IsEmpty());
 }
 
+TEST_F(KeyaReceiver, a_frame_that_began_before_the_request_is_late_though_noise_before_it_has_given_way) {
+  EXPECT_THAT(take("E0 ED 02"), IsEmpty());
+  const bus::Exchange query = test::read_of(0x2102);
+  receiver.sent(query, encode(KeyaLine::rs232, request_of(KeyaLine::rs232, query)));
+  EXPECT_THAT(take("01 F5 00 00 00 00 00 00 00 00"), ElementsAre(Heard::late));
+  EXPECT_THAT(take(kStandingB), ElementsAre(Heard::answer));
+}
+
 TEST_F(KeyaReceiver, the_second_answer_to_one_query_is_late) {
   ask(0x2102);
   EXPECT_THAT(take(from_hex(test::kSpeed232) + from_hex(test::kSpeed232)), ElementsAre(Heard::answer, Heard::late));

@@ -1,0 +1,151 @@
+// Design 3.4 "Jog" on an axis that really moves: while its button is held, and not a moment longer.
+#include <gmock/gmock.h>
+
+#include "tests/unit/drive/leased_axis.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct JoggedAxis : LeasedAxis {
+  explicit JoggedAxis(const RigOptions& options = leased()) : LeasedAxis(options) {
+    EXPECT_EQ(command(plc, Command::enable), Errc::ok);
+    Group speed;
+    speed.jog_velocity = 60'000;
+    EXPECT_EQ(ask(plc, speed), Errc::ok);
+  }
+  void hold(Command direction, Duration time) {
+    for (Duration done{}; done < time; done += 100ms) {
+      Group again;
+      again.jog_again = direction;
+      // not_new: the jog has ended meanwhile, and the button is held in vain.
+      EXPECT_THAT(ask(plc, again), testing::AnyOf(Errc::ok, Errc::not_new));
+      rig.stage.run(100ms);
+    }
+  }
+  std::int64_t speed() { return rig.axis()[Quantity::velocity_actual].value; }
+};
+
+TEST(JogOnAnAxis, RunsWhileTheButtonIsHeldAndEndsWhenItIsLetGo) {
+  JoggedAxis axis;
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_reverse), Errc::ok);
+  axis.hold(Command::jog_reverse, 2s);
+  EXPECT_NEAR(static_cast<double>(axis.speed()), -60'000, 2'000);
+  EXPECT_EQ(axis.rig.axis().level_coils >> 8 & 3U, 2U);
+  EXPECT_EQ(axis.ask(axis.plc, with_command(Command::jog_end), false), Errc::ok);
+  axis.keep(axis.plc, 2s);
+  EXPECT_FALSE(axis.rig.turns());
+  EXPECT_TRUE(axis.enabled());
+  EXPECT_FALSE(axis.latched());
+  EXPECT_EQ(axis.rig.axis().level_coils >> 8 & 3U, 0U);
+}
+
+TEST(JogOnAnAxis, EndsWhenTheReleaseIsLostThoughItsOwnerLives) {
+  JoggedAxis axis;
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+  axis.hold(Command::jog_forward, 1s);
+  EXPECT_TRUE(axis.rig.turns());
+  axis.keep(axis.plc, 3s);  // reads go on; nobody writes the coil
+  EXPECT_FALSE(axis.rig.turns());
+  axis.hold(Command::jog_forward, 1s);
+  EXPECT_FALSE(axis.rig.turns()) << "a button that is still held starts nothing";
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+  axis.hold(Command::jog_forward, 500ms);
+  EXPECT_TRUE(axis.rig.turns());
+}
+
+TEST(JogOnAnAxis, NeedsAVelocity) {
+  LeasedAxis axis;
+  EXPECT_EQ(axis.command(axis.plc, Command::enable), Errc::ok);
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::bad_value);
+}
+
+TEST(JogOnAnAxis, AStopIsCarriedOutWhateverJogVelocityStandsBesideIt) {
+  JoggedAxis axis;
+  Group stop = with_command(Command::quick_stop);
+  stop.jog_velocity = 4'000'000'000;
+  EXPECT_EQ(axis.ask(axis.plc, stop), Errc::bad_value);
+  EXPECT_TRUE(axis.latched());
+  stop.jog_velocity = 5'000;
+  EXPECT_EQ(axis.ask(axis.panel, stop), Errc::not_owner);
+  EXPECT_EQ(axis.rig.axis().jog_velocity, 60'000U) << "what is refused is not kept";
+}
+
+TEST(JogOnAnAxis, AnotherClientsStopEndsItForGood) {
+  JoggedAxis axis;
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+  axis.hold(Command::jog_forward, 1s);
+  EXPECT_EQ(axis.command(axis.panel, Command::halt), Errc::ok);
+  axis.hold(Command::jog_forward, 2s);
+  EXPECT_FALSE(axis.rig.turns());
+}
+
+TEST(JogOnAnAxis, EndsAtThePositionLimitOfAHomedAxis) {
+  for (const bool of_the_drive : {false, true}) {
+    RigOptions options = leased();
+    if (!of_the_drive) options.axis.position_limits = Range{-30'000, 30'000};
+    options.axis.homing_method = 35;
+    JoggedAxis axis(options);
+    const Group limits = setpoints({{Quantity::position_limit_min, -30'000}, {Quantity::position_limit_max, 30'000}});
+    EXPECT_EQ(axis.ask(axis.plc, of_the_drive ? limits : Group{}), Errc::ok);
+    EXPECT_EQ(axis.command(axis.plc, Command::home), Errc::ok);
+    ASSERT_TRUE(axis.rig.stage.run_until([&] {
+      axis.plc->last_request = axis.rig.stage.runtime().now();
+      return axis.rig.axis().has(AxisInput::homed);
+    }));
+    EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+    axis.hold(Command::jog_forward, 10s);
+    EXPECT_FALSE(axis.rig.turns());
+    const std::int64_t end = axis.rig.axis()[Quantity::position_actual].value;
+    EXPECT_LE(end, 30'000);
+    EXPECT_GT(end, 20'000);
+    EXPECT_TRUE(axis.rig.has_event(EventKind::warning, "halted at the position limit"));
+    EXPECT_EQ(axis.ask(axis.plc, with_command(Command::move_absolute, {{Quantity::target_position, 30'000}})),
+              Errc::ok);
+    axis.keep(axis.plc, 4s);
+    EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::state_unsuitable) << "it stands at the limit";
+    EXPECT_EQ(axis.command(axis.plc, Command::jog_reverse), Errc::ok);
+    axis.hold(Command::jog_reverse, 1s);
+    EXPECT_LT(axis.speed(), 0) << "back is open";
+  }
+}
+
+TEST(JogOnAnAxis, TheButtonOfAnotherClientDoesNotEndIt) {
+  JoggedAxis axis;
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+  axis.hold(Command::jog_forward, 1s);
+  EXPECT_EQ(axis.ask(axis.panel, with_command(Command::jog_end), false), Errc::ok);
+  axis.hold(Command::jog_forward, 1s);
+  EXPECT_TRUE(axis.rig.turns());
+}
+
+TEST(JogOnAnAxis, OfARunThatAFaultHasEndedIsOverAndTheHeldButtonIsToldSo) {
+  JoggedAxis axis;
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+  axis.hold(Command::jog_forward, 1s);
+  axis.rig.motor().inject_fault(1, 0x0020);
+  axis.hold(Command::jog_forward, 400ms);
+  axis.rig.motor().clear_fault_cause(1, 0x0020);
+  EXPECT_EQ(axis.command(axis.plc, Command::fault_reset), Errc::ok);
+  EXPECT_EQ(axis.command(axis.plc, Command::enable), Errc::ok);
+  EXPECT_EQ(axis.rig.axis().level_coils >> 8 & 3U, 0U);
+  Group again;
+  again.jog_again = Command::jog_forward;
+  EXPECT_EQ(axis.ask(axis.plc, again), Errc::not_new);
+}
+
+TEST(JogOnAnAxis, IsHaltedWhenItsOwnerReleasesTheAxis) {
+  RigOptions options = leased();
+  options.axis.jog_timeout = 60s;
+  JoggedAxis axis(options);
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+  axis.hold(Command::jog_forward, 1s);
+  EXPECT_EQ(axis.command(axis.plc, Command::release), Errc::ok);
+  axis.rig.stage.run(1500ms);
+  EXPECT_FALSE(axis.rig.turns()) << "before anybody's lease has run out";
+  EXPECT_FALSE(axis.latched());
+}
+
+}  // namespace
+}  // namespace axisgate::test
