@@ -75,6 +75,8 @@ class Axis {
 
   /// A stop of it waits for the wire or is under way.
   [[nodiscard]] bool stopping() const;
+  /// A stop was accepted, and the drive has not shown it yet.
+  [[nodiscard]] bool owes_stop() const { return owed_.owed(); }
   /// An enable is under way.
   [[nodiscard]] bool enabling() const { return enable_is_asked(true); }
   /// The same, or (not `begun`) one waits for the wire.

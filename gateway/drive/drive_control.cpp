@@ -104,7 +104,7 @@ bool Drive::may_repeat() const {
 
 std::optional<KeepAlive::Repeat> Drive::repeat_for(std::size_t slot) const {
   const Axis& axis = *axes_[slot];
-  return keep_alive_.repeat(axis.core(), axis.stopping(), axis.commands_live());
+  return keep_alive_.repeat(axis.core(), axis.stopping() || axis.owes_stop(), axis.commands_live());
 }
 
 // The newest exchange of this drive was a look at the state of all its axes: what it showed is what the frame that

@@ -28,8 +28,8 @@ class KeepAlive {
     ObjectId object = kNoObject;
     std::int64_t number = 0;
   };
-  /// What is to be sent again for this axis as it is now. `stopping`: a stop of it is pending or under way: nothing but
-  /// a speed or torque of 0. `live`: its owner's lease runs, or leases are off.
+  /// What is to be sent again for this axis as it is now. `stopping`: a stop of it is pending, under way or owed:
+  /// nothing but a speed or torque of 0. `live`: its owner's lease runs, or leases are off.
   [[nodiscard]] std::optional<Repeat> repeat(const AxisCore& core, bool stopping, bool live) const;
   /// When a repetition for this axis is due.
   [[nodiscard]] Instant due(bus::AxisSlot slot) const;

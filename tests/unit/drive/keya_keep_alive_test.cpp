@@ -229,6 +229,8 @@ TEST(KeyaKeepAliveSingle, AMotorThatIsSlowToTurnOffIsNotToldItsSpeedWhileItIsTol
   const auto stop = rig.begin(0, KeyaRig::group_of(Command::disable));
   ASSERT_TRUE(rig.run_until([&] { return stop->has_value(); }));
   EXPECT_THAT(rig.motor(0).moves, Each(0));
+  rig.run(3s);
+  EXPECT_THAT(rig.motor(0).moves, Each(0)) << "between two attempts of the stop, which is owed by now";
 }
 
 TEST(KeyaKeepAliveSingle, AnUnsureSetPointIsNotRepeated) {
