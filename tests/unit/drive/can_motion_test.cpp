@@ -8,6 +8,7 @@ namespace axisgate::test {
 namespace {
 
 using namespace std::chrono_literals;
+using simulated::DriveFault;
 using testing::IsEmpty;
 
 class CanMotion : public testing::TestWithParam<CanType> {
@@ -50,15 +51,18 @@ TEST_P(CanMotion, AbsoluteMovesEndWhereTheyWereSent) {
   }
 }
 
+/// An SDO request that reads (0x40) or writes (0x23) the target velocity.
+bool is_velocity(bool to_drive, const can::CanFrame& frame, std::uint8_t command) {
+  return to_drive && frame.id == 0x601 && frame.data[0] == command && frame.data[1] == 0xFF && frame.data[2] == 0x60;
+}
+
 TEST_P(CanMotion, ARefusedReadOfTheVelocityBringsNoOldVelocityBackWithAnEnable) {
   ASSERT_EQ(rig.stage.ask(1, with_command(Command::run_velocity, {{Quantity::target_velocity, 300'000}})).outcome.code,
             Errc::ok);
   auto& link = rig.stage.can_link(0);
   bool refused = false;
   link.on_traffic = [&](bool to_drive, const can::CanFrame& frame) {
-    const bool reads_velocity =
-        to_drive && frame.id == 0x601 && frame.data[0] == 0x40 && frame.data[1] == 0xFF && frame.data[2] == 0x60;
-    if (!reads_velocity || refused) return;
+    if (!is_velocity(to_drive, frame, 0x40) || refused) return;
     refused = true;
     link.fate = CanLinkSim::Fate::refused;
   };
@@ -73,6 +77,24 @@ TEST_P(CanMotion, ARefusedReadOfTheVelocityBringsNoOldVelocityBackWithAnEnable) 
   rig.stage.run(2s);
   EXPECT_LT(std::llabs(value(Quantity::velocity_actual)), 1'000);
   EXPECT_FALSE(rig.axis().has(AxisInput::moving));
+}
+
+TEST_P(CanMotion, IsEnabledWithoutATargetVelocityOnlyWhereTheDriveSaysThatItHasNone) {
+  for (const std::uint32_t answer : {0x06020000U, 0x06090030U}) {
+    ASSERT_EQ(command(Command::disable), Errc::ok);
+    rig.stage.can_link(0).on_traffic = [&](bool to_drive, const can::CanFrame& frame) {
+      if (!is_velocity(to_drive, frame, 0x40) && !is_velocity(to_drive, frame, 0x23)) return;
+      rig.line().faults(0).abort_code = answer;
+      rig.line().faults(0).next(DriveFault::exception);
+    };
+    Group read;
+    read.object = ObjectRequest{.index = 0x60FF, .size = 4};
+    read.role = Role::engineer;
+    ASSERT_EQ(rig.stage.ask(1, read).outcome.code, Errc::refused_by_drive);
+    const bool has_none = answer == 0x06020000;
+    EXPECT_EQ(command(Command::enable), has_none ? Errc::ok : Errc::refused_by_drive);
+    EXPECT_EQ(rig.axis().has(AxisInput::enabled), has_none);
+  }
 }
 
 TEST_P(CanMotion, AMoveToWhereItStandsIsDoneToo) {
