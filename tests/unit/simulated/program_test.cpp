@@ -87,7 +87,8 @@ TEST_F(Program, ControlsAnId286pro) {
   EXPECT_EQ(control("get axes/7 306"), "ok 900 0x00000384");
   EXPECT_EQ(control("state axes/7"), "ok stopped");
   EXPECT_EQ(exchange(port, seal_rtu(7, write_pdu(323, 1)), 8).size(), 8U);
-  for (int i = 0; i < 6000 && control("position axes/7") != "ok 500"; ++i) std::this_thread::sleep_for(milliseconds(10));
+  for (int i = 0; i < 6000 && control("position axes/7") != "ok 500"; ++i)
+    std::this_thread::sleep_for(milliseconds(10));
   EXPECT_EQ(control("position axes/7"), "ok 500");
   EXPECT_THAT(control("starts axes/7"), testing::MatchesRegex("ok 1 [0-9]+ms:#5:1"));
   EXPECT_EQ(control("fault axes/7 14 hardware"), "ok");
