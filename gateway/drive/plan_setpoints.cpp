@@ -86,12 +86,11 @@ namespace {
 void add_running_target(const AxisCore& core, ObjectId id, std::int64_t raw, Plan& plan, bool& look_again) {
   constexpr Duration kFresh = std::chrono::milliseconds(500);
   const ObjectState& state = core.store[id];
-  if (state.refused) {
+  if (state.refused || core.object(id).nvm == Nvm::no || core.object(id).trigger) {
+    Action write = Action::write(id, raw);
     // One refused read proves nothing. What the drive does not have holds nothing, but that its answer has to say.
-    plan.add(Action::write(id, raw));
-    plan.actions.back().optional = true;
-  } else if (core.object(id).nvm == Nvm::no || core.object(id).trigger) {
-    plan.add(Action::write(id, raw));
+    write.optional = state.refused;
+    plan.add(write);
   } else if (!state.held || core.now - state.sent_at > kFresh) {
     plan.add(Action::read(id));
     look_again = true;
