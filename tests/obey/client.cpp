@@ -1,5 +1,7 @@
 #include "tests/obey/client.hpp"
 
+#include <deque>
+#include <functional>
 #include <ostream>
 #include <stdexcept>
 
@@ -64,71 +66,201 @@ void PrintTo(const Answer& answer, std::ostream* out) {
     *out << "exception " << int{answer.exception};
 }
 
-Client::Client(const modbus_tcp::SessionContext& context, ManualRuntime& runtime, std::uint8_t host)
-    : context_(context), runtime_(runtime), timer_(runtime.make_timer([this] {
+/// One connection: what the client sent and the session has not read yet, and the answers that are not told yet.
+class Client::Connection {
+ public:
+  using OnAnswer = std::function<void(RequestNumber, Answer)>;
+  Connection(const modbus_tcp::SessionContext& context, ManualRuntime& runtime, const modbus_tcp::Peer& peer,
+             OnAnswer on_answer);
+
+  void send(RequestNumber number, const std::vector<std::uint8_t>& pdu);
+  void close();
+  /// What comes is read by nobody.
+  void silence() {
+    on_answer_ = [](RequestNumber, const Answer&) {};
+  }
+  [[nodiscard]] bool open() const { return session_ != nullptr; }
+
+ private:
+  struct Asked {
+    RequestNumber number;
+    std::uint8_t function;
+  };
+  void turn();
+  void receive();
+  void take_answer(const std::vector<std::uint8_t>& adu);
+
+  ManualRuntime& runtime_;
+  OnAnswer on_answer_;
+  std::unique_ptr<Timer> deadline_;
+  std::unique_ptr<Timer> turn_;
+  std::deque<std::vector<std::uint8_t>> unread_;
+  std::vector<std::uint8_t> incoming_;
+  std::map<std::uint16_t, Asked> asked_;  ///< by transaction
+  std::uint16_t transaction_ = 0;
+  bool in_session_ = false;
+  std::unique_ptr<modbus_tcp::Session> session_;
+};
+
+Client::Connection::Connection(const modbus_tcp::SessionContext& context, ManualRuntime& runtime,
+                               const modbus_tcp::Peer& peer, OnAnswer on_answer)
+    : runtime_(runtime),
+      on_answer_(std::move(on_answer)),
+      deadline_(runtime.make_timer([this] {
         in_session_ = true;
         session_->on_deadline(runtime_.now());
         in_session_ = false;
-        receive();
+        turn();
+      })),
+      turn_(runtime.make_timer([this] { turn(); })),
+      session_(std::make_unique<modbus_tcp::Session>(context, peer, runtime.now(), [this] {
+        if (!in_session_) receive();
       })) {
-  peer_.address = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 192, 168, 1, host};
-  peer_.port = 50000;
-  peer_.role = Role::engineer;
-  connect();
+  deadline_->expires_at(session_->next_deadline());
 }
 
-Client::~Client() { disconnect(); }
-
-void Client::connect() {
-  disconnect();
-  ++peer_.port;
-  incoming_.clear();
-  session_ = std::make_unique<modbus_tcp::Session>(context_, peer_, runtime_.now(), [this] {
-    if (!in_session_) receive();
-  });
-  timer_->expires_at(session_->next_deadline());
-}
-
-void Client::disconnect() {
+void Client::Connection::close() {
   if (!session_) return;
   session_->on_closed(runtime_.now());
   session_.reset();
-  timer_->expires_at(kNever);
+  deadline_->expires_at(kNever);
+  turn_->expires_at(kNever);
 }
 
-void Client::receive() {
-  while (!session_->output().empty()) {
-    const Bytes out = session_->output();
-    incoming_.insert(incoming_.end(), out.begin(), out.end());
-    session_->take_output(out.size(), runtime_.now());
-  }
-  timer_->expires_at(session_->next_deadline());
-}
-
-Answer Client::ask(const std::vector<std::uint8_t>& pdu) {
+void Client::Connection::send(RequestNumber number, const std::vector<std::uint8_t>& pdu) {
   std::vector<std::uint8_t> adu;
   add16(adu, ++transaction_);
   add16(adu, 0);
   add16(adu, static_cast<std::uint32_t>(pdu.size() + 1));
   adu.push_back(1);
   adu.insert(adu.end(), pdu.begin(), pdu.end());
-  in_session_ = true;
-  session_->on_bytes(Bytes(adu), runtime_.now());
-  in_session_ = false;
+  asked_[transaction_] = {number, pdu[0]};
+  unread_.push_back(std::move(adu));
+  turn();
+}
+
+/// As the server does: reads while the session wants more, and closes what is finished.
+void Client::Connection::turn() {
   receive();
+  while (!unread_.empty() && session_->wants_input()) {
+    in_session_ = true;
+    session_->on_bytes(Bytes(unread_.front()), runtime_.now());
+    in_session_ = false;
+    unread_.pop_front();
+    receive();
+  }
+  if (session_->finished()) close();
+}
+
+void Client::Connection::receive() {
+  while (!session_->output().empty()) {
+    const Bytes out = session_->output();
+    incoming_.insert(incoming_.end(), out.begin(), out.end());
+    session_->take_output(out.size(), runtime_.now());
+  }
+  deadline_->expires_at(session_->next_deadline());
+  if (!unread_.empty() || session_->finished()) turn_->expires_at(runtime_.now());
+  while (incoming_.size() >= kMbap + 2 && incoming_.size() >= 6U + load_be16(incoming_, 4)) {
+    const auto end = incoming_.begin() + 6 + load_be16(incoming_, 4);
+    const std::vector<std::uint8_t> adu(incoming_.begin(), end);
+    incoming_.erase(incoming_.begin(), end);
+    take_answer(adu);
+  }
+}
+
+void Client::Connection::take_answer(const std::vector<std::uint8_t>& adu) {
+  const auto found = asked_.find(load_be16(adu, 0));
+  if (found == asked_.end()) throw std::runtime_error("an answer that nobody asked for");
+  const Asked asked = found->second;
+  asked_.erase(found);
+  Answer answer;
+  if (adu[kMbap] == (asked.function | 0x80))
+    answer.exception = adu.at(kMbap + 1);
+  else if (adu[kMbap] != asked.function)
+    throw std::runtime_error("an answer with another function code");
+  else if (asked.function == 3)
+    for (std::size_t i = kMbap + 2; i + 1 < adu.size(); i += 2) answer.words.push_back(load_be16(adu, i));
+  on_answer_(asked.number, std::move(answer));
+}
+
+void ServedPort::close() {
+  for (Client* client : clients_) client->lose_connections();
+  context_.reset();
+}
+
+Client::Client(ServedPort& port, ManualRuntime& runtime, std::uint8_t host,
+               std::optional<modbus_tcp::ListenerSettings> listener)
+    : port_(port), runtime_(runtime), listener_(std::move(listener)) {
+  peer_.address = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 192, 168, 1, host};
+  peer_.port = 50000;
+  peer_.role = Role::engineer;
+  port_.clients_.push_back(this);
+  connect();
+}
+
+Client::~Client() {
+  disconnect();
+  give_up_vanished();
+  std::erase(port_.clients_, this);
+}
+
+void Client::connect() {
+  disconnect();
+  ++peer_.port;
+  if (!port_.context_) return;
+  const modbus_tcp::SessionContext& of = *port_.context_;
+  const modbus_tcp::SessionContext own{
+      listener_ ? *listener_ : of.settings, of.image, of.commands, of.clients, of.log, of.runtime};
+  connection_ = std::make_unique<Connection>(
+      own, runtime_, peer_, [this](RequestNumber number, Answer answer) { answers_[number] = std::move(answer); });
+}
+
+void Client::disconnect() {
+  if (connection_) connection_->close();
+  connection_.reset();
+}
+
+bool Client::connected() const { return connection_ && connection_->open(); }
+
+void Client::vanish() {
+  if (!connected()) return;
+  connection_->silence();
+  vanished_.push_back(std::move(connection_));
+}
+
+void Client::give_up_vanished() {
+  for (const auto& connection : vanished_) connection->close();
+  vanished_.clear();
+}
+
+void Client::lose_connections() {
+  connection_.reset();
+  vanished_.clear();
+}
+
+RequestNumber Client::begin(const std::vector<std::uint8_t>& pdu) {
+  ++last_;
+  if (connected()) connection_->send(last_, pdu);
+  return last_;
+}
+
+RequestNumber Client::begin(const Write& write) { return begin(pdu_of(write)); }
+
+std::optional<Answer> Client::answer_of(RequestNumber number) const {
+  const auto found = answers_.find(number);
+  if (found == answers_.end()) return {};
+  return found->second;
+}
+
+Answer Client::ask(const std::vector<std::uint8_t>& pdu) {
+  const RequestNumber number = begin(pdu);
   const Instant end = runtime_.now() + kLongestAnswer;
-  while (incoming_.size() < kMbap + 2 || incoming_.size() < 6U + load_be16(incoming_, 4)) {
+  while (!answers_.contains(number)) {
+    if (!connected()) throw std::runtime_error("a request without a connection");
     if (runtime_.now() >= end) throw std::runtime_error("a request never got its answer");
     runtime_.advance_by(1ms);
   }
-  std::vector<std::uint8_t> reply(incoming_.begin() + kMbap, incoming_.begin() + 6 + load_be16(incoming_, 4));
-  incoming_.erase(incoming_.begin(), incoming_.begin() + 6 + load_be16(incoming_, 4));
-  if (reply[0] == (pdu[0] | 0x80)) return {reply.at(1), {}};
-  if (reply[0] != pdu[0]) throw std::runtime_error("an answer with another function code");
-  Answer answer;
-  if (reply[0] == 3)
-    for (std::size_t i = 2; i + 1 < reply.size(); i += 2) answer.words.push_back(load_be16(reply, i));
-  return answer;
+  return std::move(answers_.extract(number).mapped());
 }
 
 Answer Client::write(const Write& write) { return ask(pdu_of(write)); }

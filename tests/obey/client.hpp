@@ -1,7 +1,9 @@
 // A Modbus-TCP client of these tests: one connection from one address to the shipped session, bytes in memory, manual
-// time. Promises to return when the answer is there. Never looks into the gateway.
+// time. Promises to return when the answer is there, or to tell it later; a request whose connection or gateway died
+// has none for ever. Never looks into the gateway.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -31,15 +33,38 @@ inline constexpr std::uint16_t statusword = 0, position = 2, supported = 20, res
 inline constexpr std::int64_t kNotOwner = 7, kNotNew = 10, kNobody = 0, kMe = 1, kAnother = 2;
 inline constexpr std::int64_t kStandstill = 1, kStopLatched = 5;  ///< axis_state
 
+class Client;
+
+/// Where the gateway listens. While none runs nobody answers there.
+class ServedPort {
+ public:
+  void open(const modbus_tcp::SessionContext& context) { context_.emplace(context); }
+  /// Whoever served is dead: all connections are gone, and nobody was told.
+  void close();
+
+ private:
+  friend class Client;
+  std::optional<modbus_tcp::SessionContext> context_;
+  std::vector<Client*> clients_;
+};
+
+using RequestNumber = std::uint64_t;
+
 class Client {
  public:
-  /// `host`: the last byte of its address.
-  Client(const modbus_tcp::SessionContext& context, ManualRuntime& runtime, std::uint8_t host);
+  /// `host`: the last byte of its address. `listener`: of its own, instead of the port's.
+  Client(ServedPort& port, ManualRuntime& runtime, std::uint8_t host,
+         std::optional<modbus_tcp::ListenerSettings> listener = {});
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
+  /// Returns when the answer is there; throws where there is none.
   Answer write(const Write& write);
+  /// Sends and returns at once.
+  RequestNumber begin(const Write& write);
+  /// None yet, or never.
+  [[nodiscard]] std::optional<Answer> answer_of(RequestNumber number) const;
   Answer row(std::uint16_t offset, std::int64_t value) { return write(one(offset, value)); }
   Answer rows(std::uint16_t first, std::uint16_t last, const Rows& values) { return write(block(first, last, values)); }
   Answer command(std::int64_t number) { return row(row::command, number); }
@@ -57,20 +82,30 @@ class Client {
   bool mailbox_write(std::uint16_t index, std::uint16_t subindex, std::uint16_t size, std::int64_t data);
 
   void disconnect();
+  /// A new connection, from another port of the same address; none where no gateway runs.
   void connect();
+  [[nodiscard]] bool connected() const;
+  /// Silent for ever, and the gateway believes the connection alive; it still obeys what is on its way. connect() makes
+  /// another one.
+  void vanish();
+  /// The gateway's system gives up what has vanished (TCP keepalive).
+  void give_up_vanished();
 
  private:
+  friend class ServedPort;
+  class Connection;
+  void lose_connections();
+  RequestNumber begin(const std::vector<std::uint8_t>& pdu);
   Answer ask(const std::vector<std::uint8_t>& pdu);
-  void receive();
 
-  modbus_tcp::SessionContext context_;
+  ServedPort& port_;
   ManualRuntime& runtime_;
+  std::optional<modbus_tcp::ListenerSettings> listener_;
   modbus_tcp::Peer peer_;
-  std::unique_ptr<modbus_tcp::Session> session_;
-  std::unique_ptr<Timer> timer_;
-  std::vector<std::uint8_t> incoming_;
-  std::uint16_t transaction_ = 0;
-  bool in_session_ = false;
+  std::unique_ptr<Connection> connection_;
+  std::vector<std::unique_ptr<Connection>> vanished_;
+  std::map<RequestNumber, Answer> answers_;
+  RequestNumber last_ = 0;
 };
 
 }  // namespace axisgate::test::obey

@@ -31,11 +31,13 @@ Plant::Plant(Subject which, PlantOptions options)
         stage.log().push_back(std::string(axisgate::text(level)) + " " + std::string(source) + ": " +
                               std::string(message));
       }),
-      context_{listener, stage.gateway().image(), stage.gateway(), registry, log_, &stage.runtime()},
-      fitter_(context_, stage.runtime(), kHostOfFitter),
-      a(context_, stage.runtime(), kHostOfA),
-      b(context_, stage.runtime(), kHostOfB) {
+      power_back_(stage.runtime().make_timer([this] { restart_drive(); })),
+      fitter_(port_, stage.runtime(), kHostOfFitter),
+      a(port_, stage.runtime(), kHostOfA),
+      b(port_, stage.runtime(), kHostOfB) {
   listener.idle_timeout = Duration{};  // tests that wait for a minute keep their connections
+  open_port();
+  for (Client* client : {&fitter_, &a, &b}) client->connect();
 }
 
 void Plant::ready_but_disabled() {

@@ -24,9 +24,20 @@ struct PlantOptions {
   return options;
 }
 
+/// What befalls the next exchanges with the drive. On CAN only those are struck that a node answers (SDO, guarding;
+/// with Keya's own protocol each command), process data never.
+enum class Strike : std::uint8_t {
+  lose_request,  ///< the drive never sees it
+  lose_reply,    ///< the drive acts
+  late_reply,
+  double_reply,
+};
+
 class Plant {
  public:
   explicit Plant(Subject subject, PlantOptions options = {});
+  Plant(const Plant&) = delete;
+  Plant& operator=(const Plant&) = delete;
 
   /// Online, with speeds and ramps that suit a test, and enabled by neither a nor b; with leases nobody owns it then.
   void ready();
@@ -36,6 +47,25 @@ class Plant {
   void run(Duration time) { stage.run(time); }
   /// Sends the same request for so long, each 50 ms. The answers are not looked at.
   void scan(Client& client, const Write& request, Duration time);
+
+  // What it can suffer (outage.cpp). Each returns at once; time passes only by run() and by waiting for answers.
+  /// The port or the adapter is gone, and the system says so; and back.
+  void unplug();
+  void plug();
+  /// Nothing that is sent arrives on the other side, and nobody says so.
+  void cut_wire();
+  void mend_wire();
+  void strike(Strike how, std::uint64_t times = 1, Duration late_by = std::chrono::milliseconds(300));
+  /// The drive loses its power, for so long.
+  void restart_drive(Duration off = {});
+  /// A fault whose cause is gone already.
+  void trip_drive();
+  /// The gateway's process dies: nothing more is sent, all connections are gone. Cables, drives and motor live on.
+  void crash_gateway();
+  /// A new one with the same configuration. a, b and whoever else wants it must connect() anew.
+  void start_gateway();
+  /// Frames that the gateway has put on the wire, or tried to, since the beginning.
+  [[nodiscard]] std::size_t frames_sent();
 
   // What the motor does.
   [[nodiscard]] Truth motor() { return truth(stage, subject); }
@@ -62,19 +92,26 @@ class Plant {
   Subject subject;
   GatewayStage stage;
   modbus_tcp::ListenerSettings listener;
-  modbus_tcp::ClientRegistry registry;
 
  private:
+  void open_port();
+  void join_wire();
+
   Log log_;
-  modbus_tcp::SessionContext context_;
+  std::optional<modbus_tcp::ClientRegistry> registry_;
+  ServedPort port_;
+  bool wire_cut_ = false;
+  bool drive_off_ = false;
+  std::unique_ptr<Timer> power_back_;
   Client fitter_;
 
  public:
   Client a;
   Client b;
-  /// Another connection, from the address whose last byte is `host`.
-  [[nodiscard]] std::unique_ptr<Client> connection_from(std::uint8_t host) {
-    return std::make_unique<Client>(context_, stage.runtime(), host);
+  /// Another connection, from the address whose last byte is `host`; through a listener of its own if one is given.
+  [[nodiscard]] std::unique_ptr<Client> connection_from(std::uint8_t host,
+                                                        std::optional<modbus_tcp::ListenerSettings> its = {}) {
+    return std::make_unique<Client>(port_, stage.runtime(), host, std::move(its));
   }
   [[nodiscard]] bool has(unsigned bit) {
     return (static_cast<std::uint32_t>(fitter_.wide(shown::supported)) >> bit & 1U) != 0;

@@ -68,6 +68,10 @@ GatewayStage::Line plain_line(Subject subject) {
   throw std::invalid_argument("no such subject");
 }
 
+bool is_fault(simulated::Cia402State state) {
+  return state == simulated::Cia402State::fault || state == simulated::Cia402State::fault_reaction_active;
+}
+
 std::int64_t units(std::int64_t counts, std::int64_t per_rev) {
   return simulated::divide_rounded(counts * kUnitsPerRev, per_rev);
 }
@@ -105,23 +109,48 @@ Truth truth(GatewayStage& stage, Subject subject) {
     const simulated::KeyaDrive& drive = stage.keya(0);
     const simulated::KeyaMotor& motor = drive.at(KeyaMotorName::a);
     const std::int64_t per_rev = kEdges * drive.parameters().of(KeyaMotorName::a, kLinesOfA);
-    return {units(motor.count(), per_rev), kMilli * motor.rpm(), motor.enabled()};
+    return {units(motor.count(), per_rev), kMilli * motor.rpm(), motor.enabled(),
+            (drive.faults(KeyaMotorName::a) & ~simulated::keya_fault::disabled) != 0};
   }
   if (subject == Subject::id286pro) {
     const simulated::Id286pro& drive = stage.id286pro(0);
     const std::int64_t per_rev = drive.registers().get(kPulsesPerRev);
-    return {units(drive.position(), per_rev), simulated::rpm_of(drive.axis().speed(), per_rev, kMilli), {}};
+    return {units(drive.position(), per_rev),
+            simulated::rpm_of(drive.axis().speed(), per_rev, kMilli),
+            {},
+            drive.fault() != 0};
   }
   if (subject == Subject::leadshine) {
     const simulated::LeadshineDrive& drive = stage.leadshine(0);
     return {units(drive.position(), drive.units_per_revolution()),
             simulated::rpm_of(drive.axis().actual_speed(), drive.options().encoder_counts, kMilli),
-            drive.state() == Cia402State::operation_enabled};
+            drive.state() == Cia402State::operation_enabled, is_fault(drive.state())};
   }
   const simulated::KincoDrive& drive = stage.drive(0);
   const std::int64_t per_rev = drive.model().encoder_counts;
   return {units(drive.position(), per_rev), simulated::rpm_of(drive.axis().actual_speed(), per_rev, kMilli),
-          drive.state() == Cia402State::operation_enabled};
+          drive.state() == Cia402State::operation_enabled, is_fault(drive.state())};
+}
+
+void trip(GatewayStage& stage, Subject subject) {
+  if (is_keya(subject)) {
+    constexpr std::uint16_t kOvercurrent = 0x0040;  // goes with a disabling
+    stage.keya(0).inject_fault(KeyaMotorName::a, kOvercurrent);
+    return stage.keya(0).clear_fault_cause(KeyaMotorName::a, kOvercurrent);
+  }
+  if (subject == Subject::id286pro) {
+    constexpr std::uint16_t kSupplyTooHigh = 14;
+    stage.id286pro(0).inject_fault(kSupplyTooHigh);
+    return stage.id286pro(0).clear_fault_cause();
+  }
+  if (subject == Subject::leadshine) {
+    constexpr std::uint16_t kSupplyTooHigh = 0x3211;
+    stage.leadshine(0).inject_fault(kSupplyTooHigh);
+    return stage.leadshine(0).clear_fault_cause();
+  }
+  constexpr std::uint16_t kBusVoltageTooHigh = 0x0020;
+  stage.drive(0).inject_fault(1, kBusVoltageTooHigh);
+  stage.drive(0).clear_fault_cause(1, kBusVoltageTooHigh);
 }
 
 std::optional<TargetObject> target_object(Subject subject) {

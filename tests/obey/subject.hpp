@@ -82,8 +82,12 @@ struct Truth {
   std::int64_t position = 0;      ///< 1/10000 turn
   std::int64_t velocity = 0;      ///< 0.001 rpm; 0: it stands
   std::optional<bool> enabled{};  ///< none: the drive cannot be disabled over its bus
+  bool faulted = false;
 };
 [[nodiscard]] Truth truth(GatewayStage& stage, Subject subject);
+
+/// The drive has a fault whose cause is gone already: it stays until somebody resets it.
+void trip(GatewayStage& stage, Subject subject);
 
 /// The drive's own object for a position target, in its own counts, where the mailbox can write it without the motor
 /// moving for it.

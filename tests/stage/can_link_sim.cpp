@@ -135,4 +135,24 @@ void CanLinkSim::plug() {
   timer_->expires_at(runtime_.now());
 }
 
+void CanLinkSim::connect_drives(bool connected) {
+  for (std::size_t d = 0; d < line_.size(); ++d) line_.connect(d, connected);
+}
+
+void CanLinkSim::restart(std::size_t drive) {
+  advance_drives();
+  line_.restart(drive, time_of(runtime_.now()));
+  timer_->expires_at(runtime_.now());  // what it says when it is back was not foreseen
+}
+
+void CanLinkSim::let_go() {
+  events_ = nullptr;
+  up_ = false;
+  was_up_ = false;
+  filters_.clear();
+  trouble_ = {};
+  arrived_.clear();
+  cut_when_heard_.reset();
+}
+
 }  // namespace axisgate::test

@@ -38,6 +38,13 @@ class CanLinkSim final : public can::CanLink {
   void bus_off();
   void bus_on() { plug(); }
   [[nodiscard]] bool plugged() const { return plugged_; }
+  /// Each drive's plug is pulled, and nobody says so: nothing arrives on either side, no sign of life either.
+  void cut_wire() { connect_drives(false); }
+  void mend_wire() { connect_drives(true); }
+  /// The drive's power goes and is back at once.
+  void restart(std::size_t drive);
+  /// Whoever held it has died: what it sent is on its way, what it has not taken is gone. start() takes it up again.
+  void let_go();
   /// As if the system had dropped so many received frames before they were taken.
   void lose_in(std::uint32_t frames) { trouble_.lost_in += frames; }
 
@@ -75,6 +82,7 @@ class CanLinkSim final : public can::CanLink {
   void arm();
   void go_down(std::string why);
   void refuse(const can::CanFrame& frame);
+  void connect_drives(bool connected);
   [[nodiscard]] bool passes(const can::CanFrame& frame) const;
 
   ManualRuntime& runtime_;

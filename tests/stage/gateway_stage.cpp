@@ -1,5 +1,6 @@
 #include "tests/stage/gateway_stage.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "adapters/canopen/canopen_wire.hpp"
@@ -10,6 +11,7 @@
 #include "gateway/app/adapter_names.hpp"
 #include "gateway/app/can_wires.hpp"
 #include "gateway/app/config_sections.hpp"
+#include "tests/stage/gateway_ends.hpp"
 #include "tests/stage/stage_lines.hpp"
 
 namespace axisgate::test {
@@ -23,17 +25,50 @@ std::vector<modbus_rtu::RtuNode> nodes_of(const std::vector<drive::DriveModel>& 
   return nodes;
 }
 
-/// A line's far end with its drives on it.
+/// A cable with the drives at its far end.
 template <class Link, class Drives, class Options>
 std::unique_ptr<Link> link_with(ManualRuntime& runtime, const Drives& drives, const Options& options,
-                                const GatewayStage::Line& line, std::uint64_t seed,
-                                std::vector<drive::DriveModel>& models) {
+                                std::uint64_t seed) {
   auto link = std::make_unique<Link>(runtime, options, seed);
-  for (const auto& staged : drives) {
-    link->line().add(staged.options);
-    models.push_back(model_on(staged, line));
-  }
+  for (const auto& staged : drives) link->line().add(staged.options);
   return link;
+}
+
+/// All drives of the line; they are of one kind.
+std::vector<drive::DriveModel> models_on(const GatewayStage::Line& line, const std::string& adapter) {
+  std::vector<drive::DriveModel> models;
+  const auto add = [&](const auto& drives) {
+    for (const auto& staged : drives) models.push_back(model_on(staged, line));
+  };
+  if (app::adapter::on_can(adapter))
+    add(line.can_drives);
+  else if (adapter == "modbus-rtu")
+    add(line.rtu_drives);
+  else if (app::adapter::keya_serial(adapter))
+    add(line.keya_drives);
+  else
+    add(line.drives);
+  return models;
+}
+
+struct Configured {
+  app::Config config;
+  app::Models models;
+};
+
+Configured configured(const std::vector<GatewayStage::Line>& lines) {
+  Configured out;
+  for (const GatewayStage::Line& line : lines) {
+    app::BusConfig bus = bus_on(line);
+    const auto& of_line = out.models.emplace_back(models_on(line, bus.adapter));
+    for (std::size_t d = 0; d < bus.drives.size(); ++d) bus.drives[d].node = of_line[d].node;
+    out.config.buses.push_back(std::move(bus));
+  }
+  app::ConfigFaults faults("stage");
+  app::settle_rtu_buses(out.config, out.models, faults);
+  app::settle_keya_buses(out.config, out.models, faults);
+  if (!faults.faults().empty()) throw std::runtime_error(text(faults.faults().front()));
+  return out;
 }
 
 }  // namespace
@@ -42,80 +77,86 @@ GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
     : log_([this](LogLevel level, std::string_view source, std::string_view message) {
         log_lines_.push_back(std::string(axisgate::text(level)) + " " + std::string(source) + ": " +
                              std::string(message));
-      }) {
-  app::Config config;
-  app::Models models;
-  std::map<std::string, std::unique_ptr<SimLink>> kinco;
-  std::map<std::string, std::unique_ptr<RtuLinkSim>> rtu;
-  std::map<std::string, std::unique_ptr<CanLinkSim>> can;
-  std::map<std::string, std::unique_ptr<KeyaLinkSim>> keya;
-  for (const Line& line : lines) {
-    app::BusConfig bus = bus_on(line);
-    auto& of_line = models.emplace_back();
-    LinkOfLine ends;
-    if (app::adapter::on_can(bus.adapter)) {
-      auto link = link_with<CanLinkSim>(runtime_, line.can_drives, line.can_options, line, seed++, of_line);
-      ends.can = link.get();
-      can.emplace(line.name, std::move(link));
-    } else if (bus.adapter == "modbus-rtu") {
-      auto link = link_with<RtuLinkSim>(runtime_, line.rtu_drives, line.rtu_options, line, seed++, of_line);
-      ends.rtu = link.get();
-      rtu.emplace(line.name, std::move(link));
-    } else if (app::adapter::keya_serial(bus.adapter)) {
-      auto link = link_with<KeyaLinkSim>(runtime_, line.keya_drives, line.keya_options, line, seed++, of_line);
-      ends.keya = link.get();
-      keya.emplace(line.name, std::move(link));
-    } else {
-      auto link = link_with<SimLink>(runtime_, line.drives, line.options, line, seed++, of_line);
-      ends.kinco = link.get();
-      kinco.emplace(line.name, std::move(link));
-    }
-    links_.push_back(ends);
-    for (std::size_t d = 0; d < bus.drives.size(); ++d) bus.drives[d].node = of_line[d].node;
-    config.buses.push_back(std::move(bus));
+      }),
+      lines_(std::move(lines)) {
+  for (const Line& line : lines_) links_.push_back(link_of(line, seed++));
+  start();
+}
+
+GatewayStage::LinkOfLine GatewayStage::link_of(const Line& line, std::uint64_t seed) {
+  LinkOfLine made;
+  const std::string adapter = bus_on(line).adapter;
+  if (app::adapter::on_can(adapter))
+    made.can = link_with<CanLinkSim>(runtime_, line.can_drives, line.can_options, seed);
+  else if (adapter == "modbus-rtu")
+    made.rtu = link_with<RtuLinkSim>(runtime_, line.rtu_drives, line.rtu_options, seed);
+  else if (app::adapter::keya_serial(adapter))
+    made.keya = link_with<KeyaLinkSim>(runtime_, line.keya_drives, line.keya_options, seed);
+  else
+    made.kinco = link_with<SimLink>(runtime_, line.drives, line.options, seed);
+  return made;
+}
+
+std::unique_ptr<bus::Wire> GatewayStage::wire_on(const app::BusConfig& bus,
+                                                 const std::vector<drive::DriveModel>& drives) {
+  const auto found = std::ranges::find(lines_, bus.name, &Line::name);
+  const LinkOfLine& link = links_.at(static_cast<std::size_t>(found - lines_.begin()));
+  if (link.kinco) {
+    return std::make_unique<kinco::KincoWire>(bus.name, std::make_unique<ByteEnd<SimLink>>(*link.kinco), runtime_,
+                                              log_);
   }
-  app::ConfigFaults faults("stage");
-  app::settle_rtu_buses(config, models, faults);
-  app::settle_keya_buses(config, models, faults);
-  if (!faults.faults().empty()) throw std::runtime_error(text(faults.faults().front()));
-  const app::MakeWire make_wire = [&](const app::BusConfig& bus,
-                                      const std::vector<drive::DriveModel>& drives) -> std::unique_ptr<bus::Wire> {
-    if (bus.adapter == "kinco-serial") {
-      return std::make_unique<kinco::KincoWire>(bus.name, std::move(kinco.at(bus.name)), runtime_, log_);
-    }
-    if (app::adapter::keya_serial(bus.adapter)) {
-      const auto line = bus.adapter == app::adapter::kKeyaRs232 ? keya::KeyaLine::rs232 : keya::KeyaLine::rs485;
-      return keya::make_keya_serial_wire({bus.name, line, bus.baud}, std::move(keya.at(bus.name)), runtime_, log_);
-    }
-    if (bus.adapter == app::adapter::kKeyaCan) {
-      keya::KeyaCanSettings settings;
-      settings.name = bus.name;
-      settings.timeout = bus.timeout;
-      for (const drive::DriveModel& model : drives) settings.nodes.push_back(model.node);
-      return keya::make_keya_can_wire(std::move(settings), std::move(can.at(bus.name)), runtime_, log_);
-    }
-    if (bus.adapter == "canopen") {
-      return canopen::make_canopen_wire(app::canopen_settings(bus, drives), std::move(can.at(bus.name)), runtime_,
-                                        log_);
-    }
+  if (link.keya) {
+    const auto line = bus.adapter == app::adapter::kKeyaRs232 ? keya::KeyaLine::rs232 : keya::KeyaLine::rs485;
+    return keya::make_keya_serial_wire({bus.name, line, bus.baud}, std::make_unique<ByteEnd<KeyaLinkSim>>(*link.keya),
+                                       runtime_, log_);
+  }
+  if (link.rtu) {
     return std::make_unique<modbus_rtu::RtuWire>(bus.name, nodes_of(drives), modbus_rtu::LineSpeed{bus.baud, 0},
-                                                 std::move(rtu.at(bus.name)), runtime_, log_);
-  };
-  gateway_ = std::make_unique<app::Gateway>(config, std::move(models), runtime_, log_, make_wire);
+                                                 std::make_unique<RtuEnd>(*link.rtu), runtime_, log_);
+  }
+  auto end = std::make_unique<CanEnd>(*link.can);
+  if (bus.adapter == "canopen") {
+    return canopen::make_canopen_wire(app::canopen_settings(bus, drives), std::move(end), runtime_, log_);
+  }
+  keya::KeyaCanSettings settings;
+  settings.name = bus.name;
+  settings.timeout = bus.timeout;
+  for (const drive::DriveModel& model : drives) settings.nodes.push_back(model.node);
+  return keya::make_keya_can_wire(std::move(settings), std::move(end), runtime_, log_);
+}
+
+app::Gateway& GatewayStage::gateway() {
+  if (!gateway_) throw std::logic_error("no gateway runs");
+  return *gateway_;
+}
+
+void GatewayStage::start() {
+  if (gateway_) throw std::logic_error("a gateway runs already");
+  auto [config, models] = configured(lines_);
+  gateway_ = std::make_unique<app::Gateway>(
+      config, std::move(models), runtime_, log_,
+      [this](const app::BusConfig& bus, const std::vector<drive::DriveModel>& drives) { return wire_on(bus, drives); });
   gateway_->start();
+}
+
+void GatewayStage::crash(const std::function<void()>& others) {
+  for (std::size_t line = 0; line < links_.size(); ++line) at_link(line, [](auto& link) { link.let_go(); });
+  gateway().stop();  // a dead process answers no session's end
+  others();
+  gateway_.reset();
 }
 
 simulated::KincoDrive& GatewayStage::drive(std::size_t line, std::size_t position) {
   const LinkOfLine& link = links_.at(line);
   simulated::KincoDrive* found = nullptr;
-  if (link.kinco != nullptr) {
+  if (link.kinco) {
     link.kinco->advance_drives();
     return link.kinco->line().drive(position);
   }
-  if (link.rtu != nullptr) {
+  if (link.rtu) {
     link.rtu->advance_drives();
     found = link.rtu->line().kinco(position);
-  } else if (link.can != nullptr) {
+  } else if (link.can) {
     link.can->advance_drives();
     found = link.can->line().kinco(position);
   }
@@ -124,7 +165,7 @@ simulated::KincoDrive& GatewayStage::drive(std::size_t line, std::size_t positio
 }
 
 simulated::KeyaDrive& GatewayStage::keya(std::size_t line, std::size_t position) {
-  if (KeyaLinkSim* link = links_.at(line).keya) {
+  if (const auto& link = links_.at(line).keya) {
     link->advance_drives();
     return link->line().drive(position);
   }
@@ -168,7 +209,7 @@ std::shared_ptr<std::optional<GroupResult>> GatewayStage::begin(AxisNumber axis,
   if (group.start_by == kNever) group.start_by = runtime_.now() + std::chrono::milliseconds(500);
   if (group.answer_by == kNever) group.answer_by = runtime_.now() + std::chrono::milliseconds(900);
   auto place = std::make_shared<std::optional<GroupResult>>();
-  if (auto result = gateway_->submit(axis, group, [place](const GroupResult& r) { *place = r; })) *place = result;
+  if (auto result = gateway().submit(axis, group, [place](const GroupResult& r) { *place = r; })) *place = result;
   return place;
 }
 

@@ -72,19 +72,35 @@ class GatewayStage {
   };
   explicit GatewayStage(std::vector<Line> lines, std::uint64_t seed = 1);
 
-  [[nodiscard]] app::Gateway& gateway() { return *gateway_; }
+  /// Throws while none runs, as axis() and what asks the gateway do.
+  [[nodiscard]] app::Gateway& gateway();
+  /// Its process dies: nothing more is sent. Cables and drives live on. Sessions on it must end inside `others`, after
+  /// the last frame and before the core is gone.
+  void crash(const std::function<void()>& others = [] {});
+  /// A new one, with the same configuration, on the same cables.
+  void start();
+  [[nodiscard]] bool gateway_runs() const { return gateway_ != nullptr; }
   [[nodiscard]] ManualRuntime& runtime() { return runtime_; }
   [[nodiscard]] SimLink& link(std::size_t line) { return *links_.at(line).kinco; }
   [[nodiscard]] RtuLinkSim& rtu_link(std::size_t line) { return *links_.at(line).rtu; }
   [[nodiscard]] CanLinkSim& can_link(std::size_t line) { return *links_.at(line).can; }
   [[nodiscard]] KeyaLinkSim& keya_link(std::size_t line) { return *links_.at(line).keya; }
+  /// What `act` gives for the link of this line, of whichever kind.
+  template <class Act>
+  auto at_link(std::size_t line, const Act& act) {
+    const LinkOfLine& link = links_.at(line);
+    if (link.kinco) return act(*link.kinco);
+    if (link.rtu) return act(*link.rtu);
+    if (link.can) return act(*link.can);
+    return act(*link.keya);
+  }
   /// Brought up to now. The drive there must be of this kind, on whichever line.
   [[nodiscard]] simulated::KincoDrive& drive(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::Id286pro& id286pro(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::LeadshineDrive& leadshine(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::KeyaDrive& keya(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::CanopenNode& can_node(std::size_t line, std::size_t position = 0);
-  [[nodiscard]] const AxisImage& axis(AxisNumber number) { return *gateway_->image().find(number); }
+  [[nodiscard]] const AxisImage& axis(AxisNumber number) { return *gateway().image().find(number); }
   [[nodiscard]] std::vector<std::string>& log() { return log_lines_; }
 
   void run(Duration time) { runtime_.advance_by(time); }
@@ -93,7 +109,7 @@ class GatewayStage {
   /// Runs until all axes are online.
   bool come_online() {
     return run_until([this] {
-      for (const auto& a : gateway_->image().axes())
+      for (const auto& a : gateway().image().axes())
         if (a->link_state != LinkState::online) return false;
       return true;
     });
@@ -112,11 +128,15 @@ class GatewayStage {
   Log log_;
   /// One of them.
   struct LinkOfLine {
-    SimLink* kinco = nullptr;
-    RtuLinkSim* rtu = nullptr;
-    CanLinkSim* can = nullptr;
-    KeyaLinkSim* keya = nullptr;
+    std::unique_ptr<SimLink> kinco;
+    std::unique_ptr<RtuLinkSim> rtu;
+    std::unique_ptr<CanLinkSim> can;
+    std::unique_ptr<KeyaLinkSim> keya;
   };
+  [[nodiscard]] LinkOfLine link_of(const Line& line, std::uint64_t seed);
+  [[nodiscard]] std::unique_ptr<bus::Wire> wire_on(const app::BusConfig& bus,
+                                                   const std::vector<drive::DriveModel>& drives);
+  const std::vector<Line> lines_;
   std::vector<LinkOfLine> links_;
   std::unique_ptr<app::Gateway> gateway_;
 };

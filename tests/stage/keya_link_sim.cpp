@@ -9,12 +9,13 @@ KeyaLinkSim::KeyaLinkSim(ManualRuntime& runtime, simulated::KeyaLineOptions opti
       origin_(runtime.now()),
       line_(options, simulated::Random(seed),
             [this](const simulated::ToHost& chunk) {
-              if (plugged_) arrived_.insert(arrived_.end(), chunk.bytes.begin(), chunk.bytes.end());
+              if (plugged_ && wire_whole_) arrived_.insert(arrived_.end(), chunk.bytes.begin(), chunk.bytes.end());
             }),
       timer_(runtime.make_timer([this] { deliver(); })) {}
 
 void KeyaLinkSim::start(bus::ByteLinkEvents& events) {
   events_ = &events;
+  arrived_.clear();
   timer_->expires_at(runtime_.now());
 }
 
@@ -24,6 +25,7 @@ void KeyaLinkSim::send(Bytes bytes) {
   sent.push_back({runtime_.now(), {bytes.begin(), bytes.end()}});
   fate = Fate::delivered;
   on_traffic(true, bytes);
+  if (!wire_whole_) return arm();
   if (fate == Fate::cut_before) {
     unplug();
     return;
@@ -81,6 +83,24 @@ void KeyaLinkSim::unplug() {
 void KeyaLinkSim::plug() {
   plugged_ = true;
   timer_->expires_at(runtime_.now());
+}
+
+void KeyaLinkSim::cut_wire() {
+  wire_whole_ = false;
+  line_.cut();
+}
+
+void KeyaLinkSim::restart(std::size_t drive) {
+  advance_drives();
+  line_.restart(drive, time_of(runtime_.now()));
+  timer_->expires_at(runtime_.now());  // what it says when it is back was not foreseen
+}
+
+void KeyaLinkSim::let_go() {
+  events_ = nullptr;
+  up_ = false;
+  arrived_.clear();
+  cut_when_heard_.reset();
 }
 
 }  // namespace axisgate::test

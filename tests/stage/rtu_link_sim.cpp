@@ -27,12 +27,14 @@ RtuLinkSim::RtuLinkSim(ManualRuntime& runtime, simulated::RtuLineOptions options
       origin_(runtime.now()),
       line_(options, simulated::Random(seed),
             [this](const simulated::ToHost& chunk) {
-              if (plugged_) arrived_.push_back({chunk.at, newest_, {chunk.bytes.begin(), chunk.bytes.end()}});
+              if (plugged_ && wire_whole_)
+                arrived_.push_back({chunk.at, newest_, {chunk.bytes.begin(), chunk.bytes.end()}});
             }),
       timer_(runtime.make_timer([this] { deliver(); })) {}
 
 void RtuLinkSim::start(modbus_rtu::RtuLinkEvents& events) {
   events_ = &events;
+  arrived_.clear();
   timer_->expires_at(runtime_.now());
 }
 
@@ -54,6 +56,7 @@ void RtuLinkSim::transmit(modbus_rtu::ExchangeNumber number, Bytes frame) {
   sent.push_back({runtime_.now(), number, whole});
   fate = Fate::delivered;
   on_traffic(true, whole);
+  if (!wire_whole_) return arm();
   switch (fate) {
     case Fate::refused:
       arrived_.push_back({time_of(runtime_.now()), number, error_reply(whole)});
@@ -138,11 +141,15 @@ void RtuLinkSim::arm() {
   timer_->expires_at(next);
 }
 
-void RtuLinkSim::forget() {
+void RtuLinkSim::forget_heard() {
   arrived_.clear();
   begun_.clear();
   noisy_ = false;
   cut_when_heard_.reset();
+}
+
+void RtuLinkSim::forget() {
+  forget_heard();
   line_.cut();
 }
 
@@ -162,6 +169,25 @@ void RtuLinkSim::unplug() {
 void RtuLinkSim::plug() {
   plugged_ = true;
   timer_->expires_at(runtime_.now());
+}
+
+void RtuLinkSim::cut_wire() {
+  wire_whole_ = false;
+  line_.cut();
+}
+
+void RtuLinkSim::restart(std::size_t drive) {
+  advance_drives();
+  line_.restart(drive, time_of(runtime_.now()));
+  timer_->expires_at(runtime_.now());  // what it says when it is back was not foreseen
+}
+
+void RtuLinkSim::let_go() {
+  events_ = nullptr;
+  up_ = false;
+  newest_ = 0;
+  reopening_.reset();
+  forget_heard();
 }
 
 }  // namespace axisgate::test

@@ -31,6 +31,13 @@ class RtuLinkSim final : public modbus_rtu::RtuLink {
   void unplug();
   void plug();
   [[nodiscard]] bool plugged() const { return plugged_; }
+  /// The wire is cut and the port stays open: nothing arrives on either side, and nobody says so.
+  void cut_wire();
+  void mend_wire() { wire_whole_ = true; }
+  /// The drive's power goes and is back at once.
+  void restart(std::size_t drive);
+  /// Whoever held it has died: what it sent is on its way, what it has not taken is gone. start() takes it up again.
+  void let_go();
 
   struct Sent {
     Instant at;
@@ -62,6 +69,7 @@ class RtuLinkSim final : public modbus_rtu::RtuLink {
   void take_frames(modbus_rtu::ExchangeNumber newest);
   void bad(std::size_t bytes);
   void forget();
+  void forget_heard();
   [[nodiscard]] std::vector<Byte> error_reply(Bytes whole);
   [[nodiscard]] simulated::Time silence_at() const { return heard_until_ + line_.frame_gap(); }
 
@@ -77,6 +85,7 @@ class RtuLinkSim final : public modbus_rtu::RtuLink {
   std::optional<std::uint64_t> cut_when_heard_;  ///< so many requests by the drives
   std::optional<std::string> reopening_;
   bool plugged_ = true;
+  bool wire_whole_ = true;
   bool up_ = false;
   std::unique_ptr<Timer> timer_;
 };

@@ -9,12 +9,13 @@ SimLink::SimLink(ManualRuntime& runtime, simulated::LineOptions options, std::ui
       origin_(runtime.now()),
       line_(options, simulated::Random(seed),
             [this](const simulated::ToHost& chunk) {
-              if (plugged_) arrived_.insert(arrived_.end(), chunk.bytes.begin(), chunk.bytes.end());
+              if (plugged_ && wire_whole_) arrived_.insert(arrived_.end(), chunk.bytes.begin(), chunk.bytes.end());
             }),
       timer_(runtime.make_timer([this] { deliver(); })) {}
 
 void SimLink::start(bus::ByteLinkEvents& events) {
   events_ = &events;
+  arrived_.clear();
   timer_->expires_at(runtime_.now());
 }
 
@@ -23,6 +24,7 @@ void SimLink::send(Bytes bytes) {
   sent.push_back({runtime_.now(), {bytes.begin(), bytes.end()}});
   fate = Fate::delivered;
   on_traffic(true, bytes);
+  if (!wire_whole_) return arm();
   switch (fate) {
     case Fate::refused: {
       const auto answer = simulated::seal(bytes[0], simulated::FrameCommand::error,
@@ -91,6 +93,23 @@ void SimLink::unplug() {
 void SimLink::plug() {
   plugged_ = true;
   timer_->expires_at(runtime_.now());
+}
+
+void SimLink::cut_wire() {
+  wire_whole_ = false;
+  line_.cut();
+}
+
+void SimLink::restart(std::size_t drive) {
+  advance_drives();
+  line_.restart(drive, time_of(runtime_.now()));
+  timer_->expires_at(runtime_.now());  // what it says when it is back was not foreseen
+}
+
+void SimLink::let_go() {
+  events_ = nullptr;
+  up_ = false;
+  arrived_.clear();
 }
 
 }  // namespace axisgate::test

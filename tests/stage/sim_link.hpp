@@ -28,6 +28,13 @@ class SimLink final : public bus::ByteLink {
   void unplug();
   void plug();
   [[nodiscard]] bool plugged() const { return plugged_; }
+  /// The wire is cut and the port stays open: nothing arrives on either side, and nobody says so.
+  void cut_wire();
+  void mend_wire() { wire_whole_ = true; }
+  /// The drive's power goes and is back at once.
+  void restart(std::size_t drive);
+  /// Whoever held it has died: what it sent is on its way, what it has not taken is gone. start() takes it up again.
+  void let_go();
 
   struct Sent {
     Instant at;
@@ -55,6 +62,7 @@ class SimLink final : public bus::ByteLink {
   std::vector<Byte> arrived_;
   bus::ByteLinkEvents* events_ = nullptr;
   bool plugged_ = true;
+  bool wire_whole_ = true;
   bool up_ = false;
   std::unique_ptr<Timer> timer_;
 };
