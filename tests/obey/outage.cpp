@@ -88,4 +88,15 @@ std::size_t Plant::frames_sent() {
   return stage.at_link(0, [](const auto& link) { return link.sent.size(); });
 }
 
+std::uint64_t Plant::requests_heard() {
+  return stage.at_link(0, [](auto& link) {
+    link.advance_drives();
+    return link.line().requests_heard();
+  });
+}
+
+bool Plant::still_strikes(Strike how) {
+  return stage.at_link(0, [how](auto& link) { return link.line().faults(0).armed(fault_of(how)); });
+}
+
 }  // namespace axisgate::test::obey

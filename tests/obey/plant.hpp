@@ -66,6 +66,10 @@ class Plant {
   void start_gateway();
   /// Frames that the gateway has put on the wire, or tried to, since the beginning.
   [[nodiscard]] std::size_t frames_sent();
+  /// Requests that reached the drive; process data does not count.
+  [[nodiscard]] std::uint64_t requests_heard();
+  /// Some of what strike() announced has not befallen anything yet.
+  [[nodiscard]] bool still_strikes(Strike how);
 
   // What the motor does.
   [[nodiscard]] Truth motor() { return truth(stage, subject); }
