@@ -1,169 +1,98 @@
-#include "tests/unit/simulated/scene.hpp"
-
 #include <algorithm>
-#include <sstream>
+
+#include "tests/unit/simulated/script.hpp"
 
 namespace axisgate::simulated {
 namespace {
 
-constexpr Time longest_wait = std::chrono::seconds(60);
-
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \n");
-  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \n") - begin + 1);
+// "option late_by 260": of the fault switches; times in milliseconds.
+void set_option(DriveFaults& faults, const std::string& name, std::int64_t value) {
+  const std::map<std::string, std::function<void()>> options{
+      {"late_by", [&] { faults.late_by = milliseconds(value); }},
+      {"exception_code", [&] { faults.exception_code = static_cast<std::uint8_t>(value); }},
+      {"abort_code", [&] { faults.abort_code = static_cast<std::uint32_t>(value); }},
+      {"restart_acts", [&] { faults.restart_acts = value != 0; }},
+      {"split_gap", [&] { faults.split_gap = milliseconds(value); }},
+      {"babble_period", [&] { faults.babble_period = milliseconds(value); }},
+      {"babble_id", [&] { faults.babble_id = static_cast<std::uint32_t>(value); }},
+  };
+  options.at(name)();
 }
 
-Time time_of(const std::string& text) {
-  const std::map<std::string, Time> units{{"us", std::chrono::microseconds(1)},
-                                          {"ms", std::chrono::milliseconds(1)},
-                                          {"s", std::chrono::seconds(1)},
-                                          {"min", std::chrono::minutes(1)}};
-  std::size_t used = 0;
-  const long long number = std::stoll(text, &used);
-  return number * units.at(text.substr(used));
+int bits_apart(const Bytes& one, const Bytes& other) {
+  int bits = one.size() == other.size() ? 0 : 1000;
+  for (std::size_t i = 0; bits < 1000 && i < one.size(); ++i) bits += std::popcount(unsigned{one[i]} ^ other[i]);
+  return bits;
 }
-
-class Run {
- public:
-  explicit Run(Scene& scene) : scene_(scene) {}
-
-  void steps(const std::string& script) {
-    for (const std::string& part : words_of(script, "\n;")) {
-      const std::string one = trimmed(part);
-      if (one.empty()) continue;
-      SCOPED_TRACE(one);
-      step(one);
-      if (testing::Test::HasFatalFailure()) return;
-    }
-  }
-
- private:
-  void step(const std::string& text) {
-    const Row words = words_of(text);
-    const std::string rest = trimmed(text.substr(words[0].size()));
-    if (words[0] == ">") {
-      const std::size_t back = rest.find('<');
-      scene_.send(trimmed(rest.substr(0, back)));
-      if (back != std::string::npos) came(rest.substr(back + 1));
-    } else if (words[0] == "<") {
-      came(rest);
-    } else if (words[0] == "pass") {
-      scene_.pass(time_of(words.at(1)));
-    } else if (words[0] == "until") {
-      wait_for(rest);
-    } else if (words[0] == "keep") {
-      kept_ = value(words.at(1));
-    } else if (words[0] == "repeat") {
-      const std::string repeated = trimmed(rest.substr(words.at(1).size()));
-      for (int i = std::stoi(words[1]); i > 0; --i) steps(repeated);
-    } else if (words.size() >= 3 && words[1] == ":=") {
-      write(words);
-    } else if (words.size() == 2 && words[1] == "silent") {
-      EXPECT_EQ(scene_.read(words[0]), std::nullopt);
-    } else if (words.size() >= 3 && std::string("=!<>~&").find(words[1][0]) != std::string::npos) {
-      std::ostringstream found;
-      EXPECT_TRUE(holds(words, found)) << found.str();
-    } else if (const auto phrase = scene_.phrases.find(words[0]); phrase != scene_.phrases.end()) {
-      steps(phrase->second);
-    } else {
-      ASSERT_TRUE(scene_.acts.contains(words[0])) << "no such word";
-      scene_.acts.at(words[0])({words.begin() + 1, words.end()});
-    }
-  }
-
-  void came(const std::string& wanted) const { EXPECT_EQ(without_spaces(scene_.received()), without_spaces(wanted)); }
-
-  void write(const Row& words) {
-    const auto wanted = words.size() == 5 ? static_cast<std::uint32_t>(number(words[4])) : 0U;
-    const auto code = scene_.write(words[0], number(words[2]));
-    if (words.size() == 4 && words[3] == "silent") {
-      EXPECT_EQ(code, std::nullopt);
-      return;
-    }
-    ASSERT_TRUE(code.has_value()) << "no answer";
-    EXPECT_EQ(*code, wanted) << std::hex << *code;
-  }
-
-  void wait_for(const std::string& text) {
-    const Row words = words_of(text);
-    std::ostringstream found;
-    for (Time waited{}; waited < longest_wait && !holds(words, found); waited += milliseconds(1)) {
-      found.str("");
-      scene_.pass(milliseconds(1));
-    }
-    ASSERT_TRUE(holds(words, found)) << found.str();
-  }
-
-  // NAME [& MASK] COMPARED VALUE [TOLERANCE]
-  bool holds(const Row& words, std::ostream& found) {
-    const auto read = look(words[0]);
-    if (!read) {
-      found << "no answer";
-      return false;
-    }
-    const bool masked = words[1] == "&";
-    const std::int64_t left = masked ? *read & number(words.at(2)) : *read;
-    const std::string& compared = words.at(masked ? 3 : 1);
-    const std::int64_t right = number(words.at(masked ? 4 : 2));
-    found << words[0] << " is " << *read << std::hex << " 0x" << *read;
-    if (compared == "=") return left == right;
-    if (compared == "!=") return left != right;
-    if (compared == "<") return left < right;
-    if (compared == ">") return left > right;
-    return std::abs(left - right) <= number(words.at(3));
-  }
-
-  std::optional<std::int64_t> look(const std::string& name) {
-    const auto fact = scene_.facts.find(name);
-    return fact == scene_.facts.end() ? scene_.read(name) : fact->second();
-  }
-
-  std::int64_t value(const std::string& name) {
-    const auto read = look(name);
-    EXPECT_TRUE(read.has_value()) << name << " has no value";
-    return read.value_or(0);
-  }
-
-  std::int64_t number(const std::string& text) const {
-    if (text == "kept") return kept_;
-    std::size_t used = 0;
-    const std::int64_t found = std::stoll(text, &used, 0);
-    return text.substr(used) == "rpm" ? scene_.rpm(found) : found;
-  }
-
-  Scene& scene_;
-  std::int64_t kept_ = 0;
-};
 
 }  // namespace
 
-Row words_of(const std::string& text, const char* parted_by) {
-  Row words;
-  for (std::size_t at = text.find_first_not_of(parted_by); at != std::string::npos;) {
-    const std::size_t end = text.find_first_of(parted_by, at);
-    words.push_back(text.substr(at, end - at));
-    at = text.find_first_not_of(parted_by, end);
+std::int64_t Scene::fact(const std::string& name) {
+  if (name == "arrived") return static_cast<std::int64_t>(bench.received().size());
+  if (name == "pieces") return static_cast<std::int64_t>(bench.arrivals.size());
+  if (name == "heard") return static_cast<std::int64_t>(bench.line().requests_heard());
+  if (name == "rate") return bench.bus().bit_rate();
+  if (name == "enabled") return bench.tell({"state"}) == "operation_enabled" ? 1 : 0;
+  if (name == "physical") {
+    return counts_of((bench.kinco() != nullptr ? bench.kinco()->axis() : bench.id286pro()->axis()).physical());
   }
-  return words;
+  if (name[1] != '.') return whole(bench.tell({name}));
+  const bool first = name[0] == 'a';  // of a Keya's two motors
+  if (name.ends_with(".value")) return bench.keya()->at(first ? motor_a : motor_b).value();
+  return whole(words_of(bench.tell({name.substr(2)})).at(first ? 0 : 1));
 }
 
-void run(Scene& scene, const std::string& script) { Run(scene).steps(script); }
+// How what came back stands to the reply that was remembered. Nothing: it is no word for that.
+std::optional<bool> Scene::stands(const std::string& word) const {
+  const Bytes came = bench.received();
+  const Bytes& reply = remembered_;
+  const std::size_t shorter = std::min(came.size(), reply.size());
+  const bool begins = std::ranges::equal(std::span(came).first(shorter), std::span(reply).first(shorter));
+  if (word == "same") return came == reply;
+  if (word == "changed") return !came.empty() && came != reply;
+  if (word == "begins") return begins && came.size() > reply.size();
+  if (word == "ends") return came.size() > reply.size() && std::equal(reply.rbegin(), reply.rend(), came.rbegin());
+  if (word == "breaks_off") return begins && !came.empty() && came.size() < reply.size();
+  if (word == "twice") return begins && came.size() == 2 * reply.size() && bench.arrivals.at(1).bytes == reply;
+  if (word == "one_bit") return bits_apart(came, reply) == 1;
+  if (word != "unasked") return std::nullopt;
+  return std::ranges::all_of(bench.arrivals,
+                             [](const auto& it) { return it.tag == 0 && it.origin == ByteOrigin::noise; });
+}
 
-TEST_P(Scripts, comes_true) {
-  for (const Maker& make : GetParam().makers) {
-    for (const Row& row : GetParam().rows) {
-      std::string script = GetParam().script;
-      for (std::size_t i = row.size(); i > 0; --i) {
-        const std::string mark = "$" + std::to_string(i);
-        for (std::size_t at = script.find(mark); at != std::string::npos; at = script.find(mark)) {
-          script.replace(at, mark.size(), row[i - 1]);
-        }
-      }
-      SCOPED_TRACE(script);
-      Scene scene = make(row);
-      run(scene, script);
-    }
+bool Scene::act(const Row& words) {
+  const std::string& word = words[0];
+  if (const auto right = stands(word)) {
+    EXPECT_TRUE(*right) << to_hex(bench.received());
+  } else if (word == "remember") {
+    remembered_ = bench.received();
+  } else if (word == "restart") {
+    bench.line().restart(words.size() > 1 ? std::stoul(words[1]) : 0, bench.now);
+  } else if (word == "next" || word == "always") {
+    const DriveFault fault = drive_fault_named(words[1]).value();
+    EXPECT_TRUE(bench.line().has(fault));
+    if (word == "next") bench.faults().next(fault, words.size() > 2 ? std::stoul(words[2]) : 1);
+    if (word == "always") bench.faults().set_rate(fault, 1);
+  } else if (word == "well") {
+    bench.faults().clear();
+  } else if (word == "option" && words[1] == "reply_delay") {
+    bench.line().set_reply_delay(milliseconds(whole(words[2])));
+  } else if (word == "option") {
+    set_option(bench.faults(), words[1], whole(words[2]));
+  } else if (word == "listen") {
+    bench.arrivals.clear();
+  } else if (word == "cut") {
+    bench.line().cut();
+  } else if (word == "bus_off") {
+    bench.port.can->set_bus_off(words[1] == "on", bench.now);
+  } else if (word == "no_acknowledge") {
+    bench.port.can->miss_acknowledge(bench.now);
+  } else if (word == "control") {
+    for (std::size_t i = 1; i < words.size(); ++i) (void)write(Name("6040"), std::stoi(words[i], nullptr, 16));
+  } else {
+    return false;
   }
+  return true;
 }
 
 }  // namespace axisgate::simulated
