@@ -150,6 +150,13 @@ void Arbiter::wait(OrderId id, Instant until) {
   if (entry != nullptr && entry->started) entry->ready_at = until;
 }
 
+bool Arbiter::go_on_as(OrderId id, const Order& rest) {
+  Entry* entry = find(id);
+  if (entry == nullptr || !entry->started || full(rest)) return false;
+  entry->order = rest;
+  return true;
+}
+
 void Arbiter::finish(OrderId id) {
   std::erase_if(entries_, [id](const Entry& e) { return e.id == id; });
   std::erase_if(endings_, [id](const Ending& e) { return e.id == id; });

@@ -65,6 +65,9 @@ class Arbiter {
   /// The order has ended, by its owner's word. Unknown ids are ignored: it may have been ended by a stop meanwhile. An
   /// ending of it that was not taken yet is withdrawn: no order ends twice.
   void finish(OrderId id);
+  /// A started order goes on as another of its axis, and keeps its place: of a stop, what stood beside it. False: there
+  /// is no room in its class, or it has ended meanwhile.
+  [[nodiscard]] bool go_on_as(OrderId id, const Order& rest);
   /// The drive's next poll is due then; kNever: none.
   void set_poll_due(DriveSlot drive, Instant due);
   /// All orders of a drive (offline, restarted) or of the bus (link lost) end: the waiting ones with `waiting`, the

@@ -41,6 +41,12 @@ void Bus::wait(OrderId id, Instant until) {
   soon();
 }
 
+bool Bus::go_on_as(OrderId id, const Order& rest) {
+  const bool there_is_room = arbiter_.go_on_as(id, rest);
+  soon();
+  return there_is_room;
+}
+
 void Bus::finish(OrderId id) {
   arbiter_.finish(id);
   soon();

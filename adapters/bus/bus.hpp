@@ -59,6 +59,7 @@ class Bus final : private WireEvents {
   [[nodiscard]] Arbiter::Admission submit(const Order& order);
   void wait(OrderId id, Instant until);
   void finish(OrderId id);
+  [[nodiscard]] bool go_on_as(OrderId id, const Order& rest);
   void set_poll_due(DriveSlot drive, Instant due);
   void end_drive(DriveSlot drive, Errc waiting, Errc started);
   void map_process_data(std::uint8_t node, std::uint8_t number, const ProcessMap& objects) {

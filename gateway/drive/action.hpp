@@ -12,6 +12,7 @@ namespace axisgate::drive {
 /// Turning points that a plan reaches between its exchanges.
 enum class Mark : std::uint8_t {
   enabled,         ///< the stop latch is cleared
+  found_enabled,   ///< it was so already: nothing was sent, and the stop latch is cleared
   start_discrete,  ///< the drive has acknowledged the start of such a motion
   start_velocity,
   start_torque,

@@ -113,7 +113,7 @@ void Axis::accept_stop(const Group& group) {
   image_.endings.stopped(group.client);
   for (Pending& p : pending_)
     if (!p.stopped_by) p.stopped_by = group.client;
-  jog_.end();
+  end_jog();
   owe(group);
 }
 
@@ -130,10 +130,18 @@ GroupResult Axis::refuse(const Group& group, Errc code) {
 std::optional<GroupResult> Axis::carry_out(const Group& asked, Errc refusal, GroupCallback on_result) {
   auto [group, code] = as_quantities(core_, asked);
   const bool stop = holds_stop(group);
+  // Beside a stop, a controlword that disables is part of it, in a block too: it is not lost.
+  if (stop && group.controlword && is_stop(*group.controlword, true)) group.single_controlword = true;
   if (code == Errc::ok) code = admit(core_, group);
+  // A run that follows a jog has no button: it runs at what was asked for last, not at the jog's speed.
+  const bool runs = group.command == Command::run_velocity && !group.jogs && core_.velocity_beside_jog;
+  if (runs && std::ranges::none_of(group.setpoints,
+                                   [](const Setpoint& sp) { return sp.quantity == Quantity::target_velocity; }))
+    group.setpoints.push_back(
+        {Quantity::target_velocity, core_.velocity_beside_jog->value, core_.velocity_beside_jog->exact, true});
   Pending pending;
   pending.refusal = refusal;
-  pending.jogs = jog_.active() && group.command == Command::run_velocity && group.client == jog_.client();
+  pending.jogs = group.jogs;
   if (code != Errc::ok) {
     // A stop is carried out whatever nonsense stands beside it; the answer tells of the nonsense.
     if (!stop) return refuse(asked, code);
@@ -217,8 +225,7 @@ std::optional<bus::Exchange> Axis::on_grant(bus::OrderId id) {
   Pending* pending = find(id);
   if (pending == nullptr) return std::nullopt;
   core_.link = host_.link_state();
-  if (stopping() && begins_anything(pending->conversation->group()) && !pending->conversation->is_stop()) {
-    // A stop ramps down, and still shows enabled: what would enable or start comes when it is over.
+  if (!pending->conversation->is_stop() && waits_for_stop(*pending)) {
     constexpr Duration kStopsFirst = std::chrono::milliseconds(20);
     host_.order_waits(id, host_.now() + kStopsFirst);
     return std::nullopt;
@@ -245,6 +252,17 @@ bool Axis::insists(bus::OrderId id) const {
   return std::any_of(pending_.begin(), pending_.end(), [&](const Pending& p) {
     return p.conversation->is_stop() && (p.id == id ? p.conversation->would_repeat() : !p.conversation->begun());
   });
+}
+
+// A stop ramps down, and still shows enabled: what would enable or start comes when it is over. What came later than a
+// stop's own set-points comes after them (3.3, the order of one axis).
+bool Axis::waits_for_stop(const Pending& pending) const {
+  if (stopping() && begins_anything(pending.conversation->group())) return true;
+  for (const Pending& older : pending_) {
+    if (&older == &pending) return false;
+    if (older.conversation->is_stop() && !stops_alone(older.conversation->group())) return true;
+  }
+  return false;
 }
 
 bool Axis::stopping() const {
@@ -290,19 +308,16 @@ void Axis::carry_on(Pending& pending) {
   if (move.kind == Conversation::Move::Kind::wait) host_.order_waits(pending.id, move.until);
   if (!pending.conversation->stop_is_over()) return;
   note_stop(pending, false);
-  // The stop is done; the rest of its group waits its turn like any other.
+  // The stop is done; the rest of its group goes on where it stands, and has no precedence any more.
   bus::Order rest = order_for(core_, pending.conversation->group(), false);
   rest.axis = slot_;
   rest.read.reset();
   rest.setpoints_only = false;
   rest.start_by = kNever;
-  host_.order_done(pending.id);
-  const AxisHost::Queued queued = host_.queue(std::move(rest));
-  if (queued.code != Errc::ok) {
-    complete(pending.id, {{queued.code, 0}, 0, 0});
+  if (!host_.order_goes_on_as(pending.id, rest)) {
+    complete(pending.id, {{Errc::queue_full, 0}, 0, 0});
     return;
   }
-  pending.id = queued.id;
   pending.conversation->stop_was_handed_over();
 }
 

@@ -35,6 +35,8 @@ class AxisHost {
   [[nodiscard]] virtual Queued queue(bus::Order order) = 0;
   virtual void order_waits(bus::OrderId id, Instant until) = 0;
   virtual void order_done(bus::OrderId id) = 0;
+  /// A stop's order goes on as another: the rest of its group. False: there is no room for it.
+  [[nodiscard]] virtual bool order_goes_on_as(bus::OrderId id, const bus::Order& rest) = 0;
   virtual void event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) = 0;
 };
 
@@ -159,6 +161,8 @@ class Axis {
   void note_accepted(const Group& group);
   void tell_end(OwedStop::End end);
   void note_jog(const Pending& pending, Errc code);
+  [[nodiscard]] bool waits_for_stop(const Pending& pending) const;
+  void end_jog();
   void halt_jog(std::string why);
   [[nodiscard]] bool stop_comes_first(const Group& group) const;
   [[nodiscard]] bool may_be_enabled() const;

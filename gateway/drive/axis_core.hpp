@@ -22,10 +22,12 @@ struct AxisCore {
   std::uint16_t emergency = 0;                  ///< the drive's last EMCY code; 0: none, or it said that it is over
   std::optional<std::int64_t> homing_method{};  ///< written or configured since bring-up
   std::optional<std::int64_t> offset_owed{};    ///< homing offset that set_position could not put back yet
-  bool mode_chosen = false;                     ///< a client has chosen the mode since bring-up
-  bool homed = false;                           ///< latched (design 3.1, discrete input 6)
-  std::int32_t set_position_value = 0;          ///< row 78, the gateway's own
-  VirtualAxis machine{};                        ///< of a virtual axis alone
+  /// While a jog runs: the velocity that a client asked for last. It waits for a start of its own.
+  std::optional<Wanted> velocity_beside_jog{};
+  bool mode_chosen = false;             ///< a client has chosen the mode since bring-up
+  bool homed = false;                   ///< latched (design 3.1, discrete input 6)
+  std::int32_t set_position_value = 0;  ///< row 78, the gateway's own
+  VirtualAxis machine{};                ///< of a virtual axis alone
   NvmBudget nvm{};
 
   /// link_state online or suspect.

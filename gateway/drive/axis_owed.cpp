@@ -58,7 +58,7 @@ bool Axis::may_be_enabled() const { return core_.reachable() ? core_.facts().ena
 
 void Axis::on_restarted() {
   was_enabled_ = false;
-  jog_.end();
+  end_jog();
   owed_.restarted();
 }
 
@@ -144,14 +144,19 @@ void Axis::note_jog(const Pending& pending, Errc code) {
   if (pending.jogs && outcome_unknown(code))
     jog_.carry();
   else if (pending.jogs && code != Errc::ok && !pending.conversation->begun() && !core_.reachable())
-    jog_.end();
-  if (code == Errc::ok && pending.ends_jog != 0 && pending.ends_jog == jog_.press()) jog_.end();
+    end_jog();
+  if (code == Errc::ok && pending.ends_jog != 0 && pending.ends_jog == jog_.press()) end_jog();
 }
 
 // Its motor has no other dead man.
+void Axis::end_jog() {
+  jog_.end();
+  core_.velocity_beside_jog.reset();
+}
+
 void Axis::halt_jog(std::string why) {
   if (!jog_.active()) return;
-  jog_.end();
+  end_jog();
   host_.event(image_.number, EventKind::warning, 0, "jog: " + why + ": halted");
   stop_by_itself(Command::halt, false, [](const GroupResult&) {});
 }

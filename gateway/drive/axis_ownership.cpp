@@ -53,6 +53,8 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   // A coil that is held although its jog has ended asks for nothing until it was 0.
   const bool holds_in_vain = group.jog_again && !jog_.again(*group.jog_again, group.client, core_.now);
   if (holds_in_vain) group.jog_again.reset();
+  // While something may run, the end of a run is a stop, and so open to every operator.
+  if (group.command == Command::end_run && may_run()) group.command = Command::halt;
   Errc refusal = judge_owner(group);
   ownership_.wrote(group.life, group.beats, !asks_nothing(group) || group.jog_again, core_.now);
   if (refusal == Errc::ok && !asks_nothing(group) && stop_comes_first(group)) refusal = Errc::stop_owed;
@@ -76,9 +78,7 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
       group.command = Command::halt;
       break;
     case Command::end_run:
-      if (!may_run()) return nothing_asked(group);
-      group.command = Command::halt;
-      break;
+      return nothing_asked(group);
     default:
       break;
   }
@@ -93,6 +93,7 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
                 fmt::format("stopped by {}, which does not own the axis", group.life->name));
   auto result = carry_out(group, refusal, std::move(on_result));
   if (result && is_jog(asked.command)) jog_ = before;  // what ran before needs its button as before
+  if (!jog_.active()) end_jog();
   return result;
 }
 
@@ -109,7 +110,7 @@ bool Axis::may_run() const {
   const bool waits = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
     return p.conversation->group().command == Command::run_velocity;
   });
-  if (waits || core_.motion.running() == MotionKind::velocity) return true;
+  if (waits || core_.motion.running() == MotionKind::velocity || core_.motion.runs_raw()) return true;
   const AxisFacts facts = core_.facts();
   return core_.reachable() ? facts.enabled() && facts.moving && is_continuous(facts.mode) : may_be_enabled();
 }
@@ -117,7 +118,8 @@ bool Axis::may_run() const {
 // --- What was accepted last ------------------------------------------------------------------------------------------
 
 void Axis::accept(const Group& group) {
-  for (const Setpoint& sp : group.setpoints) accepted_.note(sp.quantity, sp.value, core_.motion.ends());
+  if (!group.jogs)
+    for (const Setpoint& sp : group.setpoints) accepted_.note(sp.quantity, sp.value, core_.motion.ends());
   if (group.mode) accepted_.note(Quantity::mode, *group.mode, core_.motion.ends());
   const bool acts = group.controlword || (group.command != Command::none && !is_stop(group.command));
   if (acts) image_.endings.commanded(group.client);
@@ -153,7 +155,7 @@ std::optional<GroupResult> Axis::release(const Group& group, GroupCallback on_re
 GroupResult Axis::released(const Group& group) {
   core_.now = host_.now();
   const auto owner = ownership_.owner();
-  const Errc code = ownership_.release(group.life, may_be_enabled(), core_.now);
+  const Errc code = ownership_.release(group.life, may_be_enabled() || enable_is_asked(false), core_.now);
   if (code != Errc::ok) return refuse(group, code);
   halt_jog("its owner has released the axis");
   if (owner) {
@@ -290,8 +292,11 @@ Errc Axis::begin_jog(Group& group) {
   const std::int64_t signed_speed = direction == Command::jog_forward ? speed : -speed;
   if (speed == 0 || !velocity->limits.holds(signed_speed)) return Errc::bad_value;
   if (jog_must_stop(direction, 0)) return Errc::state_unsuitable;
-  group.setpoints.push_back({Quantity::target_velocity, signed_speed});
+  // The speed is the button's: refused with it, and no target that a later start could use.
+  group.setpoints.push_back({.quantity = Quantity::target_velocity, .value = signed_speed, .with_command = true});
   group.command = Command::run_velocity;
+  group.jogs = true;
+  if (!jog_.active()) core_.velocity_beside_jog = core_.motion.wanted(Quantity::target_velocity).value_or(Wanted{});
   jog_.start(direction, group.client, core_.now, core_.model.jog_timeout);
   return Errc::ok;
 }
@@ -324,7 +329,7 @@ void Axis::observe_jog() {
   const bool starting = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) { return p.jogs; });
   const bool goes_on = jog_.carried() && core_.facts().enabled();
   if (!starting && !goes_on && core_.motion.running() != MotionKind::velocity) {
-    jog_.end();  // a fault, a stop, or another command: only a new press jogs again
+    end_jog();  // a fault, a stop, or another command: only a new press jogs again
     return;
   }
   const std::int64_t shown = std::llabs(core_.value(Quantity::velocity_actual).value_or(0));

@@ -152,6 +152,7 @@ void Conversation::on_object(const bus::ExchangeResult& result) {
 bool Conversation::overtaken_by_stop(Mark mark) const {
   switch (mark) {
     case Mark::enabled:
+    case Mark::found_enabled:
     case Mark::start_discrete:
     case Mark::start_velocity:
     case Mark::start_torque:
@@ -176,6 +177,9 @@ void Conversation::reach(const Action& action, Instant now) {
   switch (action.mark) {
     case Mark::enabled:
       motion.enabled();
+      break;
+    case Mark::found_enabled:
+      motion.unlatch();
       break;
     case Mark::start_discrete:
       start(MotionKind::discrete);

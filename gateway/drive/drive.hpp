@@ -64,6 +64,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   [[nodiscard]] Queued queue(bus::Order order) override;
   void order_waits(bus::OrderId id, Instant until) override { bus_.wait(id, until); }
   void order_done(bus::OrderId id) override { bus_.finish(id); }
+  bool order_goes_on_as(bus::OrderId id, const bus::Order& rest) override { return bus_.go_on_as(id, rest); }
   void event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) override;
 
   [[nodiscard]] bus::Exchange read(ObjectId object) const;

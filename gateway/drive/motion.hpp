@@ -56,6 +56,10 @@ class Motion {
   /// An enable accepted after the stop has been carried out (command 1, coil 0).
   void enabled() {
     raw_run_ = false;
+    unlatch();
+  }
+  /// The same of an axis that was enabled all the time: nothing was sent, and a raw run goes on.
+  void unlatch() {
     latched_ = false;
     unlatch_armed_ = false;
   }
@@ -87,6 +91,7 @@ class Motion {
   /// A raw enable or mode write that lets set-points act at once (raw modes 3, 4, 9, 10). A drive may take its time to
   /// become enabled after it: only leaving that state ends the run, not that it is not reached yet.
   void run_raw() { raw_run_ = true; }
+  [[nodiscard]] bool runs_raw() const { return raw_run_; }
   /// The mode was changed: what ran in the mode before is over.
   void mode_changed();
   /// How often velocity and torque were made void until now.

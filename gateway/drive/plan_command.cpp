@@ -116,7 +116,7 @@ Plan plan_enable(const AxisCore& core) {
   if (facts.enabled()) {
     // Found so, or enabled by somebody else: from now on it is so by our word.
     if (!facts.commanded) add_virtual_controlword(core, kEnabledBits, plan);
-    plan.add(Action::at(Mark::enabled));
+    plan.add(Action::at(Mark::found_enabled));
     return plan;
   }
   // The first step takes the torque away: a ramp under way is let to its end before, however long the client waits.

@@ -180,9 +180,17 @@ void add_quiet_setpoint(const AxisCore& core, const Steps* steps, Plan& plan) {
   plan.add(Action::copy(actual->object, target->object));
 }
 
+// 3.4: a target_velocity acts at once while commands 8 and 9 or raw modes run, and not on a jog.
+bool waits_for_jog(const AxisCore& core, const Group& group, Quantity quantity) {
+  return core.velocity_beside_jog && quantity == Quantity::target_velocity && group.command != Command::run_velocity;
+}
+
 void remember_setpoints(AxisCore& core, const Group& group) {
   for (const Setpoint& sp : group.setpoints) {
-    core.motion.want(sp.quantity, {sp.value, sp.exact});
+    if (waits_for_jog(core, group, sp.quantity))
+      core.velocity_beside_jog = Wanted{sp.value, sp.exact};
+    else
+      core.motion.want(sp.quantity, {sp.value, sp.exact});
     if (sp.quantity == Quantity::homing_method) core.homing_method = sp.value;
     if (sp.quantity == Quantity::homing_offset) core.offset_owed.reset();
   }
@@ -227,7 +235,7 @@ Plan plan_setpoints(const AxisCore& core, const Group& group) {
   Plan plan;
   const AxisFacts facts = core.facts();
   const auto add = [&](const Setpoint& sp) {
-    if (sent_with_start(group.command, sp.quantity)) return true;
+    if (sent_with_start(group.command, sp.quantity) || waits_for_jog(core, group, sp.quantity)) return true;
     if (!may_be_written(core, sp, facts)) return true;
     return add_write(core, sp.quantity, {sp.value, sp.exact}, plan);
   };

@@ -105,8 +105,12 @@ Plan by_controlword(const AxisCore& core, std::uint16_t word) {
   }
   plan.add(Action::write(core.model.controlword, word));
   plan.add(Action::at(Mark::controlword_passed));
-  const bool quick = request_of(word) == Request402::quick_stop;
-  plan.add(Action::wait(quick ? not_enabled(core) : torque_off(core), kStopLimit));
+  const Request402 request = request_of(word);
+  // A drive that stays in quick stop active (605Ah 5 to 7) leaves it by neither 6 nor 7 (CiA 402-2, figure 2): that it
+  // is not enabled is all that they can be seen by.
+  const bool stays = core.facts().state == State402::quick_stop_active && request != Request402::disable_voltage;
+  const bool torque_may_stay = request == Request402::quick_stop || stays;
+  plan.add(Action::wait(torque_may_stay ? not_enabled(core) : torque_off(core), kStopLimit));
   return plan;
 }
 

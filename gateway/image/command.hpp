@@ -90,6 +90,7 @@ struct Group {
   /// axis.
   bool single_controlword = false;
   Command command = Command::none;
+  bool jogs = false;     ///< run_velocity for a button: its speed is the jog's, and no client's target
   bool latches = false;  ///< a lease's action: its stop latches the axis, whichever it is (design 3.4)
   /// Row 78; the axis keeps it (gateway's own, 0 at start).
   std::optional<std::int32_t> set_position_value;
