@@ -159,7 +159,8 @@ void Client::Connection::receive() {
     session_->take_output(out.size(), runtime_.now());
   }
   deadline_->expires_at(session_->next_deadline());
-  if (!unread_.empty() || session_->finished()) turn_->expires_at(runtime_.now());
+  // Where the session reads no more for now, an answer of its own leads here again.
+  if ((!unread_.empty() && session_->wants_input()) || session_->finished()) turn_->expires_at(runtime_.now());
   while (incoming_.size() >= kMbap + 2 && incoming_.size() >= 6U + load_be16(incoming_, 4)) {
     const auto end = incoming_.begin() + 6 + load_be16(incoming_, 4);
     const std::vector<std::uint8_t> adu(incoming_.begin(), end);

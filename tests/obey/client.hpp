@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "gateway/upstream/modbus_tcp/session.hpp"
-#include "tests/obey/write.hpp"
+#include "tests/model/write.hpp"
 #include "tests/unit/support/manual_runtime.hpp"
 
 namespace axisgate::test::obey {
+
+using namespace model;  // what a client writes
 
 struct Answer {
   std::uint8_t exception = 0;  ///< 0: none

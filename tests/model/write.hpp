@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace axisgate::test::obey {
+namespace axisgate::test::model {
 
 using Rows = std::map<std::uint16_t, std::int64_t>;  ///< offset in the axis's block: value
 
@@ -55,4 +55,4 @@ struct Write {
 [[nodiscard]] Rows rows_of(const Write& write);
 [[nodiscard]] std::string text(const Write& write);
 
-}  // namespace axisgate::test::obey
+}  // namespace axisgate::test::model

@@ -1,9 +1,9 @@
-#include "tests/obey/write.hpp"
+#include "tests/model/write.hpp"
 
 #include <algorithm>
 #include <array>
 
-namespace axisgate::test::obey {
+namespace axisgate::test::model {
 namespace {
 
 constexpr std::array<std::uint16_t, 16> kWide{42, 44, 48, 50, 52, 58, 62, 64, 66, 68, 70, 72, 74, 76, 78, 84};
@@ -76,4 +76,4 @@ std::string text(const Write& write) {
   return out;
 }
 
-}  // namespace axisgate::test::obey
+}  // namespace axisgate::test::model

@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "tests/obey/contract.hpp"
+#include "tests/model/contract.hpp"
 
-namespace axisgate::test::obey {
+namespace axisgate::test::model {
 
 /// Answers "which of the two readings?", a different way each time until all ways were tried.
 class Readings {
@@ -29,6 +29,10 @@ class Readings {
   std::size_t next_ = 0;
 };
 
+/// So long an enable or a stop is on its way that nobody has seen yet.
+inline constexpr std::int64_t kUnderWayMs = 1000;
+/// A2: "Asserted stops are commands 2, 3, 4 and coils 2, 3 = 1, nothing else."
+[[nodiscard]] constexpr bool is_stop(std::int64_t command) { return command >= 2 && command <= 4; }
 [[nodiscard]] constexpr bool is_start(std::int64_t command) { return command >= kMove && command <= kRun; }
 
 class Judge {
@@ -38,32 +42,44 @@ class Judge {
 
   Verdict registers(const Write& write);
   Verdict coils(const Write& write);
+  /// One that acts was in it.
+  [[nodiscard]] bool stopped() const { return stopped_; }
 
  private:
   enum class Edge : std::uint8_t { absent, nothing, remembered, not_new, acts };
 
   [[nodiscard]] ClientMemory& me() { return world_.clients[client_]; }
   Edge edge(Item& item, std::int64_t value, bool single, bool stop);
+  Edge new_or_not(Item& item, std::int64_t value, bool single, bool stop);
   Edge command_edge(const Rows& rows, bool single);
   Edge level_edge(std::uint16_t number, std::int64_t value, bool single);
   bool all_zero(const Write& write, const Rows& rows, Verdict& verdict);
-  void setpoints(const Rows& rows, bool single, Edge command, Edge controlword, bool refused);
-  void accept(std::uint16_t offset, std::int64_t value);
+  void setpoints(const Rows& rows, bool single, Edge command, Edge controlword, bool refused, bool was_empty);
+  void accept(std::uint16_t offset, std::int64_t value, bool claims);
   [[nodiscard]] bool start_refused(std::int64_t command, Verdict& verdict);
   /// False: it was refused, and nothing after it is carried out.
-  bool controlword(std::int64_t value, Verdict& verdict);
+  bool controlword(std::int64_t value, bool single, Verdict& verdict);
   void command(std::int64_t number, Item& item, Verdict& verdict);
   void answer_not_new(std::int64_t number, const Item& item, Verdict& verdict);
   void stopped(bool asserted);
   void halted(bool asserted);
   void renew_speed();
   void claim();
+  /// Another client owns the axis: what asks is refused, and what is refused changes nothing.
+  [[nodiscard]] bool foreign() const;
+  bool refuse_foreign(Verdict& verdict);
+  void end_run(Verdict& verdict);
+  void tell_foreign(Verdict& verdict) const;
+  void jog(std::int64_t direction, std::int64_t value, Edge edge, bool single, Verdict& verdict);
+  bool reset_fault(Verdict& verdict);
 
   const ContractOptions& options_;
   World& world_;
   Readings& readings_;
   const Seen& seen_;
   std::size_t client_;
+  bool refused_foreign_ = false;
+  bool stopped_ = false;
 };
 
-}  // namespace axisgate::test::obey
+}  // namespace axisgate::test::model

@@ -1,0 +1,29 @@
+#include "tests/judged/history.hpp"
+
+#include <algorithm>
+
+namespace axisgate::test::judged {
+
+using namespace model;
+
+bool History::was_at(std::int64_t position, std::int64_t age_ms) const {
+  std::int64_t least = position, most = position;
+  bool any = false;
+  for (const Sight& sight : seen_) {
+    if (sight.now_ms < seen_.back().now_ms - age_ms - kReadingMs) continue;
+    least = any ? std::min(least, sight.position) : sight.position;
+    most = any ? std::max(most, sight.position) : sight.position;
+    any = true;
+  }
+  if (seen_.front().now_ms > seen_.back().now_ms - age_ms - kReadingMs) return true;
+  return !any || (position >= least - kClose && position <= most + kClose);
+}
+
+bool History::was_enabled(bool enabled, std::int64_t age_ms) const {
+  if (seen_.front().now_ms > seen_.back().now_ms - age_ms - kReadingMs) return true;
+  return std::ranges::any_of(seen_, [&](const Sight& sight) {
+    return sight.now_ms >= seen_.back().now_ms - age_ms - kReadingMs && sight.enabled == enabled;
+  });
+}
+
+}  // namespace axisgate::test::judged

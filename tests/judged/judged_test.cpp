@@ -1,0 +1,96 @@
+// Any sequence, every drive: programs drawn from a seed, judged by the reference model; a failing one is shrunk to its
+// shortest form. AXISGATE_JUDGED_SEEDS: how many for each drive; AXISGATE_JUDGED_SEED: this one alone, to repeat it.
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <cstdlib>
+#include <iostream>
+
+#include "tests/judged/drawing.hpp"
+#include "tests/judged/play.hpp"
+
+namespace axisgate::test::judged {
+namespace {
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::uint64_t kSeeds = 2;  // they take six times as long
+#else
+constexpr std::uint64_t kSeeds = 12;
+#endif
+constexpr std::size_t kMostTries = 400;  // of shrinking
+
+std::uint64_t number_from(const char* variable, std::uint64_t otherwise) {
+  const char* value = std::getenv(variable);
+  return value == nullptr ? otherwise : std::strtoull(value, nullptr, 10);
+}
+
+struct Case {
+  Subject subject;
+  Weather weather;
+  bool leases;
+};
+
+std::string name(const Case& tested) {
+  return obey::name(tested.subject) + (tested.weather == Weather::calm ? "Calm" : "Rough") +
+         (tested.leases ? "Leases" : "");
+}
+void PrintTo(const Case& tested, std::ostream* out) { *out << name(tested); }
+
+std::vector<Case> cases() {
+  std::vector<Case> out;
+  for (const Subject subject : obey::kSubjects)
+    for (const Weather weather : {Weather::calm, Weather::rough})
+      for (const bool leases : {false, true}) out.push_back({subject, weather, leases});
+  return out;
+}
+
+struct Told {
+  std::uint64_t runs = 0, lost = 0, requests = 0;
+  std::int64_t virtual_ms = 0;
+};
+
+/// The shortest that fails, and what it does.
+std::string shortest(const Case& of, std::uint64_t seed) {
+  std::size_t tries = 0;
+  const auto fails = [&](const std::vector<Step>& steps) {
+    return ++tries <= kMostTries &&
+           play({of.subject, flavour_of(of.subject, seed), of.leases, steps}, seed).violation.has_value();
+  };
+  const auto [steps, ways] = rc::shrinkable::findLocalMin(steps_of(of.subject, of.weather, seed), fails);
+  const Outcome outcome = play({of.subject, flavour_of(of.subject, seed), of.leases, steps}, seed);
+  std::string out;
+  for (const std::string& line : outcome.story) out += line + "\n";
+  return out;
+}
+
+class Judged : public testing::TestWithParam<Case> {};
+
+TEST_P(Judged, DoesWhatTheContractAllows) {
+  const std::uint64_t only = number_from("AXISGATE_JUDGED_SEED", 0);
+  const std::uint64_t seeds = number_from("AXISGATE_JUDGED_SEEDS", kSeeds);
+  const std::uint64_t from = only != 0 ? only : number_from("AXISGATE_JUDGED_FROM", 1);
+  Told told;
+  for (std::uint64_t seed = from; seed < (only != 0 ? only + 1 : from + seeds); ++seed) {
+    const Case& of = GetParam();
+    const Outcome outcome = play(draw(of.subject, of.weather, of.leases, seed), seed);
+    told.runs += 1;
+    told.lost += outcome.lost_count ? 1 : 0;
+    told.requests += outcome.requests;
+    told.virtual_ms += outcome.virtual_ms;
+    if (!outcome.violation) continue;
+    ADD_FAILURE() << "seed " << seed << ": " << *outcome.violation << "\n"
+                  << shortest(of, seed) << "again: AXISGATE_JUDGED_SEED=" << seed << " judged_tests --gtest_filter='*/"
+                  << name(of) << "'";
+    return;
+  }
+  std::cout << told.runs << " programs, " << told.requests << " writes, " << told.virtual_ms / 1000 << " virtual s; in "
+            << told.lost << " the readings became too many\n";
+  // A run in which nothing was judged proves nothing.
+  EXPECT_LE(2 * told.lost, told.runs);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Judged, testing::ValuesIn(cases()),
+                         [](const auto& tested) { return name(tested.param); });
+
+}  // namespace
+}  // namespace axisgate::test::judged

@@ -1,0 +1,82 @@
+#include "tests/judged/program.hpp"
+
+#include <rapidcheck.h>
+
+#include <ostream>
+
+#include "tests/judged/drawing.hpp"
+
+namespace axisgate::test::judged {
+namespace {
+
+constexpr int kSteps = 60;  // at most
+
+using Weighted = std::pair<std::size_t, Deed>;
+
+rc::Gen<Deed> deed(Weather weather) {
+  const std::initializer_list<Weighted> calm{
+      {2, Deed::wait},  {6, Deed::command},     {6, Deed::command_by_id}, {8, Deed::order},      {6, Deed::image},
+      {1, Deed::zeros}, {4, Deed::target},      {1, Deed::mode_block},    {1, Deed::word_block}, {2, Deed::word},
+      {4, Deed::coil},  {3, Deed::start_coils}, {3, Deed::again},         {3, Deed::scan},       {3, Deed::button},
+      {3, Deed::read},  {1, Deed::release},     {1, Deed::reconnect},     {1, Deed::vanish}};
+  if (weather == Weather::calm) return rc::gen::weightedElement<Deed>(calm);
+  const auto rough = rc::gen::weightedElement<Deed>({{4, Deed::cut},
+                                                     {4, Deed::unplug},
+                                                     {2, Deed::lose},
+                                                     {2, Deed::late},
+                                                     {1, Deed::twice},
+                                                     {1, Deed::restart},
+                                                     {1, Deed::trip},
+                                                     {2, Deed::crash}});
+  return rc::gen::weightedOneOf<Deed>({{8, rc::gen::weightedElement<Deed>(calm)}, {1, rough}});
+}
+
+rc::Gen<std::uint8_t> below(std::size_t bound) {
+  return rc::gen::resize(rc::kNominalSize, rc::gen::inRange<std::uint8_t>(0, static_cast<std::uint8_t>(bound)));
+}
+
+rc::Gen<Step> step(Weather weather) {
+  return rc::gen::build<Step>(rc::gen::set(&Step::deed, deed(weather)), rc::gen::set(&Step::client, below(2)),
+                              rc::gen::set(&Step::command, below(kCommands.size())), rc::gen::set(&Step::id, below(5)),
+                              rc::gen::set(&Step::position, below(kPositions.size() + 2)),
+                              rc::gen::set(&Step::speed, below(kSpeeds.size() + 2)),
+                              rc::gen::set(&Step::number, below(24)), rc::gen::set(&Step::on),
+                              rc::gen::set(&Step::at_once), rc::gen::set(&Step::length, below(kLengths.size())),
+                              rc::gen::set(&Step::pause, below(kPauses.size())));
+}
+
+constexpr std::array<const char*, 26> kDeeds{
+    "wait",   "command", "command by id", "order", "image", "zeros",  "target",  "mode block", "word block",
+    "word",   "coil",    "start coils",   "again", "scan",  "button", "read",    "release",    "reconnect",
+    "vanish", "cut",     "unplug",        "lose",  "late",  "twice",  "restart", "trip"};
+
+}  // namespace
+
+Flavour flavour_of(Subject subject, std::uint64_t seed) {
+  if (!obey::has_positions(subject)) return Flavour::speeds;
+  if (!obey::has_speeds(subject)) return Flavour::moves;
+  return static_cast<Flavour>(seed % 3);
+}
+
+rc::Shrinkable<std::vector<Step>> steps_of(Subject subject, Weather weather, std::uint64_t seed) {
+  constexpr std::uint64_t kApart = 64;
+  return rc::gen::container<std::vector<Step>>(step(weather))(
+      rc::Random(seed * kApart + static_cast<std::uint64_t>(subject)), kSteps);
+}
+
+Program draw(Subject subject, Weather weather, bool leases, std::uint64_t seed) {
+  return {subject, flavour_of(subject, seed), leases, steps_of(subject, weather, seed).value()};
+}
+
+std::string text(const Step& step) {
+  const auto deed = static_cast<std::size_t>(step.deed);
+  std::string out = step.client == 0 ? "a " : "b ";
+  out += deed < kDeeds.size() ? kDeeds[deed] : "crash";
+  return out;
+}
+
+void show(const Program& program, std::ostream& out) {
+  for (const Step& step : program.steps) out << text(step) << "\n";
+}
+
+}  // namespace axisgate::test::judged

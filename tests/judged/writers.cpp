@@ -1,0 +1,115 @@
+#include "tests/judged/writers.hpp"
+
+namespace axisgate::test::judged {
+
+using namespace model;
+
+namespace {
+constexpr std::int64_t kMoveNow = 63;  // start, and change at once
+}  // namespace
+
+std::int64_t Writers::start_command(const Step& step) const {
+  const std::int64_t command = kCommands.at(step.command);
+  if (command < kMove) return command;
+  if (flavour_ == Flavour::speeds) return kRun;
+  if (flavour_ == Flavour::moves && command == kRun) return kMove;
+  return command;
+}
+
+// The steps of CiA 402 in their order, sometimes from the beginning.
+std::int64_t Writers::next_word(const Step& step, Writer& writer) const {
+  if (flavour_ == Flavour::both) return 0;
+  if (step.number % 3 != 0) return writer.word;
+  if (writer.word == 6)
+    writer.word = 7;
+  else if (writer.word == 7 || writer.word == kMoveNow)
+    writer.word = 15;
+  else if (writer.word == 15 && flavour_ == Flavour::moves && step.on)
+    writer.word = kMoveNow;
+  else
+    writer.word = step.number % 8 == 7 ? 0 : 6;
+  return writer.word;
+}
+
+Write Writers::registers(const Step& step) {
+  Writer& writer = writers_.at(step.client);
+  const int function = step.number % 4 == 3 ? fc::read_write : fc::write_registers;
+  const auto pick = [&](std::uint16_t offset, const auto& list, std::uint8_t index, bool has) {
+    if (index < list.size() || !writer.rows.contains(offset)) writer.rows[offset] = has ? list[index % list.size()] : 0;
+  };
+  pick(row::target_position, kPositions, step.position, obey::has_positions(subject_));
+  pick(row::target_velocity, kSpeeds, step.speed, obey::has_speeds(subject_));
+  Rows rows = writer.rows;
+  if (step.client == 0) rows.insert(profile_.begin(), profile_.end());
+  if (step.number % 2 == 0 && flavour_ != Flavour::both)
+    rows[row::mode] = flavour_ == Flavour::moves ? 1 : kVelocityMode;
+  if (step.id > 1) ++writer.id;
+  rows[row::command] = start_command(step);
+  rows[row::command_id] = step.id == 0 ? 0 : writer.id;
+  std::uint16_t first = row::controlword;
+  std::uint16_t last = row::heartbeat;
+  switch (step.deed) {
+    case Deed::command_by_id:
+      first = row::command, last = row::command_id;
+      break;
+    case Deed::order:
+      first = row::target_position, last = row::command_id;
+      break;
+    case Deed::mode_block:
+      first = row::mode, last = row::target_position + 1;
+      break;
+    case Deed::word_block:
+      last = row::target_velocity + 1;
+      rows[row::controlword] = next_word(step, writer);
+      break;
+    case Deed::zeros:
+      rows.clear();
+      break;
+    default:
+      rows[row::controlword] = next_word(step, writer);
+  }
+  std::erase_if(rows, [&](const auto& r) { return r.first < first || r.first > last; });
+  return block(first, last, rows, function);
+}
+
+Write Writers::write_of(const Step& step) {
+  Writer& writer = writers_.at(step.client);
+  switch (step.deed) {
+    case Deed::command:
+      return one(row::command, start_command(step), step.number % 4 == 3 ? fc::mask_write : 0);
+    case Deed::release:
+      return one(row::command, leases_ ? kRelease : kHalt);
+    case Deed::word:
+      if (flavour_ == Flavour::both) return one(row::command, start_command(step));
+      return one(row::controlword, next_word(step, writer), step.number % 4 == 3 ? fc::mask_write : 0);
+    case Deed::target: {
+      const bool move = flavour_ == Flavour::moves || (flavour_ == Flavour::both && step.on);
+      if (move) return one(row::target_position, kPositions[step.position % kPositions.size()]);
+      return one(row::target_velocity, kSpeeds[step.speed % kSpeeds.size()]);
+    }
+    case Deed::coil: {
+      constexpr std::array<std::uint16_t, 8> kCoils{coil::enable,         coil::start_absolute, coil::run_velocity,
+                                                    coil::start_relative, coil::halt,           coil::quick_stop,
+                                                    coil::fault_reset,    coil::enable};
+      std::uint16_t number = kCoils[step.number % kCoils.size()];
+      if (flavour_ == Flavour::speeds && (number == coil::start_absolute || number == coil::start_relative))
+        number = coil::run_velocity;
+      if (flavour_ == Flavour::moves && number == coil::run_velocity) number = coil::start_absolute;
+      return one_coil(number, step.on, step.number >= 16 ? fc::write_coils : fc::write_coil);
+    }
+    case Deed::start_coils: {
+      std::vector<std::uint16_t> values(4);
+      const bool run = flavour_ == Flavour::speeds || (flavour_ == Flavour::both && step.number % 2 == 0);
+      if (step.on) values[run ? 3 : step.number % 4 == 3 ? 1 : 0] = 1;
+      return coil_block(coil::start_absolute, values);
+    }
+    case Deed::again:
+    case Deed::scan:
+      if (!writer.last.words.empty()) return writer.last;
+      return registers({.deed = Deed::zeros, .client = step.client});
+    default:
+      return registers(step);
+  }
+}
+
+}  // namespace axisgate::test::judged

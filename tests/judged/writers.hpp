@@ -1,0 +1,37 @@
+// What each client writes next: a step of a program, resolved by what the same client wrote before. Promises equal
+// writes for equal programs, whatever was answered. Never knows what a write will do.
+#pragma once
+
+#include "tests/judged/program.hpp"
+#include "tests/model/contract.hpp"
+
+namespace axisgate::test::judged {
+
+class Writers {
+ public:
+  /// `profile`: rows 48 to 52 as the drive holds them; client a has them in its blocks, b writes zeros.
+  Writers(const Program& program, model::Rows profile)
+      : subject_(program.subject), flavour_(program.flavour), leases_(program.leases), profile_(std::move(profile)) {}
+
+  [[nodiscard]] model::Write write_of(const Step& step);
+  void sent(std::size_t client, const model::Write& write) { writers_.at(client).last = write; }
+
+ private:
+  struct Writer {
+    std::int64_t id = 0;
+    model::Rows rows{};  ///< targets, as written last
+    std::int64_t word = 0;
+    model::Write last{};
+  };
+  [[nodiscard]] model::Write registers(const Step& step);
+  [[nodiscard]] std::int64_t start_command(const Step& step) const;
+  [[nodiscard]] std::int64_t next_word(const Step& step, Writer& writer) const;
+
+  Subject subject_;
+  Flavour flavour_;
+  bool leases_;
+  model::Rows profile_;
+  std::array<Writer, model::kClients> writers_{};
+};
+
+}  // namespace axisgate::test::judged

@@ -1,0 +1,215 @@
+#include "tests/model/contract.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "tests/model/judge.hpp"
+
+namespace axisgate::test::model {
+namespace {
+
+const std::set<int> kTrouble{3, 4, 6, 10, 11};  // 3.3, the table: not started, nothing was sent, outcome unknown
+
+void doubt(Item& item) {
+  item.unsure = true;
+  item.acted = item.spoilt = false;
+  item.refused = true;
+}
+
+void doubt(ClientMemory& client) {
+  doubt(client.command);
+  doubt(client.controlword);
+  for (Item& coil : client.coils) doubt(coil);
+}
+
+/// Too many readings of what was remembered: from now on of each thing that acts by edges both are allowed until it is
+/// written with another value. What the motor does and who owns the axis stays apart.
+void blur(World& world, const World& first) {
+  for (std::size_t c = 0; c < world.clients.size(); ++c) {
+    ClientMemory& client = world.clients[c];
+    client.rows = first.clients[c].rows;
+    client.rows_unsure = true;
+    doubt(client);
+    const auto any = [](Item& item) { item.ended = item.changed = true; };
+    any(client.command);
+    any(client.controlword);
+    for (Item& coil : client.coils) any(coil);
+  }
+}
+
+template <class Call>
+std::string each_once(const std::vector<World>& worlds, Call&& call) {
+  std::set<std::string> lines;
+  for (const World& world : worlds) lines.insert(call(world));
+  std::string out;
+  for (const std::string& line : lines) out += (out.empty() ? "" : " | ") + line;
+  return out;
+}
+
+}  // namespace
+
+Motion World::motion() const {
+  const auto of = [&](std::uint16_t offset) { return accepted.contains(offset) ? accepted.at(offset) : 0; };
+  if (motor == Motor::moves) return {motor, target};
+  const std::uint16_t speed = jog != 0 ? row::jog_velocity : row::target_velocity;
+  if (motor == Motor::runs && !accepted.contains(speed)) return {Motor::unknown, 0};
+  if (motor == Motor::runs) return {motor, jog != 0 ? jog * of(speed) : of(speed)};
+  return {motor, 0};
+}
+
+std::string text(const World& world) {
+  std::string out = world.faulted   ? "faulted, "
+                    : world.latched ? "latched, "
+                    : world.enabled ? "enabled, "
+                                    : "disabled, ";
+  const Motion motion = world.motion();
+  if (motion.kind == Motor::stands) out += "stands";
+  if (motion.kind == Motor::moves) out += "moves to " + std::to_string(motion.value);
+  if (motion.kind == Motor::runs) out += (world.jog != 0 ? "jogs at " : "runs at ") + std::to_string(motion.value);
+  if (motion.kind == Motor::unknown) out += "nobody can tell";
+  if (world.broken && motion.kind != Motor::stands) out += ", or was broken off";
+  if (world.owner) out += std::string(", owned by ") + (*world.owner == 0 ? "a" : "b");
+  return out;
+}
+
+Seen Contract::seen() const {
+  return {sight_.now_ms, sight_.position, sight_.velocity == 0, sight_.now_ms - since_ms_ >= kClearMs};
+}
+
+void Contract::changed(World& world, const Motion& before) const {
+  if (world.motion() == before && world.earlier.empty()) return;
+  if (std::ranges::find(world.earlier, before) == world.earlier.end()) world.earlier.push_back(before);
+  world.changed_ms = sight_.now_ms;
+  world.broken = world.broken && world.motor != Motor::stands && before.kind == world.motor;
+}
+
+// 3.3: "superseded before it was sent · dropped by a stop": 0x06. So what waits may be told when another comes, and
+// what comes while a stop waits.
+void Contract::overtake(World& world, Pending& newest, bool rows) {
+  for (auto& [number, pending] : world.pending) {
+    if (newest.verdict.stop || (pending.setpoints && rows)) pending.overtaken = true;
+    if (pending.verdict.stop) newest.overtaken = true;
+  }
+}
+
+int Contract::send(std::size_t client, const Write& write) {
+  const int number = ++requests_;
+  if (lost_count_) return number;
+  asked_[number] = {client, trouble_};
+  std::vector<World> worlds;
+  std::set<std::string> said;
+  add_expired();
+  for (const World& world : worlds_) {
+    Readings readings;
+    if (worlds.size() > kMostBranches) lost_count_ = true;
+    if (lost_count_) break;
+    do {
+      World next = world;
+      const Seen seen = this->seen();
+      take_over(next, client);
+      Judge judge(options_, next, readings, seen, client);
+      Pending pending;
+      pending.verdict = write.coils() ? judge.coils(write) : judge.registers(write);
+      pending.verdict.stop = judge.stopped();
+      said.insert(pending.verdict.says);
+      const Rows rows = write.coils() ? Rows{} : rows_of(write);
+      pending.more = rows.size() > 1;
+      pending.setpoints = !rows.empty() && !pending.verdict.acts;
+      overtake(next, pending, !rows.empty());
+      next.pending[number] = pending;
+      changed(next, world.motion());
+      if ((world.enabled && !next.enabled) || (next.latched && !world.latched)) next.off_asked_ms = sight_.now_ms;
+      if (next.motion() != world.motion() || next.enabled != world.enabled || next.latched != world.latched ||
+          pending.verdict.starts)
+        next.awaits = number;
+      // The same in a world where it never came to be: only trouble can be the cause, and the answer tells. A stop is
+      // owed all the same (A14).
+      World none = world;
+      none.clients = next.clients;
+      overtake(none, pending, !rows.empty());
+      pending.void_ = true;
+      none.pending[number] = pending;
+      const bool differs = !(none.motion() == next.motion()) || none.accepted != next.accepted ||
+                           none.enabled != next.enabled || none.latched != next.latched ||
+                           none.faulted != next.faulted || none.owner != next.owner;
+      worlds.push_back(std::move(next));
+      if (!differs) continue;
+      worlds.back().pending[number].alone = false;
+      worlds.push_back(none);
+      // Whether what was not carried out has claimed the axis is not said.
+      if (none.owner == worlds[worlds.size() - 2].owner) continue;
+      none.owner = worlds[worlds.size() - 2].owner;
+      none.lease_until(worlds[worlds.size() - 2].lease_ends_ms);
+      worlds.push_back(std::move(none));
+    } while (readings.advance());
+  }
+  if (lost_count_) return number;
+  worlds_ = std::move(worlds);
+  keep_different();
+  predicted_.clear();
+  for (const std::string& one : said) predicted_ += (predicted_.empty() ? "" : " | ") + one;
+  return number;
+}
+
+void Contract::keep_different() {
+  if (worlds_.size() > kMaxWorlds)
+    for (World& world : worlds_) blur(world, worlds_.front());
+  std::vector<World> different;
+  for (World& world : worlds_)
+    if (std::ranges::find(different, world) == different.end()) different.push_back(std::move(world));
+  worlds_ = std::move(different);
+  lost_count_ = lost_count_ || worlds_.size() > kMaxWorlds;
+  if (lost_count_) worlds_.resize(1);
+}
+
+bool Contract::answered(int request, int exception) {
+  if (lost_count_) return true;
+  const Asked asked = asked_.at(request);
+  asked_.erase(request);
+  std::vector<World> fitting;
+  for (const World& world : worlds_) {
+    const Pending& pending = world.pending.at(request);
+    const bool expected = pending.verdict.any_answer || pending.verdict.answers.contains(exception);
+    const bool dropped = exception == 6 && pending.overtaken;
+    const bool lost = asked.troubled && kTrouble.contains(exception);
+    // 3.3: "dropped by a stop": of a stop itself only what stands beside it. "Outcome unknown", 0x0B: both. Nothing was
+    // sent, 0x0A: a stop is owed all the same (A14).
+    const bool not_done = pending.void_ || pending.alone;
+    const bool fits = (expected && !pending.void_) ||
+                      (dropped && (not_done || pending.more || !pending.verdict.stop)) ||
+                      (lost && (not_done || exception == 11 || pending.verdict.stop));
+    if (!fits) continue;
+    World next = world;
+    next.pending.erase(request);
+    if (next.awaits == request) {
+      next.awaits = 0;
+      next.changed_ms = sight_.now_ms;
+    }
+    // Whether it is remembered is not said.
+    if (!expected) doubt(next.clients[asked.client]);
+    fitting.push_back(std::move(next));
+  }
+  if (fitting.empty()) return false;
+  worlds_ = std::move(fitting);
+  keep_different();
+  return true;
+}
+
+void Contract::unanswered(int request) {
+  if (lost_count_) return;
+  asked_.erase(request);
+  for (World& world : worlds_) {
+    world.pending.erase(request);
+    if (world.awaits != request) continue;
+    world.awaits = 0;
+    world.changed_ms = sight_.now_ms;
+  }
+  keep_different();
+}
+
+std::string Contract::expected() const {
+  return each_once(worlds_, [](const World& world) { return text(world); });
+}
+
+}  // namespace axisgate::test::model

@@ -1,0 +1,217 @@
+// What the contract says of one axis and any sequence of writes, gaps and deaths: a small, slow, obvious reference. It
+// knows plain numbers, and each rule stands beside its sentence. Where a sentence can be read in two ways, or nobody
+// can know (an acknowledgement was lost), both are allowed: the reference keeps a world for each, and what is answered
+// or seen of the motor ends those that it does not fit.
+// Promises to know nothing of the gateway: it includes nothing of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/model/write.hpp"
+
+namespace axisgate::test::model {
+
+inline constexpr std::size_t kClients = 2;
+inline constexpr std::size_t kGhost = 100;
+inline constexpr std::int64_t kNever = INT64_MAX, kLongAgo = INT64_MIN / 4;
+
+/// What somebody beside the machine sees.
+struct Sight {
+  std::int64_t now_ms = 0;
+  std::int64_t position = 0;
+  std::int64_t velocity = 0;      ///< 0: it stands
+  std::optional<bool> enabled{};  ///< none: of this drive nobody can tell
+  bool faulted = false;
+};
+
+inline constexpr std::int64_t kClearMs = 250;  ///< so long standing or moving: no doubt about it
+/// The same when a write is judged.
+struct Seen {
+  std::int64_t now_ms = 0;
+  std::int64_t position = 0;
+  bool stands = true;
+  bool clear = true;  ///< it has been standing, or moving, for a while: nobody could see it otherwise
+};
+
+/// One thing that acts by edges, as one client has written it.
+struct Item {
+  std::optional<std::int64_t> value{};  ///< none: empty memory
+  std::int64_t written_ms = 0;
+  bool spoilt = false;   ///< another client's stop, a fault or a loss since it acted
+  bool changed = false;  ///< this client has changed one of its targets since it acted
+  bool ended = false;    ///< a stop or another client since it acted
+  bool refused = false;  ///< it was not carried out
+  bool acted = false;    ///< ever; else it was only remembered
+  bool unsure = false;   ///< whether it was carried out nobody knows, or what is remembered of it
+  bool operator==(const Item&) const = default;
+};
+
+struct ClientMemory {
+  Item command, controlword;
+  std::array<Item, 10> coils{};
+  std::optional<std::int64_t> id{};  ///< the last one that was not 0; belongs to the address
+  Rows rows{};                       ///< as written last, whatever became of it
+  bool rows_unsure = false;          ///< or otherwise
+  bool operator==(const ClientMemory&) const = default;
+};
+
+/// What the motor may do.
+struct Motion {
+  enum class Kind : std::uint8_t { stands, moves, runs, unknown };
+  Kind kind = Kind::stands;
+  std::int64_t value = 0;  ///< where a move ends; how fast a run is
+  bool operator==(const Motion&) const = default;
+};
+using Motor = Motion::Kind;
+
+struct Verdict {
+  std::string says{};        ///< for people
+  std::set<int> answers{0};  ///< exceptions that fit; 0: none
+  bool any_answer = false;
+  bool starts = false;
+  bool acts = false;  ///< a command or controlword in it
+  bool stop = false;  ///< it holds one that acts
+  bool operator==(const Verdict&) const = default;
+};
+
+/// A request that was not answered yet, as one world sees it.
+struct Pending {
+  Verdict verdict{};
+  bool void_ = false;      ///< in this world it was never carried out: only trouble can be the cause
+  bool overtaken = false;  ///< a stop came before or after it: what waits is dropped
+  bool alone = true;       ///< there is no world where it was not carried out: that would be the same
+  bool more = false;       ///< it holds more than one row
+  bool setpoints = false;  ///< it holds nothing else
+  bool operator==(const Pending&) const = default;
+};
+
+/// One reading of all that was written and seen so far.
+struct World {
+  std::array<ClientMemory, kClients> clients{};
+  Rows accepted{};
+  std::optional<std::size_t> owner{};      ///< kGhost and more: a connection that is silent for ever
+  bool orphan = false;                     ///< its connection has ended
+  std::int64_t lease_ends_ms = kNever;     ///< at the earliest; with an owner, or open to all; kNever: nothing runs out
+  std::int64_t lease_ends_by_ms = kNever;  ///< at the latest: of some requests nobody can tell whether they renew it
+  bool lease_unsure = false;               ///< it may have run out by now
+  bool enabled = true;
+  bool latched = false;
+  bool faulted = false;
+  bool adopted = false;                    ///< found enabled after a loss: whether starts are accepted is not said
+  bool held = false;                       ///< coil 3 is 1
+  std::int64_t ladder = 15;                ///< the last raw step of CiA 402 that was taken: 0, 6, 7 or 15
+  std::optional<std::int64_t> raw_mode{};  ///< written to row 41 since the last command that selects a mode
+  bool start_bit = false;                  ///< bit 4 may be set in the controlword in effect
+  bool stale_speed = false;                ///< the speed was accepted before a stop
+  Motor motor = Motor::stands;
+  std::int64_t target = 0;  ///< of the move
+  std::int64_t started_ms = 0;
+  std::int64_t jog = 0;  ///< 1 forward, -1 reverse: the motor runs at the jog velocity
+  std::size_t jog_client = 0;
+  std::int64_t jog_ends_ms = kNever;
+  std::int64_t enable_asked_ms = kLongAgo;
+  std::int64_t off_asked_ms = kLongAgo;
+  bool broken = false;  ///< trouble since the motion began: it may have ended anywhere
+  // What the motor may still do from before, until it has settled.
+  std::vector<Motion> earlier{};
+  std::int64_t changed_ms = 0;
+  int awaits = 0;  ///< the answer of this request; 0: of none
+  std::map<int, Pending> pending{};
+  bool operator==(const World&) const = default;
+  [[nodiscard]] Motion motion() const;
+  void lease_until(std::int64_t ends_ms) {
+    lease_ends_ms = lease_ends_by_ms = ends_ms;
+    lease_unsure = false;
+  }
+};
+
+struct ContractOptions {
+  bool leases = false;
+  std::int64_t lease_ms = 2000;
+  std::int64_t jog_timeout_ms = 500;
+  std::set<std::uint16_t> rows{};  ///< set-points the drive has
+  bool no_halt = false;            ///< of a move: the profile stops it by what may latch the axis
+  bool by_gateway = false;         ///< the CiA 402 machine is the gateway's
+  std::int64_t settles_ms = 1200;  ///< so long after an answer the motor does what was asked, ramps included
+};
+
+class Contract {
+ public:
+  Contract(ContractOptions options, World start) : options_(std::move(options)), worlds_{std::move(start)} {}
+
+  /// A write is sent now. Returns its number.
+  int send(std::size_t client, const Write& write);
+  /// What was answered. False: no reading of the contract has this answer.
+  bool answered(int request, int exception);
+  /// It will never be answered: its connection is gone.
+  void unanswered(int request);
+  /// Any other request of this client.
+  void asked(std::size_t client);
+  /// False: no reading of the contract lets the motor do this.
+  bool see(const Sight& sight);
+
+  /// The connection has ended, or is silent for ever and the gateway believes it alive; the next one begins with an
+  /// empty memory.
+  void left(std::size_t client, bool silently);
+  /// From here on frames may be lost, and drives be gone, until the axis is online again and nothing is wrong.
+  void trouble_begins();
+  void trouble_ends();
+  void drive_restarted();
+  void drive_tripped();
+  void gateway_died();
+  void gateway_started();
+
+  /// What was predicted of the last write, one line for each reading.
+  [[nodiscard]] const std::string& predicted() const { return predicted_; }
+  [[nodiscard]] std::string expected() const;
+  [[nodiscard]] const std::vector<World>& worlds() const { return worlds_; }
+  /// There were too many readings: from here on nothing is judged any more.
+  [[nodiscard]] bool lost_count() const { return lost_count_; }
+  [[nodiscard]] bool in_trouble() const { return trouble_; }
+  [[nodiscard]] bool settled() const;
+
+ private:
+  struct Asked {
+    std::size_t client = 0;
+    bool troubled = false;
+  };
+  static constexpr std::size_t kMaxWorlds = 400;
+  static constexpr std::size_t kMostBranches = 4000;  // of one write
+
+  [[nodiscard]] bool settled(const World& world) const;
+  [[nodiscard]] bool fits(World& world, const Sight& sight) const;
+  [[nodiscard]] bool enabling_fits(World& world, const Sight& sight) const;
+  [[nodiscard]] bool motion_fits(World& world, const Sight& sight) const;
+  void pass_time(std::int64_t now_ms);
+  void expire(World& world) const;
+  void add_expired();
+  void changed(World& world, const Motion& before) const;
+  void keep_different();
+  void take_over(World& world, std::size_t client) const;
+  void renew(World& world) const;
+  static void overtake(World& world, Pending& newest, bool rows);
+  [[nodiscard]] Seen seen() const;
+
+  ContractOptions options_;
+  std::vector<World> worlds_;
+  std::map<int, Asked> asked_;
+  std::string predicted_;
+  Sight sight_{};
+  std::optional<bool> was_enabled_{};
+  std::int64_t since_ms_ = kLongAgo;  ///< it has been standing, or moving, since
+  std::int64_t stood_at_ = 0;
+  int requests_ = 0;
+  bool trouble_ = false;
+  bool gateway_is_new_ = false;
+  bool lost_count_ = false;
+};
+
+[[nodiscard]] std::string text(const World& world);
+
+}  // namespace axisgate::test::model

@@ -1,0 +1,268 @@
+#include "tests/model/judge.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace axisgate::test::model {
+namespace {
+
+constexpr std::int64_t kRearmMs = 1000, kRearmUnsureMs = 150;
+constexpr std::array<std::uint16_t, 11> kZeroLeaves{41, 47, 48, 50, 52, 58, 62, 64, 66, 70, 76};  // A6
+
+}  // namespace
+
+// A1, A2: what is new, of a command without id, a controlword or an edge coil.
+Judge::Edge Judge::edge(Item& item, std::int64_t value, bool single, bool stop) {
+  if (item.value && *item.value != value) item.unsure = false;
+  const Edge edge = new_or_not(item, value, single, stop);
+  if (edge == Edge::acts || edge == Edge::remembered) item.acted = edge == Edge::acts;
+  if (edge == Edge::remembered || edge == Edge::acts) item.spoilt = false;
+  return edge;
+}
+
+Judge::Edge Judge::new_or_not(Item& item, std::int64_t value, bool single, bool stop) {
+  const std::optional<std::int64_t> before = item.value;
+  const std::int64_t quiet = seen_.now_ms - item.written_ms;
+  item.value = value;
+  item.written_ms = seen_.now_ms;
+  // A2: "One acts if the command or the id differs from what is remembered, on an empty memory too, and in a single
+  // write always."
+  if (stop) return single || before != value ? Edge::acts : Edge::not_new;
+  // A1: "new if it differs from the command remembered; a single write also on an empty memory ... A block write on an
+  // empty memory only remembers."
+  if (item.unsure && readings_.other()) return Edge::not_new;
+  // Whether what was refused is remembered is not said.
+  if (single && item.refused && readings_.other()) return Edge::acts;
+  if (!before) return single ? Edge::acts : Edge::remembered;
+  if (*before != value) return Edge::acts;
+  // A1: "and when this client has not written it for rearm_ms, but not after another client's stop ... since it acted".
+  // A1 lets a controlword that another's stop has spoilt not act, and so a stop: the reading that stops is allowed too.
+  const bool stop_word = (value & 6) != 6 || (value & 15) == 6 || (value & 15) == 7;
+  if (single && &item == &me().controlword && stop_word && readings_.other()) return Edge::acts;
+  if (!single || item.spoilt || quiet < kRearmMs - kRearmUnsureMs) return Edge::not_new;
+  if (quiet < kRearmMs + kRearmUnsureMs && readings_.other()) return Edge::not_new;
+  return Edge::acts;
+}
+
+Judge::Edge Judge::command_edge(const Rows& rows, bool single) {
+  if (!rows.contains(row::command)) return Edge::absent;  // A1: "Register 55 alone asks for nothing"
+  const std::int64_t value = rows.at(row::command);
+  const std::int64_t id = rows.contains(row::command_id) ? rows.at(row::command_id) : 0;
+  ClientMemory& mine = me();
+  const std::optional<std::int64_t> before = mine.command.value;
+  const std::optional<std::int64_t> last_id = mine.id;
+  Edge edge = Edge::not_new;
+  if (id == 0) {
+    edge = this->edge(mine.command, value, single, is_stop(value));
+  } else {
+    mine.id = id;  // A1: "zeros never erase it", "Command 0 with an id sets the last id"
+    mine.command.value = value;
+    mine.command.written_ms = seen_.now_ms;
+    if (is_stop(value))
+      edge = before != value || last_id != id ? Edge::acts : Edge::not_new;  // A2
+    else if (!last_id)
+      edge = Edge::remembered;  // A1: "Where none is kept, the pair is only remembered"
+    else
+      edge = *last_id != id ? Edge::acts : Edge::not_new;  // A1: "only the id decides"
+    if (edge == Edge::acts || before != value) mine.command.acted = edge == Edge::acts;
+    if (!mine.command.acted) mine.command.spoilt = false;
+  }
+  return value == 0 && edge != Edge::remembered ? Edge::nothing : edge;
+}
+
+// 3.5, A7: "A write claims an axis only if it asks for something."
+void Judge::claim() {
+  if (!options_.leases) return;
+  world_.owner = client_;
+  world_.orphan = false;
+  world_.lease_until(seen_.now_ms + options_.lease_ms);
+}
+
+// 3.3, table of outcomes: "another client owns the axis: 0x06".
+bool Judge::foreign() const { return options_.leases && world_.owner && *world_.owner != client_; }
+
+bool Judge::refuse_foreign(Verdict& verdict) {
+  if (!foreign()) return false;
+  verdict = {"refused: another client owns the axis", {6}};
+  return refused_foreign_ = true;
+}
+
+void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
+  if (foreign()) {
+    refused_foreign_ = true;
+    return;
+  }
+  if (claims) claim();
+  const auto old = world_.accepted.find(offset);
+  const bool differs = old == world_.accepted.end() || old->second != value;
+  world_.accepted[offset] = value;
+  // A14 lets a run go on that 3.4 has ended: whether a new speed acts on it is not said.
+  if (offset == row::target_velocity && differs && world_.broken && world_.motor == Motor::runs && readings_.other())
+    world_.motor = Motor::unknown;
+  if (offset == row::target_velocity) world_.stale_speed = false;
+  if (differs && (offset == row::target_position || offset == row::target_velocity)) {
+    me().command.changed = true;
+    for (Item& coil : me().coils) coil.changed = true;
+  }
+  // 3.3: a mode that changes under a motion; 3.4 does not say what becomes of that.
+  if (offset == row::mode) {
+    world_.raw_mode = value;
+    if (world_.motor != Motor::stands) world_.motor = Motor::unknown;
+  }
+  // 3.4: "target_velocity acts at once only while commands 8, 9 or raw modes 3 ... run". Whether an axis enabled in
+  // mode 3 by command 1, or halted in it, is one that runs is not said.
+  const bool could_run = world_.enabled && !world_.latched && world_.raw_mode == 3;
+  const bool speed = world_.accepted.contains(row::target_velocity) && world_.accepted[row::target_velocity] != 0;
+  if (could_run && speed && world_.motor == Motor::stands && readings_.other()) world_.motor = Motor::runs;
+}
+
+// A7.
+void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlword, bool refused, bool was_empty) {
+  const int carried = (command != Edge::absent ? 1 : 0) + (controlword != Edge::absent ? 1 : 0);
+  const int empty = (command == Edge::remembered ? 1 : 0) + (controlword == Edge::remembered ? 1 : 0);
+  // "On an empty memory a block that carries 40 or 54 only remembers its set-points." Where one of the two is empty and
+  // the other is not, or a stop acts on it, the sentence can be read both ways.
+  const bool sure = empty == carried && (command != Edge::acts || !was_empty);
+  const bool only_remembers = !single && (empty > 0 || was_empty) && (sure || readings_.other());
+  // 3.4: stops are "without taking the lease"; whether the set-points beside one take it is not said.
+  const bool beside_stop = command == Edge::acts && is_stop(rows.at(row::command));
+  const bool claims = !options_.leases || !beside_stop || readings_.other();
+  const bool otherwise = me().rows_unsure && readings_.other();
+  const bool acts = (command == Edge::acts && !refused) || controlword == Edge::acts;
+  for (const auto& [offset, value] : rows) {
+    if (offset == row::controlword || offset == row::command || offset == row::command_id) continue;
+    const auto last = me().rows.find(offset);
+    bool differs = last == me().rows.end() || last->second != value;
+    me().rows[offset] = value;
+    differs = differs || otherwise;
+    if (!options_.rows.contains(offset)) {
+      // Not judged here; but what asks claims.
+      if (options_.leases && !only_remembers && (differs || acts) && !foreign() && readings_.other()) claim();
+      continue;
+    }
+    const auto now = world_.accepted.find(offset);
+    const bool other_value = now == world_.accepted.end() || now->second != value;
+    bool asks = single || differs || acts;
+    // "or if this client owns the axis and the value last accepted differs"; not with "lease": null. A lease may have
+    // run out while the axis was disabled (A8).
+    if (!asks && options_.leases && world_.owner == client_ && other_value) asks = world_.enabled || !readings_.other();
+    if (only_remembers) asks = false;
+    if (asks) accept(offset, value, claims);
+  }
+}
+
+void Judge::stopped(bool asserted) {
+  stopped_ = true;
+  // 3.3, the fixed order of one request: what its set-points began ends at once.
+  if (world_.motor != Motor::stands) world_.earlier.push_back(world_.motion());
+  world_.motor = Motor::stands;  // 3.4: "a stop end[s] every motion for good"
+  world_.jog = 0;
+  world_.started_ms = seen_.now_ms;  // what a drive shows of standing still lags behind
+  world_.stale_speed = true;
+  for (std::size_t c = 0; c < world_.clients.size(); ++c) {
+    // A1 speaks of "another client's stop"; whether a disabling coil or controlword is one (A2: "nothing else") is
+    // open.
+    const bool spoils = c != client_ && (asserted || readings_.other());
+    const auto mark = [&](Item& item) {
+      item.ended = true;
+      // "since it acted": what was only remembered never did.
+      item.spoilt = item.spoilt || (spoils && item.value && !item.unsure && (item.acted || readings_.other()));
+    };
+    mark(world_.clients[c].command);
+    mark(world_.clients[c].controlword);
+    for (Item& coil : world_.clients[c].coils) mark(coil);
+  }
+}
+
+// A6: "A block that covers 40..54 and is 0 in all of it asks for nothing and claims nothing".
+bool Judge::all_zero(const Write& write, const Rows& rows, Verdict& verdict) {
+  const bool covers = write.first <= row::controlword && write.first + write.words.size() > row::command;
+  if (!covers || std::ranges::any_of(write.words, [](std::uint16_t word) { return word != 0; })) return false;
+  ClientMemory& mine = me();
+  const bool falls = mine.controlword.value && *mine.controlword.value != 0;
+  mine.controlword.value = mine.command.value = 0;
+  mine.controlword.written_ms = mine.command.written_ms = seen_.now_ms;
+  // Whether A7's "last write of the row" knows these zeros is not said.
+  if (readings_.other())
+    for (const auto& [offset, value] : rows) mine.rows[offset] = value;
+  verdict = {"all zero: asks for nothing", {0}};
+  if (falls) {
+    controlword(0, false, verdict);
+    return true;
+  }
+  // "and the owner's target_velocity or target_torque 0 acts while a run is on"; without leases nobody is the owner.
+  if (world_.motor == Motor::runs && (options_.leases ? world_.owner == client_ : readings_.other()) &&
+      world_.jog == 0) {
+    world_.accepted[row::target_velocity] = 0;
+    verdict.says = "all zero: the run's speed is 0";
+  }
+  return true;
+}
+
+Verdict Judge::registers(const Write& write) {
+  Rows rows = rows_of(write);
+  const bool single = write.function != fc::read_write && rows.size() == 1;  // A1: "A single write is ..."
+  for (const std::uint16_t offset : kZeroLeaves) {
+    if (!rows.contains(offset) || rows[offset] != 0) continue;
+    if (single) return {"refused: 0 alone", {3}};  // A6
+    rows.erase(offset);
+  }
+  Verdict verdict;
+  if (!single && all_zero(write, rows, verdict)) return verdict;
+  Item was = me().command;
+  const bool with_id = rows.contains(row::command_id) && rows[row::command_id] != 0;
+  const bool was_empty = rows.contains(row::command) && (with_id ? !me().id.has_value() : !was.value.has_value());
+  const Edge command = command_edge(rows, single);
+  const Edge word =
+      rows.contains(row::controlword) ? edge(me().controlword, rows[row::controlword], single, false) : Edge::absent;
+  const std::int64_t number = command == Edge::absent ? 0 : rows[row::command];
+  bool refused = false;
+  if (command == Edge::acts && is_start(number) && word != Edge::acts) refused = start_refused(number, verdict);
+  setpoints(rows, single, command, word, refused, was_empty);
+  if (verdict.says.empty())
+    verdict.says = command == Edge::remembered || word == Edge::remembered ? "only remembered" : "set-points";
+  // 3.3: "it stops at the first failure".
+  if (word == Edge::acts && !controlword(rows[row::controlword], single, verdict)) {
+    // A stop is accepted in every state; what the two together are answered with is not said.
+    if (command == Edge::acts && is_stop(number)) {
+      this->command(number, me().command, verdict);
+      verdict.any_answer = true;
+    }
+    return verdict;
+  }
+  if (command != Edge::absent && number != was.value.value_or(0)) me().command.refused = false;
+  if (refused) me().command.refused = true;
+  // Of a controlword that is not new nothing is said but that the motor does nothing.
+  if (word != Edge::absent && word != Edge::acts && single) verdict.any_answer = true;
+  if (command == Edge::acts && !refused) {
+    if (word == Edge::acts && is_start(number)) {
+      // Two that act in one request: what the first does decides.
+      if (start_refused(number, verdict)) {
+        me().command.refused = true;
+        return verdict;
+      }
+    }
+    this->command(number, me().command, verdict);
+    if (word == Edge::acts) verdict.any_answer = true;
+  }
+  if (command == Edge::not_new && single) answer_not_new(number, was, verdict);
+  tell_foreign(verdict);
+  verdict.acts = command == Edge::acts || word == Edge::acts;
+  const auto unjudged = [this](const auto& r) {
+    return r.first != row::controlword && r.first < row::command && !options_.rows.contains(r.first);
+  };
+  // Whether a block that repeats set-points which were only remembered asks for them is not said.
+  const auto target = [](const auto& r) { return r.first > row::controlword && r.first < row::command; };
+  if (foreign() && (std::ranges::any_of(rows, unjudged) || (!single && std::ranges::any_of(rows, target))))
+    verdict.answers.insert(6);
+  return verdict;
+}
+
+void Judge::tell_foreign(Verdict& verdict) const {
+  if (!refused_foreign_ || !verdict.answers.contains(0)) return;
+  // What a stop is answered with whose set-points are refused is not said.
+  verdict.answers = stopped_ ? std::set<int>{0, 6} : std::set<int>{6};
+  verdict.says += ", another client owns the axis";
+}
+
+}  // namespace axisgate::test::model

@@ -1,0 +1,276 @@
+// What commands and controlwords do, and what they are answered with (3.4).
+#include <algorithm>
+#include <cstdlib>
+
+#include "tests/model/judge.hpp"
+
+namespace axisgate::test::model {
+namespace {
+
+constexpr std::int64_t kJustBegunMs = 250;
+
+}  // namespace
+
+bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
+  if (refuse_foreign(verdict)) return true;
+  // 3.4: "they need an axis that is enabled, not faulted and not stop-latched".
+  if (world_.adopted && readings_.other()) {
+    verdict = {"refused: found enabled after a loss", {4}};
+    return true;
+  }
+  if (!world_.enabled || world_.latched || (world_.faulted && !options_.by_gateway)) {
+    // A stop that has not shown yet keeps it waiting, and then it has not started in time.
+    verdict = {"refused: not enabled, faulted or latched", {4, 6}};
+    // 3.5: "from its first accepted write"; whether one that is refused like this claims is not said.
+    if (world_.owner != client_ && options_.leases && readings_.other()) claim();
+    return true;
+  }
+  // 3.4, command 7: "at standstill; while moving 0x06".
+  // A move to where it is already is not over before the drive has said so.
+  const bool just_begun = seen_.now_ms - world_.started_ms < kJustBegunMs;
+  const bool under_way =
+      world_.motor == Motor::moves && (just_begun || std::abs(world_.target - seen_.position) > kClose);
+  if (command == 7 && (just_begun || !seen_.stands || world_.motor == Motor::runs || !seen_.clear || under_way)) {
+    const bool unsure = seen_.stands || !seen_.clear;
+    if (!unsure || readings_.other()) {
+      verdict = {"refused: relative while moving", {6}};
+      for (ClientMemory& client : world_.clients) client.command.ended = true;
+      return true;
+    }
+  }
+  // 3.4, command 4: whether a halt that is held by coil 3 keeps starts away is not said.
+  if (world_.held && readings_.other()) {
+    verdict = {"refused: held by coil 3", {4, 6}};
+    return true;
+  }
+  return false;
+}
+
+// 3.4, command 4: "Where a drive has no halt, the profile names the replacement".
+void Judge::halted(bool asserted) {
+  stopped(asserted);
+  if (!options_.no_halt || !readings_.other()) return;
+  world_.latched = true;
+  world_.enabled = false;
+  world_.ladder = 0;
+}
+
+// A7: "the last accepted set-point is the one that every start uses"; 3.4: after a stop "velocity, torque and start are
+// needed anew". Where none came since, both are allowed.
+void Judge::renew_speed() {
+  if (world_.stale_speed && readings_.other()) world_.accepted[row::target_velocity] = 0;
+  world_.stale_speed = false;
+}
+
+void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
+  if (is_start(number)) {
+    claim();
+    // A3: "or another client".
+    for (std::size_t c = 0; c < world_.clients.size(); ++c) {
+      if (c == client_) continue;
+      world_.clients[c].command.ended = true;
+      for (Item& coil : world_.clients[c].coils) coil.ended = true;
+    }
+    item.changed = item.ended = item.spoilt = item.refused = false;
+    item.acted = true;
+    world_.raw_mode.reset();
+    world_.jog = 0;
+    world_.start_bit = true;
+    world_.started_ms = seen_.now_ms;
+    // A7: "the last accepted set-point is the one that every start uses".
+    const auto of = [&](std::uint16_t offset) {
+      return world_.accepted.contains(offset) ? world_.accepted[offset] : std::int64_t{0};
+    };
+    world_.motor = number == 8 ? Motor::runs : Motor::moves;
+    if (number == 8) renew_speed();
+    if (number == 6) world_.target = of(row::target_position);
+    if (number == 7) world_.target = seen_.position + of(row::target_position);
+    // What a gateway that is new reads from the drive nobody has accepted.
+    if (number != 8 && !world_.accepted.contains(row::target_position)) world_.motor = Motor::unknown;
+    verdict = {"acts: command " + std::to_string(number), {0}};
+    verdict.starts = true;
+    return;
+  }
+  if (!is_stop(number) && refuse_foreign(verdict)) {
+    item.refused = true;
+    return;
+  }
+  if (number == 1) {
+    claim();
+    // Whether an enable ends what another client has begun (A3) is not said.
+    for (ClientMemory& client : world_.clients) {
+      client.command.ended = true;
+      for (Item& coil : client.coils) coil.ended = true;
+    }
+    // A Keya's watchdog trip is over with the next command (keya-kydas4860-2e.md); it is shown as disabled.
+    if (world_.faulted && (!options_.by_gateway || readings_.other())) {
+      verdict = {"enable while faulted", {4, 6}};
+      item.refused = true;
+      return;
+    }
+    world_.enable_asked_ms = seen_.now_ms;
+    // 3.4, command 1: "Already enabled: nothing is sent. Clears the stop latch".
+    const bool was = world_.enabled && !world_.latched;
+    if (!was && (!seen_.stands || !seen_.clear) && readings_.other()) {
+      verdict = {"enable while it still turns: not reached", {4, 6, 11}};
+      return;
+    }
+    if (!was) world_.motor = Motor::stands;
+    if (!was) world_.started_ms = seen_.now_ms;  // what a drive shows of standing still lags behind
+    world_.enabled = true;
+    world_.adopted = false;
+    world_.latched = false;
+    world_.held = world_.held && readings_.other();
+    world_.ladder = 15;
+    item.changed = item.ended = item.spoilt = item.refused = false;
+    verdict = {"acts: enable", {0}};
+    return;
+  }
+  if (is_stop(number)) {
+    stopped(true);
+    // A raw step in the same request may count as one out of the latch, or not.
+    if (number == 2) world_.enabled = false, world_.ladder = readings_.other() ? world_.ladder : 0;
+    // 3.4, command 4: "Where a drive has no halt, the profile names the replacement".
+    if (number == 4 && options_.no_halt && readings_.other())
+      world_.latched = true, world_.enabled = false, world_.ladder = 0;
+    if (number == 3) world_.latched = true, world_.enabled = false, world_.ladder = 0;
+    verdict = {"acts: stop " + std::to_string(number), {0}};
+    return;
+  }
+  // 3.5 lists what claims: registers 40 to 79, coils 4 to 9, coil 0.
+  if (number == 5 && &item == &me().command) claim();
+  if (number == 5 && reset_fault(verdict)) return;
+  if (number == 5) {
+    verdict = {"fault_reset without a fault", {0}};
+    return;
+  }
+  // 3.4, command 13: "gives the lease back". Of an axis that is enabled the lease stays, open to all (3.5: only so is
+  // it never without one).
+  if (number == kRelease) {
+    if (world_.orphan && readings_.other()) {
+      verdict = {"release of what its former connection owns", {6}};
+      return;
+    }
+    if (world_.owner == client_ && (!world_.orphan || readings_.other())) {
+      world_.owner.reset();
+      world_.orphan = false;
+      world_.lease_until(world_.enabled ? seen_.now_ms + options_.lease_ms : kNever);
+    }
+    verdict = {"acts: release", {0, 6}};  // of one that does not own it
+    return;
+  }
+  claim();
+  verdict = {"acts: command " + std::to_string(number), {0}};  // 5 on an axis without a fault: nothing is sent
+}
+
+// 3.4, command 5: "clears, never enables: the axis ends disabled". Whether its cause is gone the drive alone knows.
+bool Judge::reset_fault(Verdict& verdict) {
+  if (!world_.faulted) return false;
+  if (readings_.other()) {
+    verdict = {"fault_reset: not reached", {4}};
+    return true;
+  }
+  world_.faulted = false;
+  verdict = {"fault_reset", {0}};
+  return true;
+}
+
+// A3: "A single write that is not new in one of these ways is answered with exception 0x06 each time".
+void Judge::answer_not_new(std::int64_t number, const Item& item, Verdict& verdict) {
+  verdict = {"not new", {0}};
+  if (foreign()) {
+    verdict.answers = {0, 6};
+    return;
+  }
+  if (!is_start(number) && number != 1) {
+    if (!is_stop(number) && (item.ended || item.spoilt)) verdict.answers = {0, 6};
+    return;
+  }
+  if (item.refused) {
+    verdict.answers = {0, 4, 6};  // what a repeated refusal is answered with is not said
+    return;
+  }
+  // "A single write that asks for what is so already ... is answered normally."
+  const bool same_target = number == 6 && world_.motor == Motor::moves &&
+                           world_.accepted.contains(row::target_position) &&
+                           world_.accepted[row::target_position] == world_.target;
+  // It was only remembered: A3 does not say what a single write that repeats it is answered with. And a start that was
+  // refused may be tried again at once: 0x04, as it may be told that it is not new.
+  if (is_start(number) && (!item.acted || world_.motor == Motor::unknown))
+    verdict = {"not new, only remembered before", {0, 4, 6}};
+  else if (number == 7)
+    verdict = {"not new, relative: 0x06", {4, 6}};
+  else if (number == 1 && seen_.now_ms - world_.enable_asked_ms < kUnderWayMs)
+    verdict.answers = {0, 6};
+  else if (number == 1)
+    verdict.answers = world_.enabled && !world_.latched ? std::set<int>{0} : std::set<int>{0, 6};
+  else if (item.ended)
+    verdict = {"not new, perhaps ended by a stop: 0x06", {0, 6}};
+  else if (item.changed)
+    verdict = {"not new, target changed: 0x06", same_target || number == 8 ? std::set<int>{0, 6} : std::set<int>{6}};
+}
+
+bool Judge::controlword(std::int64_t value, bool single, Verdict& verdict) {
+  verdict = {"acts: controlword " + std::to_string(value), {0}, true};
+  const std::int64_t step = value & 15;
+  const bool start = (value & 16) != 0;
+  me().controlword.refused = true;  // unless it comes to the end
+  if (step == 15 && refuse_foreign(verdict)) return false;
+  // 3.4: "from a client that does not own the axis these last two count only as single writes".
+  if ((step == 6 || step == 7) && foreign() && (!single || readings_.other())) return !refuse_foreign(verdict);
+  me().controlword.refused = false;
+  // 3.4: stops are "open to every operator, without taking the lease".
+  if (!foreign() && (step == 15 || world_.owner == client_ || readings_.other())) claim();
+  if (world_.faulted && (!options_.by_gateway || readings_.other())) {
+    world_.faulted = (value & 128) == 0 || readings_.other();
+    stopped(false);
+    return true;
+  }
+  if (step == 15 && !world_.enabled) {
+    // 3.4: the latch lasts until "controlword 6 or 7 and then 15". From 6 straight to 15 drives differ, and what a
+    // disable or a quick stop leaves is the drive's affair.
+    if (world_.latched && world_.ladder == 0) {
+      verdict = {"refused: controlword 15 while latched, without 6 or 7", {4}};
+      return false;
+    }
+    if (world_.ladder != 7 && readings_.other()) return true;
+    world_.enabled = true;
+    world_.enable_asked_ms = seen_.now_ms;
+    world_.latched = false;
+    world_.ladder = 15;
+    world_.start_bit = start;
+    world_.motor = Motor::stands;
+    if (world_.accepted.contains(row::mode) && world_.accepted[row::mode] == 3) {
+      world_.raw_mode = 3;
+      world_.motor = Motor::runs;  // 3.4: raw mode 3 runs
+      renew_speed();
+    }
+    if (start) world_.motor = Motor::unknown;
+    return true;
+  }
+  if (step == 15) {
+    const bool rising = start && !world_.start_bit;
+    const bool maybe = start && world_.start_bit;  // the gateway's own words set bit 4 as they like
+    world_.start_bit = start;
+    const bool position = world_.accepted.contains(row::mode) && world_.accepted[row::mode] == 1;
+    if (position && (rising || (maybe && readings_.other()))) {
+      world_.motor = world_.held ? Motor::unknown : Motor::moves;
+      world_.target = world_.accepted.contains(row::target_position) ? world_.accepted[row::target_position] : 0;
+    }
+    // In mode 3, standing: see accept().
+    if (world_.raw_mode == 3 && world_.motor == Motor::stands && readings_.other()) world_.motor = Motor::runs;
+    return true;
+  }
+  // 3.3: bit 1 = 0, bit 2 = 0, or bits 0..3 = 6 or 7; A6: going to 0 is a stop.
+  stopped(step == 0 && readings_.other());
+  world_.off_asked_ms = seen_.now_ms;
+  const bool from_ready = world_.ladder == 6 || world_.ladder == 7 || world_.enabled;
+  world_.enabled = false;
+  if (step != 7)
+    world_.ladder = step == 6 ? 6 : 0;
+  else if (from_ready || options_.by_gateway || readings_.other())
+    world_.ladder = 7;
+  return true;
+}
+
+}  // namespace axisgate::test::model

@@ -1,0 +1,208 @@
+// Leases, jog buttons, deaths and losses: what ends without being asked.
+#include <algorithm>
+#include <utility>
+
+#include "tests/model/contract.hpp"
+
+namespace axisgate::test::model {
+namespace {
+
+constexpr std::int64_t kUnsureMs = 40;  // two clocks that read the same instant
+
+}  // namespace
+
+// 3.5: "renew": any request; A8: "An orphan lease is taken over by any write ... of the same address and role,
+// whatever it asks".
+void Contract::take_over(World& world, std::size_t client) const {
+  if (world.owner != client) return;
+  // Of a write that is refused nobody can tell whether it has taken it over.
+  if (std::exchange(world.orphan, false))
+    world.lease_ends_by_ms = sight_.now_ms + options_.lease_ms;
+  else
+    renew(world);
+}
+
+// A8: "While an axis is disabled only requests that ask for something renew its lease": of those that are refused, or
+// that repeat, nobody can tell.
+void Contract::renew(World& world) const {
+  const std::int64_t ends_ms = sight_.now_ms + options_.lease_ms;
+  if (world.enabled)
+    world.lease_until(ends_ms);
+  else
+    world.lease_ends_by_ms = ends_ms;
+}
+
+// 3.5: "renew": any request of the owner; A8: "While an axis is disabled only requests that ask for something".
+void Contract::asked(std::size_t client) {
+  for (World& world : worlds_)
+    if (world.owner == client && !world.orphan) renew(world);
+}
+
+// 3.5: on_expiry "acts only if the axis is enabled"; 3.4: "quick_stop and a lease's action set" the latch.
+void Contract::expire(World& world) const {
+  const Motion before = world.motion();
+  world.owner.reset();
+  world.orphan = false;
+  world.lease_until(kNever);
+  if (!world.enabled) return;
+  world.motor = Motor::stands;
+  world.jog = 0;
+  world.latched = true;
+  world.enabled = false;
+  world.off_asked_ms = sight_.now_ms;
+  world.ladder = 0;
+  world.stale_speed = true;
+  // Whether a lease's stop counts as another client's (A1) is not said.
+  for (ClientMemory& client : world.clients) {
+    client.command.ended = client.controlword.ended = true;
+    client.command.unsure = client.controlword.unsure = true;
+    for (Item& coil : client.coils) coil.ended = coil.unsure = true;
+  }
+  changed(world, before);
+  world.changed_ms = sight_.now_ms;
+}
+
+/// Leases that may have run out by now, or not.
+void Contract::add_expired() {
+  std::vector<World> more;
+  for (const World& world : worlds_) {
+    if (!world.lease_unsure) continue;
+    more.push_back(world);
+    expire(more.back());
+  }
+  worlds_.insert(worlds_.end(), more.begin(), more.end());
+  keep_different();
+}
+
+void Contract::pass_time(std::int64_t now_ms) {
+  std::vector<World> more;
+  for (World& world : worlds_) {
+    if (world.jog != 0 && now_ms >= world.jog_ends_ms) {
+      const Motion before = world.motion();
+      world.motor = Motor::stands;
+      world.jog = 0;
+      world.stale_speed = true;
+      // Whether the halt at its end counts as another client's stop (A1) is not said.
+      for (ClientMemory& client : world.clients) {
+        client.command.unsure = client.controlword.unsure = true;
+        client.command.ended = client.controlword.ended = true;
+        for (Item& coil : client.coils) coil.ended = coil.unsure = true;
+      }
+      changed(world, before);
+    }
+    if (world.lease_ends_ms == kNever) continue;
+    if (now_ms >= world.lease_ends_by_ms + kUnsureMs) {
+      expire(world);
+    } else if (now_ms >= world.lease_ends_ms - kUnsureMs && !world.lease_unsure) {
+      world.lease_unsure = true;
+      more.push_back(world);
+      expire(more.back());
+    }
+  }
+  if (more.empty()) return;
+  worlds_.insert(worlds_.end(), more.begin(), more.end());
+  keep_different();
+}
+
+void Contract::left(std::size_t client, bool silently) {
+  // SECURITY.md: with "lease": null a drive without a watchdog of its own is stopped when its client's connection ends.
+  if (!options_.leases && options_.by_gateway && !silently) {
+    const std::vector<World> now = worlds_;
+    for (const World& world : now) {
+      worlds_.push_back(world);
+      expire(worlds_.back());
+    }
+  }
+  for (World& world : worlds_) {
+    if (world.owner == client && silently && !world.orphan) world.owner = kGhost + client;
+    if (world.owner == client) world.orphan = true;
+    const std::optional<std::int64_t> id = world.clients[client].id;
+    world.clients[client] = {};
+    world.clients[client].id = id;  // A1: "kept 60 s after its last connection"
+  }
+}
+
+void Contract::trouble_begins() {
+  trouble_ = true;
+  for (auto& [number, asked] : asked_) asked.troubled = true;
+  for (World& world : worlds_) {
+    world.broken = world.motor != Motor::stands ||
+                   std::ranges::any_of(world.earlier, [](const Motion& m) { return m.kind != Motor::stands; });
+    // A1: "a fault, a link loss": a level or a command held since asks for nothing; what counts as one is not said.
+    for (ClientMemory& client : world.clients) {
+      client.command.unsure = client.controlword.unsure = true;
+      for (Item& coil : client.coils) coil.unsure = true;
+    }
+  }
+}
+
+// 3.5: "An axis found enabled at bring-up with a lease configured gets an orphan lease open to every operator ...,
+// otherwise on_expiry is carried out". When it was found nobody outside knows.
+void Contract::trouble_ends() {
+  trouble_ = false;
+  std::vector<World> more;
+  for (World& world : worlds_) {
+    world.changed_ms = sight_.now_ms;
+    // Of an axis whose state is the gateway's own nobody knows what it has made of a loss.
+    world.adopted = options_.by_gateway && world.enabled;
+    if (!gateway_is_new_ || !options_.leases || !world.enabled || world.owner) continue;
+    world.lease_until(sight_.now_ms + options_.lease_ms);
+    world.lease_unsure = true;
+    more.push_back(world);
+    expire(more.back());
+  }
+  gateway_is_new_ = false;
+  worlds_.insert(worlds_.end(), more.begin(), more.end());
+  keep_different();
+}
+
+void Contract::drive_restarted() {
+  for (World& world : worlds_) {
+    const Motion before = world.motion();
+    world.motor = Motor::stands;
+    world.jog = 0;
+    world.enabled = world.faulted = false;
+    world.ladder = 0;
+    changed(world, before);
+  }
+}
+
+void Contract::drive_tripped() {
+  drive_restarted();
+  for (World& world : worlds_) world.faulted = true;
+}
+
+// A gateway that has died commands nothing; a motor goes on until its drive misses the master.
+void Contract::gateway_died() {
+  trouble_begins();
+  for (std::size_t client = 0; client < kClients; ++client) left(client, false);
+  for (World& world : worlds_) {
+    for (ClientMemory& client : world.clients) client.id.reset();
+    world.owner.reset();
+    world.orphan = false;
+    world.lease_until(kNever);
+    world.raw_mode.reset();
+    world.held = false;
+    world.accepted.clear();
+    if (world.jog != 0) world.motor = Motor::unknown;  // nobody ends it now
+    world.jog = 0;
+  }
+}
+
+// The latch was the gateway's.
+void Contract::gateway_started() {
+  gateway_is_new_ = true;
+  std::vector<World> worlds;
+  for (World& world : worlds_) {
+    if (world.latched) {
+      World other = world;
+      other.latched = false;
+      worlds.push_back(std::move(other));
+    }
+    worlds.push_back(world);
+  }
+  worlds_ = std::move(worlds);
+  keep_different();
+}
+
+}  // namespace axisgate::test::model

@@ -1,0 +1,174 @@
+// What the judge (tests/judged) has found in the gateway: the shortest sequence of each, on every drive that can do it.
+#include <gtest/gtest.h>
+
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::obey {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kJogSpeed = 45'000;
+
+class Found : public testing::TestWithParam<Subject> {
+ protected:
+  void ready(bool leases = false) {
+    plant_.emplace(GetParam(), leases ? with_leases() : PlantOptions{});
+    plant_->ready();
+  }
+  /// Both wait for their answers at once.
+  std::pair<Answer, Answer> at_once(const Write& first, const Write& second) {
+    const RequestNumber one = plant_->a.begin(first);
+    const RequestNumber two = plant_->a.begin(second);
+    plant_->stage.run_until([&] { return plant_->a.answer_of(one) && plant_->a.answer_of(two); });
+    return {plant_->a.answer_of(one).value_or(Answer{0xFF}), plant_->a.answer_of(two).value_or(Answer{0xFF})};
+  }
+  void press(Client& client) {
+    ASSERT_EQ(client.row(row::jog_velocity, kJogSpeed), kOk);
+    ASSERT_EQ(client.coil(coil::jog_forward, false), kOk);
+    ASSERT_EQ(client.coil(coil::jog_forward, true), kOk);
+    ASSERT_TRUE(plant_->reaches(kJogSpeed, 400ms)) << plant_->velocity();
+  }
+  std::optional<Plant> plant_;
+};
+
+class FoundSpeeds : public Found {};
+class FoundWithDisable : public Found {};
+class FoundRawVelocity : public Found {};
+
+// The button's time ended the run of the same client, and the run had the jog's speed.
+TEST_P(FoundSpeeds, ARunAfterAJogNeedsNoButtonAndHasItsOwnSpeed) {
+  ready();
+  Client& a = plant_->a;
+  ASSERT_EQ(a.row(row::target_velocity, kOtherSpeed), kOk);
+  press(a);
+  ASSERT_EQ(a.command(kRun), kOk);
+  EXPECT_TRUE(plant_->reaches(kOtherSpeed)) << plant_->velocity();
+  plant_->run(2s);
+  EXPECT_TRUE(plant_->reaches(kOtherSpeed, 1ms)) << plant_->velocity();
+}
+
+TEST_P(FoundSpeeds, ATargetWrittenBesideAJogWaitsForItsRun) {
+  ready();
+  Client& a = plant_->a;
+  press(a);
+  ASSERT_EQ(a.row(row::target_velocity, kSpeed), kOk);
+  ASSERT_EQ(a.coil(coil::jog_forward, true), kOk);
+  plant_->run(200ms);
+  EXPECT_TRUE(plant_->reaches(kJogSpeed, 1ms)) << plant_->velocity();
+  ASSERT_EQ(a.command(kRun), kOk);
+  EXPECT_TRUE(plant_->reaches(kSpeed)) << plant_->velocity();
+}
+
+// The motor ran at the speed of a jog that had been refused.
+TEST_P(FoundSpeeds, ARefusedJogLeavesNoSpeedBehind) {
+  ready();
+  Client& a = plant_->a;
+  ASSERT_EQ(a.row(row::jog_velocity, kJogSpeed), kOk);
+  ASSERT_EQ(a.command(kQuickStop), kOk);
+  ASSERT_EQ(plant_->b.coil(coil::jog_forward, false), kOk);
+  ASSERT_EQ(plant_->b.coil(coil::jog_forward, true), kFailed);
+  ASSERT_EQ(a.command(kEnable), kOk);
+  ASSERT_EQ(a.command(kRun), kOk);
+  EXPECT_FALSE(plant_->turns_within(1s)) << plant_->velocity();
+}
+
+// Coil 7 = 0 of a client that does not own the axis was refused, and the motor ran on.
+TEST_P(FoundSpeeds, AStrangersCoilSevenEndsARun) {
+  ready(true);
+  Client& a = plant_->a;
+  ASSERT_EQ(a.row(row::target_velocity, kSpeed), kOk);
+  ASSERT_EQ(a.command(kRun), kOk);
+  ASSERT_TRUE(plant_->turns_within(1s));
+  EXPECT_EQ(plant_->b.coil(coil::run_velocity, false), kOk);
+  EXPECT_TRUE(plant_->comes_to_stand(1500ms)) << plant_->velocity();
+  EXPECT_EQ(a.word(shown::owner), kMe);
+}
+
+// The set-points beside the stop and the next request waited for each other; both were told 0x0B after 0.9 s.
+TEST_P(Found, ABlockWithAStopAndTheNextOneAreBothDone) {
+  ready();
+  // The stop has set-points beside it that are not in the drive yet.
+  std::int64_t speed = 500'000;
+  const auto both = [&](std::int64_t command) {
+    Rows rows = plant_->endless_target();
+    for (const auto& [offset, value] : plant_->profile_rows()) rows[offset] = value;
+    if (rows.contains(row::profile_velocity)) rows[row::profile_velocity] = speed -= 10'000;
+    rows[row::command] = command;
+    return block(row::target_position, row::command_id, rows);
+  };
+  ASSERT_EQ(plant_->a.write(both(0)), kOk);  // a block on an empty memory only remembers
+  const auto [stop, next] = at_once(both(kQuickStop), both(kEnable));
+  EXPECT_EQ(stop, kOk);
+  EXPECT_EQ(next, kOk);
+  if (is_kinco(GetParam()) && !is_md(GetParam())) return;  // its halt of a move is a quick stop, which latches
+  const auto [halt, start] = at_once(both(kHalt), both(plant_->endless_command()));
+  EXPECT_EQ(halt, kOk);
+  EXPECT_EQ(start, kOk);
+  EXPECT_TRUE(plant_->keeps_turning());
+}
+
+// The controlword was dropped, and the torque stayed on.
+TEST_P(FoundWithDisable, ADisablingControlwordBesideAHaltIsNotLost) {
+  ready();
+  const auto word = [](std::int64_t value, std::int64_t command) {
+    return block(row::controlword, row::command_id, {{row::controlword, value}, {row::command, command}});
+  };
+  ASSERT_EQ(plant_->a.write(word(6, 0)), kOk);
+  ASSERT_EQ(plant_->a.write(word(7, kHalt)), kOk);
+  plant_->run(500ms);
+  EXPECT_EQ(plant_->motor().enabled, false);
+}
+
+// An enable of an axis that was enabled already ended the raw run for the gateway, and not for the motor: what was
+// written afterwards was answered, kept, and never sent.
+TEST_P(FoundRawVelocity, AnEnableInARawRunLeavesItsTargetAlive) {
+  ready();
+  ASSERT_EQ(plant_->a.row(row::mode, kVelocityMode), kOk);
+  ASSERT_EQ(plant_->a.row(row::target_velocity, kOtherSpeed), kOk);
+  ASSERT_TRUE(plant_->reaches(kOtherSpeed));
+  ASSERT_EQ(plant_->b.command(kEnable), kOk);
+  ASSERT_EQ(plant_->a.row(row::target_velocity, kSpeed), kOk);
+  EXPECT_TRUE(plant_->reaches(kSpeed)) << plant_->velocity();
+}
+
+// As long as the drive had not shown yet that it moves, the stop was answered and nothing was sent.
+TEST_P(FoundRawVelocity, CoilSevenEndsARawRunThatHasJustBegun) {
+  ready();
+  ASSERT_EQ(plant_->a.row(row::mode, kVelocityMode), kOk);
+  ASSERT_EQ(plant_->a.row(row::target_velocity, kSpeed), kOk);
+  EXPECT_EQ(plant_->a.coil(coil::run_velocity, false), kOk);
+  EXPECT_TRUE(plant_->comes_to_stand(1500ms)) << plant_->velocity();
+}
+
+// A Leadshine stays in quick stop active: a controlword 6 was never seen to act, told 0x0B, and blocked the next
+// enable.
+TEST_P(FoundWithDisable, AControlwordSixAfterAQuickStopIsDone) {
+  ready();
+  ASSERT_EQ(plant_->a.command(kQuickStop), kOk);
+  ASSERT_TRUE(plant_->comes_to_stand());
+  EXPECT_EQ(plant_->a.row(row::controlword, 6), kOk);
+  EXPECT_EQ(plant_->b.command(kEnable), kOk);
+  EXPECT_EQ(plant_->motor().enabled, true);
+}
+
+// The axis was enabled, nobody owned it, and nothing ran out.
+TEST_P(FoundWithDisable, AReleaseBesideAnEnableLeavesALease) {
+  plant_.emplace(GetParam(), with_leases());
+  plant_->ready_but_disabled();
+  const auto [enable, release] = at_once(one(row::command, kEnable), one(row::command, kRelease));
+  EXPECT_EQ(enable, kOk);
+  EXPECT_EQ(release, kOk);
+  plant_->run(2500ms);
+  EXPECT_EQ(plant_->motor().enabled, false);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Found, testing::ValuesIn(kSubjects), named);
+INSTANTIATE_TEST_SUITE_P(Every, FoundSpeeds, testing::ValuesIn(subjects(has_speeds)), named);
+INSTANTIATE_TEST_SUITE_P(Every, FoundWithDisable,
+                         testing::ValuesIn(subjects([](Subject s) { return s != Subject::id286pro; })), named);
+INSTANTIATE_TEST_SUITE_P(Every, FoundRawVelocity,
+                         testing::ValuesIn(subjects([](Subject s) { return is_cia402(s) && has_speeds(s); })), named);
+
+}  // namespace
+}  // namespace axisgate::test::obey
