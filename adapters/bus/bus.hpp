@@ -59,6 +59,7 @@ class Bus final : private WireEvents {
   [[nodiscard]] Arbiter::Admission submit(const Order& order);
   void wait(OrderId id, Instant until);
   void finish(OrderId id);
+  /// As Arbiter::go_on_as().
   [[nodiscard]] bool go_on_as(OrderId id, const Order& rest);
   void set_poll_due(DriveSlot drive, Instant due);
   void end_drive(DriveSlot drive, Errc waiting, Errc started);

@@ -148,12 +148,12 @@ void Axis::note_jog(const Pending& pending, Errc code) {
   if (code == Errc::ok && pending.ends_jog != 0 && pending.ends_jog == jog_.press()) end_jog();
 }
 
-// Its motor has no other dead man.
 void Axis::end_jog() {
   jog_.end();
   core_.velocity_beside_jog.reset();
 }
 
+// Its motor has no other dead man.
 void Axis::halt_jog(std::string why) {
   if (!jog_.active()) return;
   end_jog();

@@ -155,7 +155,7 @@ std::optional<GroupResult> Axis::release(const Group& group, GroupCallback on_re
 GroupResult Axis::released(const Group& group) {
   core_.now = host_.now();
   const auto owner = ownership_.owner();
-  const Errc code = ownership_.release(group.life, may_be_enabled() || enable_is_asked(false), core_.now);
+  const Errc code = ownership_.release(group.life, may_be_enabled() || enable_is_asked(), core_.now);
   if (code != Errc::ok) return refuse(group, code);
   halt_jog("its owner has released the axis");
   if (owner) {

@@ -2,8 +2,6 @@
 
 #include <rapidcheck.h>
 
-#include <ostream>
-
 #include "tests/judged/drawing.hpp"
 
 namespace axisgate::test::judged {
@@ -45,10 +43,10 @@ rc::Gen<Step> step(Weather weather) {
                               rc::gen::set(&Step::pause, below(kPauses.size())));
 }
 
-constexpr std::array<const char*, 26> kDeeds{
+constexpr std::array<const char*, 27> kDeeds{
     "wait",   "command", "command by id", "order", "image", "zeros",  "target",  "mode block", "word block",
     "word",   "coil",    "start coils",   "again", "scan",  "button", "read",    "release",    "reconnect",
-    "vanish", "cut",     "unplug",        "lose",  "late",  "twice",  "restart", "trip"};
+    "vanish", "cut",     "unplug",        "lose",  "late",  "twice",  "restart", "trip",       "crash"};
 
 }  // namespace
 
@@ -69,14 +67,7 @@ Program draw(Subject subject, Weather weather, bool leases, std::uint64_t seed) 
 }
 
 std::string text(const Step& step) {
-  const auto deed = static_cast<std::size_t>(step.deed);
-  std::string out = step.client == 0 ? "a " : "b ";
-  out += deed < kDeeds.size() ? kDeeds[deed] : "crash";
-  return out;
-}
-
-void show(const Program& program, std::ostream& out) {
-  for (const Step& step : program.steps) out << text(step) << "\n";
+  return std::string(step.client == 0 ? "a " : "b ") + kDeeds.at(static_cast<std::size_t>(step.deed));
 }
 
 }  // namespace axisgate::test::judged

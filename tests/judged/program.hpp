@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -83,6 +82,5 @@ enum class Weather : std::uint8_t { calm, rough };
 /// Of the seed alone.
 [[nodiscard]] Program draw(Subject subject, Weather weather, bool leases, std::uint64_t seed);
 [[nodiscard]] std::string text(const Step& step);
-void show(const Program& program, std::ostream& out);
 
 }  // namespace axisgate::test::judged

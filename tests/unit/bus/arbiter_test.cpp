@@ -63,6 +63,35 @@ TEST_F(ArbiterTest, a_turn_taken_in_one_class_costs_none_in_another) {
   EXPECT_EQ(granted_drive, 0);
 }
 
+TEST_F(ArbiterTest, what_stood_beside_a_stop_goes_before_what_came_later) {
+  const OrderId of_stop = submit(stop(0));
+  ASSERT_EQ(exchange(), of_stop);
+  const OrderId later = submit(command(0));
+  ASSERT_TRUE(arbiter.go_on_as(of_stop, command(0)));
+  const OrderId of_other = submit(stop(1));
+  EXPECT_EQ(serve(), of_other) << "it has no precedence any more";
+  EXPECT_EQ(serve(), of_stop);
+  EXPECT_EQ(serve(), later);
+}
+
+TEST_F(ArbiterTest, what_stood_beside_a_stop_falls_to_the_next_one) {
+  const OrderId of_stop = submit(stop(0));
+  ASSERT_EQ(exchange(), of_stop);
+  ASSERT_TRUE(arbiter.go_on_as(of_stop, command(0)));
+  const OrderId next = submit(stop(0));
+  EXPECT_EQ(serve(), next);
+  EXPECT_EQ(serve(), std::nullopt);
+}
+
+TEST_F(ArbiterTest, only_a_started_order_goes_on_and_only_where_there_is_room) {
+  const OrderId of_stop = submit(stop(0));
+  EXPECT_FALSE(arbiter.go_on_as(of_stop, command(0))) << "it has not begun";
+  EXPECT_FALSE(arbiter.go_on_as(of_stop + 1, command(0))) << "there is none";
+  ASSERT_EQ(exchange(), of_stop);
+  for (std::size_t i = 0; i < bus::kMaxOrdersPerAxis; ++i) submit(command(0));
+  EXPECT_FALSE(arbiter.go_on_as(of_stop, command(0)));
+}
+
 TEST_F(ArbiterTest, commands_of_one_axis_are_never_interleaved_and_those_of_others_do_not_wait_for_them) {
   const OrderId first = submit(command(0));
   const OrderId second = submit(command(0));
