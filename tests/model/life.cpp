@@ -9,6 +9,15 @@ namespace {
 
 constexpr std::int64_t kUnsureMs = 40;  // two clocks that read the same instant
 
+/// A lease or a jog button has run out. Whether its stop counts as another client's (A1) is not said.
+void ended_by_nobody(World& world) {
+  for (ClientMemory& client : world.clients) {
+    client.command.ended = client.controlword.ended = true;
+    client.command.unsure = client.controlword.unsure = true;
+    for (Item& coil : client.coils) coil.ended = coil.unsure = true;
+  }
+}
+
 }  // namespace
 
 // 3.5: "renew": any request; A8: "An orphan lease is taken over by any write ... of the same address and role,
@@ -52,12 +61,7 @@ void Contract::expire(World& world) const {
   world.off_asked_ms = sight_.now_ms;
   world.ladder = 0;
   world.stale_speed = true;
-  // Whether a lease's stop counts as another client's (A1) is not said.
-  for (ClientMemory& client : world.clients) {
-    client.command.ended = client.controlword.ended = true;
-    client.command.unsure = client.controlword.unsure = true;
-    for (Item& coil : client.coils) coil.ended = coil.unsure = true;
-  }
+  ended_by_nobody(world);
   changed(world, before);
   world.changed_ms = sight_.now_ms;
 }
@@ -82,12 +86,7 @@ void Contract::pass_time(std::int64_t now_ms) {
       world.motor = Motor::stands;
       world.jog = 0;
       world.stale_speed = true;
-      // Whether the halt at its end counts as another client's stop (A1) is not said.
-      for (ClientMemory& client : world.clients) {
-        client.command.unsure = client.controlword.unsure = true;
-        client.command.ended = client.controlword.ended = true;
-        for (Item& coil : client.coils) coil.ended = coil.unsure = true;
-      }
+      ended_by_nobody(world);
       changed(world, before);
     }
     if (world.lease_ends_ms == kNever) continue;
