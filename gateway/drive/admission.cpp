@@ -122,8 +122,10 @@ Errc admit(const AxisCore& core, const Group& group) {
   if (group.jog_velocity && !velocity->limits.holds(*group.jog_velocity)) return Errc::bad_value;
   for (const Setpoint& sp : group.setpoints) {
     const Binding* binding = core.model.binding(sp.quantity);
-    if (!binding->limits.holds(sp.value) || !binding->to_raw(sp.value, core.object(binding->object)))
-      return Errc::bad_value;
+    if (!binding->limits.holds(sp.value)) return Errc::bad_value;
+    // The drive has not told yet how it counts: nobody knows whether it could take the value.
+    if (!binding->scaled) return Errc::still_in_setup;
+    if (!binding->to_raw(sp.value, core.object(binding->object))) return Errc::bad_value;
     const auto& methods = core.model.homing_methods;
     if (sp.quantity == Quantity::homing_method && std::find(methods.begin(), methods.end(), sp.value) == methods.end())
       return Errc::bad_value;
@@ -208,6 +210,7 @@ Translated as_quantities(const AxisCore& core, const Group& group) {
     if (known == modes.end()) return {group, Errc::bad_value};
     out.mode = known->first;
   } else {
+    if (!binding->scaled) return {group, Errc::still_in_setup};
     const auto value = binding->to_register(number);
     if (!value) return {group, Errc::bad_value};  // not representable in register units: outside every limit
     out.setpoints.push_back({binding->quantity, *value, number});

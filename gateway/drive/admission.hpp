@@ -9,7 +9,7 @@
 
 namespace axisgate::drive {
 
-/// ok, not_supported or bad_value.
+/// ok, not_supported, bad_value, or still_in_setup where the drive has not told yet what it needs to be judged.
 [[nodiscard]] Errc admit(const AxisCore& core, const Group& group);
 /// The group reads an object and does nothing else.
 [[nodiscard]] bool reads_alone(const Group& group);

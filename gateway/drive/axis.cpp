@@ -1,6 +1,7 @@
 #include "gateway/drive/axis.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <string>
 #include <utility>
 
@@ -62,7 +63,8 @@ void Axis::on_bring_up() {
   core_.machine.reset();
   core_.store.forget(core_.model.statusword);
   core_.store.make(core_.model.controlword, 0);
-  core_.store.make(core_.model.mode, core_.model.modes.empty() ? 0 : core_.model.modes.front().first);
+  // Found running, it runs in the mode that it had: no drive of these tells it.
+  if (!core_.store[core_.model.mode].known) core_.begin_mode();
 }
 
 void Axis::on_samples() {
@@ -93,12 +95,14 @@ Errc Axis::link_admits(bool stop, bool reads_alone) const {
   return Errc::offline;
 }
 
-// Two panels pressing the same stop need it on the wire once. What else stands beside one is not the other's result.
+// Two panels pressing the same stop need it on the wire once. What else stands beside one is not the other's result;
+// and what was asked between the two, an enable perhaps, the later stop must end: it is an order of its own.
 bool Axis::join_stop(const Group& group, GroupCallback& on_result) {
   if (!stops_alone(group)) return false;
-  for (Pending& p : pending_) {
+  for (Pending& p : std::views::reverse(pending_)) {
     const Group& waiting = p.conversation->group();
-    if (!p.conversation->is_stop() || p.conversation->begun() || p.callbacks.size() >= kMaxJoined) continue;
+    if (!p.conversation->is_stop()) return false;
+    if (p.conversation->begun() || p.callbacks.size() >= kMaxJoined) continue;
     if (p.refusal != Errc::ok || !stops_alone(waiting) || waiting.command != group.command ||
         waiting.controlword != group.controlword)
       continue;
@@ -144,7 +148,8 @@ std::optional<GroupResult> Axis::carry_out(const Group& asked, Errc refusal, Gro
   pending.jogs = group.jogs;
   if (code != Errc::ok) {
     // A stop is carried out whatever nonsense stands beside it; the answer tells of the nonsense.
-    if (!stop) return refuse(asked, code);
+    const Errc of_link = code == Errc::still_in_setup ? link_admits(stop, false) : Errc::ok;
+    if (!stop) return refuse(asked, of_link == Errc::ok ? code : of_link);
     pending.refusal = code;
     group = stop_alone(group);
     if (const Errc of_stop = admit(core_, group); of_stop != Errc::ok) return refuse(asked, of_stop);
@@ -208,6 +213,8 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<GroupResult>& refus
   }
   pending.id = queued.id;
   accept(group);
+  if (group.controlword || (group.command != Command::none && !is_stop(group.command)))
+    pending.acts_at = image_.endings.accepted();
   const bool drives = std::any_of(group.setpoints.begin(), group.setpoints.end(), [](const Setpoint& sp) {
     return sp.quantity == Quantity::target_velocity || sp.quantity == Quantity::target_torque;
   });
@@ -231,6 +238,7 @@ std::optional<bus::Exchange> Axis::on_grant(bus::OrderId id) {
     return std::nullopt;
   }
   const auto move = pending->conversation->granted(host_.now());
+  note_commanded(*pending);
   if (move.kind == Conversation::Move::Kind::exchange) return move.exchange;
   if (move.kind == Conversation::Move::Kind::wait) {
     host_.order_waits(id, move.until);
@@ -344,6 +352,7 @@ void Axis::complete(bus::OrderId id, const GroupResult& result) {
   Pending pending = std::move(*found);
   pending_.erase(found);
   host_.order_done(id);
+  note_commanded(pending);
   note_stop(pending, true);
   note_jog(pending, result.outcome.code);
   if (!motion_pending()) core_.motion.unmask_target_reached();

@@ -126,10 +126,11 @@ class Axis {
     Instant start_by = kNever;  ///< the latest of theirs: the bus ends the order then
     bool starts_motion = false;
     bool by_mailbox = false;
-    bool jogs = false;                     ///< it starts a jog
-    std::uint64_t ends_jog = 0;            ///< once it has started what it starts, this jog is over
-    Errc refusal = Errc::ok;               ///< of what stood beside the stop; the answer once the stop is done
-    std::optional<ClientId> stopped_by{};  ///< whose stop came first after it
+    bool jogs = false;                        ///< it starts a jog
+    std::optional<Endings::Point> acts_at{};  ///< of a command or controlword that the faces do not know to act yet
+    std::uint64_t ends_jog = 0;               ///< once it has started what it starts, this jog is over
+    Errc refusal = Errc::ok;                  ///< of what stood beside the stop; the answer once the stop is done
+    std::optional<ClientId> stopped_by{};     ///< whose stop came first after it
   };
   struct Due {
     GroupResult result;
@@ -140,7 +141,9 @@ class Axis {
   void claim(const Group& group);
   [[nodiscard]] GroupResult nothing_asked(const Group& group);
   [[nodiscard]] bool may_run() const;
+  [[nodiscard]] bool may_be_jog() const;
   void accept(const Group& group);
+  void note_commanded(Pending& pending);
   void forget_accepted(const Group& group);
   [[nodiscard]] std::optional<GroupResult> release(const Group& group, GroupCallback on_result);
   [[nodiscard]] GroupResult released(const Group& group);

@@ -75,7 +75,17 @@ AxisFacts AxisCore::facts() const {
   } else if (const auto velocity = value(Quantity::velocity_actual)) {
     facts.moving = std::llabs(*velocity) > model.standstill_velocity;
   }
+  facts.follows = follows(facts);
   return facts;
+}
+
+// A CiA 402 drive tells its set-point, and turns by it alone; of another the motor itself has to tell.
+bool AxisCore::follows(const AxisFacts& facts) const {
+  const std::optional<Quantity> followed = followed_target(facts.mode);
+  if (!followed || (controlword() & controlword::kHalt) != 0) return false;
+  const Binding* target = model.binding(*followed);
+  const bool tells = !is_virtual() && target != nullptr && target->object != kNoObject && store[target->object].known;
+  return tells ? store[target->object].number != 0 : facts.moving;
 }
 
 // --- Virtual axes --------------------------------------------------------------------------------------------------
@@ -117,6 +127,9 @@ void AxisCore::refresh_virtual() {
   const auto newest = seen();
   if (!newest) return;
   machine.observe(*newest, *model.virtual_axis);
+  // What shows enabled takes starts: a CiA 402 drive that is found so holds this word as well.
+  constexpr std::uint16_t kEnabled = 0x000F;
+  if (machine.take_found_enabled()) store.make(model.controlword, kEnabled);
   Instant oldest = kNever;
   bool held = true;
   for (const ObjectId id : model.state_sources) {
@@ -125,6 +138,10 @@ void AxisCore::refresh_virtual() {
     held = held && store[id].held;
   }
   store.make(model.statusword, machine.statusword(*newest), held, oldest, newest->exchange);
+}
+
+void AxisCore::begin_mode() {
+  if (is_virtual()) store.make(model.mode, model.modes.empty() ? 0 : model.modes.front().first);
 }
 
 void AxisCore::make(ObjectId id, std::int64_t number) {

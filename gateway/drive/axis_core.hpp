@@ -36,6 +36,8 @@ struct AxisCore {
   [[nodiscard]] bool is_virtual() const { return model.virtual_axis.has_value(); }
   /// Virtual axes: makes the statusword from the newest samples.
   void refresh_virtual();
+  /// Virtual axes: the mode in force is the one that the drive begins with.
+  void begin_mode();
   /// Carries out the write of a `made` object.
   void make(ObjectId id, std::int64_t number);
   /// The drive has acknowledged a start. `relative`: the target is a distance.
@@ -60,6 +62,7 @@ struct AxisCore {
   [[nodiscard]] Wanted running_target(Quantity quantity) const;
 
  private:
+  [[nodiscard]] bool follows(const AxisFacts& facts) const;
   [[nodiscard]] std::optional<VirtualAxis::Seen> seen() const;
 };
 

@@ -57,6 +57,7 @@ bool Axis::stop_comes_first(const Group& group) const {
 bool Axis::may_be_enabled() const { return core_.reachable() ? core_.facts().enabled() : was_enabled_; }
 
 void Axis::on_restarted() {
+  core_.begin_mode();
   was_enabled_ = false;
   end_jog();
   owed_.restarted();
@@ -148,8 +149,11 @@ void Axis::note_jog(const Pending& pending, Errc code) {
   if (code == Errc::ok && pending.ends_jog != 0 && pending.ends_jog == jog_.press()) end_jog();
 }
 
+// What a client has asked for before or beside the jog is the target again; a stop has left none.
 void Axis::end_jog() {
   jog_.end();
+  if (core_.velocity_beside_jog && core_.motion.wanted(Quantity::target_velocity))
+    core_.motion.want(Quantity::target_velocity, *core_.velocity_beside_jog);
   core_.velocity_beside_jog.reset();
 }
 

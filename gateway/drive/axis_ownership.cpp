@@ -56,7 +56,9 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   // While something may run, the end of a run is a stop, and so open to every operator.
   if (group.command == Command::end_run && may_run()) group.command = Command::halt;
   Errc refusal = judge_owner(group);
-  ownership_.wrote(group.life, group.beats, !asks_nothing(group) || group.jog_again, core_.now);
+  // An object that is read is no write: a monitor on the PLC's computer keeps no dead PLC's motor running.
+  if (!reads_alone(group))
+    ownership_.wrote(group.life, group.beats, !asks_nothing(group) || group.jog_again, core_.now);
   if (refusal == Errc::ok && !asks_nothing(group) && stop_comes_first(group)) refusal = Errc::stop_owed;
   if (refusal != Errc::ok) {
     if (!holds_stop(group)) return refuse(asked, refusal);
@@ -74,7 +76,7 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
       if (const Errc code = begin_jog(group); code != Errc::ok) return refuse(asked, code);
       break;
     case Command::jog_end:
-      if (!jog_.active() || jog_.client() != group.client) return nothing_asked(group);
+      if (!may_be_jog() && (!jog_.active() || jog_.client() != group.client)) return nothing_asked(group);
       group.command = Command::halt;
       break;
     case Command::end_run:
@@ -115,14 +117,27 @@ bool Axis::may_run() const {
   return core_.reachable() ? facts.enabled() && facts.moving && is_continuous(facts.mode) : may_be_enabled();
 }
 
+// A gateway that died has told nobody that a button was held. What runs since before may be its jog: whoever lets a
+// button go then means it. The iD286pro does not tell in which mode it runs.
+bool Axis::may_be_jog() const {
+  const AxisFacts facts = core_.facts();
+  if (!core_.motion.found_at_start() || !facts.enabled()) return false;
+  const bool tells_mode = !core_.is_virtual() || !core_.model.virtual_axis->gate_only;
+  return tells_mode ? core_.motion.goes_on(Quantity::target_velocity, facts) : facts.moving;
+}
+
 // --- What was accepted last ------------------------------------------------------------------------------------------
 
 void Axis::accept(const Group& group) {
   if (!group.jogs)
     for (const Setpoint& sp : group.setpoints) accepted_.note(sp.quantity, sp.value, core_.motion.ends());
   if (group.mode) accepted_.note(Quantity::mode, *group.mode, core_.motion.ends());
-  const bool acts = group.controlword || (group.command != Command::none && !is_stop(group.command));
-  if (acts) image_.endings.commanded(group.client);
+}
+
+// Whoever commanded before must know that it is over: but what was refused, or asked for what is so, has ended nothing.
+void Axis::note_commanded(Pending& pending) {
+  if (!pending.acts_at || !pending.conversation->commanded()) return;
+  image_.endings.commanded(pending.conversation->group().client, *std::exchange(pending.acts_at, std::nullopt));
 }
 
 // It was dropped before anything of it was begun: a scanner that goes on writing it asks for it anew.
@@ -141,10 +156,14 @@ bool Axis::owner_asks(ClientId client, Quantity quantity, std::int64_t value) co
   return lapses || !holds(quantity, value);
 }
 
-// Command 13. What else stands in the request comes before it, while its client owns the axis.
+// Command 13. What else stands in the request comes before it. It takes no lease for that, nor the time of one that is
+// open to all: whoever gives it back must not be left with it where something fails.
 std::optional<GroupResult> Axis::release(const Group& group, GroupCallback on_result) {
+  // What its own ended connection has left is its own.
+  if (ownership_.owner() && ownership_.waits_for(group.life, group.all_zero)) claim(group);
   Group rest = group;
   rest.command = Command::none;
+  if (!ownership_.is_owner(group.client)) rest.claims = rest.is_write = false;
   if (asks_nothing(rest)) return released(group);
   auto done = submit(rest, [this, group, on_result](const GroupResult& result) {
     on_result(result.outcome.code == Errc::ok ? released(group) : result);

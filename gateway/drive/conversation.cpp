@@ -42,7 +42,9 @@ Plan Conversation::plan_of(Phase phase) {
     case Phase::controlword: {
       const bool done_as_stop =
           stop_ && group_.controlword && drive::is_stop(*group_.controlword, group_.single_controlword);
-      return group_.controlword && !done_as_stop ? plan_controlword(core_, *group_.controlword) : Plan{};
+      return group_.controlword && !done_as_stop
+                 ? plan_controlword(core_, *group_.controlword, group_.command != Command::none)
+                 : Plan{};
     }
     case Phase::preparation:
       if (!mode_before_) mode_before_ = core_.mode_in_force();
@@ -123,6 +125,7 @@ Conversation::Move Conversation::granted(Instant now) {
   }
   if (move.kind == Move::Kind::exchange) {
     begun_ = sent_of_plan_ = true;
+    if (in_command() && move.exchange.access != bus::Access::read) acted_ = true;
     // What it copies may come anew, by process data, before the write is acknowledged.
     if (at_ < todo_.size() && todo_[at_].kind == Action::Kind::write && !verifying_) {
       todo_[at_].number = number_of(todo_[at_]);
@@ -202,8 +205,11 @@ Conversation::Move Conversation::advance(Instant now) {
       pop();
       // A stop never opens the gate: another one may have closed it since this halt was planned.
       const bool opens = request_of(static_cast<std::uint16_t>(made.number)) == Request402::enable_operation;
-      if (made.object != core_.model.controlword || !opens || !is_stop() || core_.facts().enabled())
+      const AxisFacts facts = core_.facts();
+      const bool stays_open = facts.enabled() && facts.commanded;
+      if (made.object != core_.model.controlword || !opens || !is_stop() || stays_open)
         core_.make(made.object, made.number);
+      acted_ = acted_ || in_command();
     } else if (would_enable(action)) {
       // It was enabled when this was planned. The same word would now take it back there, which nobody asked for.
       stop_withheld_ = stop_withheld_ || phase_ == Phase::stop;

@@ -39,6 +39,8 @@ class Conversation {
 
   [[nodiscard]] bool finished() const { return phase_ == Phase::finished; }
   [[nodiscard]] bool begun() const { return begun_; }  ///< something was sent
+  /// Its command or controlword was carried out, at least in part: it was neither refused nor asked for what was so.
+  [[nodiscard]] bool commanded() const { return acted_; }
   /// A stop that would be sent once more if the exchange on the wire stays without an answer.
   [[nodiscard]] bool would_repeat() const { return phase_ == Phase::stop && attempts_ + 1 < kStopAttempts; }
   /// A long object is under way: another exchange with this drive would end it.
@@ -79,6 +81,9 @@ class Conversation {
   [[nodiscard]] std::optional<Move> advance_settle() const;
   [[nodiscard]] Move advance_object() const;
   [[nodiscard]] bool object_is_held() const;
+  [[nodiscard]] bool in_command() const {
+    return phase_ == Phase::controlword || phase_ == Phase::preparation || phase_ == Phase::command;
+  }
   [[nodiscard]] bool would_enable(const Action& action) const;
   [[nodiscard]] bool is_command_of_motion(ObjectId object) const;
   [[nodiscard]] bool has_lost_torque() const;
@@ -105,6 +110,7 @@ class Conversation {
   bool planned_ = false;
   bool sent_of_plan_ = false;  ///< something of this plan was sent: it is carried to its end
   bool begun_ = false;
+  bool acted_ = false;
   bool handed_over_ = false;
   bool stop_confirmed_ = false;
   bool stop_withheld_ = false;      ///< not sent, as it could have enabled, or not seen to act

@@ -170,7 +170,7 @@ void Conversation::reach(const Action& action, Instant now) {
   Motion& motion = core_.motion;
   const auto start = [&](MotionKind kind) {
     // A set-point that changes what runs is no new motion.
-    const bool goes_on = motion.running() == kind && group_.command == Command::none && !group_.controlword;
+    const bool goes_on = group_.command == Command::none && !group_.controlword;
     motion.start(kind, goes_on ? motion.id() : group_.command_id, now, core_.store.exchange());
     core_.started(kind, action.number != 0);
   };

@@ -32,13 +32,23 @@ std::optional<Target> target_of(Quantity quantity) {
 
 }  // namespace
 
+std::optional<Quantity> followed_target(int mode) {
+  if (!is_continuous(mode)) return std::nullopt;
+  return mode == 4 || mode == 10 ? Quantity::target_torque : Quantity::target_velocity;
+}
+
 // Stops -------------------------------------------------------------------------------------------------------------
 
 void Motion::stop(bool latch, Instant now) {
+  // What stood, and was not being started, stands: no sample of it is of before.
+  const bool stood = rests_ && kind_ == MotionKind::none && !raw_run_ && !target_reached_masked_;
   end(MotionState::aborted);
   ++stops_;
-  stopping_ = true;
-  settled_from_ = now + kVelocityLag;
+  found_ = false;
+  if (!stood) {
+    stopping_ = true;
+    settled_from_ = now + kVelocityLag;
+  }
   if (latch) latched_ = true;
   unlatch_armed_ = false;
 }
@@ -76,7 +86,7 @@ void Motion::start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t
   settled_from_ = now + kVelocityLag;
   started_by_ = exchange;
   homing_until_ = kNever;
-  raw_run_ = false;
+  raw_run_ = found_ = arrived_ = false;
   stopping_ = false;
   awaits_fall_ = kind == MotionKind::discrete && !acknowledges_;
 }
@@ -84,7 +94,7 @@ void Motion::start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t
 void Motion::mode_changed() {
   if (kind_ != MotionKind::none) state_ = MotionState::aborted;
   kind_ = MotionKind::none;
-  raw_run_ = false;
+  raw_run_ = found_ = false;
 }
 
 // What survives: nothing. A fault, a drive restart, a disable, the loss of the drive and a stop end every motion for
@@ -93,7 +103,7 @@ void Motion::end(MotionState how) {
   if (kind_ != MotionKind::none) state_ = how;
   kind_ = MotionKind::none;
   homing_until_ = kNever;
-  raw_run_ = false;
+  raw_run_ = arrived_ = false;
   wanted_[kVelocity].reset();
   wanted_[kTorque].reset();
   ++ends_;
@@ -102,18 +112,23 @@ void Motion::end(MotionState how) {
 void Motion::complete(Instant now) {
   kind_ = MotionKind::none;
   state_ = MotionState::completed;
+  arrived_ = true;
   homing_until_ = kNever;
   settled_from_ = now + kVelocityLag;
 }
 
 void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
   seen_ = facts.at;
+  rests_ = at_rest(facts) && !facts.follows;
   acknowledges_ = facts.acknowledges;
   if (!facts.reachable || (!facts.moving && facts.at >= settled_from_)) stopping_ = false;
   // Targets written while it is disabled or faulted are kept for the start that follows: only the change ends things.
   const bool newly_faulted = facts.faulted() && !was_faulted_;
   const bool newly_lost = !facts.reachable && was_reachable_;
   const bool newly_disabled = !facts.enabled() && was_enabled_;
+  found_ = facts.enabled() && (found_ || !was_reachable_);
+  found_at_start_ = found_ && (found_at_start_ || !seen_before_);
+  seen_before_ = seen_before_ || facts.reachable;
   was_faulted_ = facts.faulted();
   was_reachable_ = facts.reachable;
   was_enabled_ = facts.enabled();
@@ -174,6 +189,8 @@ bool Motion::at_rest(const AxisFacts& facts) const {
   if (kind_ != MotionKind::none) return false;
   // In mode 1 the drive itself says so, before the sampled velocity does.
   if (facts.mode == 1 && facts.enabled() && facts.target_reached) return true;
+  // Its motion has ended where it should: the sampled velocity may be of before.
+  if (arrived_ && facts.at < settled_from_) return true;
   return !facts.moving && facts.at >= settled_from_;
 }
 
@@ -181,7 +198,8 @@ AxisState Motion::axis_state(const AxisFacts& facts) const {
   if (facts.faulted()) return AxisState::error_stop;
   if (latched_ || facts.state == State402::quick_stop_active) return AxisState::stopping;
   if (!facts.enabled()) return AxisState::disabled;  // it may coast: nothing of ours stops it any more
-  if (stopping_ && facts.moving) return AxisState::stopping;
+  if (at_rest(facts)) return AxisState::standstill;
+  if (stopping_) return AxisState::stopping;
   switch (kind_) {
     case MotionKind::discrete:
       return AxisState::discrete_motion;
@@ -193,8 +211,8 @@ AxisState Motion::axis_state(const AxisFacts& facts) const {
     case MotionKind::none:
       break;
   }
-  if (!facts.moving || facts.at < settled_from_) return AxisState::standstill;
-  // It moves without a start of ours: found running, run in a raw mode, or by a start whose outcome is unknown.
+  // It moves, or may, without a start of ours: found running, run in a raw mode, or by a start whose outcome is
+  // unknown.
   if (is_continuous(facts.mode)) return AxisState::continuous_motion;
   return facts.mode == 6 ? AxisState::homing : AxisState::discrete_motion;
 }
@@ -215,10 +233,18 @@ bool Motion::move_under_way(const AxisFacts& facts) const {
   return facts.enabled() && facts.moving && facts.at >= settled_from_ && !is_continuous(facts.mode);
 }
 
+// It was started before anybody could see it: its target acts as that of any run. What stands is not told from what
+// has ended, and needs a start.
+bool Motion::goes_on(Quantity target, const AxisFacts& facts) const {
+  const bool fits = followed_target(facts.mode) == target;
+  return found_ && fits && kind_ == MotionKind::none && !raw_run_ && !latched_ && facts.enabled() && facts.follows;
+}
+
 bool Motion::target_acts_now(Quantity target, const AxisFacts& facts, bool held_back) const {
   const auto t = target_of(target);
   if (!t) return true;         // a parameter
   if (latched_) return false;  // kept, not sent
+  if (goes_on(target, facts)) return true;
   switch (*t) {
     case kPosition:
       // In modes 7 and 8 the target is the demand of every cycle; elsewhere a write must not disturb or start a move.

@@ -15,6 +15,9 @@ namespace axisgate::drive {
 
 enum class MotionKind : std::uint8_t { none, discrete, velocity, torque, homing };
 
+/// What a motor follows at once in this mode: a velocity, or a torque in 4 and 10; none where is_continuous() is false.
+[[nodiscard]] std::optional<Quantity> followed_target(int mode);
+
 /// What the drive shows, from its newest samples.
 struct AxisFacts {
   Instant at = kLongAgo;   ///< now
@@ -25,6 +28,8 @@ struct AxisFacts {
   /// however long its ramp takes, and only shows it still.
   bool commanded = true;
   bool moving = false;
+  /// The velocity or torque set-point in the drive makes it turn, as far as it tells.
+  bool follows = false;
   bool target_reached = false;
   bool acknowledges = true;     ///< bit 12 tells in mode 1 that a set-point was taken
   bool reference_tells = true;  ///< what says that it is homed means that in the mode in force
@@ -77,7 +82,7 @@ class Motion {
 
   /// Commands 6 to 11 need an axis that is enabled, not faulted and not stop-latched.
   [[nodiscard]] bool may_start(const AxisFacts& facts) const { return facts.enabled() && facts.commanded && !latched_; }
-  /// Standstill, as a relative move and set_position need it.
+  /// Standstill, as a relative move and set_position need it, and as axis_state shows it of an enabled axis.
   [[nodiscard]] bool at_rest(const AxisFacts& facts) const;
   /// A motion command was accepted: target_reached reads 0 from now until unmask().
   void mask_target_reached() { target_reached_masked_ = true; }
@@ -92,6 +97,10 @@ class Motion {
   /// become enabled after it: only leaving that state ends the run, not that it is not reached yet.
   void run_raw() { raw_run_ = true; }
   [[nodiscard]] bool runs_raw() const { return raw_run_; }
+  /// Of a target that acts by this: a run that was found running goes on in the drive, in a mode that follows it.
+  [[nodiscard]] bool goes_on(Quantity target, const AxisFacts& facts) const;
+  /// It was enabled when the gateway first saw it, and nothing was asked of it since: whose motion it is nobody knows.
+  [[nodiscard]] bool found_at_start() const { return found_at_start_ && !raw_run_; }
   /// The mode was changed: what ran in the mode before is over.
   void mode_changed();
   /// How often velocity and torque were made void until now.
@@ -135,6 +144,8 @@ class Motion {
   std::uint64_t losses_ = 0;
   bool raw_run_ = false;
   bool stopping_ = false;
+  bool rests_ = false;    ///< by the newest samples, with no set-point that it follows
+  bool arrived_ = false;  ///< the motion started last was completed, and nothing has ended anything since
   bool target_reached_masked_ = false;
   bool homing_timed_out_ = false;
   MotionKind kind_ = MotionKind::none;
@@ -152,6 +163,9 @@ class Motion {
   bool was_faulted_ = false;
   bool was_reachable_ = false;
   bool was_enabled_ = false;
+  bool seen_before_ = false;
+  bool found_at_start_ = false;
+  bool found_ = false;  ///< enabled when it came into sight, and nothing was started or stopped since
   /// What clients last asked for: position, velocity, torque.
   std::array<std::optional<Wanted>, 3> wanted_;
 };

@@ -3,6 +3,15 @@
 namespace axisgate::drive {
 namespace {
 
+constexpr Duration kEnableShows = std::chrono::milliseconds(300);
+
+Condition torque_on(const AxisCore& core) {
+  Condition c = torque_off(core);
+  c.test = Condition::Test::equals;
+  c.values = {0x27};  // operation enabled
+  return c;
+}
+
 // Bit 4 rising starts; so does the maker's bit that makes the drive follow its target, even in the word that enables.
 bool starts_move(const AxisFacts& facts, std::uint16_t before, std::uint16_t word) {
   if (facts.mode != 1) return false;
@@ -32,7 +41,7 @@ Plan plan_raw_homing(const AxisCore& core) {
 
 }  // namespace
 
-Plan plan_controlword(const AxisCore& core, std::uint16_t word) {
+Plan plan_controlword(const AxisCore& core, std::uint16_t word, bool command_follows) {
   const Request402 request = request_of(word);
   if (core.motion.pass(request) == Motion::Pass::refused) return Plan::refuse(Errc::state_unsuitable);
   if (core.is_virtual()) return plan_virtual_controlword(core, word);
@@ -65,6 +74,11 @@ Plan plan_controlword(const AxisCore& core, std::uint16_t word) {
   if (moves) plan.add(Action::at(Mark::start_discrete));
   if (homes) plan.add(Action::at(Mark::start_homing));
   if (runs) plan.add(Action::at(Mark::run_raw));
+  // A command that finds the axis as enabled as before would be told done, and the axis is disabled.
+  const bool disables = !enables && request != Request402::other && facts.enabled();
+  if (disables && command_follows) plan.add(Action::wait(torque_off(core), kStopLimit));
+  // And one that finds it as disabled as before would take the torque away once more.
+  if (enables && !facts.enabled() && command_follows) plan.add(Action::wait(torque_on(core), kEnableShows, true));
   return plan;
 }
 

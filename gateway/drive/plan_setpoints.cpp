@@ -187,10 +187,9 @@ bool waits_for_jog(const AxisCore& core, const Group& group, Quantity quantity) 
 
 void remember_setpoints(AxisCore& core, const Group& group) {
   for (const Setpoint& sp : group.setpoints) {
-    if (waits_for_jog(core, group, sp.quantity))
-      core.velocity_beside_jog = Wanted{sp.value, sp.exact};
-    else
-      core.motion.want(sp.quantity, {sp.value, sp.exact});
+    const bool beside_jog = core.velocity_beside_jog && sp.quantity == Quantity::target_velocity && !group.jogs;
+    if (beside_jog) core.velocity_beside_jog = Wanted{sp.value, sp.exact};
+    if (!waits_for_jog(core, group, sp.quantity)) core.motion.want(sp.quantity, {sp.value, sp.exact});
     if (sp.quantity == Quantity::homing_method) core.homing_method = sp.value;
     if (sp.quantity == Quantity::homing_offset) core.offset_owed.reset();
   }
@@ -237,7 +236,11 @@ Plan plan_setpoints(const AxisCore& core, const Group& group) {
   const auto add = [&](const Setpoint& sp) {
     if (sent_with_start(group.command, sp.quantity) || waits_for_jog(core, group, sp.quantity)) return true;
     if (!may_be_written(core, sp, facts)) return true;
-    return add_write(core, sp.quantity, {sp.value, sp.exact}, plan);
+    const std::size_t before = plan.actions.size();
+    if (!add_write(core, sp.quantity, {sp.value, sp.exact}, plan)) return false;
+    // From now on it is a run of ours, also at no speed.
+    if (plan.actions.size() != before && core.motion.goes_on(sp.quantity, facts)) plan.add(Action::at(Mark::run_raw));
+    return true;
   };
   const bool max_first = upper_limit_first(core, group);
   for (const Setpoint& sp : group.setpoints)

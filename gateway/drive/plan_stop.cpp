@@ -5,8 +5,6 @@
 namespace axisgate::drive {
 namespace {
 
-// How long a stop may take to show: a ramp at the drive's own deceleration. Meanwhile it is repeated (Conversation).
-constexpr Duration kStopLimit = std::chrono::seconds(5);
 // Controlwords of a virtual axis (CiA 402-2 table 28).
 constexpr std::uint16_t kSwitchedOn = 0x0007, kEnabled = 0x000F;
 
@@ -16,14 +14,6 @@ Condition not_enabled(const AxisCore& core) {
   c.mask = 0x6F;
   c.test = Condition::Test::not_equals;
   c.values = {0x27};  // operation enabled
-  return c;
-}
-
-// Disabled: neither operation enabled nor still in quick stop.
-Condition torque_off(const AxisCore& core) {
-  Condition c = not_enabled(core);
-  c.test = Condition::Test::not_in;
-  c.values = {0x27, 0x07};
   return c;
 }
 
@@ -115,6 +105,13 @@ Plan by_controlword(const AxisCore& core, std::uint16_t word) {
 }
 
 }  // namespace
+
+Condition torque_off(const AxisCore& core) {
+  Condition c = not_enabled(core);
+  c.test = Condition::Test::not_in;
+  c.values = {0x27, 0x07};
+  return c;
+}
 
 Plan plan_stop(const AxisCore& core, const Group& group) {
   const bool commanded = is_stop(group.command);

@@ -25,8 +25,9 @@ void remember_setpoints(AxisCore& core, const Group& group);
 
 // --- Starts --------------------------------------------------------------------------------------------------------
 
-/// A raw controlword that is no stop.
-[[nodiscard]] Plan plan_controlword(const AxisCore& core, std::uint16_t controlword);
+/// A raw controlword that is no stop. `command_follows`: in the same group, and is planned from what the word has led
+/// to.
+[[nodiscard]] Plan plan_controlword(const AxisCore& core, std::uint16_t controlword, bool command_follows);
 /// What must be so before a command's own actions are planned: the halt ended, the mode it needs in force.
 [[nodiscard]] Plan plan_preparation(const AxisCore& core, Command command);
 /// Commands that are no stops, once prepared. `mode_before`: the mode in force before the preparation.
@@ -40,6 +41,10 @@ void remember_setpoints(AxisCore& core, const Group& group);
 
 /// The stop of a group: commands 2, 3, 4, a raw controlword, or both.
 [[nodiscard]] Plan plan_stop(const AxisCore& core, const Group& group);
+/// How long a stop may take to show: a ramp at the drive's own deceleration. Meanwhile it is repeated (Conversation).
+inline constexpr Duration kStopLimit = std::chrono::seconds(5);
+/// Disabled: neither operation enabled nor still in quick stop.
+[[nodiscard]] Condition torque_off(const AxisCore& core);
 /// Halt on this drive in the mode in force is carried out by quick_stop.
 [[nodiscard]] bool halt_is_quick_stop(const AxisCore& core);
 /// What must be written before a halt may end, and the controlword without bit 8.

@@ -154,6 +154,8 @@ void show_state(const AxisCore& core, AxisImage& image, Instant now) {
       sample.value = *value;
       sample.received = true;
       sample.at = at;
+    } else if (at != kLongAgo && !is_of_another_mode(core, facts, binding)) {
+      sample.received = false;  // there is a number, and no register for it: the last one that fitted is not it
     }
     const Duration limit = stale_after(core, binding);
     sample.valid = good && image.reachable() && (limit == Duration::max() || now - at <= limit);

@@ -1,6 +1,7 @@
 #include "gateway/drive/virtual_axis.hpp"
 
 #include <cstdlib>
+#include <utility>
 
 namespace axisgate::drive {
 
@@ -48,14 +49,18 @@ void VirtualAxis::follow_drive(const Seen& seen) {
 }
 
 void VirtualAxis::observe(const Seen& seen, const VirtualFacts& facts) {
+  const bool first_look = gate_ == Gate::unknown;
   if (facts.gate_only)
     keep_gate(seen);
   else
     follow_drive(seen);
+  if (first_look && gate_ == Gate::open) found_enabled_ = true;
   shows_gate_ = !facts.gate_only;
   if (gate_ != Gate::open || seen.running == MotionKind::none) run_.under_way = false;
   if (run_.under_way && seen.exchange > run_.exchange) follow(seen, facts);
 }
+
+bool VirtualAxis::take_found_enabled() { return std::exchange(found_enabled_, false); }
 
 // What the drive does not tell is worked out from what it does: a motion is over when the axis has moved and stands
 // again (or has had its time to begin), and it has reached its target if the position read after that says so.

@@ -44,6 +44,8 @@ class VirtualAxis {
   /// The drive has acknowledged a start in this exchange. `goal`: where the position will be, as the drive counts.
   void started(MotionKind kind, std::optional<std::int64_t> goal, Instant now, std::uint64_t exchange);
   void observe(const Seen& seen, const VirtualFacts& facts);
+  /// The first look after reset() has found it enabled, by no word of ours (once).
+  [[nodiscard]] bool take_found_enabled();
 
   [[nodiscard]] std::uint16_t statusword(const Seen& seen) const;
   /// The motion started last ended, but not where it should have.
@@ -74,6 +76,7 @@ class VirtualAxis {
   void follow(const Seen& seen, const VirtualFacts& facts);
 
   Gate gate_ = Gate::unknown;
+  bool found_enabled_ = false;
   bool shows_gate_ = false;  ///< what a disabled axis was told (6, 7) shows: its drive has an enable of its own
   Run run_;
   End end_ = End::none;

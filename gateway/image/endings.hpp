@@ -3,6 +3,7 @@
 // however many clients there are. Never tells what happened first: only whether it did.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "gateway/image/lease.hpp"
@@ -17,8 +18,10 @@ class Endings {
 
   /// A stop was accepted; by 0: the gateway's own (a lease, a jog button).
   void stopped(ClientId by) { stops_.note(++now_, by); }
-  /// A command or controlword that acts was accepted.
-  void commanded(ClientId by) { commands_.note(++now_, by); }
+  /// A command or controlword was accepted: its place in this history. Whether it ends anything its turn tells.
+  [[nodiscard]] Point accepted() { return ++now_; }
+  /// It is carried out.
+  void commanded(ClientId by, Point accepted) { commands_.note(accepted, by); }
   /// The drive has shown a fault.
   void faulted() { breakdown_ = ++now_; }
   /// link_state is 2 or 3 no longer.
@@ -40,6 +43,10 @@ class Endings {
     ClientId by = 0;
     Point by_others = 0;
     void note(Point at, ClientId who) {
+      if (at < last) {  // told late: what was accepted after it was told before
+        if (who != by) by_others = std::max(by_others, at);
+        return;
+      }
       if (last != 0 && who != by) by_others = last;
       last = at;
       by = who;

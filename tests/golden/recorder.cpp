@@ -1,7 +1,6 @@
 #include "tests/golden/recorder.hpp"
 
-#include <array>
-#include <cstdio>
+#include "tests/stage/transcript.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -26,12 +25,6 @@ GatewayStage::Line staged(const simulated::CanDriveOptions& drive) {
   return line;
 }
 
-std::string number_text(const char* format, std::int64_t number) {
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, static_cast<long long>(number));
-  return buffer.data();
-}
-
 }  // namespace
 
 Recorder::Recorder(simulated::KincoType type, bool bring_up) : Recorder(staged(type), bring_up) {}
@@ -42,7 +35,6 @@ Recorder::Recorder(const simulated::CanDriveOptions& drive, bool bring_up) : Rec
 
 Recorder::Recorder(const GatewayStage::Line& staged_line, bool bring_up)
     : rtu_(!staged_line.rtu_drives.empty()),
-      can_(!staged_line.can_drives.empty()),
       stage_({staged_line}),
       began_(stage_.runtime().now()),
       recording_(bring_up) {
@@ -51,25 +43,13 @@ Recorder::Recorder(const GatewayStage::Line& staged_line, bool bring_up)
   modbus_tcp::Peer peer;
   peer.role = Role::engineer;
   session_ = std::make_unique<modbus_tcp::Session>(context, peer, stage_.runtime().now(), [] {});
-  listen();
+  listen(stage_, 0, [this](const CableFrame& frame) {
+    if (recording_) text_ += transcript_line(stage_.runtime().now() - began_, frame) + "\n";
+  });
   while (stage_.axis(1).link_state != LinkState::online) step();
   began_ = stage_.runtime().now();
   if (!recording_) show_image();  // remembers, without a word
   recording_ = true;
-}
-
-void Recorder::listen() {
-  const auto tell = [this](bool to_drive, Bytes bytes) { line(to_drive ? "bus    ->" : "bus    <-", hex_text(bytes)); };
-  if (can_) {
-    stage_.can_link(0).on_traffic = [this](bool to_drive, const can::CanFrame& frame) {
-      const std::string content = frame.remote ? "remote" : hex_text(frame.bytes());
-      line(to_drive ? "bus    ->" : "bus    <-", number_text("%03llX ", frame.id) + content);
-    };
-  } else if (rtu_) {
-    stage_.rtu_link(0).on_traffic = tell;
-  } else {
-    stage_.link(0).on_traffic = tell;
-  }
 }
 
 void Recorder::restart() {
@@ -79,10 +59,7 @@ void Recorder::restart() {
 
 void Recorder::line(const std::string& who, const std::string& what) {
   if (!recording_) return;
-  const auto us = std::chrono::duration_cast<std::chrono::microseconds>(stage_.runtime().now() - began_).count();
-  std::array<char, 32> time{};
-  std::snprintf(time.data(), time.size(), "%9.3f ms  ", static_cast<double>(us) / 1000.0);
-  text_ += time.data() + who + " " + what + "\n";
+  text_ += transcript_line(stage_.runtime().now() - began_, who, what) + "\n";
 }
 
 void Recorder::say(const std::string& text) { text_ += "# " + text + "\n"; }

@@ -45,10 +45,8 @@ class Recorder {
   void take_output();
   void step();
   void show_image();
-  void listen();
 
   bool rtu_;
-  bool can_;
   GatewayStage stage_;
   modbus_tcp::ListenerSettings settings_;
   modbus_tcp::ClientRegistry registry_;

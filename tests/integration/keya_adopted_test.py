@@ -53,7 +53,9 @@ class FoundRunningOnRs485(KeyaStory):
         left, right = self.axes
         for axis in self.axes:
             axis.set(heartbeat=1)
-        left.set(target_velocity=2 * SPEED * RPM)
+        # It runs, so a new speed would act at once: one frame tells both motors theirs.
+        with self.assertRaisesRegex(Exception, "0x04"):
+            left.set(target_velocity=2 * SPEED * RPM)
         with self.assertRaisesRegex(Exception, "0x04"):
             left.command("run_velocity")
         self.assertEqual((self.enabled(), self.speeds()), ([True, True], [SPEED, SPEED]))

@@ -1,5 +1,6 @@
 // Any sequence, every drive: programs drawn from a seed, judged by the reference model; a failing one is shrunk to its
-// shortest form. AXISGATE_JUDGED_SEEDS: how many for each drive; AXISGATE_JUDGED_SEED: this one alone, to repeat it.
+// shortest form. AXISGATE_JUDGED_SEEDS: how many for each drive; AXISGATE_JUDGED_SEED: this one alone, to repeat it;
+// AXISGATE_JUDGED_TRIES: so often at most a failing one is tried shorter.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -46,21 +47,24 @@ std::vector<Case> cases() {
 }
 
 struct Told {
-  std::uint64_t runs = 0, lost = 0, requests = 0;
+  std::uint64_t runs = 0, lost = 0, writes = 0, requests = 0, frames = 0;
   std::int64_t virtual_ms = 0;
 };
 
 /// The shortest that fails, and what it does.
 std::string shortest(const Case& of, std::uint64_t seed) {
+  const std::size_t most = number_from("AXISGATE_JUDGED_TRIES", kMostTries);
   std::size_t tries = 0;
   const auto fails = [&](const std::vector<Step>& steps) {
-    return ++tries <= kMostTries &&
+    return ++tries <= most &&
            play({of.subject, flavour_of(of.subject, seed), of.leases, steps}, seed).violation.has_value();
   };
   const auto [steps, ways] = rc::shrinkable::findLocalMin(steps_of(of.subject, of.weather, seed), fails);
   const Outcome outcome = play({of.subject, flavour_of(of.subject, seed), of.leases, steps}, seed);
   std::string out;
   for (const std::string& line : outcome.story) out += line + "\n";
+  out += "# the last second\n";
+  for (const std::string& line : outcome.last_second) out += line + "\n";
   return out;
 }
 
@@ -76,7 +80,9 @@ TEST_P(Judged, DoesWhatTheContractAllows) {
     const Outcome outcome = play(draw(of.subject, of.weather, of.leases, seed), seed);
     told.runs += 1;
     told.lost += outcome.lost_count ? 1 : 0;
-    told.requests += outcome.requests;
+    told.writes += outcome.writes;
+    told.requests += outcome.traffic.requests;
+    told.frames += outcome.traffic.frames;
     told.virtual_ms += outcome.virtual_ms;
     if (!outcome.violation) continue;
     ADD_FAILURE() << "seed " << seed << ": " << *outcome.violation << "\n"
@@ -84,11 +90,20 @@ TEST_P(Judged, DoesWhatTheContractAllows) {
                   << " build/dev/tests/judged/judged_tests --gtest_filter='*/" << name(of) << "'";
     return;
   }
-  std::cout << told.runs << " programs, " << told.requests << " writes, " << told.virtual_ms / 1000 << " virtual s; in "
-            << told.lost << " the readings became too many\n";
+  std::cout << told.runs << " programs, " << told.writes << " writes, " << told.requests << " requests, " << told.frames
+            << " frames, " << told.virtual_ms / 1000 << " virtual s; in " << told.lost
+            << " the readings became too many\n";
   // A run in which nothing was judged proves nothing; of a few programs chance decides.
   if (told.runs < kEnough) return;
   EXPECT_LE(2 * told.lost, told.runs);
+}
+
+TEST(JudgedRuns, GiveTheSameFramesForTheSameSeedAndOthersForAnother) {
+  const auto hash = [](std::uint64_t seed) {
+    return play(draw(Subject::jd_rtu, Weather::rough, true, seed), seed).traffic.hash;
+  };
+  EXPECT_EQ(hash(7), hash(7));
+  EXPECT_NE(hash(7), hash(8));
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Judged, testing::ValuesIn(cases()),

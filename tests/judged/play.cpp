@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "tests/judged/beginning.hpp"
+#include "tests/judged/clients.hpp"
 #include "tests/judged/history.hpp"
+#include "tests/judged/outages.hpp"
+#include "tests/judged/shown.hpp"
 #include "tests/judged/writers.hpp"
 
 namespace axisgate::test::judged {
@@ -21,14 +25,14 @@ constexpr std::int64_t kSilenceMs = 10'000;    // no request is unanswered for s
 constexpr std::int64_t kComebackMs = 150'000;  // from the end of the last fault to an axis online (7.3: 60 s and more)
 constexpr std::int64_t kOnlineMs = 1'200;      // so long online: what was late has come
 constexpr std::int64_t kTailMs = 6'000;        // after the last step
-constexpr std::array kStrikes{obey::Strike::lose_request, obey::Strike::lose_reply, obey::Strike::late_reply,
-                              obey::Strike::double_reply};
-constexpr std::int64_t kJogSpeed = 45'000;
 
 class Play {
  public:
   Play(const Program& program, std::uint64_t seed)
-      : program_(program), plant_(program.subject, options_of(program, seed)), clients_{&plant_.a, &plant_.b} {}
+      : program_(program),
+        neighbour_(seed % 2 == 0),
+        plant_(program.subject, options_of(program, seed)),
+        clients_(plant_) {}
 
   Outcome run();
 
@@ -37,6 +41,12 @@ class Play {
     PlantOptions options;
     if (program.leases) options.lease = LeaseRules{};
     options.seed = seed;
+    options.neighbour = seed % 2 == 0;
+    if (seed % 3 == 0) options.open_points = seed;
+    // What a listener may be told, each in some of the runs.
+    options.listener.client_is_address = seed % 4 == 1;
+    options.listener.low_word_first = seed % 3 == 2;
+    options.listener.per_axis_units = seed % 5 == 3;
     return options;
   }
   struct Open {
@@ -52,23 +62,30 @@ class Play {
   void act(const Step& step);
   void send(std::size_t client, Write write, bool at_once);
   void outage(const Step& step);
+  void die(const Step& step);
   void pass(std::int64_t ms);
   void look();
   void collect();
+  void never_answered(const Open& open);
   void watch_trouble();
   void begin_trouble();
   void mend();
-  void reconnect(std::size_t client, bool silently);
+  void replace(std::size_t client, bool silently);
   void read(std::size_t client);
   void violated(std::string what);
   [[nodiscard]] bool over() const { return outcome_.violation.has_value(); }
   [[nodiscard]] std::string stamp();
+  [[nodiscard]] bool online() {
+    return plant_.stage.gateway_runs() && plant_.stage.axis(1).link_state == LinkState::online;
+  }
 
   Program program_;
+  bool neighbour_;
   Plant plant_;
-  std::array<Client*, kClients> clients_;
+  Clients clients_;
   std::optional<Writers> writers_;
   std::optional<Contract> contract_;
+  std::optional<Watches> watches_;
   Outcome outcome_;
   Instant began_{};
   std::vector<Open> open_;
@@ -83,7 +100,8 @@ std::string Play::stamp() {
   const obey::Truth truth = plant_.motor();
   return std::to_string(now_ms()) + " ms, at " + std::to_string(truth.position) +
          (truth.velocity != 0 ? " turning at " + std::to_string(truth.velocity) : "") +
-         (truth.enabled ? *truth.enabled ? "" : " (off)" : "") + (truth.faulted ? " (faulted)" : "");
+         (truth.enabled ? *truth.enabled ? "" : " (off)" : "") + (truth.faulted ? " (faulted)" : "") +
+         (online() ? "" : " (not online)");
 }
 
 void Play::violated(std::string what) {
@@ -92,30 +110,14 @@ void Play::violated(std::string what) {
 }
 
 void Play::begin() {
-  plant_.ready();
-  writers_.emplace(program_, plant_.profile_rows());
-  const Subject subject = program_.subject;
-  ContractOptions options;
-  options.leases = program_.leases;
-  options.no_halt = obey::is_kinco(subject) && !obey::is_md(subject) && program_.flavour != Flavour::speeds;
-  options.by_gateway = !obey::is_cia402(subject);
-  if (obey::has_positions(subject)) options.rows.insert(row::target_position);
-  if (obey::has_speeds(subject)) options.rows.insert(row::target_velocity);
-  options.rows.insert(row::mode);
-  World world;
-  if (obey::has_speeds(subject)) {
-    const auto fitter = plant_.connection_from(Plant::kHostOfFitter);
-    if (!fitter->row(row::jog_velocity, kJogSpeed).ok()) violated("jog_velocity was refused");
-    fitter->command(kRelease);
-    world.accepted[row::jog_velocity] = kJogSpeed;
-  }
+  Beginning beginning = judged::begin(plant_, program_);
+  watches_.emplace(plant_, neighbour_, [this](std::string what) { violated(std::move(what)); });
+  clients_.connect();
+  std::ranges::copy(kRanks, beginning.options.ranks.begin());
+  writers_.emplace(program_, plant_.profile_rows(), beginning.commands);
   began_ = plant_.stage.runtime().now();
   const obey::Truth truth = plant_.motor();
-  world.enabled = true;
-  if (program_.leases) {  // it was released: the lease is open, and began a moment ago
-    world.lease_until(options.lease_ms - (obey::has_speeds(subject) ? 0 : 100));
-  }
-  contract_.emplace(options, world);
+  contract_.emplace(beginning.options, beginning.world);
   const Sight sight{0, truth.position, truth.velocity, truth.enabled, truth.faulted};
   seen_.add(sight);
   static_cast<void>(contract_->see(sight));
@@ -130,26 +132,31 @@ Outcome Play::run() {
     act(step);
   }
   mend();
-  for (const obey::Strike how : kStrikes) plant_.strike(how, 0);
-  for (std::int64_t waited = 0; !over() && (contract_->in_trouble() || waited < kTailMs); waited += kStepMs) {
+  for (const obey::Strike how : obey::kStrikes) plant_.strike(how, 0);
+  for (std::int64_t waited = 0;
+       !over() && (contract_->in_trouble() || !watches_->neighbours_online() || waited < kTailMs); waited += kStepMs) {
     pass(kStepMs);
-    if (waited > kComebackMs + kTailMs) violated("the axis never came back online");
+    if (waited > kComebackMs + kTailMs) violated("an axis never came back online");
   }
   outcome_.virtual_ms = now_ms();
   outcome_.lost_count = contract_->lost_count();
-  if (over()) outcome_.story.push_back(*outcome_.violation);
+  outcome_.traffic = watches_->cable.traffic();
+  if (!over()) return std::move(outcome_);
+  outcome_.story.push_back(*outcome_.violation);
+  outcome_.last_second = watches_->cable.last_second();
   return std::move(outcome_);
 }
 
 void Play::send(std::size_t client, Write write, bool at_once) {
-  if (over() || !clients_[client]->connected()) return;
-  writers_->sent(client, write);
+  if (over() || !clients_.connected(client)) return;
+  if (client != kDds) writers_->sent(client, write);
+  watch_trouble();
   const std::string before = stamp();
   const int request = contract_->send(client, write);
-  ++outcome_.requests;
-  const auto number = clients_[client]->begin(write);
-  outcome_.story.push_back(before + ": " + (client == 0 ? "a " : "b ") + text(write) + "  -> " +
-                           contract_->predicted());
+  watches_->cable.asked(request, write);
+  ++outcome_.writes;
+  const std::uint64_t number = clients_.begin(client, write);
+  outcome_.story.push_back(before + ": " + kNames.at(client) + " " + text(write) + "  -> " + contract_->predicted());
   open_.push_back({request, client, number, now_ms(), outcome_.story.size() - 1});
   collect();
   while (!at_once && !over() && std::ranges::any_of(open_, [&](const Open& open) { return open.request == request; }))
@@ -160,21 +167,23 @@ void Play::collect() {
   std::erase_if(open_, [this](const Open& open) {
     if (over()) return false;
     std::string& line = outcome_.story[open.line];
-    if (const std::optional<Answer> answer = clients_[open.client]->answer_of(open.number)) {
-      line += answer->ok() ? "  [ok]" : "  [exception " + std::to_string(answer->exception) + "]";
+    if (const auto answer = clients_.answer_of(open.client, open.number)) {
+      watches_->cable.answered(open.request);
+      line += answer->contains(0) ? "  [ok]" : "  [exception";
+      if (!answer->contains(0)) {
+        for (const int each : *answer) line += " " + std::to_string(each);
+        line += "]";
+      }
       const std::string expected = contract_->expected();
-      if (!contract_->answered(open.request, answer->exception)) {
+      if (!contract_->answered(open.request, *answer)) {
         line += "  <-- NO READING HAS THIS ANSWER";
         violated("no reading has this answer; expected: " + expected);
       } else {
-        line += "\n      then: " + contract_->expected();
+        line += "\n      then, " + std::to_string(contract_->worlds().size()) + " readings: " + contract_->expected();
       }
       return true;
     }
-    if (!clients_[open.client]->connected()) {
-      contract_->unanswered(open.request);
-      return true;
-    }
+    if (!clients_.connected(open.client)) violated("the gateway has closed a connection");
     if (now_ms() - open.sent_ms > kSilenceMs) violated("a request was never answered: " + line);
     return false;
   });
@@ -188,11 +197,12 @@ void Play::look() {
   if (!contract_->see(sight))
     violated("the motor does what nobody asked for: velocity " + std::to_string(truth.velocity) +
              "; the contract: " + expected);
+  watches_->look();
 }
 
 void Play::watch_trouble() {
   if (!wire_whole_) return;
-  const bool online = plant_.stage.gateway_runs() && plant_.stage.axis(1).link_state == LinkState::online;
+  const bool online = this->online();
   if (!contract_->in_trouble()) {
     if (online) return;
     // What was adopted is brought up as soon as it is disabled (section 7, point 7); else nothing takes an axis away.
@@ -200,8 +210,9 @@ void Play::watch_trouble() {
     begin_trouble();
     return;
   }
-  const bool strikes = std::ranges::any_of(kStrikes, [this](obey::Strike how) { return plant_.still_strikes(how); });
-  if (!online || strikes) {
+  const bool strikes =
+      std::ranges::any_of(obey::kStrikes, [this](obey::Strike how) { return plant_.still_strikes(how); });
+  if (!online || strikes || watches_->cable.lies_in_wait()) {
     online_since_ms_ = -1;
     return;
   }
@@ -209,6 +220,7 @@ void Play::watch_trouble() {
   if (now_ms() - std::max(online_since_ms_, whole_since_ms_) < kOnlineMs) return;
   outcome_.story.push_back(stamp() + ": all is well again");
   contract_->trouble_ends();
+  watches_->all_is_well();
 }
 
 void Play::begin_trouble() {
@@ -221,73 +233,74 @@ void Play::pass(std::int64_t ms) {
   for (std::int64_t gone = 0; gone < ms && !over(); gone += kStepMs) {
     plant_.run(std::chrono::milliseconds(kStepMs));
     look();
-    collect();
     watch_trouble();
+    collect();
   }
 }
 
-void Play::reconnect(std::size_t client, bool silently) {
+void Play::never_answered(const Open& open) {
+  contract_->unanswered(open.request);
+  watches_->cable.unanswered(open.request);
+}
+
+void Play::replace(std::size_t client, bool silently) {
+  if (!clients_.connected(client)) return;
   for (const Open& open : open_)
-    if (open.client == client) contract_->unanswered(open.request);
+    if (open.client == client) never_answered(open);
   std::erase_if(open_, [&](const Open& open) { return open.client == client; });
-  if (silently)
-    clients_[client]->vanish();
-  else
-    clients_[client]->disconnect();
   contract_->left(client, silently);
-  clients_[client]->connect();
-  outcome_.story.push_back(stamp() + ": " + (client == 0 ? "a" : "b") + (silently ? " vanishes" : " reconnects"));
+  clients_.replace(client, silently);
+  outcome_.story.push_back(stamp() + ": " + kNames.at(client) + (silently ? " vanishes" : " begins anew"));
 }
 
 // 3.2: what is shown as valid was true at its age.
 void Play::read(std::size_t client) {
-  if (!clients_[client]->connected()) return;
+  if (!clients_.connected(client)) return;
   look();
-  constexpr std::size_t kSequence = 24;
-  constexpr unsigned kBitOfStatusword = 0, kBitOfPosition = 2;
   contract_->asked(client);
-  const std::vector<std::uint16_t> words = clients_[client]->read(0, kSequence);
+  Shown shown{.words = clients_.modbus(client).read(0, Shown::kRegisters),
+              .low_word_first = plant_.listener.low_word_first,
+              .statusword_tells = obey::is_cia402(program_.subject)};
   look();
-  const auto wide = [&](std::size_t at) { return std::uint32_t{words[at]} << 16 | words[at + 1]; };
-  const std::uint32_t valid = wide(obey::shown::supported + 2);
-  const std::int64_t age_ms = words[obey::shown::supported - 1];
-  if ((valid >> kBitOfPosition & 1U) != 0) {
-    const auto position = static_cast<std::int32_t>(wide(obey::shown::position));
-    if (!seen_.was_at(position, age_ms))
-      violated("position " + std::to_string(position) + " is shown as valid, " + std::to_string(age_ms) +
-               " ms old, and the motor was elsewhere");
-  }
-  if ((valid >> kBitOfStatusword & 1U) != 0 && obey::is_cia402(program_.subject)) {
-    constexpr std::uint16_t kStateBits = 0x6F, kOperationEnabled = 0x27;
-    const bool enabled = (words[obey::shown::statusword] & kStateBits) == kOperationEnabled;
-    if (!seen_.was_enabled(enabled, age_ms))
-      violated(std::string("the axis is shown as ") + (enabled ? "enabled" : "not enabled") + ", " +
-               std::to_string(age_ms) + " ms old, and was not");
-  }
+  if (const auto wrong = wrong_in(shown, client, *contract_, seen_))
+    violated(std::string("to ") + kNames.at(client) + " " + *wrong);
+}
+
+// It lives until what it may still send has left it.
+void Play::die(const Step& step) {
+  constexpr std::int64_t kLongestWord = 100;
+  begin_to_die(plant_, step);
+  for (std::int64_t gone = 0; gone < kLongestWord && !plant_.dead(); gone += kStepMs) pass(kStepMs);
+  wire_whole_ = false;
+  watches_->line_is_troubled();
+  watches_->gateway_died();
+  contract_->gateway_died();
+  open_.clear();
+  clients_.gateway_died();
+  plant_.crash_gateway();
 }
 
 void Play::outage(const Step& step) {
   const std::int64_t length = kLengths.at(step.length);
   outcome_.story.push_back(stamp() + ": " + text(step) + " " + std::to_string(length) + " ms");
-  if (!wire_whole_) return;
+  const bool once_more = step.deed == Deed::restart || step.deed == Deed::trip || step.deed == Deed::crash;
+  if (!plant_.stage.gateway_runs() || (!wire_whole_ && !once_more)) return;
   begin_trouble();
   switch (step.deed) {
     case Deed::cut:
       wire_whole_ = false;
-      plant_.cut_wire();
+      if (!step.on) watches_->line_is_troubled();
+      plant_.cut_wire(step.on);
       break;
     case Deed::unplug:
       wire_whole_ = false;
-      plant_.unplug();
+      watches_->line_is_troubled();
+      plant_.unplug(step.on);
       break;
     case Deed::lose:
-      plant_.strike(step.on ? obey::Strike::lose_request : obey::Strike::lose_reply, 1 + step.number % 4);
-      break;
     case Deed::late:
-      plant_.strike(obey::Strike::late_reply, 1 + step.number % 3);
-      break;
     case Deed::twice:
-      plant_.strike(obey::Strike::double_reply, 1 + step.number % 3);
+      strike(plant_, *watches_, step);
       break;
     case Deed::restart:
       contract_->drive_restarted();
@@ -298,10 +311,7 @@ void Play::outage(const Step& step) {
       plant_.trip_drive();
       break;
     default:
-      wire_whole_ = false;
-      contract_->gateway_died();
-      open_.clear();
-      plant_.crash_gateway();
+      die(step);
   }
   if (step.at_once && step.deed != Deed::crash) return;
   pass(length);
@@ -310,13 +320,36 @@ void Play::outage(const Step& step) {
 void Play::act(const Step& step) {
   switch (step.deed) {
     case Deed::wait:
+      if (step.on && tongue_of(program_.subject) == Tongue::canopen) {
+        contract_->asked(step.client);
+        clients_.modbus(step.client).ask_for_name();
+      }
       break;
     case Deed::read:
       read(step.client);
       break;
+    case Deed::sample:
+      send(kDds, writers_->write_of(step), step.at_once);
+      break;
+    case Deed::new_writer:
+      replace(kDds, true);  // another GUID: the lease goes on until it runs out
+      break;
+    case Deed::bystander:
+      if (!over() && plant_.stage.gateway_runs())
+        if (const auto wrong = clients_.bystand(step)) violated(*wrong);
+      break;
     case Deed::reconnect:
     case Deed::vanish:
-      reconnect(step.client, step.deed == Deed::vanish);
+      replace(step.client, step.deed == Deed::vanish);
+      break;
+    case Deed::cross:
+      for (unsigned i = 0; i < 3; ++i) {
+        Step one{.deed = Deed::command, .number = 0};
+        one.client = static_cast<std::uint8_t>((step.client + i) % kDds);
+        one.command = static_cast<std::uint8_t>((step.command + i * (1U + step.number % 5U)) % kCommands.size());
+        send(one.client, writers_->write_of(one), true);
+        pass(kStepMs * (step.id % 4));
+      }
       break;
     case Deed::scan:
       for (std::int64_t gone = 0; gone < kLengths.at(step.length) && gone < 1500 && !over(); gone += 50) {
@@ -335,18 +368,11 @@ void Play::act(const Step& step) {
       if (step.on) send(step.client, one_coil(number, false), false);
       break;
     }
-    case Deed::cut:
-    case Deed::unplug:
-    case Deed::lose:
-    case Deed::late:
-    case Deed::twice:
-    case Deed::restart:
-    case Deed::trip:
-    case Deed::crash:
-      outage(step);
-      break;
     default:
-      send(step.client, writers_->write_of(step), step.at_once);
+      if (step.deed >= Deed::cut)
+        outage(step);
+      else
+        send(step.client, writers_->write_of(step), step.at_once);
   }
   pass(kPauses.at(step.pause));
   if (step.number % 3 == 0 || !step.at_once) mend();
@@ -358,8 +384,8 @@ void Play::mend() {
   plant_.mend_wire();
   if (!plant_.stage.gateway_runs()) {
     plant_.start_gateway();
+    clients_.connect();
     contract_->gateway_started();
-    for (Client* client : clients_) client->connect();
   }
   wire_whole_ = true;
   whole_since_ms_ = now_ms();

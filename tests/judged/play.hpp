@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/judged/cable_watch.hpp"
 #include "tests/judged/program.hpp"
 #include "tests/model/contract.hpp"
 #include "tests/obey/plant.hpp"
@@ -19,7 +20,9 @@ struct Outcome {
   std::vector<std::string> story{};  ///< one line for each step
   bool lost_count = false;           ///< of the readings: from there on nothing was judged
   std::int64_t virtual_ms = 0;
-  std::size_t requests = 0;
+  std::size_t writes = 0;
+  Traffic traffic{};
+  std::vector<std::string> last_second{};  ///< the frames before a violation
 };
 
 [[nodiscard]] Outcome play(const Program& program, std::uint64_t seed);

@@ -31,10 +31,15 @@ enum class Deed : std::uint8_t {
   word,           ///< controlword alone
   coil,           ///< one coil
   start_coils,    ///< coils 4 to 7 in one request
+  cross,          ///< three commands of both clients, none of which waits for an answer
   again,          ///< what this client wrote last, once more
   scan,           ///< the same each 50 ms
   button,         ///< a jog button is pressed and held, written each 200 ms, and released or forgotten
   read,           ///< registers 0 to 38
+  object,         ///< the mailbox writes the drive's own position target
+  bystander,      ///< a viewer writes
+  sample,         ///< of a DDS writer
+  new_writer,     ///< it is deleted, and another one begins
   release,        ///< command 13
   reconnect,      ///< the connection ends, a new one begins
   vanish,         ///< silent for ever; a new connection begins after a while
@@ -72,7 +77,7 @@ struct Program {
 // Few of them, so that what was written before is written again.
 inline constexpr std::array<std::int64_t, 4> kPositions{5'000, -20'000, 12'000, 30'000};
 inline constexpr std::array<std::int64_t, 4> kSpeeds{60'000, -120'000, 150'000, 0};
-inline constexpr std::array<std::int64_t, 12> kCommands{0, 1, 1, 6, 6, 6, 8, 7, 3, 4, 2, 5};
+inline constexpr std::array<std::int64_t, 16> kCommands{0, 1, 1, 6, 6, 6, 8, 7, 3, 4, 2, 5, 9, 10, 11, 14};
 inline constexpr std::array<std::int64_t, 7> kPauses{0, 0, 50, 50, 300, 1200, 2500};
 inline constexpr std::array<std::int64_t, 8> kLengths{1, 20, 100, 300, 700, 1500, 4000, 12'000};
 

@@ -6,11 +6,16 @@ using namespace model;
 
 namespace {
 constexpr std::int64_t kMoveNow = 63;  // start, and change at once
+constexpr std::uint8_t kHomeCoil = 23;
 }  // namespace
 
 std::int64_t Writers::start_command(const Step& step) const {
   const std::int64_t command = kCommands.at(step.command);
   if (command < kMove) return command;
+  if (command > kRun) {
+    const bool can = (commands_ >> command & 1U) != 0 && (leases_ || command != kTakeOver);
+    return can && (command != kTorque || flavour_ != Flavour::moves) ? command : kHalt;
+  }
   if (flavour_ == Flavour::speeds) return kRun;
   if (flavour_ == Flavour::moves && command == kRun) return kMove;
   return command;
@@ -82,7 +87,31 @@ Write Writers::write_of(const Step& step) {
     case Deed::word:
       if (flavour_ == Flavour::both) return one(row::command, start_command(step));
       return one(row::controlword, next_word(step, writer), step.number % 4 == 3 ? fc::mask_write : 0);
+    case Deed::sample: {
+      Rows rows;
+      const std::int64_t command = start_command(step);
+      rows[row::command] = command > kRun && command != kHome ? kHalt : command;
+      if (step.position < kPositions.size() && obey::has_positions(subject_))
+        rows[row::target_position] = kPositions[step.position];
+      if (step.speed < kSpeeds.size() && obey::has_speeds(subject_)) rows[row::target_velocity] = kSpeeds[step.speed];
+      // A sample that asks for nothing is an error of its own.
+      if (rows.size() == 1 && rows[row::command] == 0) rows[row::command] = kHalt;
+      return {.function = fc::sample, .sample = rows};
+    }
+    case Deed::object: {
+      constexpr std::uint16_t kLast = 85;
+      const auto target = obey::target_object(subject_);
+      if (!target) return one(row::command, kHalt);
+      return block(row::object_request, kLast,
+                   {{row::object_request, 2},
+                    {81, target->index},
+                    {82, target->subindex},
+                    {83, 4},
+                    {84, kPositions[step.position % kPositions.size()]}});
+    }
     case Deed::target: {
+      if (step.number % 6 == 5 && (commands_ >> kSetPosition & 1U) != 0)
+        return one(row::set_position_value, kPositions[step.position % kPositions.size()]);
       const bool move = flavour_ == Flavour::moves || (flavour_ == Flavour::both && step.on);
       if (move) return one(row::target_position, kPositions[step.position % kPositions.size()]);
       return one(row::target_velocity, kSpeeds[step.speed % kSpeeds.size()]);
@@ -95,6 +124,7 @@ Write Writers::write_of(const Step& step) {
       if (flavour_ == Flavour::speeds && (number == coil::start_absolute || number == coil::start_relative))
         number = coil::run_velocity;
       if (flavour_ == Flavour::moves && number == coil::run_velocity) number = coil::start_absolute;
+      if (step.number == kHomeCoil && obey::has_homing(subject_)) number = coil::home;
       return one_coil(number, step.on, step.number >= 16 ? fc::write_coils : fc::write_coil);
     }
     case Deed::start_coils: {

@@ -10,8 +10,13 @@ namespace axisgate::test::judged {
 class Writers {
  public:
   /// `profile`: rows 48 to 52 as the drive holds them; client a has them in its blocks, b writes zeros.
-  Writers(const Program& program, model::Rows profile)
-      : subject_(program.subject), flavour_(program.flavour), leases_(program.leases), profile_(std::move(profile)) {}
+  /// `commands`: register 36, one bit for each that the drive has.
+  Writers(const Program& program, model::Rows profile, std::uint32_t commands)
+      : subject_(program.subject),
+        flavour_(program.flavour),
+        leases_(program.leases),
+        profile_(std::move(profile)),
+        commands_(commands) {}
 
   [[nodiscard]] model::Write write_of(const Step& step);
   void sent(std::size_t client, const model::Write& write) { writers_.at(client).last = write; }
@@ -31,6 +36,7 @@ class Writers {
   Flavour flavour_;
   bool leases_;
   model::Rows profile_;
+  std::uint32_t commands_;
   std::array<Writer, model::kClients> writers_{};
 };
 

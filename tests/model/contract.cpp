@@ -38,6 +38,29 @@ void blur(World& world, const World& first) {
   }
 }
 
+/// Of two worlds that differ in nothing but when something happened: what is under way is as new, and leases are as
+/// unsure, as in either.
+void add_times(World& world, const World& other) {
+  world.lease_ends_ms = std::min(world.lease_ends_ms, other.lease_ends_ms);
+  world.lease_ends_by_ms = std::max(world.lease_ends_by_ms, other.lease_ends_by_ms);
+  world.lease_unsure = world.lease_unsure || other.lease_unsure;
+  world.broken = world.broken || other.broken;
+  for (const auto at : {&World::started_ms, &World::changed_ms, &World::enable_asked_ms, &World::off_asked_ms})
+    world.*at = std::max(world.*at, other.*at);
+  for (const Motion& motion : other.earlier)
+    if (std::ranges::find(world.earlier, motion) == world.earlier.end()) world.earlier.push_back(motion);
+}
+
+World without_times(World world) {
+  const std::int64_t none = 0;
+  for (const auto at : {&World::started_ms, &World::changed_ms, &World::enable_asked_ms, &World::off_asked_ms,
+                        &World::lease_ends_ms, &World::lease_ends_by_ms, &World::stopped_at})
+    world.*at = none;
+  world.lease_unsure = world.broken = false;
+  world.earlier.clear();
+  return world;
+}
+
 template <class Call>
 std::string each_once(const std::vector<World>& worlds, Call&& call) {
   std::set<std::string> lines;
@@ -69,12 +92,16 @@ std::string text(const World& world) {
   if (motion.kind == Motor::runs) out += (world.jog != 0 ? "jogs at " : "runs at ") + std::to_string(motion.value);
   if (motion.kind == Motor::unknown) out += "nobody can tell";
   if (world.broken && motion.kind != Motor::stands) out += ", or was broken off";
-  if (world.owner) out += std::string(", owned by ") + (*world.owner == 0 ? "a" : "b");
+  if (world.owner)
+    out += std::string(", owned by ") + (*world.owner == 0      ? "a"
+                                         : *world.owner == 1    ? "b"
+                                         : *world.owner == kDds ? "dds"
+                                                                : "one who is gone");
   return out;
 }
 
 Seen Contract::seen() const {
-  return {sight_.now_ms, sight_.position, sight_.velocity == 0, sight_.now_ms - since_ms_ >= kClearMs};
+  return {sight_.now_ms, sight_.position, sight_.velocity == 0, sight_.now_ms - since_ms_ >= kClearMs, trouble_};
 }
 
 void Contract::changed(World& world, const Motion& before) const {
@@ -110,12 +137,23 @@ int Contract::send(std::size_t client, const Write& write) {
       take_over(next, client);
       Judge judge(options_, next, readings, seen, client);
       Pending pending;
-      pending.verdict = write.coils() ? judge.coils(write) : judge.registers(write);
+      pending.verdict = write.function == fc::sample ? judge.sample(write)
+                        : write.coils()              ? judge.coils(write)
+                                                     : judge.registers(write);
       pending.verdict.stop = judge.stopped();
-      said.insert(pending.verdict.says);
+      pending.verdict.takes_over = judge.takes_over();
+      pending.verdict.any_answer = pending.verdict.any_answer || judge.unclear();
+      // A8: "an adopted axis [is taken over] by any write but an all-zero block", a stop too, perhaps (3.4).
+      if (next.owner) next.found = false;
+      if (next.found && readings.other()) {
+        next.owner = client;
+        next.lease_until(sight_.now_ms + options_.lease_ms);
+      }
+      said.insert(std::exchange(pending.verdict.says, {}));
       const Rows rows = write.coils() ? Rows{} : rows_of(write);
       pending.more = rows.size() > 1;
       pending.setpoints = !rows.empty() && !pending.verdict.acts;
+      pending.enables = next.enable_asked_ms != world.enable_asked_ms;
       overtake(next, pending, !rows.empty());
       next.pending[number] = pending;
       changed(next, world.motion());
@@ -127,8 +165,10 @@ int Contract::send(std::size_t client, const Write& write) {
       // owed all the same (A14).
       World none = world;
       none.clients = next.clients;
+      if (none.owner == next.owner) none.lease_ends_by_ms = std::max(none.lease_ends_by_ms, next.lease_ends_by_ms);
       overtake(none, pending, !rows.empty());
       pending.void_ = true;
+      pending.enables = false;
       none.pending[number] = pending;
       const bool differs = !(none.motion() == next.motion()) || none.accepted != next.accepted ||
                            none.enabled != next.enabled || none.latched != next.latched ||
@@ -152,34 +192,53 @@ int Contract::send(std::size_t client, const Write& write) {
   return number;
 }
 
+void Contract::drop_equal() {
+  std::vector<World> different, timeless;
+  for (World& world : worlds_) {
+    const World key = without_times(world);
+    const auto found = std::ranges::find(timeless, key);
+    if (found == timeless.end()) {
+      different.push_back(std::move(world));
+      timeless.push_back(key);
+    } else {
+      add_times(different[static_cast<std::size_t>(found - timeless.begin())], world);
+    }
+  }
+  worlds_ = std::move(different);
+}
+
 void Contract::keep_different() {
   if (worlds_.size() > kMaxWorlds)
     for (World& world : worlds_) blur(world, worlds_.front());
-  std::vector<World> different;
-  for (World& world : worlds_)
-    if (std::ranges::find(different, world) == different.end()) different.push_back(std::move(world));
-  worlds_ = std::move(different);
+  drop_equal();
   lost_count_ = lost_count_ || worlds_.size() > kMaxWorlds;
   if (lost_count_) worlds_.resize(1);
 }
 
-bool Contract::answered(int request, int exception) {
+bool Contract::answered(int request, const std::set<int>& exceptions) {
   if (lost_count_) return true;
   const Asked asked = asked_.at(request);
   asked_.erase(request);
+  const bool done = exceptions.contains(0);
   std::vector<World> fitting;
   for (const World& world : worlds_) {
     const Pending& pending = world.pending.at(request);
-    const bool expected = pending.verdict.any_answer || pending.verdict.answers.contains(exception);
-    const bool dropped = exception == 6 && pending.overtaken;
-    const bool lost = asked.troubled && kTrouble.contains(exception);
+    const auto any = [&](const std::set<int>& of) {
+      return std::ranges::any_of(exceptions, [&](int each) { return of.contains(each); });
+    };
+    const bool expected = pending.verdict.any_answer || any(pending.verdict.answers);
+    const bool dropped = exceptions.contains(6) && pending.overtaken;
+    const bool lost = asked.troubled && any(kTrouble);
     // 3.3: "dropped by a stop": of a stop itself only what stands beside it. "Outcome unknown", 0x0B: both. Nothing was
     // sent, 0x0A: a stop is owed all the same (A14).
     const bool not_done = pending.void_ || pending.alone;
-    const bool fits = (expected && !pending.void_) ||
+    const bool unclear = pending.verdict.any_answer && !done;
+    const bool fits = (expected && (!pending.void_ || unclear)) ||
                       (dropped && (not_done || pending.more || !pending.verdict.stop)) ||
-                      (lost && (not_done || exception == 11 || pending.verdict.stop));
+                      (lost && (not_done || exceptions.contains(11) || pending.verdict.stop));
     if (!fits) continue;
+    const std::optional<std::int64_t> is_at = pending.verdict.position;
+    if (done && is_at && !asked.troubled && std::abs(sight_.position - *is_at) > kClose) continue;
     World next = world;
     next.pending.erase(request);
     if (next.awaits == request) {
@@ -187,7 +246,19 @@ bool Contract::answered(int request, int exception) {
       next.changed_ms = sight_.now_ms;
     }
     // Whether it is remembered is not said.
-    if (!expected) doubt(next.clients[asked.client]);
+    if (!expected || (!done && pending.verdict.any_answer)) doubt(next.clients[asked.client]);
+    if (done && pending.verdict.takes_over) {
+      next.owner = asked.client;
+      next.lease_until(sight_.now_ms + options_.lease_ms);
+    }
+    // An enable that was broken off between its steps.
+    if (!done && pending.enables && next.enabled && sight_.enabled == false) {
+      World off = next;
+      off.enabled = false;
+      off.motor = Motor::stands;
+      off.ladder = 0;
+      fitting.push_back(std::move(off));
+    }
     fitting.push_back(std::move(next));
   }
   if (fitting.empty()) return false;

@@ -17,9 +17,9 @@
 
 namespace axisgate::test::model {
 
-inline constexpr std::size_t kClients = 2;
+inline constexpr std::size_t kClients = 3, kDds = 2;  ///< two of Modbus, one of DDS
 inline constexpr std::size_t kGhost = 100;
-inline constexpr std::int64_t kNever = INT64_MAX, kLongAgo = INT64_MIN / 4;
+inline constexpr std::int64_t kNever = INT64_MAX / 4, kLongAgo = INT64_MIN / 4;
 
 /// What somebody beside the machine sees.
 struct Sight {
@@ -37,6 +37,7 @@ struct Seen {
   std::int64_t position = 0;
   bool stands = true;
   bool clear = true;  ///< it has been standing, or moving, for a while: nobody could see it otherwise
+  bool troubled = false;
 };
 
 /// One thing that acts by edges, as one client has written it.
@@ -55,9 +56,10 @@ struct Item {
 struct ClientMemory {
   Item command, controlword;
   std::array<Item, 10> coils{};
-  std::optional<std::int64_t> id{};  ///< the last one that was not 0; belongs to the address
-  Rows rows{};                       ///< as written last, whatever became of it
-  bool rows_unsure = false;          ///< or otherwise
+  std::optional<std::int64_t> id{};        ///< the last one that was not 0; belongs to the address
+  Rows rows{};                             ///< as written last, whatever became of it
+  std::set<std::uint16_t> refused_rows{};  ///< of these it was refused; whether that counts is not said
+  bool rows_unsure = false;                ///< or otherwise
   bool operator==(const ClientMemory&) const = default;
 };
 
@@ -75,8 +77,10 @@ struct Verdict {
   std::set<int> answers{0};  ///< exceptions that fit; 0: none
   bool any_answer = false;
   bool starts = false;
-  bool acts = false;  ///< a command or controlword in it
-  bool stop = false;  ///< it holds one that acts
+  bool acts = false;                       ///< a command or controlword in it
+  bool stop = false;                       ///< it holds one that acts
+  bool takes_over = false;                 ///< the axis is its client's as soon as it is answered
+  std::optional<std::int64_t> position{};  ///< where the axis is once it is done, whatever the motor did
   bool operator==(const Verdict&) const = default;
 };
 
@@ -88,6 +92,7 @@ struct Pending {
   bool alone = true;       ///< there is no world where it was not carried out: that would be the same
   bool more = false;       ///< it holds more than one row
   bool setpoints = false;  ///< it holds nothing else
+  bool enables = false;
   bool operator==(const Pending&) const = default;
 };
 
@@ -97,16 +102,21 @@ struct World {
   Rows accepted{};
   std::optional<std::size_t> owner{};      ///< kGhost and more: a connection that is silent for ever
   bool orphan = false;                     ///< its connection has ended
+  bool retaken = false;                    ///< it was, before the last request
   std::int64_t lease_ends_ms = kNever;     ///< at the earliest; with an owner, or open to all; kNever: nothing runs out
   std::int64_t lease_ends_by_ms = kNever;  ///< at the latest: of some requests nobody can tell whether they renew it
   bool lease_unsure = false;               ///< it may have run out by now
   bool enabled = true;
   bool latched = false;
+  bool latch_unsure = false;  ///< what the gateway believed of it decided, out of sight
   bool faulted = false;
   bool adopted = false;                    ///< found enabled after a loss: whether starts are accepted is not said
+  bool found = false;                      ///< by a gateway that is new, perhaps enabled: it is nobody's yet
   bool held = false;                       ///< coil 3 is 1
   std::int64_t ladder = 15;                ///< the last raw step of CiA 402 that was taken: 0, 6, 7 or 15
   std::optional<std::int64_t> raw_mode{};  ///< written to row 41 since the last command that selects a mode
+  bool speed_mode = false;                 ///< the last command that selects a mode selected 3
+  bool other_mode = false;                 ///< it selected torque or homing: how a drive halts there is its own affair
   bool start_bit = false;                  ///< bit 4 may be set in the controlword in effect
   bool stale_speed = false;                ///< the speed was accepted before a stop
   Motor motor = Motor::stands;
@@ -121,7 +131,8 @@ struct World {
   // What the motor may still do from before, until it has settled.
   std::vector<Motion> earlier{};
   std::int64_t changed_ms = 0;
-  int awaits = 0;  ///< the answer of this request; 0: of none
+  std::int64_t stopped_at = 0;  ///< where a stop came
+  int awaits = 0;               ///< the answer of this request; 0: of none
   std::map<int, Pending> pending{};
   bool operator==(const World&) const = default;
   [[nodiscard]] Motion motion() const;
@@ -138,6 +149,8 @@ struct ContractOptions {
   std::set<std::uint16_t> rows{};  ///< set-points the drive has
   bool no_halt = false;            ///< of a move: the profile stops it by what may latch the axis
   bool by_gateway = false;         ///< the CiA 402 machine is the gateway's
+  bool by_address = false;         ///< "client": "address"
+  std::array<int, kClients> ranks{};
   std::int64_t settles_ms = 1200;  ///< so long after an answer the motor does what was asked, ramps included
 };
 
@@ -147,12 +160,15 @@ class Contract {
 
   /// A write is sent now. Returns its number.
   int send(std::size_t client, const Write& write);
-  /// What was answered. False: no reading of the contract has this answer.
-  bool answered(int request, int exception);
+  /// What was answered: an exception, 0 for none, or those that a DDS reply may stand for. False: no reading of the
+  /// contract has this answer.
+  bool answered(int request, const std::set<int>& exceptions);
   /// It will never be answered: its connection is gone.
   void unanswered(int request);
   /// Any other request of this client.
   void asked(std::size_t client);
+  /// What registers 28 and 34 (bit 7) tell this client now. False: no reading of the contract has it.
+  bool shown(std::size_t client, int owner, bool latched);
   /// False: no reading of the contract lets the motor do this.
   bool see(const Sight& sight);
 
@@ -192,6 +208,7 @@ class Contract {
   void expire(World& world) const;
   void add_expired();
   void changed(World& world, const Motion& before) const;
+  void drop_equal();
   void keep_different();
   void take_over(World& world, std::size_t client) const;
   void renew(World& world) const;
@@ -206,6 +223,7 @@ class Contract {
   std::optional<bool> was_enabled_{};
   std::int64_t since_ms_ = kLongAgo;  ///< it has been standing, or moving, since
   std::int64_t stood_at_ = 0;
+  int way_ = 0;  ///< 1, -1: it has been turning this way, and was judged; 0: it stands
   int requests_ = 0;
   bool trouble_ = false;
   bool gateway_is_new_ = false;

@@ -90,8 +90,10 @@ bool Judge::refuse_foreign(Verdict& verdict) {
 void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
   if (foreign()) {
     refused_foreign_ = true;
+    me().refused_rows.insert(offset);
     return;
   }
+  me().refused_rows.erase(offset);
   if (claims) claim();
   const auto old = world_.accepted.find(offset);
   const bool differs = old == world_.accepted.end() || old->second != value;
@@ -107,6 +109,7 @@ void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
   // 3.3: a mode that changes under a motion; 3.4 does not say what becomes of that.
   if (offset == row::mode) {
     world_.raw_mode = value;
+    world_.speed_mode = false;
     if (world_.motor != Motor::stands) world_.motor = Motor::unknown;
   }
   // 3.4: "target_velocity acts at once only while commands 8, 9 or raw modes 3 ... run". Whether an axis enabled in
@@ -127,14 +130,15 @@ void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlw
   // 3.4: stops are "without taking the lease"; whether the set-points beside one take it is not said.
   const bool beside_stop = command == Edge::acts && is_stop(rows.at(row::command));
   const bool claims = !options_.leases || !beside_stop || readings_.other();
-  const bool otherwise = me().rows_unsure && readings_.other();
+  const auto was_refused = [this](const auto& r) { return me().refused_rows.contains(r.first); };
+  const bool otherwise = (me().rows_unsure || std::ranges::any_of(rows, was_refused)) && readings_.other();
   const bool acts = (command == Edge::acts && !refused) || controlword == Edge::acts;
   for (const auto& [offset, value] : rows) {
     if (offset == row::controlword || offset == row::command || offset == row::command_id) continue;
     const auto last = me().rows.find(offset);
     bool differs = last == me().rows.end() || last->second != value;
     me().rows[offset] = value;
-    differs = differs || otherwise;
+    if (me().rows_unsure || me().refused_rows.contains(offset)) differs = otherwise;
     if (!options_.rows.contains(offset)) {
       // Not judged here; but what asks claims.
       if (options_.leases && !only_remembers && (differs || acts) && !foreign() && readings_.other()) claim();
@@ -155,18 +159,21 @@ void Judge::stopped(bool asserted) {
   stopped_ = true;
   // 3.3, the fixed order of one request: what its set-points began ends at once.
   if (world_.motor != Motor::stands) world_.earlier.push_back(world_.motion());
+  if (world_.motor != Motor::stands) world_.stopped_at = seen_.position;
   world_.motor = Motor::stands;  // 3.4: "a stop end[s] every motion for good"
   world_.jog = 0;
   world_.started_ms = seen_.now_ms;  // what a drive shows of standing still lags behind
   world_.stale_speed = true;
-  for (std::size_t c = 0; c < world_.clients.size(); ++c) {
-    // A1 speaks of "another client's stop"; whether a disabling coil or controlword is one (A2: "nothing else") is
-    // open.
-    const bool spoils = c != client_ && (asserted || readings_.other());
+  // A1 speaks of "another client's stop"; whether a disabling coil or controlword is one (A2: "nothing else") is open.
+  const bool spoils = asserted || readings_.other();
+  // "Since it acted": what was only remembered never did.
+  std::optional<bool> remembered_too;
+  for (std::size_t c = 0; c < kDds; ++c) {
     const auto mark = [&](Item& item) {
       item.ended = true;
-      // "since it acted": what was only remembered never did.
-      item.spoilt = item.spoilt || (spoils && item.value && !item.unsure && (item.acted || readings_.other()));
+      if (c == client_ || !spoils || !item.value || item.unsure || item.spoilt) return;
+      if (!item.acted && !remembered_too) remembered_too = readings_.other();
+      item.spoilt = item.acted || *remembered_too;
     };
     mark(world_.clients[c].command);
     mark(world_.clients[c].controlword);
@@ -204,10 +211,15 @@ Verdict Judge::registers(const Write& write) {
   const bool single = write.function != fc::read_write && rows.size() == 1;  // A1: "A single write is ..."
   for (const std::uint16_t offset : kZeroLeaves) {
     if (!rows.contains(offset) || rows[offset] != 0) continue;
-    if (single) return {"refused: 0 alone", {3}};  // A6
+    if (single) return {"refused: 0 alone", {3}};                      // A6
+    if (me().rows.contains(offset)) me().refused_rows.insert(offset);  // A7's "last write", or "leave as it is"
     rows.erase(offset);
   }
   Verdict verdict;
+  if (rows.contains(row::object_request)) {
+    object(verdict);
+    return verdict;
+  }
   if (!single && all_zero(write, rows, verdict)) return verdict;
   Item was = me().command;
   const bool with_id = rows.contains(row::command_id) && rows[row::command_id] != 0;
@@ -218,11 +230,20 @@ Verdict Judge::registers(const Write& write) {
   const std::int64_t number = command == Edge::absent ? 0 : rows[row::command];
   bool refused = false;
   if (command == Edge::acts && is_start(number) && word != Edge::acts) refused = start_refused(number, verdict);
-  setpoints(rows, single, command, word, refused, was_empty);
+  // Whether what stands beside a take_over is its new or its old owner's is not said.
+  const bool takes_over = command == Edge::acts && number == kTakeOver;
+  if (takes_over) this->command(number, me().command, verdict);
+  unclear_ = takes_over && rows.size() > 1;
+  // Whether commands 9 to 11 will be refused is not known here.
+  const bool will_be = command == Edge::acts && number > kRun && number <= kSetPosition && readings_.other();
+  setpoints(rows, single, command, word, refused || will_be, was_empty);
   if (verdict.says.empty())
     verdict.says = command == Edge::remembered || word == Edge::remembered ? "only remembered" : "set-points";
   // 3.3: "it stops at the first failure".
-  if (word == Edge::acts && !controlword(rows[row::controlword], single, verdict)) {
+  // An enabling word beside a stop: whether the stop makes it void is not said.
+  const bool void_word = word == Edge::acts && command == Edge::acts && is_stop(number) &&
+                         (rows[row::controlword] & 15) == 15 && readings_.other();
+  if (word == Edge::acts && !void_word && !controlword(rows[row::controlword], single, verdict)) {
     // A stop is accepted in every state; what the two together are answered with is not said.
     if (command == Edge::acts && is_stop(number)) {
       this->command(number, me().command, verdict);
@@ -234,7 +255,7 @@ Verdict Judge::registers(const Write& write) {
   if (refused) me().command.refused = true;
   // Of a controlword that is not new nothing is said but that the motor does nothing.
   if (word != Edge::absent && word != Edge::acts && single) verdict.any_answer = true;
-  if (command == Edge::acts && !refused) {
+  if (command == Edge::acts && !refused && !takes_over) {
     if (word == Edge::acts && is_start(number)) {
       // Two that act in one request: what the first does decides.
       if (start_refused(number, verdict)) {
@@ -246,7 +267,7 @@ Verdict Judge::registers(const Write& write) {
     if (word == Edge::acts) verdict.any_answer = true;
   }
   if (command == Edge::not_new && single) answer_not_new(number, was, verdict);
-  tell_foreign(verdict);
+  if (!takes_over) tell_foreign(verdict);
   verdict.acts = command == Edge::acts || word == Edge::acts;
   const auto unjudged = [this](const auto& r) {
     return r.first != row::controlword && r.first < row::command && !options_.rows.contains(r.first);
@@ -255,6 +276,24 @@ Verdict Judge::registers(const Write& write) {
   const auto target = [](const auto& r) { return r.first > row::controlword && r.first < row::command; };
   if (foreign() && (std::ranges::any_of(rows, unjudged) || (!single && std::ranges::any_of(rows, target))))
     verdict.answers.insert(6);
+  return verdict;
+}
+
+// B1: "Every request gets its one reply"; each sample is new, and what its mask names asks.
+Verdict Judge::sample(const Write& write) {
+  Verdict verdict{"a sample", {0}};
+  const std::int64_t number = write.sample.contains(row::command) ? write.sample.at(row::command) : 0;
+  const bool refused = is_start(number) && start_refused(number, verdict);
+  const bool claims = !options_.leases || !is_stop(number) || readings_.other();
+  // A7: "Set-points beside a command that is refused are accepted only if they would be without it": whether that
+  // speaks of samples is not said.
+  if (!refused || readings_.other())
+    for (const auto& [offset, value] : write.sample)
+      if (offset != row::command && options_.rows.contains(offset)) accept(offset, value, claims);
+  verdict.acts = number != 0;
+  if (number != 0 && !refused) command(number, me().command, verdict);
+  tell_foreign(verdict);
+  me() = {};
   return verdict;
 }
 

@@ -33,7 +33,7 @@ class Readings {
 inline constexpr std::int64_t kUnderWayMs = 1000;
 /// A2: "Asserted stops are commands 2, 3, 4 and coils 2, 3 = 1, nothing else."
 [[nodiscard]] constexpr bool is_stop(std::int64_t command) { return command >= 2 && command <= 4; }
-[[nodiscard]] constexpr bool is_start(std::int64_t command) { return command >= kMove && command <= kRun; }
+[[nodiscard]] constexpr bool is_start(std::int64_t command) { return command >= kMove && command <= kHome; }
 
 class Judge {
  public:
@@ -42,8 +42,13 @@ class Judge {
 
   Verdict registers(const Write& write);
   Verdict coils(const Write& write);
+  Verdict sample(const Write& write);
   /// One that acts was in it.
   [[nodiscard]] bool stopped() const { return stopped_; }
+  /// The axis is its client's as soon as it is answered.
+  [[nodiscard]] bool takes_over() const { return takes_over_; }
+  /// What it is answered with is not said.
+  [[nodiscard]] bool unclear() const { return unclear_; }
 
  private:
   enum class Edge : std::uint8_t { absent, nothing, remembered, not_new, acts };
@@ -72,6 +77,10 @@ class Judge {
   void tell_foreign(Verdict& verdict) const;
   void jog(std::int64_t direction, std::int64_t value, Edge edge, bool single, Verdict& verdict);
   bool reset_fault(Verdict& verdict);
+  [[nodiscard]] bool may_have_no_halt() const;
+  void take_over(Verdict& verdict);
+  void set_position(Verdict& verdict);
+  void object(Verdict& verdict);
 
   const ContractOptions& options_;
   World& world_;
@@ -80,6 +89,8 @@ class Judge {
   std::size_t client_;
   bool refused_foreign_ = false;
   bool stopped_ = false;
+  bool takes_over_ = false;
+  bool unclear_ = false;
 };
 
 }  // namespace axisgate::test::model

@@ -29,7 +29,8 @@ Judge::Edge Judge::level_edge(std::uint16_t number, std::int64_t value, bool sin
 void Judge::jog(std::int64_t direction, std::int64_t value, Edge edge, bool single, Verdict& verdict) {
   const bool mine = world_.jog == direction && world_.jog_client == client_;
   if (value == 0) {
-    if (edge == Edge::acts && mine) halted(false);
+    // "A single write of 0 always acts (...; 8, 9 end a jog)": anybody's.
+    if (edge == Edge::acts && (mine || (single && world_.jog == direction))) halted(false);
     return;
   }
   const Item& other = me().coils.at(direction > 0 ? coil::jog_reverse : coil::jog_forward);
@@ -58,6 +59,7 @@ void Judge::jog(std::int64_t direction, std::int64_t value, Edge edge, bool sing
   // A jog into another motion: what becomes of that is not said.
   world_.motor = world_.motor == Motor::stands ? Motor::runs : Motor::unknown;
   world_.jog = direction;
+  world_.speed_mode = true;
   world_.jog_client = client_;
   world_.jog_ends_ms = seen_.now_ms + options_.jog_timeout_ms;
   world_.started_ms = seen_.now_ms;

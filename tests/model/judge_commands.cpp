@@ -7,7 +7,7 @@
 namespace axisgate::test::model {
 namespace {
 
-constexpr std::int64_t kJustBegunMs = 250;
+constexpr std::int64_t kJustBegunMs = 1100;  // over CANopen the end of a move is told up to 1 s late
 
 }  // namespace
 
@@ -30,7 +30,8 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
   const bool just_begun = seen_.now_ms - world_.started_ms < kJustBegunMs;
   const bool under_way =
       world_.motor == Motor::moves && (just_begun || std::abs(world_.target - seen_.position) > kClose);
-  if (command == 7 && (just_begun || !seen_.stands || world_.motor == Motor::runs || !seen_.clear || under_way)) {
+  if (command == 7 && (just_begun || !seen_.stands || world_.motor == Motor::runs || world_.motor == Motor::unknown ||
+                       !seen_.clear || under_way)) {
     const bool unsure = seen_.stands || !seen_.clear;
     if (!unsure || readings_.other()) {
       verdict = {"refused: relative while moving", {6}};
@@ -46,11 +47,16 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
   return false;
 }
 
+/// A14: "An owed halt becomes quick_stop if the drive restarted, was lost for over 1 s, or its state ... is not
+/// certain."
+bool Judge::may_have_no_halt() const { return options_.no_halt || world_.other_mode || seen_.troubled; }
+
 // 3.4, command 4: "Where a drive has no halt, the profile names the replacement".
 void Judge::halted(bool asserted) {
   stopped(asserted);
-  if (!options_.no_halt || !readings_.other()) return;
+  if (!may_have_no_halt() || !readings_.other()) return;
   world_.latched = true;
+  world_.latch_unsure = seen_.troubled;
   world_.enabled = false;
   world_.ladder = 0;
 }
@@ -64,6 +70,8 @@ void Judge::renew_speed() {
 
 void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
   if (is_start(number)) {
+    // 3.3, the fixed order of one request: its set-points act before it starts.
+    if (world_.motor != Motor::stands) world_.earlier.push_back(world_.motion());
     claim();
     // A3: "or another client".
     for (std::size_t c = 0; c < world_.clients.size(); ++c) {
@@ -73,7 +81,15 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     }
     item.changed = item.ended = item.spoilt = item.refused = false;
     item.acted = true;
+    // Commands 9 and 10 need what is not judged here: a known max_velocity, a homing method since bring-up.
+    if (number > kRun && readings_.other()) {
+      verdict = {"refused: command " + std::to_string(number), {3, 4, 6}};
+      item.refused = true;
+      return;
+    }
     world_.raw_mode.reset();
+    world_.speed_mode = number == kRun;
+    world_.other_mode = number > kRun;
     world_.jog = 0;
     world_.start_bit = true;
     world_.started_ms = seen_.now_ms;
@@ -81,20 +97,22 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     const auto of = [&](std::uint16_t offset) {
       return world_.accepted.contains(offset) ? world_.accepted[offset] : std::int64_t{0};
     };
-    world_.motor = number == 8 ? Motor::runs : Motor::moves;
+    world_.motor = number > kRun ? Motor::unknown : number == kRun ? Motor::runs : Motor::moves;
     if (number == 8) renew_speed();
     if (number == 6) world_.target = of(row::target_position);
     if (number == 7) world_.target = seen_.position + of(row::target_position);
     // What a gateway that is new reads from the drive nobody has accepted.
-    if (number != 8 && !world_.accepted.contains(row::target_position)) world_.motor = Motor::unknown;
+    if (number != kRun && !world_.accepted.contains(row::target_position)) world_.motor = Motor::unknown;
     verdict = {"acts: command " + std::to_string(number), {0}};
     verdict.starts = true;
     return;
   }
+  if (number == kTakeOver) return take_over(verdict);
   if (!is_stop(number) && refuse_foreign(verdict)) {
     item.refused = true;
     return;
   }
+  if (number == kSetPosition) return set_position(verdict);
   if (number == 1) {
     claim();
     // Whether an enable ends what another client has begun (A3) is not said.
@@ -105,6 +123,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     // A Keya's watchdog trip is over with the next command (keya-kydas4860-2e.md); it is shown as disabled.
     if (world_.faulted && (!options_.by_gateway || readings_.other())) {
       verdict = {"enable while faulted", {4, 6}};
+      world_.latch_unsure = true;  // whether one that fails is "accepted after the stop" is not said
       item.refused = true;
       return;
     }
@@ -131,7 +150,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     // A raw step in the same request may count as one out of the latch, or not.
     if (number == 2) world_.enabled = false, world_.ladder = readings_.other() ? world_.ladder : 0;
     // 3.4, command 4: "Where a drive has no halt, the profile names the replacement".
-    if (number == 4 && options_.no_halt && readings_.other())
+    if (number == 4 && may_have_no_halt() && readings_.other())
       world_.latched = true, world_.enabled = false, world_.ladder = 0;
     if (number == 3) world_.latched = true, world_.enabled = false, world_.ladder = 0;
     verdict = {"acts: stop " + std::to_string(number), {0}};
@@ -147,11 +166,12 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
   // 3.4, command 13: "gives the lease back". Of an axis that is enabled the lease stays, open to all (3.5: only so is
   // it never without one).
   if (number == kRelease) {
-    if (world_.orphan && readings_.other()) {
+    if (world_.retaken && readings_.other()) {
+      world_.orphan = true;
       verdict = {"release of what its former connection owns", {6}};
       return;
     }
-    if (world_.owner == client_ && (!world_.orphan || readings_.other())) {
+    if (world_.owner == client_) {
       world_.owner.reset();
       world_.orphan = false;
       world_.lease_until(world_.enabled ? seen_.now_ms + options_.lease_ms : kNever);
@@ -161,6 +181,64 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
   }
   claim();
   verdict = {"acts: command " + std::to_string(number), {0}};  // 5 on an axis without a fault: nothing is sent
+}
+
+// 3.5: "command 14 takes a lease from a lower rank"; 3.4: "after a halt"; A8: between connections of one address it
+// needs no rank.
+void Judge::take_over(Verdict& verdict) {
+  verdict = {"take_over", {0}};
+  if (!options_.leases || !world_.owner || *world_.owner == client_) {
+    verdict.answers.insert(6);  // of what nobody else owns nothing is said
+    if (readings_.other()) claim();
+    return;
+  }
+  const std::size_t owner = *world_.owner % kGhost;
+  if (owner == kDds) {
+    // 3.5 speaks of ranks in `allow`; what a DDS writer's is, is not said.
+    if (!readings_.other()) {
+      verdict = {"take_over from a DDS writer", {6}};
+      return;
+    }
+  } else if (owner != client_ && options_.ranks.at(client_) <= options_.ranks.at(owner)) {
+    verdict = {"take_over from no lower rank", {6}};
+    return;
+  }
+  verdict.answers.insert(6);  // what stands beside it may be refused before it is carried out
+  if (world_.enabled && !world_.latched && (world_.motor != Motor::stands || readings_.other())) halted(true);
+  // "After a halt": until it is answered nobody can tell whose the axis is.
+  takes_over_ = readings_.other();
+  if (!takes_over_) claim();
+}
+
+// 3.4, command 11: "the position becomes set_position_value ..., at standstill, else 0x06".
+void Judge::set_position(Verdict& verdict) {
+  // Not each drive can do it in each state, and one that stands for us may be under way for itself.
+  if ((!seen_.stands && seen_.clear) || readings_.other()) {
+    verdict = {"refused: set_position", {3, 4, 6}};
+    me().command.refused = true;
+    if (readings_.other()) claim();
+    return;
+  }
+  claim();
+  verdict = {"acts: set_position", {0}};
+  // A raw run that its own request has begun.
+  if (world_.motor == Motor::runs) {
+    world_.motor = Motor::unknown;
+    return;
+  }
+  world_.motor = Motor::stands;
+  if (world_.accepted.contains(row::set_position_value)) verdict.position = world_.accepted[row::set_position_value];
+}
+
+// 3.1, the mailbox: "writing 80 returns at once". The drive's own object of a target is that target (a way in like any
+// other); what its counts come to is not judged here.
+void Judge::object(Verdict& verdict) {
+  if (refuse_foreign(verdict)) return;
+  if (options_.leases) claim();
+  verdict = {"object request", {0, 4, 6}};
+  world_.accepted.erase(row::target_position);
+  for (ClientMemory& client : world_.clients) client.command.changed = client.command.unsure = true;
+  if (world_.motor != Motor::stands) world_.motor = Motor::unknown;
 }
 
 // 3.4, command 5: "clears, never enables: the axis ends disabled". Whether its cause is gone the drive alone knows.
@@ -240,8 +318,10 @@ bool Judge::controlword(std::int64_t value, bool single, Verdict& verdict) {
     world_.ladder = 15;
     world_.start_bit = start;
     world_.motor = Motor::stands;
-    if (world_.accepted.contains(row::mode) && world_.accepted[row::mode] == 3) {
-      world_.raw_mode = 3;
+    // Whether a mode that a command has left is a raw mode is not said.
+    if ((world_.accepted.contains(row::mode) && world_.accepted[row::mode] == kVelocityMode) ||
+        ((world_.speed_mode || !options_.rows.contains(row::target_position)) && readings_.other())) {
+      world_.raw_mode = kVelocityMode;
       world_.motor = Motor::runs;  // 3.4: raw mode 3 runs
       renew_speed();
     }

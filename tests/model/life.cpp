@@ -11,6 +11,7 @@ constexpr std::int64_t kUnsureMs = 40;  // two clocks that read the same instant
 
 /// A lease or a jog button has run out. Whether its stop counts as another client's (A1) is not said.
 void ended_by_nobody(World& world) {
+  for (auto& [number, pending] : world.pending) pending.overtaken = true;  // 3.3: "dropped by a stop"
   for (ClientMemory& client : world.clients) {
     client.command.ended = client.controlword.ended = true;
     client.command.unsure = client.controlword.unsure = true;
@@ -23,6 +24,7 @@ void ended_by_nobody(World& world) {
 // 3.5: "renew": any request; A8: "An orphan lease is taken over by any write ... of the same address and role,
 // whatever it asks".
 void Contract::take_over(World& world, std::size_t client) const {
+  world.retaken = world.owner == client && world.orphan;
   if (world.owner != client) return;
   // Of a write that is refused nobody can tell whether it has taken it over.
   if (std::exchange(world.orphan, false))
@@ -43,6 +45,7 @@ void Contract::renew(World& world) const {
 
 // 3.5: "renew": any request of the owner; A8: "While an axis is disabled only requests that ask for something".
 void Contract::asked(std::size_t client) {
+  if (options_.by_address) return;  // A8: "With "client": "address" only writes renew"
   for (World& world : worlds_)
     if (world.owner == client && !world.orphan) renew(world);
 }
@@ -53,6 +56,7 @@ void Contract::expire(World& world) const {
   world.owner.reset();
   world.orphan = false;
   world.lease_until(kNever);
+  world.latch_unsure = trouble_;
   if (!world.enabled) return;
   world.motor = Motor::stands;
   world.jog = 0;
@@ -92,7 +96,7 @@ void Contract::pass_time(std::int64_t now_ms) {
     if (world.lease_ends_ms == kNever) continue;
     if (now_ms >= world.lease_ends_by_ms + kUnsureMs) {
       expire(world);
-    } else if (now_ms >= world.lease_ends_ms - kUnsureMs && !world.lease_unsure) {
+    } else if (now_ms >= world.lease_ends_ms - kUnsureMs) {
       world.lease_unsure = true;
       more.push_back(world);
       expire(more.back());
@@ -105,7 +109,7 @@ void Contract::pass_time(std::int64_t now_ms) {
 
 void Contract::left(std::size_t client, bool silently) {
   // SECURITY.md: with "lease": null a drive without a watchdog of its own is stopped when its client's connection ends.
-  if (!options_.leases && options_.by_gateway && !silently) {
+  if (!options_.leases && options_.by_gateway && (!silently || client == kDds)) {
     const std::vector<World> now = worlds_;
     for (const World& world : now) {
       worlds_.push_back(world);
@@ -113,8 +117,14 @@ void Contract::left(std::size_t client, bool silently) {
     }
   }
   for (World& world : worlds_) {
+    if (options_.by_address && client != kDds) {
+      world.orphan = world.orphan || (world.owner == client && !silently);
+      continue;  // A1: "until 60 s after its last connection"
+    }
     if (world.owner == client && silently && !world.orphan) world.owner = kGhost + client;
     if (world.owner == client) world.orphan = true;
+    // 3.4, jog: a new connection has no button of an old one's.
+    if (world.jog != 0 && world.jog_client == client) world.jog_client = kGhost + client;
     const std::optional<std::int64_t> id = world.clients[client].id;
     world.clients[client] = {};
     world.clients[client].id = id;  // A1: "kept 60 s after its last connection"
@@ -142,6 +152,7 @@ void Contract::trouble_ends() {
   std::vector<World> more;
   for (World& world : worlds_) {
     world.changed_ms = sight_.now_ms;
+    world.latch_unsure = true;  // whether what ended out of sight was enabled then the gateway has not seen
     // Of an axis whose state is the gateway's own nobody knows what it has made of a loss.
     world.adopted = options_.by_gateway && world.enabled;
     if (!gateway_is_new_ || !options_.leases || !world.enabled || world.owner) continue;
@@ -176,7 +187,7 @@ void Contract::gateway_died() {
   trouble_begins();
   for (std::size_t client = 0; client < kClients; ++client) left(client, false);
   for (World& world : worlds_) {
-    for (ClientMemory& client : world.clients) client.id.reset();
+    world.clients = {};
     world.owner.reset();
     world.orphan = false;
     world.lease_until(kNever);
@@ -193,6 +204,7 @@ void Contract::gateway_started() {
   gateway_is_new_ = true;
   std::vector<World> worlds;
   for (World& world : worlds_) {
+    world.found = options_.leases;
     if (world.latched) {
       World other = world;
       other.latched = false;

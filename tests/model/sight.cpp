@@ -1,6 +1,7 @@
 // Whether a world's motor may do what is seen.
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 
 #include "tests/model/contract.hpp"
 
@@ -8,6 +9,23 @@ namespace axisgate::test::model {
 namespace {
 
 constexpr std::int64_t kEnableMs = 2000;  // from an accepted enable to the torque, at most
+
+bool moved_before(const World& world) {
+  return std::ranges::any_of(world.earlier, [](const Motion& m) { return m.kind != Motor::stands; });
+}
+
+int way(const Sight& sight) { return sight.velocity == 0 ? 0 : sight.velocity > 0 ? 1 : -1; }
+
+/// Creeping by a count is no motion: rounding.
+constexpr std::int64_t kCreep = 10'000;
+
+/// Whether a motor that begins to turn as it is seen does so for this motion.
+bool leads_there(const Motion& motion, const Sight& sight) {
+  const std::int64_t way = motion.kind == Motor::moves ? motion.value - sight.position : motion.value;
+  if (motion.kind == Motor::stands) return false;
+  if (motion.kind == Motor::unknown || (motion.kind == Motor::moves && std::abs(way) <= kClose)) return true;
+  return way != 0 && (way > 0) == (sight.velocity > 0);
+}
 
 }  // namespace
 
@@ -25,7 +43,8 @@ bool Contract::enabling_fits(World& world, const Sight& sight) const {
   if (*sight.enabled && !*was_enabled_)
     return world.enabled || sight.now_ms - world.enable_asked_ms <= kEnableMs || !world.pending.empty();
   if (!*sight.enabled && *was_enabled_ && world.enabled && !world.latched) {
-    if (sight.now_ms - world.off_asked_ms <= options_.settles_ms && !trouble_) return true;
+    const bool enabling = std::ranges::any_of(world.pending, [](const auto& p) { return p.second.enables; });
+    if (sight.now_ms - world.off_asked_ms <= options_.settles_ms && (!trouble_ || enabling)) return true;
     if (!trouble_ && !world.broken && !world.faulted) return false;
     const Motion before = world.motion();
     world.enabled = false;
@@ -42,7 +61,6 @@ bool Contract::enabling_fits(World& world, const Sight& sight) const {
 bool Contract::motion_fits(World& world, const Sight& sight) const {
   constexpr std::int64_t kSpeedShare = 50;  // one part in so many
   constexpr std::int64_t kSlowest = 1'500;  // a drive that counts whole rpm
-  constexpr std::int64_t kCreep = 10'000;
   const bool settled = this->settled(world);
   if (settled) world.earlier.clear();
   const bool stands = sight.velocity == 0;
@@ -51,8 +69,12 @@ bool Contract::motion_fits(World& world, const Sight& sight) const {
   // A count, as rounding has it.
   if (std::abs(sight.position - stood_at_) <= kClose && std::abs(sight.velocity) <= kCreep) return true;
   if (!settled) {
-    if (stands || motion.kind != Motor::stands) return true;
-    return std::ranges::any_of(world.earlier, [](const Motion& m) { return m.kind != Motor::stands; });
+    // It brakes, or goes on: what began that way was judged then.
+    if (stands || way_ == way(sight)) return stands || motion.kind != Motor::stands || moved_before(world);
+    // 3.4, command 4: "target = actual is set": where a drive has no other stop it comes back to where that was read.
+    if (moved_before(world) && leads_there({Motor::moves, world.stopped_at}, sight)) return true;
+    return leads_there(motion, sight) ||
+           std::ranges::any_of(world.earlier, [&](const Motion& m) { return leads_there(m, sight); });
   }
   // It was broken off, and stays where it is: "a drive restart, a disable, link_state 4 or 5 ... end every motion for
   // good" (3.4).
@@ -76,6 +98,29 @@ bool Contract::motion_fits(World& world, const Sight& sight) const {
   }
 }
 
+// 3.1: "owner: 0 nobody, 1 this client, 2 another"; A14: "The latch is set when the stop is accepted or the lease
+// ends".
+bool Contract::shown(std::size_t client, int owner, bool latched) {
+  const auto unsure = [](const World& world) { return world.lease_unsure || !world.pending.empty(); };
+  if (lost_count_ || trouble_ || std::ranges::any_of(worlds_, unsure)) return true;
+  const auto fits = [&](const World& world) {
+    const bool former = world.orphan && !options_.by_address;  // a connection that has ended is another client
+    const int expected = !world.owner ? 0 : *world.owner == client ? 1 : 2;
+    return (world.latched == latched || world.latch_unsure || world.faulted) &&
+           (owner == expected || (former && expected == 1 && owner == 2));
+  };
+  std::vector<World> fitting;
+  std::ranges::copy_if(worlds_, std::back_inserter(fitting), fits);
+  if (fitting.empty()) return false;
+  worlds_ = std::move(fitting);
+  for (World& world : worlds_) {
+    world.enabled = world.enabled && (!latched || world.latched);
+    world.latched = latched;
+    world.latch_unsure = false;
+  }
+  return true;
+}
+
 bool Contract::see(const Sight& sight) {
   if ((sight.velocity == 0) != (sight_.velocity == 0)) since_ms_ = sight.now_ms;
   sight_ = sight;
@@ -89,6 +134,7 @@ bool Contract::see(const Sight& sight) {
     if (fitting.empty()) return false;
     worlds_ = std::move(fitting);
   }
+  if (sight.velocity == 0 || std::abs(sight.velocity) > kCreep) way_ = way(sight);
   was_enabled_ = sight.enabled;
   return true;
 }

@@ -47,6 +47,7 @@ Write coil_block(std::uint16_t first, std::vector<std::uint16_t> values) {
 }
 
 Rows rows_of(const Write& write) {
+  if (write.function == fc::sample) return write.sample;
   Rows rows;
   for (std::size_t i = 0; i < write.words.size(); ++i) {
     const auto offset = static_cast<std::uint16_t>(write.first + i);
@@ -64,7 +65,9 @@ Rows rows_of(const Write& write) {
 }
 
 std::string text(const Write& write) {
-  std::string out = "FC" + std::to_string(write.function);
+  std::string out = write.function == fc::sample ? "sample" : "FC" + std::to_string(write.function);
+  for (const auto& [offset, value] : write.sample) out += " " + std::to_string(offset) + "=" + std::to_string(value);
+  if (write.function == fc::sample) return out;
   if (write.coils()) {
     for (std::size_t i = 0; i < write.words.size(); ++i)
       out += " coil" + std::to_string(write.first + i) + "=" + std::to_string(write.words[i]);

@@ -16,30 +16,33 @@ inline constexpr std::uint16_t controlword = 40, mode = 41, target_position = 42
                                target_torque = 46, max_torque = 47, profile_velocity = 48, profile_acceleration = 50,
                                profile_deceleration = 52, command = 54, command_id = 55, heartbeat = 56,
                                jog_velocity = 58, homing_method = 60, homing_speed_switch = 62, homing_speed_zero = 64,
-                               homing_acceleration = 66, quick_stop_deceleration = 70, max_velocity = 76;
+                               homing_acceleration = 66, quick_stop_deceleration = 70, max_velocity = 76,
+                               set_position_value = 78, object_request = 80;
 }  // namespace row
 
 /// Of row 54.
 inline constexpr std::int64_t kEnable = 1, kDisable = 2, kQuickStop = 3, kHalt = 4, kMove = 6, kRelative = 7, kRun = 8,
-                              kHome = 10, kRelease = 13, kTakeOver = 14;
+                              kTorque = 9, kHome = 10, kSetPosition = 11, kRelease = 13, kTakeOver = 14;
 inline constexpr std::int64_t kVelocityMode = 3;  ///< of row 41
 /// Of positions, in 1/10000 turn: a count of the coarsest encoder, and rounding.
 inline constexpr std::int64_t kClose = 8;
 
 namespace coil {
 inline constexpr std::uint16_t enable = 0, fault_reset = 1, quick_stop = 2, halt = 3, start_absolute = 4,
-                               start_relative = 5, home = 6, run_velocity = 7, jog_forward = 8, jog_reverse = 9;
+                               start_relative = 5, home = 6, run_velocity = 7, jog_forward = 8, jog_reverse = 9,
+                               count = 10;
 }  // namespace coil
 
 namespace fc {
-inline constexpr int write_coil = 5, write_register = 6, write_coils = 15, write_registers = 16, mask_write = 22,
-                     read_write = 23;
+inline constexpr int sample = 0,  // no function code: a DDS sample
+    write_coil = 5, write_register = 6, write_coils = 15, write_registers = 16, mask_write = 22, read_write = 23;
 }  // namespace fc
 
 struct Write {
   int function = fc::write_registers;
   std::uint16_t first = 0;             ///< offset in the axis's block of registers or coils
   std::vector<std::uint16_t> words{};  ///< one for each register, or 0 and 1 for each coil
+  Rows sample{};                       ///< of fc::sample: what its mask names, and the command
   [[nodiscard]] bool coils() const { return function == fc::write_coil || function == fc::write_coils; }
 };
 

@@ -11,6 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint16_t kAxisBase = 100;
+constexpr std::uint8_t kUnit = 1;  // with "unit_ids": "per-axis" the axis; else any
 constexpr std::size_t kMbap = 7;
 constexpr Duration kLongestAnswer = 10s;
 
@@ -20,9 +21,9 @@ void add16(std::vector<std::uint8_t>& out, std::uint32_t value) {
 }
 
 // Modbus application protocol V1.1b3, 6.5, 6.6, 6.11, 6.12, 6.16, 6.17.
-std::vector<std::uint8_t> pdu_of(const Write& write) {
+std::vector<std::uint8_t> pdu_of(const Write& write, std::uint16_t base) {
   std::vector<std::uint8_t> pdu{static_cast<std::uint8_t>(write.function)};
-  const std::uint32_t address = kAxisBase + write.first;
+  const std::uint32_t address = std::uint32_t{base} + write.first;
   const auto count = static_cast<std::uint32_t>(write.words.size());
   if (write.function == fc::read_write) {
     add16(pdu, address);
@@ -57,6 +58,13 @@ std::vector<std::uint8_t> pdu_of(const Write& write) {
   }
 }
 
+/// "word_order": "low-first": the halves of each whole row of 32 bits the other way round.
+Write low_word_first(Write write) {
+  for (std::size_t i = 0; !write.coils() && i + 1 < write.words.size(); ++i)
+    if (is_wide(static_cast<std::uint16_t>(write.first + i))) std::swap(write.words[i], write.words[i + 1]), ++i;
+  return write;
+}
+
 }  // namespace
 
 void PrintTo(const Answer& answer, std::ostream* out) {
@@ -70,8 +78,8 @@ void PrintTo(const Answer& answer, std::ostream* out) {
 class Client::Connection {
  public:
   using OnAnswer = std::function<void(RequestNumber, Answer)>;
-  Connection(const modbus_tcp::SessionContext& context, ManualRuntime& runtime, const modbus_tcp::Peer& peer,
-             OnAnswer on_answer);
+  Connection(const ServedPort& port, const modbus_tcp::SessionContext& context, ManualRuntime& runtime,
+             const modbus_tcp::Peer& peer, OnAnswer on_answer);
 
   void send(RequestNumber number, const std::vector<std::uint8_t>& pdu);
   void close();
@@ -90,6 +98,7 @@ class Client::Connection {
   void receive();
   void take_answer(const std::vector<std::uint8_t>& adu);
 
+  const ServedPort& port_;
   ManualRuntime& runtime_;
   OnAnswer on_answer_;
   std::unique_ptr<Timer> deadline_;
@@ -102,9 +111,10 @@ class Client::Connection {
   std::unique_ptr<modbus_tcp::Session> session_;
 };
 
-Client::Connection::Connection(const modbus_tcp::SessionContext& context, ManualRuntime& runtime,
-                               const modbus_tcp::Peer& peer, OnAnswer on_answer)
-    : runtime_(runtime),
+Client::Connection::Connection(const ServedPort& port, const modbus_tcp::SessionContext& context,
+                               ManualRuntime& runtime, const modbus_tcp::Peer& peer, OnAnswer on_answer)
+    : port_(port),
+      runtime_(runtime),
       on_answer_(std::move(on_answer)),
       deadline_(runtime.make_timer([this] {
         in_session_ = true;
@@ -132,9 +142,10 @@ void Client::Connection::send(RequestNumber number, const std::vector<std::uint8
   add16(adu, ++transaction_);
   add16(adu, 0);
   add16(adu, static_cast<std::uint32_t>(pdu.size() + 1));
-  adu.push_back(1);
+  adu.push_back(kUnit);
   adu.insert(adu.end(), pdu.begin(), pdu.end());
   asked_[transaction_] = {number, pdu[0]};
+  port_.on_modbus(true, adu);
   unread_.push_back(std::move(adu));
   turn();
 }
@@ -165,6 +176,7 @@ void Client::Connection::receive() {
     const auto end = incoming_.begin() + 6 + load_be16(incoming_, 4);
     const std::vector<std::uint8_t> adu(incoming_.begin(), end);
     incoming_.erase(incoming_.begin(), end);
+    port_.on_modbus(false, adu);
     take_answer(adu);
   }
 }
@@ -205,6 +217,13 @@ Client::~Client() {
   std::erase(port_.clients_, this);
 }
 
+const modbus_tcp::ListenerSettings& Client::settings() const {
+  static const modbus_tcp::ListenerSettings kNone;
+  return listener_ ? *listener_ : port_.context_ ? port_.context_->settings : kNone;
+}
+
+std::uint16_t Client::base() const { return settings().per_axis_units ? 0 : kAxisBase; }
+
 void Client::connect() {
   disconnect();
   ++peer_.port;
@@ -212,9 +231,12 @@ void Client::connect() {
   const modbus_tcp::SessionContext& of = *port_.context_;
   const modbus_tcp::SessionContext own{
       listener_ ? *listener_ : of.settings, of.image, of.commands, of.clients, of.log, of.runtime};
-  connection_ = std::make_unique<Connection>(
-      own, runtime_, peer_, [this](RequestNumber number, Answer answer) { answers_[number] = std::move(answer); });
+  connection_ = std::make_unique<Connection>(port_, own, runtime_, peer_, [this](RequestNumber number, Answer answer) {
+    answers_[number] = std::move(answer);
+  });
 }
+
+void Client::ask_for_name() { begin({0x2B, 0x0D, 0x00, 0x00, 0x01, 0x10, 0x08, 0x00, 0x00, 0x00, 0x00, 0x00}); }
 
 void Client::disconnect() {
   if (connection_) connection_->close();
@@ -245,7 +267,9 @@ RequestNumber Client::begin(const std::vector<std::uint8_t>& pdu) {
   return last_;
 }
 
-RequestNumber Client::begin(const Write& write) { return begin(pdu_of(write)); }
+RequestNumber Client::begin(const Write& write) {
+  return begin(pdu_of(settings().low_word_first ? low_word_first(write) : write, base()));
+}
 
 std::optional<Answer> Client::answer_of(RequestNumber number) const {
   const auto found = answers_.find(number);
@@ -253,8 +277,9 @@ std::optional<Answer> Client::answer_of(RequestNumber number) const {
   return found->second;
 }
 
-Answer Client::ask(const std::vector<std::uint8_t>& pdu) {
-  const RequestNumber number = begin(pdu);
+Answer Client::ask(const std::vector<std::uint8_t>& pdu) { return awaited(begin(pdu)); }
+
+Answer Client::awaited(RequestNumber number) {
   const Instant end = runtime_.now() + kLongestAnswer;
   while (!answers_.contains(number)) {
     if (!connected()) throw std::runtime_error("a request without a connection");
@@ -264,11 +289,11 @@ Answer Client::ask(const std::vector<std::uint8_t>& pdu) {
   return std::move(answers_.extract(number).mapped());
 }
 
-Answer Client::write(const Write& write) { return ask(pdu_of(write)); }
+Answer Client::write(const Write& write) { return awaited(begin(write)); }
 
 std::vector<std::uint16_t> Client::read(std::uint16_t first, std::uint16_t count) {
   std::vector<std::uint8_t> pdu{3};
-  add16(pdu, kAxisBase + first);
+  add16(pdu, std::uint32_t{base()} + first);
   add16(pdu, count);
   Answer answer = ask(pdu);
   if (!answer.ok() || answer.words.size() != count) throw std::runtime_error("a read failed");
@@ -277,7 +302,8 @@ std::vector<std::uint16_t> Client::read(std::uint16_t first, std::uint16_t count
 
 std::int32_t Client::wide(std::uint16_t offset) {
   const auto words = read(offset, 2);
-  return static_cast<std::int32_t>(std::uint32_t{words[0]} << 16 | words[1]);
+  const bool low_first = settings().low_word_first;
+  return static_cast<std::int32_t>(std::uint32_t{words[low_first ? 1 : 0]} << 16 | words[low_first ? 0 : 1]);
 }
 
 bool Client::mailbox_write(std::uint16_t index, std::uint16_t subindex, std::uint16_t size, std::int64_t data) {

@@ -43,6 +43,8 @@ class ServedPort {
   void open(const modbus_tcp::SessionContext& context) { context_.emplace(context); }
   /// Whoever served is dead: all connections are gone, and nobody was told.
   void close();
+  /// Who is told of each request and answer.
+  std::function<void(bool to_gateway, Bytes adu)> on_modbus = [](bool, Bytes) {};
 
  private:
   friend class Client;
@@ -83,6 +85,15 @@ class Client {
   /// Any object of the drive, by registers 80 to 86; when it is done. False: it failed.
   bool mailbox_write(std::uint16_t index, std::uint16_t subindex, std::uint16_t size, std::int64_t data);
 
+  /// By 43/13, the manufacturer's device name (1008h): in several exchanges, which whatever is more urgent may break
+  /// off. Returns at once.
+  void ask_for_name();
+
+  /// As `allow` would make it; of the next connection.
+  void be(Role role, std::uint8_t rank = 0) {
+    peer_.role = role;
+    peer_.rank = rank;
+  }
   void disconnect();
   /// A new connection, from another port of the same address; none where no gateway runs.
   void connect();
@@ -99,6 +110,9 @@ class Client {
   void lose_connections();
   RequestNumber begin(const std::vector<std::uint8_t>& pdu);
   Answer ask(const std::vector<std::uint8_t>& pdu);
+  Answer awaited(RequestNumber number);
+  [[nodiscard]] const modbus_tcp::ListenerSettings& settings() const;
+  [[nodiscard]] std::uint16_t base() const;
 
   ServedPort& port_;
   ManualRuntime& runtime_;

@@ -9,6 +9,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kJogSpeed = 45'000;
+constexpr std::int64_t kResetFault = 5;
 
 class Found : public testing::TestWithParam<Subject> {
  protected:
@@ -33,6 +34,7 @@ class Found : public testing::TestWithParam<Subject> {
 };
 
 class FoundSpeeds : public Found {};
+class FoundPositions : public Found {};
 class FoundWithDisable : public Found {};
 class FoundRawVelocity : public Found {};
 
@@ -163,6 +165,156 @@ TEST_P(FoundWithDisable, AReleaseBesideAnEnableLeavesALease) {
   EXPECT_EQ(plant_->motor().enabled, false);
 }
 
+// A3: "A single write that asks for what is so already (enable on an enabled axis, the same absolute move to the same
+// target) is answered normally": it got 0x06 after somebody's command that had ended nothing.
+TEST_P(Found, AnEnableOfAnEnabledAxisIsAnsweredNormally) {
+  ready();
+  Client &a = plant_->a, &b = plant_->b;
+  ASSERT_EQ(a.command(kDisable), kOk);
+  ASSERT_EQ(a.command(kEnable), kOk);
+  ASSERT_EQ(b.command(kEnable), kOk);
+  EXPECT_EQ(a.command(kEnable), kOk);
+  EXPECT_EQ(a.coil(coil::enable, true), kOk);
+  EXPECT_EQ(b.command(kEnable), kOk);
+}
+
+TEST_P(FoundPositions, TheSameMoveToTheSameTargetIsAnsweredNormally) {
+  for (const bool under_way : {true, false}) {
+    ready();
+    Client &a = plant_->a, &b = plant_->b;
+    ASSERT_EQ(a.row(row::target_position, under_way ? kFar : 2000), kOk);
+    ASSERT_EQ(a.command(kMove), kOk);
+    if (!under_way) plant_->run(600ms);
+    EXPECT_EQ(a.command(kMove), kOk);
+    ASSERT_EQ(b.command(kEnable), kOk);
+    EXPECT_EQ(a.command(kMove), kOk) << "after another client's enable";
+    ASSERT_EQ(b.command(kResetFault), kOk);
+    EXPECT_EQ(a.command(kMove), kOk) << "after another client's fault reset";
+    if (!under_way) continue;
+    ASSERT_EQ(b.command(kRelative), kNotNow);
+    EXPECT_EQ(a.command(kMove), kOk) << "after another client's relative move, which was refused";
+  }
+}
+
+// What ends it is told as before.
+TEST_P(FoundPositions, AMoveThatAnotherClientHasReplacedIsNotNew) {
+  ready();
+  Client &a = plant_->a, &b = plant_->b;
+  ASSERT_EQ(a.row(row::target_position, kFar), kOk);
+  ASSERT_EQ(a.command(kMove), kOk);
+  ASSERT_EQ(b.row(row::target_position, kAway), kOk);
+  ASSERT_EQ(b.command(kMove), kOk);
+  EXPECT_EQ(a.command(kMove), kNotNow);
+  EXPECT_EQ(a.result(), kNotNew);
+}
+
+// The one accepted last is the one that is carried out last.
+TEST_P(FoundPositions, AMoveThatCameAfterAnothersIsNotEndedByIt) {
+  ready();
+  Client &a = plant_->a, &b = plant_->b;
+  ASSERT_EQ(a.row(row::target_position, kFar), kOk);
+  const RequestNumber first = b.begin(one(row::command, kMove)), second = a.begin(one(row::command, kMove));
+  plant_->stage.run_until([&] { return b.answer_of(first) && a.answer_of(second); });
+  ASSERT_EQ(b.answer_of(first).value_or(Answer{0xFF}), kOk);
+  ASSERT_EQ(a.answer_of(second).value_or(Answer{0xFF}), kOk);
+  EXPECT_EQ(a.command(kMove), kOk);
+  EXPECT_EQ(b.command(kMove), kNotNow);
+}
+
+// 3.3: 0x03 says that a value is wrong. As long as the drive's own limits and scales are not known nobody knows that.
+TEST_P(Found, NoValueIsCalledWrongBeforeTheDriveIsKnown) {
+  constexpr std::uint8_t kNoPath = 0x0A;
+  for (const bool there : {true, false}) {
+    ready();
+    Rows rows = plant_->profile_rows();
+    rows.merge(plant_->endless_target());
+    plant_->crash_gateway();
+    if (!there) plant_->cut_wire();
+    plant_->start_gateway();
+    plant_->a.connect();
+    for (Duration moment{}; moment < 600ms; moment += 7ms, plant_->run(7ms))
+      for (const auto& [offset, value] : rows) {
+        const Answer answer = plant_->a.row(offset, value);
+        ASSERT_TRUE((there && answer == kOk) || answer == kNotNow || answer == kNoPath)
+            << "row " << offset << " after " << moment / 1ms << " ms: " << testing::PrintToString(answer);
+      }
+    const Answer jog = plant_->a.coil(coil::jog_forward, false);
+    EXPECT_NE(jog, kBadValue) << testing::PrintToString(jog);
+  }
+}
+
+// Command 13 gives the lease back: what stands beside it in the request takes none.
+TEST_P(Found, AReleaseBesideSetpointsTakesNoLease) {
+  const auto release = [this](std::int64_t value) {
+    Rows rows = plant_->endless_target();
+    rows.begin()->second = value;
+    rows[row::command] = kRelease;
+    return block(rows.begin()->first, row::command, rows);
+  };
+  plant_.emplace(GetParam(), with_leases());
+  plant_->ready_but_disabled();
+  Client &a = plant_->a, &b = plant_->b;
+  ASSERT_EQ(a.command(0), kOk);
+  EXPECT_EQ(a.write(release(1000)), kOk);
+  EXPECT_EQ(b.word(shown::owner), kNobody);
+  // One that fails, too.
+  ASSERT_EQ(a.command(0), kOk);
+  plant_->cut_wire();
+  EXPECT_EQ(a.write(release(2000)).ok(), is_keya(GetParam())) << "a Keya is not asked while it is disabled";
+  EXPECT_EQ(b.word(shown::owner), kNobody);
+  plant_->mend_wire();
+  plant_->run(4s);
+  // An owner's lease is given back.
+  ASSERT_EQ(a.command(0), kOk);
+  ASSERT_EQ(plant_->set_endless(a), kOk);
+  ASSERT_EQ(b.word(shown::owner), kAnother);
+  EXPECT_EQ(a.write(release(3000)), kOk);
+  EXPECT_EQ(b.word(shown::owner), kNobody);
+  // Another's is not.
+  ASSERT_EQ(plant_->set_endless(b), kOk);
+  ASSERT_EQ(a.command(0), kOk);
+  EXPECT_EQ(a.write(release(4000)), kNotNow);
+  EXPECT_EQ(b.word(shown::owner), kMe);
+}
+
+// A8: "an orphan lease is taken over by any write ... of the same address and role, whatever it asks".
+TEST_P(Found, AReleaseGivesBackWhatTheConnectionBeforeHasLeft) {
+  for (const bool alone : {true, false}) {
+    plant_.emplace(GetParam(), with_leases());
+    plant_->ready_but_disabled();
+    Client &a = plant_->a, &b = plant_->b;
+    ASSERT_EQ(plant_->set_endless(a), kOk);
+    a.disconnect();
+    a.connect();
+    ASSERT_EQ(b.word(shown::owner), kAnother);
+    if (!alone) {
+      ASSERT_EQ(a.command(0), kOk);
+    }
+    Rows rows = plant_->endless_target();
+    rows[row::command] = kRelease;
+    EXPECT_EQ(alone ? a.command(kRelease) : a.write(block(rows.begin()->first, row::command, rows)), kOk);
+    EXPECT_EQ(b.word(shown::owner), kNobody);
+  }
+}
+
+// The axis is enabled and nobody's: its time runs on, whoever writes beside a release.
+TEST_P(FoundWithDisable, AReleaseBesideSetpointsDoesNotProlongAnOpenLease) {
+  ready(true);
+  Client& a = plant_->a;
+  std::int64_t value = 1000;
+  for (int i = 0; i < 8; ++i, value += 1000) {
+    ASSERT_EQ(a.command(0), kOk);
+    Rows rows = plant_->endless_target();
+    rows.begin()->second = value;
+    rows[row::command] = kRelease;
+    ASSERT_EQ(a.write(block(rows.begin()->first, row::command, rows)), kOk) << i;
+    plant_->run(300ms);
+    if (plant_->b.word(shown::axis_state) == kStopLatched) return;
+  }
+  ADD_FAILURE() << "nothing has run out";
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, FoundPositions, testing::ValuesIn(subjects(has_positions)), named);
 INSTANTIATE_TEST_SUITE_P(Every, Found, testing::ValuesIn(kSubjects), named);
 INSTANTIATE_TEST_SUITE_P(Every, FoundSpeeds, testing::ValuesIn(subjects(has_speeds)), named);
 INSTANTIATE_TEST_SUITE_P(Every, FoundWithDisable,

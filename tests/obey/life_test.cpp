@@ -80,6 +80,17 @@ TEST_P(Life, OfAnAddressIsNotShownByReads) {
   EXPECT_EQ(plant.b.word(shown::axis_state), kStopLatched);
 }
 
+TEST_P(Life, OfAnAddressIsNotShownByObjectsThatAreRead) {
+  Plant plant(GetParam(), with_leases(true));
+  plant.ready();
+  start(plant, plant.a);
+  for (int i = 0; i < 5; ++i) {
+    plant.run(500ms);
+    plant.a.ask_for_name();
+  }
+  stops_by_its_lease(plant);
+}
+
 TEST_P(Life, OfAnAddressIsShownByWrites) {
   Plant plant(GetParam(), with_leases(true));
   plant.ready();

@@ -1,58 +1,69 @@
 // What a plant can suffer, the same for every drive and protocol.
+#include <type_traits>
+
 #include "tests/obey/plant.hpp"
 
 namespace axisgate::test::obey {
 namespace {
 
-simulated::DriveFault fault_of(Strike how) {
-  switch (how) {
-    case Strike::lose_request:
-      return simulated::DriveFault::mute;
-    case Strike::lose_reply:
-      return simulated::DriveFault::lose;
-    case Strike::late_reply:
-      return simulated::DriveFault::late;
-    case Strike::double_reply:
-      break;
-  }
-  return simulated::DriveFault::duplicate;
+using simulated::DriveFault;
+
+DriveFault fault_of(Strike how) {
+  constexpr std::array<DriveFault, kStrikes.size()> kFaults{
+      DriveFault::mute,          DriveFault::lose,        DriveFault::late,    DriveFault::duplicate,
+      DriveFault::noise_before,  DriveFault::noise_after, DriveFault::corrupt, DriveFault::split,
+      DriveFault::emergencies,   DriveFault::babble,      DriveFault::half,    DriveFault::wrong_length,
+      DriveFault::wrong_station, DriveFault::glued};
+  return kFaults.at(static_cast<std::size_t>(how));
 }
 
 }  // namespace
 
-void Plant::unplug() {
-  stage.at_link(0, [](auto& link) { link.unplug(); });
+void Plant::unplug(bool bus_off) {
+  stage.at_link(0, [bus_off](auto& link) {
+    if constexpr (std::is_same_v<decltype(link), CanLinkSim&>)
+      if (bus_off) return link.bus_off();
+    link.unplug();
+  });
 }
 
 void Plant::plug() {
   stage.at_link(0, [](auto& link) { link.plug(); });
 }
 
-void Plant::cut_wire() {
-  wire_cut_ = true;
+void Plant::cut_wire(bool drive_alone) {
+  (drive_alone ? drive_cut_ : wire_cut_) = true;
   join_wire();
 }
 
 void Plant::mend_wire() {
-  wire_cut_ = false;
+  wire_cut_ = drive_cut_ = false;
   join_wire();
 }
 
-/// A drive without power hears and says nothing, as one behind a cut wire.
+/// A drive without power hears and says nothing, as one behind a cut wire; a neighbour goes on speaking.
 void Plant::join_wire() {
-  stage.at_link(0, [whole = !wire_cut_ && !drive_off_](auto& link) {
-    if (whole)
-      link.mend_wire();
-    else
+  const bool deaf = drive_cut_ || drive_off_;
+  stage.at_link(0, [this, deaf](auto& link) {
+    if (wire_cut_ || (deaf && !neighbour_))
       link.cut_wire();
+    else
+      link.mend_wire();
+    if (!neighbour_ || wire_cut_) return;
+    if constexpr (std::is_same_v<decltype(link), CanLinkSim&>)
+      link.line().connect(0, !deaf);
+    else
+      link.line().faults(0).set_rate(DriveFault::mute, deaf ? 1 : 0);
   });
 }
 
-void Plant::strike(Strike how, std::uint64_t times, Duration late_by) {
-  stage.at_link(0, [=](auto& link) {
+bool Plant::strike(Strike how, std::uint64_t times, Duration late_by) {
+  return stage.at_link(0, [=](auto& link) {
+    if (!link.line().has(fault_of(how))) return false;
     simulated::DriveFaults& faults = link.line().faults(0);
     if (how == Strike::late_reply) faults.late_by = late_by;
     faults.next(fault_of(how), times);
+    return true;
   });
 }
 
@@ -76,6 +87,14 @@ void Plant::crash_gateway() {
     port_.close();
     registry_.reset();
   });
+}
+
+void Plant::die_after(std::size_t units) {
+  stage.at_link(0, [units](auto& link) { link.last_words.die_after(units); });
+}
+
+bool Plant::dead() {
+  return stage.at_link(0, [](const auto& link) { return link.last_words.dead(); });
 }
 
 void Plant::start_gateway() {

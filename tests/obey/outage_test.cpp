@@ -14,18 +14,6 @@ constexpr std::uint16_t kLinkState = 18;
 constexpr std::uint16_t kOnline = 2, kLinkDown = 5;
 constexpr std::int64_t kErrorStop = 6;
 
-/// The drive stops by itself when it has heard nobody for a second: CiA 301's heartbeat, or Keya's own watchdog, which
-/// is stated for every interface but RS485.
-bool minds_silence(Subject s) {
-  switch (s) {
-    case Subject::jd_can:
-    case Subject::md_can:
-    case Subject::leadshine:
-      return true;
-    default:
-      return is_keya(s) && s != Subject::keya_rs485_speed && s != Subject::keya_rs485_position;
-  }
-}
 /// Commands go as process data, which no strike hits.
 bool commands_by_pdo(Subject s) { return s == Subject::jd_can || s == Subject::md_can || s == Subject::leadshine; }
 

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "tests/obey/open_points.hpp"
+
 namespace axisgate::test::obey {
 namespace {
 
@@ -15,9 +17,10 @@ void expect(bool what, const std::string& why) {
   if (!what) throw std::runtime_error(why);
 }
 
-std::vector<GatewayStage::Line> one_line(Subject subject, const std::optional<LeaseRules>& lease) {
+std::vector<GatewayStage::Line> one_line(Subject subject, const PlantOptions& options) {
   std::vector<GatewayStage::Line> lines;
-  lines.push_back(line_with(subject, lease));
+  lines.push_back(line_with(subject, options.lease, options.neighbour));
+  if (options.open_points) draw_open_points(lines.back(), *options.open_points);
   return lines;
 }
 
@@ -25,12 +28,13 @@ std::vector<GatewayStage::Line> one_line(Subject subject, const std::optional<Le
 
 Plant::Plant(Subject which, PlantOptions options)
     : subject(which),
-      stage(one_line(which, options.lease), options.seed),
+      stage(one_line(which, options), options.seed),
       listener(std::move(options.listener)),
       log_([this](LogLevel level, std::string_view source, std::string_view message) {
         stage.log().push_back(std::string(axisgate::text(level)) + " " + std::string(source) + ": " +
                               std::string(message));
       }),
+      neighbour_(options.neighbour && may_have_neighbour(which)),
       power_back_(stage.runtime().make_timer([this] { restart_drive(); })),
       fitter_(port_, stage.runtime(), kHostOfFitter),
       a(port_, stage.runtime(), kHostOfA),

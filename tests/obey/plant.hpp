@@ -1,8 +1,10 @@
-// One simulated drive behind the shipped core and the shipped Modbus-TCP face, in manual time; a PLC (a), a panel (b)
-// and whoever set the plant up, each with an address of its own. Promises that what the motor does is read from the
-// simulated drive, and that a and b have written nothing before the test does. Never decides what is right.
+// One simulated drive, or two on one line, behind the shipped core and the shipped Modbus-TCP face, in manual time; a
+// PLC (a), a panel (b) and whoever set the plant up, each with an address of its own. Promises that what the motor does
+// is read from the simulated drive, and that a and b have written nothing before the test does. Never decides what is
+// right.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,8 @@ struct PlantOptions {
   std::optional<LeaseRules> lease{};  ///< none: leases are off
   modbus_tcp::ListenerSettings listener{};
   std::uint64_t seed = 1;
+  std::optional<std::uint64_t> open_points{};  ///< drawn from this (open_points.hpp); none: as the sheets print them
+  bool neighbour = false;                      ///< a second drive on the line, where one may be (subject.hpp)
 };
 /// Leases of 2 s, quick_stop, any request.
 [[nodiscard]] inline PlantOptions with_leases(bool client_is_address = false) {
@@ -31,7 +35,23 @@ enum class Strike : std::uint8_t {
   lose_reply,    ///< the drive acts
   late_reply,
   double_reply,
+  // On lines that carry bytes:
+  noise_before,  ///< the reply
+  noise_after,
+  flip_bit,  ///< of the reply
+  split_reply,
+  // On CAN:
+  emergencies,    ///< unasked
+  babble,         ///< signs of life that are none
+  half_reply,     ///< Modbus RTU, as the next three
+  wrong_length,   ///< with a right CRC
+  wrong_station,  ///< on all but CAN's own
+  glued_reply,    ///< and the one before it once more
 };
+inline constexpr std::array kStrikes{
+    Strike::lose_request, Strike::lose_reply,   Strike::late_reply,    Strike::double_reply, Strike::noise_before,
+    Strike::noise_after,  Strike::flip_bit,     Strike::split_reply,   Strike::emergencies,  Strike::babble,
+    Strike::half_reply,   Strike::wrong_length, Strike::wrong_station, Strike::glued_reply};
 
 class Plant {
  public:
@@ -50,24 +70,32 @@ class Plant {
 
   // What it can suffer (outage.cpp). Each returns at once; time passes only by run() and by waiting for answers.
   /// The port or the adapter is gone, and the system says so; and back.
-  void unplug();
+  /// `bus_off`: on CAN the controller has left the bus instead.
+  void unplug(bool bus_off = false);
   void plug();
   /// Nothing that is sent arrives on the other side, and nobody says so.
-  void cut_wire();
+  /// `drive_alone`: between the line and axis 1's drive, where that has a neighbour.
+  void cut_wire(bool drive_alone = false);
   void mend_wire();
-  void strike(Strike how, std::uint64_t times = 1, Duration late_by = std::chrono::milliseconds(300));
+  /// False: on such a line it cannot strike.
+  bool strike(Strike how, std::uint64_t times = 1, Duration late_by = std::chrono::milliseconds(300));
   /// The drive loses its power, for so long.
   void restart_drive(Duration off = {});
   /// A fault whose cause is gone already.
   void trip_drive();
   /// The gateway's process dies: nothing more is sent, all connections are gone. Cables, drives and motor live on.
   void crash_gateway();
+  /// It will die while it sends: so many bytes from now on, on CAN frames, still leave it. crash_gateway() buries it.
+  void die_after(std::size_t units);
+  [[nodiscard]] bool dead();
   /// A new one with the same configuration. a, b and whoever else wants it must connect() anew.
   void start_gateway();
   /// Frames that the gateway has put on the wire, or tried to, since the beginning.
   [[nodiscard]] std::size_t frames_sent();
   /// Requests that reached the drive; process data does not count.
   [[nodiscard]] std::uint64_t requests_heard();
+  /// Each Modbus request and answer of all clients.
+  void on_modbus(std::function<void(bool to_gateway, Bytes adu)> on_adu) { port_.on_modbus = std::move(on_adu); }
   /// Some of what strike() announced has not befallen anything yet.
   [[nodiscard]] bool still_strikes(Strike how);
 
@@ -104,7 +132,9 @@ class Plant {
   Log log_;
   std::optional<modbus_tcp::ClientRegistry> registry_;
   ServedPort port_;
+  bool neighbour_;
   bool wire_cut_ = false;
+  bool drive_cut_ = false;
   bool drive_off_ = false;
   std::unique_ptr<Timer> power_back_;
   Client fitter_;

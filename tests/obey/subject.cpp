@@ -37,33 +37,67 @@ simulated::Id286proOptions id286pro_options() {
   return options;
 }
 
-GatewayStage::Line plain_line(Subject subject) {
+constexpr std::uint32_t kBaudOfTwo = 38'400;  // twice the usual rate: each of two is polled as often as one alone
+constexpr std::uint8_t kNeighbour = 2;        ///< its station, unit or node
+
+/// One of them, or two that differ by their number alone.
+template <class Options, class Number>
+auto drives(Options options, bool neighbour, const Number& number) {
+  std::vector<Options> out(neighbour ? 2 : 1, options);
+  if (neighbour) number(out.back()) = kNeighbour;
+  return out;
+}
+
+/// As what the line takes.
+template <class OfLine, class Options>
+std::vector<OfLine> as(const std::vector<Options>& drives) {
+  return {drives.begin(), drives.end()};
+}
+
+GatewayStage::Line kinco_line(Subject subject, bool neighbour) {
+  GatewayStage::Line line = line_of(kinco_options(subject).type, 1);
+  if (!neighbour) return line;
+  line.options.wiring = simulated::Wiring::rs485;
+  line.drives.push_back(line_of(kinco_options(subject).type, 2).drives.front());
+  line.drives.back().options.station = kNeighbour;
+  return line;
+}
+
+GatewayStage::Line plain_line(Subject subject, bool neighbour) {
+  using simulated::CanDriveOptions;
+  using simulated::RtuDriveOptions;
+  const auto station = [](auto& kinco) -> auto& { return kinco.drive.station; };
+  const auto of_drive = [](auto& keya) -> auto& { return keya.drive.node; };
+  const auto node = [](auto& drive) -> auto& { return drive.node; };
+  const auto unit = [](auto& drive) -> auto& { return drive.unit; };
+  const auto on_can = [&](const auto& all) { return can_line_of(as<CanDriveOptions>(all), 1); };
+  const auto on_rtu = [&](const auto& all) { return rtu_line_of(as<RtuDriveOptions>(all), 1); };
   switch (subject) {
     case Subject::jd_serial:
     case Subject::md_serial:
-      return line_of(kinco_options(subject).type, 1);
+      return kinco_line(subject, neighbour);
     case Subject::jd_rtu:
     case Subject::md_rtu:
-      return rtu_line_of({simulated::KincoRtuDrive{kinco_options(subject), {}}}, 1);
+      return on_rtu(drives(simulated::KincoRtuDrive{kinco_options(subject), {}}, neighbour, station));
     case Subject::jd_can:
     case Subject::md_can:
-      return can_line_of({simulated::KincoCanDrive{kinco_options(subject), {}}}, 1);
+      return on_can(drives(simulated::KincoCanDrive{kinco_options(subject), {}}, neighbour, station));
     case Subject::leadshine:
-      return can_line_of({simulated::LeadshineOptions{}}, 1);
+      return on_can(drives(simulated::LeadshineOptions{}, neighbour, node));
     case Subject::id286pro:
-      return rtu_line_of({id286pro_options()}, 1);
+      return on_rtu(drives(id286pro_options(), neighbour, unit));
     case Subject::keya_can_speed:
     case Subject::keya_can_position:
-      return can_line_of({simulated::KeyaCanDrive{keya_options(subject)}}, 1);
+      return on_can(drives(simulated::KeyaCanDrive{keya_options(subject)}, neighbour, of_drive));
     case Subject::keya_canopen_speed:
     case Subject::keya_canopen_position:
-      return can_line_of({simulated::KeyaCanopenDrive{keya_options(subject)}}, 1);
+      return on_can(drives(simulated::KeyaCanopenDrive{keya_options(subject)}, neighbour, of_drive));
     case Subject::keya_rs232_speed:
     case Subject::keya_rs232_position:
       return keya_line_of(KeyaWiring::rs232, {keya_options(subject)}, 1);
     case Subject::keya_rs485_speed:
     case Subject::keya_rs485_position:
-      return keya_line_of(KeyaWiring::rs485, {keya_options(subject)}, 1);
+      return keya_line_of(KeyaWiring::rs485, drives(keya_options(subject), neighbour, node), 1);
   }
   throw std::invalid_argument("no such subject");
 }
@@ -89,9 +123,10 @@ std::string name(Subject subject) {
 
 void PrintTo(Subject subject, std::ostream* out) { *out << name(subject); }
 
-GatewayStage::Line line_with(Subject subject, std::optional<LeaseRules> lease) {
-  GatewayStage::Line line = plain_line(subject);
+GatewayStage::Line line_with(Subject subject, std::optional<LeaseRules> lease, bool neighbour) {
+  GatewayStage::Line line = plain_line(subject, neighbour && may_have_neighbour(subject));
   line.lease = lease;
+  if (line.rtu_drives.size() > 1) line.rtu_options.baud = kBaudOfTwo;
   const auto name_torque = [&](auto& staged) {
     if (!is_kinco(subject)) return;
     staged.constants["rated_current_a"] = Rational(5);
@@ -103,17 +138,28 @@ GatewayStage::Line line_with(Subject subject, std::optional<LeaseRules> lease) {
   return line;
 }
 
-Truth truth(GatewayStage& stage, Subject subject) {
+Truth truth(GatewayStage& stage, Subject subject) { return truth(stage, subject, {}); }
+
+std::vector<MotorPlace> motors(Subject subject, bool neighbour) {
+  std::vector<MotorPlace> out;
+  for (std::size_t drive = 0; drive < (neighbour && may_have_neighbour(subject) ? 2U : 1U); ++drive) {
+    out.push_back({drive, KeyaMotorName::a});
+    if (is_keya(subject)) out.push_back({drive, KeyaMotorName::b});
+  }
+  return out;
+}
+
+Truth truth(GatewayStage& stage, Subject subject, const MotorPlace& place) {
   using simulated::Cia402State;
   if (is_keya(subject)) {
-    const simulated::KeyaDrive& drive = stage.keya(0);
-    const simulated::KeyaMotor& motor = drive.at(KeyaMotorName::a);
-    const std::int64_t per_rev = kEdges * drive.parameters().of(KeyaMotorName::a, kLinesOfA);
+    const simulated::KeyaDrive& drive = stage.keya(0, place.drive);
+    const simulated::KeyaMotor& motor = drive.at(place.motor);
+    const std::int64_t per_rev = kEdges * drive.parameters().of(place.motor, kLinesOfA);
     return {units(motor.count(), per_rev), kMilli * motor.rpm(), motor.enabled(),
-            (drive.faults(KeyaMotorName::a) & ~simulated::keya_fault::disabled) != 0};
+            (drive.faults(place.motor) & ~simulated::keya_fault::disabled) != 0};
   }
   if (subject == Subject::id286pro) {
-    const simulated::Id286pro& drive = stage.id286pro(0);
+    const simulated::Id286pro& drive = stage.id286pro(0, place.drive);
     const std::int64_t per_rev = drive.registers().get(kPulsesPerRev);
     return {units(drive.position(), per_rev),
             simulated::rpm_of(drive.axis().speed(), per_rev, kMilli),
@@ -121,12 +167,12 @@ Truth truth(GatewayStage& stage, Subject subject) {
             drive.fault() != 0};
   }
   if (subject == Subject::leadshine) {
-    const simulated::LeadshineDrive& drive = stage.leadshine(0);
+    const simulated::LeadshineDrive& drive = stage.leadshine(0, place.drive);
     return {units(drive.position(), drive.units_per_revolution()),
             simulated::rpm_of(drive.axis().actual_speed(), drive.options().encoder_counts, kMilli),
             drive.state() == Cia402State::operation_enabled, is_fault(drive.state())};
   }
-  const simulated::KincoDrive& drive = stage.drive(0);
+  const simulated::KincoDrive& drive = stage.drive(0, place.drive);
   const std::int64_t per_rev = drive.model().encoder_counts;
   return {units(drive.position(), per_rev), simulated::rpm_of(drive.axis().actual_speed(), per_rev, kMilli),
           drive.state() == Cia402State::operation_enabled, is_fault(drive.state())};

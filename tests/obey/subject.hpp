@@ -1,5 +1,5 @@
 // The drives of these tests, each on every protocol it speaks; a Keya in each of the two modes that its maker's tool
-// can set. Promises one line with one drive, axis 1. Never says what is right: the tests and the contract do.
+// can set. Promises one line whose first drive is axis 1. Never says what is right: the tests and the contract do.
 #pragma once
 
 #include <array>
@@ -65,6 +65,19 @@ void PrintTo(Subject subject, std::ostream* out);
 /// The drive is a CiA 402 drive; the others' machine is the gateway's.
 [[nodiscard]] constexpr bool is_cia402(Subject s) { return is_kinco(s) || s == Subject::leadshine; }
 
+/// The drive stops by itself when it has heard nobody for a second: CiA 301's heartbeat, or Keya's own watchdog, which
+/// is stated for every interface but RS485.
+[[nodiscard]] constexpr bool minds_silence(Subject s) {
+  switch (s) {
+    case Subject::jd_can:
+    case Subject::md_can:
+    case Subject::leadshine:
+      return true;
+    default:
+      return is_keya(s) && s != Subject::keya_rs485_speed && s != Subject::keya_rs485_position;
+  }
+}
+
 /// Those of them that `which` is true of, for testing::ValuesIn.
 template <class Predicate>
 std::vector<Subject> subjects(Predicate which) {
@@ -74,8 +87,13 @@ std::vector<Subject> subjects(Predicate which) {
   return out;
 }
 
-/// A commissioned drive of it, alone on its line. `lease`: none where leases are off.
-[[nodiscard]] GatewayStage::Line line_with(Subject subject, std::optional<LeaseRules> lease);
+/// A line of it may have a second drive.
+[[nodiscard]] constexpr bool may_have_neighbour(Subject s) {
+  return s != Subject::jd_serial && s != Subject::keya_rs232_speed && s != Subject::keya_rs232_position;
+}
+
+/// A commissioned drive of it, alone on its line or beside another one of its kind. `lease`: none where leases are off.
+[[nodiscard]] GatewayStage::Line line_with(Subject subject, std::optional<LeaseRules> lease, bool neighbour = false);
 
 /// What the simulated motor does, in the units of the registers. Never asked through the gateway.
 struct Truth {
@@ -85,6 +103,15 @@ struct Truth {
   bool faulted = false;
 };
 [[nodiscard]] Truth truth(GatewayStage& stage, Subject subject);
+
+/// A motor of the line: which drive of it, and of a Keya which of its two.
+struct MotorPlace {
+  std::size_t drive = 0;
+  simulated::KeyaMotorName motor = simulated::KeyaMotorName::a;
+};
+[[nodiscard]] Truth truth(GatewayStage& stage, Subject subject, const MotorPlace& place);
+/// Of each axis of such a line, from axis 1 on.
+[[nodiscard]] std::vector<MotorPlace> motors(Subject subject, bool neighbour);
 
 /// The drive has a fault whose cause is gone already: it stays until somebody resets it.
 void trip(GatewayStage& stage, Subject subject);

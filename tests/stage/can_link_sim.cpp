@@ -51,7 +51,7 @@ void CanLinkSim::start(can::CanLinkEvents& events, std::vector<can::CanFilter> f
 }
 
 void CanLinkSim::send(const can::CanFrame& frame, bool urgent) {
-  if (!up_) return;
+  if (!up_ || last_words.take(1) == 0) return;
   advance_drives();  // what came until now was heard before
   sent.push_back({runtime_.now(), frame, urgent});
   fate = Fate::delivered;
@@ -87,7 +87,7 @@ void CanLinkSim::refuse(const can::CanFrame& frame) {
 void CanLinkSim::deliver() {
   advance_drives();
   if (cut_when_heard_ && line_.requests_heard() >= *cut_when_heard_) unplug();
-  if (events_ == nullptr) return;
+  if (events_ == nullptr || last_words.dead()) return;
   if (plugged_ != up_) {
     up_ = plugged_;
     if (up_) {
@@ -147,6 +147,7 @@ void CanLinkSim::restart(std::size_t drive) {
 
 void CanLinkSim::let_go() {
   events_ = nullptr;
+  last_words.live();
   up_ = false;
   was_up_ = false;
   filters_.clear();

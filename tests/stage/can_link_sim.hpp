@@ -10,6 +10,7 @@
 
 #include "adapters/can/can_link.hpp"
 #include "tests/simulated/can_line.hpp"
+#include "tests/stage/last_words.hpp"
 #include "tests/unit/support/manual_runtime.hpp"
 
 namespace axisgate::test {
@@ -71,6 +72,7 @@ class CanLinkSim final : public can::CanLink {
   };
   Fate fate = Fate::delivered;
   std::function<void()> on_unplugged = [] {};
+  LastWords last_words;  ///< whoever held it and died has none any more
 
  private:
   struct Arrived {

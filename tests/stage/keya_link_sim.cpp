@@ -20,8 +20,9 @@ void KeyaLinkSim::start(bus::ByteLinkEvents& events) {
 }
 
 void KeyaLinkSim::send(Bytes bytes) {
-  if (!up_) return;
+  if (!up_ || last_words.dead()) return;
   advance_drives();  // what came until now was heard before
+  bytes = bytes.first(last_words.take(bytes.size()));
   sent.push_back({runtime_.now(), {bytes.begin(), bytes.end()}});
   fate = Fate::delivered;
   on_traffic(true, bytes);
@@ -38,7 +39,7 @@ void KeyaLinkSim::send(Bytes bytes) {
 void KeyaLinkSim::deliver() {
   advance_drives();
   if (cut_when_heard_ && line_.requests_heard() >= *cut_when_heard_) unplug();
-  if (events_ == nullptr) return;
+  if (events_ == nullptr || last_words.dead()) return;
   if (plugged_ != up_) {
     up_ = plugged_;
     if (up_)
@@ -98,6 +99,7 @@ void KeyaLinkSim::restart(std::size_t drive) {
 
 void KeyaLinkSim::let_go() {
   events_ = nullptr;
+  last_words.live();
   up_ = false;
   arrived_.clear();
   cut_when_heard_.reset();

@@ -49,10 +49,11 @@ std::vector<Byte> RtuLinkSim::error_reply(Bytes whole) {
 }
 
 void RtuLinkSim::transmit(modbus_rtu::ExchangeNumber number, Bytes frame) {
-  if (!up_) return;
+  if (!up_ || last_words.dead()) return;
   advance_drives();  // what came until now was heard before
   newest_ = number;
-  const std::vector<Byte> whole = simulated::seal_rtu(frame[0], frame.subspan(1));
+  std::vector<Byte> whole = simulated::seal_rtu(frame[0], frame.subspan(1));
+  whole.resize(last_words.take(whole.size()));
   sent.push_back({runtime_.now(), number, whole});
   fate = Fate::delivered;
   on_traffic(true, whole);
@@ -78,7 +79,7 @@ void RtuLinkSim::transmit(modbus_rtu::ExchangeNumber number, Bytes frame) {
 void RtuLinkSim::deliver() {
   advance_drives();
   if (cut_when_heard_ && line_.journal().recorded() >= *cut_when_heard_) unplug();
-  if (events_ == nullptr) return;
+  if (events_ == nullptr || last_words.dead()) return;
   if (reopening_ && up_) {
     up_ = false;
     events_->on_link_down(*reopening_);
@@ -184,6 +185,7 @@ void RtuLinkSim::restart(std::size_t drive) {
 
 void RtuLinkSim::let_go() {
   events_ = nullptr;
+  last_words.live();
   up_ = false;
   newest_ = 0;
   reopening_.reset();

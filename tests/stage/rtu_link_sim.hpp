@@ -12,6 +12,7 @@
 
 #include "adapters/modbus_rtu/rtu_link.hpp"
 #include "tests/simulated/rtu_line.hpp"
+#include "tests/stage/last_words.hpp"
 #include "tests/unit/support/manual_runtime.hpp"
 
 namespace axisgate::test {
@@ -56,6 +57,7 @@ class RtuLinkSim final : public modbus_rtu::RtuLink {
   };
   Fate fate = Fate::delivered;
   std::function<void()> on_unplugged = [] {};
+  LastWords last_words;  ///< whoever held it and died has none any more
 
  private:
   struct Chunk {

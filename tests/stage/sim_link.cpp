@@ -20,7 +20,8 @@ void SimLink::start(bus::ByteLinkEvents& events) {
 }
 
 void SimLink::send(Bytes bytes) {
-  if (!up_) return;
+  if (!up_ || last_words.dead()) return;
+  bytes = bytes.first(last_words.take(bytes.size()));
   sent.push_back({runtime_.now(), {bytes.begin(), bytes.end()}});
   fate = Fate::delivered;
   on_traffic(true, bytes);
@@ -50,7 +51,7 @@ void SimLink::send(Bytes bytes) {
 
 void SimLink::deliver() {
   advance_drives();
-  if (events_ == nullptr) return;
+  if (events_ == nullptr || last_words.dead()) return;
   if (plugged_ != up_) {
     up_ = plugged_;
     if (up_)
@@ -109,6 +110,7 @@ void SimLink::restart(std::size_t drive) {
 void SimLink::let_go() {
   events_ = nullptr;
   up_ = false;
+  last_words.live();
   arrived_.clear();
 }
 

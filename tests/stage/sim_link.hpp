@@ -9,6 +9,7 @@
 
 #include "adapters/bus/byte_link.hpp"
 #include "tests/simulated/serial_line.hpp"
+#include "tests/stage/last_words.hpp"
 #include "tests/unit/support/manual_runtime.hpp"
 
 namespace axisgate::test {
@@ -52,6 +53,7 @@ class SimLink final : public bus::ByteLink {
   };
   Fate fate = Fate::delivered;
   std::function<void()> on_unplugged = [] {};
+  LastWords last_words;  ///< whoever held it and died has none any more
 
  private:
   void deliver();

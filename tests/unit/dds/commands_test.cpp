@@ -66,7 +66,7 @@ TEST_P(OfAxis, RunVelocityAndHaltAndQuickStop) {
   ASSERT_TRUE(rig.run_until([&] { return rig.state(axis).velocity > 4.9 * kTurn; }));
   EXPECT_EQ(ask(4), kDone);
   ASSERT_TRUE(rig.run_until([&] { return !rig.turns(axis); }));
-  EXPECT_EQ(rig.state(axis).axis_state, 1) << "standstill, enabled";
+  EXPECT_TRUE(rig.run_until([&] { return rig.state(axis).axis_state == 1; }, 1s)) << "standstill, enabled";
   EXPECT_EQ(rig.run_at(writer, -5, axis).result, kDone);
   ASSERT_TRUE(rig.run_until([&] { return rig.state(axis).velocity < -4.9 * kTurn; }));
   EXPECT_EQ(ask(3), kDone);

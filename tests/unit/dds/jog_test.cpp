@@ -47,7 +47,7 @@ TEST_P(Jogged, RunsWhileItsCommandComesAgainAndEndsWithItsEnd) {
   EXPECT_NEAR(velocity(), -2, 0.1);
   EXPECT_EQ(rig.ask(writer, kEnd, axis).result, kDone);
   EXPECT_TRUE(stands());
-  EXPECT_EQ(rig.state(axis).axis_state, 1) << "standstill, enabled";
+  EXPECT_TRUE(rig.run_until([&] { return rig.state(axis).axis_state == 1; }, 1s)) << "standstill, enabled";
   EXPECT_EQ(jog(kForward), kDone);
   hold(kForward, 1s);
   EXPECT_GT(velocity(), 1);

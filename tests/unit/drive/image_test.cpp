@@ -56,6 +56,19 @@ TEST(Values, TurnStaleAndKeepTheLastGoodNumber) {
   EXPECT_NE(rig.axis().valid_bits() & bit(Quantity::statusword), 0U) << "it spoils none of the others";
 }
 
+// 3.2: "A value ... not representable reads as the type's end". It kept the last number that had fitted.
+TEST(Values, ThatDoNotFitTheirRegisterReadAsItsEnd) {
+  RigOptions options;
+  options.axis.units_per_rev = Rational{1'000'000'000};  // two turns are all that the register has
+  Rig rig(KincoType::jd, options);
+  rig.bring_to(running);
+  rig.stage.run(5s);
+  EXPECT_EQ(shown_value(rig.axis(), Quantity::position_actual), INT32_MIN);
+  EXPECT_EQ(rig.axis().valid_bits() & bit(Quantity::position_actual), 0U);
+  EXPECT_NE(rig.axis().supported & bit(Quantity::position_actual), 0U);
+  EXPECT_NE(shown_value(rig.axis(), Quantity::velocity_actual), INT32_MIN) << "it spoils none of the others";
+}
+
 TEST(Values, OfASilentDriveAreNotValidLongerThanTheirStaleTime) {
   Rig rig(KincoType::jd);
   rig.bring_to(running);

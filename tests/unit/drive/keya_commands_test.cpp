@@ -331,6 +331,23 @@ TEST_P(KeyaCommands, FoundEnabledItIsShownSoAndIsCommandedAfterAnEnableThatSends
   EXPECT_EQ(rig.motor(0).enables, 0);
 }
 
+TEST_P(KeyaCommands, EnabledByAnotherMasterItNeedsAnEnableBeforeAStartAndAHaltIsNone) {
+  KeyaRig rig(in_mode(3));
+  rig.online();
+  rig.motor(0).enabled = true;
+  rig.motor(0).commanded = rig.runtime.now();
+  rig.run(100ms);
+  ASSERT_EQ(rig.axis(0)[Quantity::statusword].value & 0x6F, 0x27);
+  const auto start = [&] {
+    return KeyaRig::code(rig.ask(0, KeyaRig::group_of(Command::run_velocity, {{Quantity::target_velocity, kRpm150}})));
+  };
+  EXPECT_EQ(start(), Errc::state_unsuitable);
+  EXPECT_EQ(KeyaRig::code(rig.command(0, Command::halt)), Errc::ok);
+  EXPECT_EQ(start(), Errc::state_unsuitable);
+  ASSERT_EQ(KeyaRig::code(rig.command(0, Command::enable)), Errc::ok);
+  EXPECT_EQ(start(), Errc::ok);
+}
+
 // --- The back door -----------------------------------------------------------------------------------------------
 
 TEST_P(KeyaCommands, AnObjectOfTheOtherMotorCannotBeWrittenThroughThisAxis) {

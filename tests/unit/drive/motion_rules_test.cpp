@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "gateway/drive/motion.hpp"
+#include "gateway/image/endings.hpp"
 #include "tests/unit/drive/alone.hpp"
 
 namespace axisgate::drive {
@@ -98,6 +99,8 @@ TEST(MotionRules, AChangeOfTheModeEndsWhatRanInTheModeBefore) {
   s.motion.mode_changed();
   s.see();
   EXPECT_EQ(s.motion.state(), MotionState::aborted);
+  EXPECT_NE(s.motion.axis_state(s.facts), AxisState::standstill) << "the velocity may be of before the start";
+  s.see(300ms);
   EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::standstill);
   EXPECT_FALSE(s.motion.target_acts_now(Quantity::target_velocity, s.facts, false));
 }
@@ -139,6 +142,51 @@ TEST(MotionRules, WhatMayReachTheDriveNow) {
   for (const Quantity q : {Quantity::target_position, Quantity::target_velocity, Quantity::target_torque})
     EXPECT_FALSE(acts(q));
   EXPECT_TRUE(acts(Quantity::profile_velocity)) << "a parameter moves nothing";
+}
+
+TEST(MotionRules, WhatIsFoundRunningFollowsTheTargetOfItsModeUntilAnythingEndsIt) {
+  constexpr Quantity kVelocity = Quantity::target_velocity, kTorque = Quantity::target_torque;
+  const auto found = [](int mode) {
+    Stage s;
+    s.facts.reachable = false;
+    s.see();
+    s.facts.reachable = true;
+    s.facts.mode = mode;
+    s.facts.follows = true;
+    s.see();
+    return s;
+  };
+  const auto acts = [](Stage& s, Quantity target) { return s.motion.target_acts_now(target, s.facts, false); };
+  for (const int mode : {3, 9, -3}) {
+    Stage s = found(mode);
+    EXPECT_TRUE(acts(s, kVelocity)) << mode;
+    EXPECT_FALSE(acts(s, kTorque)) << mode;
+  }
+  for (const int mode : {4, 10}) {
+    Stage s = found(mode);
+    EXPECT_TRUE(acts(s, kTorque)) << mode;
+    EXPECT_FALSE(acts(s, kVelocity)) << mode;
+  }
+  Stage moves = found(1);
+  EXPECT_FALSE(acts(moves, kVelocity));
+  Stage stands = found(3);
+  stands.facts.follows = false;
+  EXPECT_FALSE(acts(stands, kVelocity));
+  Stage halted = found(3);
+  halted.motion.stop(false, halted.facts.at);
+  halted.see();
+  EXPECT_FALSE(acts(halted, kVelocity));
+  Stage changed = found(3);
+  changed.motion.mode_changed();
+  EXPECT_FALSE(acts(changed, kVelocity));
+  Stage enabled;
+  enabled.facts.state = State402::switched_on;
+  enabled.see();
+  enabled.facts.state = State402::operation_enabled;
+  enabled.facts.mode = 3;
+  enabled.facts.follows = true;
+  enabled.see();
+  EXPECT_FALSE(acts(enabled, kVelocity)) << "it was in sight all the time";
 }
 
 TEST(MotionRules, TheLatchIsLeftByTheTwoStepsInTheirOrder) {
@@ -207,6 +255,47 @@ TEST(MotionRules, StandstillIsWhatTheDriveSaysBeforeTheSampledVelocityDoes) {
   EXPECT_FALSE(s.motion.at_rest(s.facts)) << "a velocity sampled each 200 ms may be of before the start";
   s.see(300ms);
   EXPECT_TRUE(s.motion.at_rest(s.facts));
+}
+
+TEST(MotionRules, WhatHasArrivedStandsWhateverOldVelocityIsShown) {
+  Stage s;
+  s.facts.mode = 6;
+  s.start(MotionKind::homing);
+  s.see(1s);
+  s.facts.reference = true;
+  s.see();
+  ASSERT_EQ(s.motion.state(), MotionState::completed);
+  s.facts.moving = true;
+  s.see();
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::standstill);
+  s.see(300ms);
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::homing);
+}
+
+// Two commands are told in another order than they were accepted in: whoever looks sees the later one.
+TEST(MotionRules, TheLaterOfTwoCommandsCountsWhicheverIsToldFirst) {
+  constexpr ClientId kOne = 1, kTwo = 2, kThird = 3;
+  Endings endings;
+  const auto first = endings.accepted(), between = endings.accepted(), second = endings.accepted();
+  endings.commanded(kTwo, second);
+  endings.commanded(kOne, first);
+  EXPECT_TRUE(endings.ended(between, kThird));
+  EXPECT_FALSE(endings.ended(between, kTwo));
+}
+
+TEST(MotionRules, AStopOfWhatStandsLeavesItStanding) {
+  Stage s;
+  s.motion.stop(false, s.facts.at);
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::standstill);
+  s.motion.mask_target_reached();
+  s.motion.stop(false, s.facts.at);
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::stopping) << "a start may have reached the drive";
+  s.motion.unmask_target_reached();
+  s.see(300ms);
+  s.facts.follows = true;
+  s.see();
+  s.motion.stop(false, s.facts.at);
+  EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::stopping) << "its velocity is sampled late";
 }
 
 TEST(MotionRules, AnAxisThatMovesWithoutAStartOfOursIsNotSaidToStand) {

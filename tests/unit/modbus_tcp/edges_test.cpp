@@ -190,8 +190,8 @@ TEST(Edges, a_single_repetition_is_not_new_after_what_ended_its_action) {
       {"another's and its own", [](Endings& e) { e.stopped(kOther), e.stopped(kMe); }, kNotNew, kNotNew},
       {"a fault", [](Endings& e) { e.faulted(); }, kNotNew, kNotNew},
       {"a link loss", [](Endings& e) { e.lost(); }, kNotNew, kNotNew},
-      {"its own command", [](Endings& e) { e.commanded(kMe); }, kNothing, kActs},
-      {"another client's command", [](Endings& e) { e.commanded(kOther); }, kNotNew, kActs},
+      {"its own command", [](Endings& e) { e.commanded(kMe, e.accepted()); }, kNothing, kActs},
+      {"another client's command", [](Endings& e) { e.commanded(kOther, e.accepted()); }, kNotNew, kActs},
   };
   for (const Ending& ending : endings) {
     SCOPED_TRACE(ending.what);

@@ -1,0 +1,49 @@
+#include "tests/judged/beginning.hpp"
+
+#include <stdexcept>
+
+namespace axisgate::test::judged {
+
+using namespace model;
+
+namespace {
+
+constexpr std::int64_t kJogSpeed = 45'000, kHomeSwitch = 19;
+
+ContractOptions options_of(const obey::Plant& plant, const Program& program) {
+  const Subject subject = program.subject;
+  ContractOptions options;
+  options.by_address = plant.listener.client_is_address;
+  options.leases = program.leases;
+  options.no_halt = obey::is_kinco(subject) && !obey::is_md(subject) && program.flavour != Flavour::speeds;
+  options.by_gateway = !obey::is_cia402(subject);
+  if (obey::has_positions(subject)) options.rows.insert(row::target_position);
+  if (obey::has_speeds(subject)) options.rows.insert(row::target_velocity);
+  options.rows.insert(row::mode);
+  return options;
+}
+
+}  // namespace
+
+Beginning begin(obey::Plant& plant, const Program& program) {
+  constexpr std::int64_t kSinceReady = 100;
+  plant.ready();
+  Beginning out{.options = options_of(plant, program)};
+  const auto fitter = plant.connection_from(obey::Plant::kHostOfFitter);
+  Rows rows;
+  if (obey::has_speeds(program.subject)) rows[row::jog_velocity] = kJogSpeed;
+  if (obey::has_homing(program.subject)) rows[row::homing_method] = kHomeSwitch;
+  for (const auto& [offset, value] : rows)
+    if (!fitter->row(offset, value).ok()) throw std::runtime_error("row " + std::to_string(offset) + " was refused");
+  out.world.accepted = rows;
+  fitter->command(0);
+  if (!rows.empty()) fitter->command(kRelease);
+  out.commands = static_cast<std::uint32_t>(fitter->wide(obey::shown::supported_commands));
+  if ((out.commands >> kSetPosition & 1U) != 0) out.options.rows.insert(row::set_position_value);
+  out.world.enabled = true;
+  // It was released: the lease is open, and began a moment ago.
+  if (program.leases) out.world.lease_until(out.options.lease_ms - (rows.empty() ? kSinceReady : 0));
+  return out;
+}
+
+}  // namespace axisgate::test::judged

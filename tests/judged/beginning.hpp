@@ -1,0 +1,19 @@
+// How a run begins: the drive enabled, with what programs need, and what the contract is told of it. Promises that
+// nobody owns the axis, and that neither a nor b has written anything. Throws where the gateway refuses it.
+#pragma once
+
+#include "tests/judged/program.hpp"
+#include "tests/model/contract.hpp"
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::judged {
+
+struct Beginning {
+  model::ContractOptions options{};
+  model::World world{};
+  std::uint32_t commands = 0;  ///< register 36, one bit for each that the drive has
+};
+
+[[nodiscard]] Beginning begin(obey::Plant& plant, const Program& program);
+
+}  // namespace axisgate::test::judged

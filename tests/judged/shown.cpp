@@ -1,0 +1,37 @@
+#include "tests/judged/shown.hpp"
+
+#include "tests/obey/client.hpp"
+
+namespace axisgate::test::judged {
+namespace {
+
+using namespace model;
+
+bool bit_of(std::uint32_t word, unsigned bit) { return (word >> bit & 1U) != 0; }
+
+}  // namespace
+
+std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Contract& contract,
+                                    const History& history) {
+  constexpr std::size_t kAge = 19, kValid = 22, kAlarms = 34;
+  constexpr unsigned kBitOfStatusword = 0, kBitOfPosition = 2, kBitOfStopLatched = 7;
+  const int owner = shown.words[obey::shown::owner];
+  const bool latched = bit_of(shown.wide(kAlarms), kBitOfStopLatched);
+  const std::string expected = contract.expected();
+  if (!contract.shown(client, owner, latched))
+    return "shown owner " + std::to_string(owner) + (latched ? ", stop-latched" : ", not stop-latched") +
+           "; the contract: " + expected;
+  const std::uint32_t valid = shown.wide(kValid);
+  const std::int64_t age_ms = shown.words[kAge];
+  const std::string old = ", " + std::to_string(age_ms) + " ms old, ";
+  const auto position = static_cast<std::int32_t>(shown.wide(obey::shown::position));
+  if (bit_of(valid, kBitOfPosition) && !history.was_at(position, age_ms))
+    return "position " + std::to_string(position) + " is shown as valid" + old + "and the motor was elsewhere";
+  if (!bit_of(valid, kBitOfStatusword) || !shown.statusword_tells) return {};
+  constexpr std::uint16_t kStateBits = 0x6F, kOperationEnabled = 0x27;
+  const bool enabled = (shown.words[obey::shown::statusword] & kStateBits) == kOperationEnabled;
+  if (history.was_enabled(enabled, age_ms)) return {};
+  return std::string("the axis is shown as ") + (enabled ? "enabled" : "not enabled") + old + "and was not";
+}
+
+}  // namespace axisgate::test::judged

@@ -1,0 +1,31 @@
+// What a client is shown of the axis, held against the contract and against what the motor did (3.2). Promises the
+// first thing that is wrong, in words. Never asks the gateway.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/judged/history.hpp"
+#include "tests/model/contract.hpp"
+
+namespace axisgate::test::judged {
+
+/// Registers 0 to 38 as one client has read them.
+struct Shown {
+  static constexpr std::uint16_t kRegisters = 39;
+  std::vector<std::uint16_t> words{};
+  bool low_word_first = false;
+  bool statusword_tells = true;  ///< whether it is enabled; a virtual axis tells what it was told
+
+  [[nodiscard]] std::uint32_t wide(std::size_t at) const {
+    const std::size_t low = low_word_first ? 0 : 1;
+    return std::uint32_t{words[at + 1 - low]} << 16 | words[at + low];
+  }
+};
+
+[[nodiscard]] std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, model::Contract& contract,
+                                                  const History& history);
+
+}  // namespace axisgate::test::judged

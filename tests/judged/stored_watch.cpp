@@ -1,0 +1,224 @@
+#include "tests/judged/stored_watch.hpp"
+
+#include <algorithm>
+
+namespace axisgate::test::judged {
+namespace {
+
+namespace cob = simulated::cob;
+
+constexpr std::uint16_t kFirstTpdoMap = 0x1A00;
+/// One and a half heartbeats of 1000 ms, or three guarding frames each 500 ms, with what the two watches are slow by.
+constexpr Duration kLongestSilence = std::chrono::milliseconds(2200);
+
+/// What an expedited frame carries (CiA 301 7.2.4.3.3): all four bytes where it does not say how many.
+std::optional<std::uint32_t> carried(Bytes sdo) {
+  const std::size_t width = 4 - ((sdo[0] & 1) != 0 ? (sdo[0] >> 2) & 3U : 0U);
+  if (sdo.size() < 4 + width) return std::nullopt;
+  return load_le(sdo, 4, width);
+}
+
+std::size_t width_of(Byte response) { return response == 0x43 ? 4 : response == 0x4B ? 2 : response == 0x4F ? 1 : 0; }
+
+/// Whether such an answer, or such a write, gave the object this number.
+bool kinco_says(const simulated::Exchange& exchange, const drive::ObjectDef& object, std::int64_t number) {
+  using namespace simulated;
+  if (index_of(exchange.request) != object.address.index || sub_of(exchange.request) != object.address.sub)
+    return false;
+  if (command_of(exchange.request) != FrameCommand::read) return object.number(data_of(exchange.request)) == number;
+  for (std::size_t at = 0; at + frame_length <= exchange.sent.size(); ++at) {
+    TenByteFrame window{};
+    std::copy_n(exchange.sent.begin() + static_cast<std::ptrdiff_t>(at), frame_length, window.begin());
+    const std::size_t width = width_of(window[1]);
+    if (width != 0 && sums_to_zero(window) && object.number(load_le(window, 5, width)) == number) return true;
+  }
+  return false;
+}
+
+bool can_says(const simulated::CanExchange& exchange, const drive::ObjectDef& object, std::int64_t number) {
+  constexpr std::size_t kId = 2, kRecordedSdo = kId + 8;
+  if (exchange.request.size() != kRecordedSdo) return false;
+  const Bytes request = Bytes(exchange.request).subspan(kId);
+  if (request[0] == sdo::kAbort || load_le16(request, 1) != object.address.index || request[3] != object.address.sub)
+    return false;
+  const bool write = request[0] >> 5 == sdo::kDownload;
+  if (!write && exchange.sent.size() < kId + 4) return false;
+  const Bytes said = write ? request : Bytes(exchange.sent).subspan(kId);
+  const auto value = write || said[0] >> 5 == sdo::kUpload ? carried(said) : std::nullopt;
+  return value && object.number(*value) == number;
+}
+
+}  // namespace
+
+void StoredWatch::begin() {
+  for (const auto& axis : plant_.stage.gateway().image().axes()) {
+    const drive::Drive* drive = plant_.stage.gateway().drive_of(axis->number);
+    if (drives_.empty() || drives_.back().drive != drive) {
+      drives_.push_back({.drive = drive, .seen = std::vector<Entry>(drive->model().objects.size())});
+      take_as_seen(drives_.back());
+      if (tongue_of(plant_.subject) == Tongue::rtu)
+        drives_.back().truth =
+            std::make_unique<RtuTruth>(plant_.stage.gateway(), plant_.stage.rtu_link(0), axis->number);
+      if (drives_.back().truth) static_cast<void>(drives_.back().truth->lie());
+      drives_.back().heard_at = plant_.stage.runtime().now();
+    }
+    drives_.back().axes.push_back(axis->number);
+  }
+}
+
+void StoredWatch::on_frame(const CableFrame& frame) {
+  constexpr std::uint32_t kNodeBits = 0x7F;
+  if (frame.to_drive || tongue_of(plant_.subject) != Tongue::canopen || frame.can->remote) return;
+  for (std::size_t d = 0; d < drives_.size(); ++d) {
+    Watched& watched = drives_[d];
+    const std::uint8_t node = watched.drive->model().node;
+    if ((frame.can->id & kNodeBits) != node) continue;
+    watched.heard_at = plant_.stage.runtime().now();
+    if (booted(Tongue::canopen, frame) == node) watched.started_at = plant_.stage.runtime().now();
+    for (std::size_t tpdo = 0; tpdo < watched.maps.size(); ++tpdo)
+      if (frame.can->id == cob::first_tpdo + tpdo * cob::next_pdo + node) take_process_data(d, tpdo, *frame.can);
+  }
+}
+
+void StoredWatch::take_process_data(std::size_t position, std::size_t tpdo, const can::CanFrame& frame) {
+  CanLinkSim& link = plant_.stage.can_link(0);
+  Watched& watched = drives_[position];
+  const Instant now = plant_.stage.runtime().now();
+  const auto entry = [&](std::uint8_t sub) {
+    const auto index = static_cast<std::uint16_t>(kFirstTpdoMap + tpdo);
+    const auto bytes = link.line().node(position).peek({index, sub}, link.time_of(now));
+    return bytes ? simulated::little_endian(*bytes) : 0U;
+  };
+  // One that has just restarted has none; what it sent before was by the mapping before.
+  std::vector<std::uint32_t>& map = watched.maps[tpdo];
+  if (const std::uint32_t count = entry(0); count != 0) {
+    map.clear();
+    for (std::uint8_t sub = 1; sub <= count; ++sub) map.push_back(entry(sub));
+  }
+  std::size_t at = 0;
+  for (const std::uint32_t mapped : map) {
+    const std::size_t width = (mapped & 0xFF) / 8;
+    if (at + width > frame.size) return;
+    watched.received.push_back({now, static_cast<std::uint16_t>(mapped >> 16), static_cast<std::uint8_t>(mapped >> 8),
+                                load_le(frame.data, at, width)});
+    at += width;
+  }
+}
+
+void StoredWatch::look(bool twice) {
+  if (!plant_.stage.gateway_runs()) return;
+  if (drives_.empty()) begin();
+  for (Watched& watched : drives_) {
+    if (watched.truth) {
+      const auto lie = watched.truth->lie();
+      if (lie && !twice && keeps_its_word(watched.drive->model())) violated(*lie);
+    } else if (twice) {
+      take_as_seen(watched);
+    } else {
+      check_values(watched);
+    }
+    watched.received.clear();
+    for (const drive::AxisModel& axis : watched.drive->model().axes) check_axis(watched, axis);
+  }
+}
+
+void StoredWatch::take_as_seen(Watched& watched) {
+  for (std::size_t id = 0; id < watched.seen.size(); ++id) {
+    const drive::ObjectState& state = watched.drive->store()[static_cast<drive::ObjectId>(id)];
+    watched.seen[id] = {state.exchange, state.sent_at};
+  }
+}
+
+void StoredWatch::check_values(Watched& watched) {
+  const Tongue tongue = tongue_of(plant_.subject);
+  if (tongue != Tongue::kinco && tongue != Tongue::canopen) return;
+  for (std::size_t id = 0; id < watched.seen.size(); ++id) {
+    const drive::ObjectState& state = watched.drive->store()[static_cast<drive::ObjectId>(id)];
+    const Entry now_seen{state.exchange, state.sent_at};
+    if (!state.known || state.made || watched.seen[id] == now_seen) continue;
+    watched.seen[id] = now_seen;
+    if (state.sent_at == axisgate::kLongAgo) continue;  // nothing confirms it any more, and it is shown to nobody
+    const drive::ObjectDef& object = watched.drive->model().object(static_cast<drive::ObjectId>(id));
+    if (!object.trigger && !was_sent(watched, object, state) && keeps_its_word(watched.drive->model()))
+      violated(object.name + " holds " + std::to_string(state.number) + ", which was not sent for it");
+  }
+}
+
+// One exchange at a time is on the line: the first request for it that the drive heard after it was sent is the one.
+bool StoredWatch::was_sent(Watched& watched, const drive::ObjectDef& object, const drive::ObjectState& state) {
+  const bool by_process_data = std::ranges::any_of(watched.received, [&](const Value& value) {
+    return value.at == state.sent_at && value.index == object.address.index && value.sub == object.address.sub &&
+           object.number(value.raw) == state.number;
+  });
+  if (by_process_data) return true;
+  return plant_.stage.at_link(0, [&](auto& link) {
+    bool found = false;
+    if constexpr (std::is_same_v<decltype(link), SimLink&> || std::is_same_v<decltype(link), CanLinkSim&>) {
+      const auto& journal = link.line().journal().entries();
+      for (auto entry = journal.rbegin(); entry != journal.rend() && !found; ++entry) {
+        if (entry->received < link.time_of(state.sent_at)) break;
+        if (entry->station != watched.drive->model().node) continue;
+        if constexpr (std::is_same_v<decltype(link), SimLink&>)
+          found = kinco_says(*entry, object, state.number);
+        else
+          found = can_says(*entry, object, state.number);
+      }
+    }
+    return found;
+  });
+}
+
+// "Within worst_reply_ms" is part of the promise: a drive that is later than the timeout and the silence together may
+// be taken at its late word.
+bool StoredWatch::keeps_its_word(const drive::DriveModel& model) {
+  return plant_.stage.at_link(0, [&](auto& link) {
+    return std::ranges::none_of(link.line().journal().entries(), [&](const auto& exchange) {
+      return exchange.station == model.node &&
+             exchange.reply_ready - exchange.received > model.timeout + model.fence.worst_reply;
+    });
+  });
+}
+
+// A value may also be confirmed by reads alone, where the node does not take the event timer.
+Duration StoredWatch::period(const drive::Drive& drive, drive::ObjectId object) const {
+  const drive::CanopenFacts& facts = drive.model().canopen;
+  for (const drive::TpdoFacts& tpdo : facts.tpdos) {
+    if (std::ranges::find(tpdo.map, object) == tpdo.map.end()) continue;
+    const Duration event = std::chrono::milliseconds(tpdo.event_ms.value_or(std::uint16_t{0}));
+    return std::min(drive.store().period(object), std::max(event, facts.confirm));
+  }
+  return {};
+}
+
+Duration StoredWatch::stale_after(const Watched& watched, const drive::AxisModel& axis,
+                                  const drive::Binding& binding) const {
+  Duration longest = watched.drive->model().poll_period[static_cast<std::size_t>(binding.poll)];
+  const auto look = [&](drive::ObjectId object) {
+    if (object != drive::kNoObject) longest = std::max(longest, period(*watched.drive, object));
+  };
+  look(binding.object);
+  for (const drive::BitField& field : binding.bits) look(field.object);
+  if (binding.quantity == Quantity::error_code) std::ranges::for_each(axis.fault_words, look);
+  return std::max<Duration>(std::chrono::milliseconds(300), 3 * longest);
+}
+
+void StoredWatch::check_axis(Watched& watched, const drive::AxisModel& axis) {
+  const AxisImage& image = plant_.stage.axis(axis.number);
+  const Instant now = plant_.stage.runtime().now();
+  const bool canopen = tongue_of(plant_.subject) == Tongue::canopen;
+  const std::string name = "axis " + std::to_string(axis.number) + " ";
+  if (canopen && image.reachable() && now - watched.heard_at > kLongestSilence)
+    violated(name + "counts as there, and has said nothing for long");
+  for (const drive::Binding& binding : axis.bindings) {
+    const Sample& sample = image[binding.quantity];
+    if (!sample.valid) continue;
+    const std::string what = name + std::string(axisgate::row(binding.quantity).name);
+    if (!image.reachable()) violated(what + " is valid of a drive that is not there");
+    if (canopen && sample.at < watched.started_at) violated(what + " is valid and of before its restart");
+    if (binding.poll == drive::PollClass::once) continue;
+    if (now - sample.at > stale_after(watched, axis, binding) + std::chrono::milliseconds(2))
+      violated(what + " is stale but valid");
+  }
+}
+
+}  // namespace axisgate::test::judged

@@ -1,0 +1,206 @@
+// Requests that cross, and commands beside a controlword or a jog: what comes last decides, whatever still waits, is on
+// its way or has just been left.
+#include <gtest/gtest.h>
+
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::obey {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::array<Duration, 5> kApart{0ms, 1ms, 5ms, 20ms, 60ms};
+
+class Crossing : public testing::TestWithParam<Subject> {
+ protected:
+  struct Sent {
+    RequestNumber number;
+    Client* by;
+  };
+  void ready() {
+    plant_.emplace(GetParam());
+    plant_->ready();
+  }
+  void send(Client& by, const Write& write) { sent_.push_back({by.begin(write), &by}); }
+  void all_answered() {
+    const auto told = [](const Sent& one) { return one.by->answer_of(one.number).has_value(); };
+    ASSERT_TRUE(plant_->stage.run_until([&] { return std::ranges::all_of(sent_, told); }));
+  }
+  std::string answers() {
+    std::string out;
+    for (const Sent& one : sent_)
+      out += std::to_string(one.by->answer_of(one.number).value_or(Answer{255}).exception) + " ";
+    return out;
+  }
+  std::optional<Plant> plant_;
+  std::vector<Sent> sent_;
+};
+class CrossingWithDisable : public Crossing {};
+class CrossingLadder : public Crossing {};  // a virtual axis has none
+
+// The second stop was taken for the first, and the enable between them was done after both.
+TEST_P(CrossingWithDisable, AnEnableBetweenTwoStopsEndsWithTheSecond) {
+  for (const std::int64_t stop : {kDisable, kQuickStop})
+    for (const Duration first : kApart)
+      for (const Duration second : kApart) {
+        SCOPED_TRACE(std::to_string(stop) + ", " + std::to_string(first / 1ms) + " ms, " +
+                     std::to_string(second / 1ms));
+        ready();
+        sent_.clear();
+        send(plant_->b, one(row::command, stop));
+        plant_->run(first);
+        send(plant_->a, one(row::command, kEnable));
+        plant_->run(second);
+        send(plant_->b, one(row::command, stop));
+        all_answered();
+        plant_->run(2s);
+        EXPECT_FALSE(*plant_->motor().enabled) << answers();
+      }
+}
+
+TEST_P(Crossing, AStartBetweenTwoHaltsEndsWithTheSecond) {
+  for (const Duration first : kApart)
+    for (const Duration second : kApart) {
+      SCOPED_TRACE(std::to_string(first / 1ms) + " ms, " + std::to_string(second / 1ms) + " ms");
+      ready();
+      sent_.clear();
+      ASSERT_EQ(plant_->set_endless(plant_->a), kOk);
+      ASSERT_EQ(plant_->a.command(plant_->endless_command()), kOk);
+      ASSERT_TRUE(plant_->turns_within(1s));
+      send(plant_->b, one(row::command, kHalt));
+      plant_->run(first);
+      send(plant_->a, one(row::command, 0));
+      send(plant_->a, one(row::command, plant_->endless_command()));
+      plant_->run(second);
+      send(plant_->b, one(row::command, kHalt));
+      all_answered();
+      EXPECT_TRUE(plant_->comes_to_stand()) << answers();
+      plant_->run(2s);
+      EXPECT_TRUE(plant_->stands()) << answers();
+    }
+}
+
+// A disabling controlword beside an enable: the order of one request is the controlword, then the command.
+TEST_P(CrossingWithDisable, AnEnableBehindADisablingControlwordIsDoneOrNotAnswered) {
+  for (const std::int64_t word : {7, 6}) {
+    SCOPED_TRACE(word);
+    ready();
+    Client& b = plant_->b;
+    const bool speeds = has_speeds(GetParam());
+    const Rows target = plant_->endless_target();
+    const auto scan = [&](std::int64_t controlword, std::int64_t command) {
+      Rows rows = target;
+      rows[row::controlword] = controlword;
+      rows[row::mode] = speeds ? kVelocityMode : 1;
+      rows[row::command] = command;
+      return b.rows(row::controlword, row::command_id, rows);
+    };
+    ASSERT_EQ(plant_->a.row(row::mode, speeds ? kVelocityMode : 1), kOk);
+    ASSERT_EQ(scan(15, 0), kOk);
+    const Answer answer = scan(word, kEnable);
+    plant_->run(2s);
+    EXPECT_EQ(answer.ok(), *plant_->motor().enabled) << int{answer.exception};
+  }
+}
+
+// The enable took a drive that the word had enabled for disabled, and its ladder dropped the torque.
+TEST_P(CrossingLadder, AnEnableBehindAnEnablingControlwordDropsNoTorque) {
+  ready();
+  Client& b = plant_->b;
+  for (const std::int64_t word : {6, 7}) ASSERT_EQ(b.row(row::controlword, word), kOk);
+  bool was_on = false, dropped = false;
+  send(b, block(row::controlword, row::command_id,
+                {{row::controlword, 15}, {row::mode, 1}, {row::command, 0}, {row::command_id, 1}}));
+  all_answered();
+  for (const std::int64_t word : {6, 7}) ASSERT_EQ(b.row(row::controlword, word), kOk);
+  send(b, block(row::controlword, row::command_id,
+                {{row::controlword, 15}, {row::mode, 1}, {row::command, kEnable}, {row::command_id, 2}}));
+  for (int i = 0; i < 1000; ++i) {
+    plant_->run(1ms);
+    const bool on = *plant_->motor().enabled;
+    dropped = dropped || (was_on && !on);
+    was_on = on;
+  }
+  EXPECT_TRUE(was_on) << answers();
+  EXPECT_FALSE(dropped);
+}
+
+class CrossingSpeeds : public Crossing {
+ protected:
+  /// How far it turns the other way, at most, in the next second.
+  std::int64_t most_against(std::int64_t wanted) {
+    std::int64_t most = 0;
+    for (int i = 0; i < 500; ++i) {
+      plant_->run(2ms);
+      const std::int64_t velocity = plant_->velocity();
+      if ((velocity > 0) != (wanted > 0)) most = std::max(most, std::abs(velocity));
+    }
+    return most;
+  }
+};
+
+class CrossingMovesAndSpeeds : public CrossingSpeeds {};
+
+// The drive was put into its velocity mode while it still held the speed of the jog before.
+TEST_P(CrossingSpeeds, ARunBeginsWithNoSpeedOfBefore) {
+  for (const bool jogs : {true, false})
+    for (const bool moves : {true, false}) {
+      SCOPED_TRACE(std::string(jogs ? "after a jog" : "after a run") + (moves ? " and a move" : " and a halt"));
+      ready();
+      Client& a = plant_->a;
+      if (moves && (!has_positions(GetParam()) || GetParam() == Subject::id286pro)) continue;
+      ASSERT_EQ(a.row(row::jog_velocity, 45'000), kOk);
+      if (jogs) {
+        ASSERT_EQ(a.coil(coil::jog_forward, false), kOk);
+        ASSERT_EQ(a.coil(coil::jog_forward, true), kOk);
+      } else {
+        ASSERT_EQ(a.row(row::target_velocity, kSpeed), kOk);
+        ASSERT_EQ(a.command(kRun), kOk);
+      }
+      plant_->run(300ms);
+      ASSERT_GT(plant_->velocity(), 0);
+      if (moves) {
+        ASSERT_EQ(a.row(row::target_position, kNear), kOk);
+        ASSERT_EQ(a.command(kMove), kOk);
+      } else {
+        ASSERT_EQ(a.command(kHalt), kOk);
+      }
+      static_cast<void>(plant_->comes_to_rest_at());
+      ASSERT_EQ(a.row(row::target_velocity, kOtherSpeed), kOk);
+      send(a, one(row::command, kRun));
+      EXPECT_LE(most_against(kOtherSpeed), 1'500) << "0.001 rpm";
+      EXPECT_TRUE(plant_->reaches(kOtherSpeed)) << plant_->velocity();
+    }
+}
+
+// A velocity that came with the move that ended a jog was forgotten.
+TEST_P(CrossingMovesAndSpeeds, AVelocityBesideTheMoveThatEndsAJogIsKept) {
+  ready();
+  Client& a = plant_->a;
+  ASSERT_EQ(a.row(row::jog_velocity, 45'000), kOk);
+  ASSERT_EQ(a.row(row::target_velocity, kSpeed), kOk);
+  ASSERT_EQ(a.command(0), kOk);
+  ASSERT_EQ(a.coil(coil::jog_forward, false), kOk);
+  ASSERT_EQ(a.coil(coil::jog_forward, true), kOk);
+  plant_->run(200ms);
+  ASSERT_EQ(a.rows(row::target_position, row::command_id,
+                   {{row::target_position, kNear}, {row::target_velocity, kOtherSpeed}, {row::command, kMove}}),
+            kOk);
+  EXPECT_EQ(plant_->comes_to_rest_at(), kNear);
+  send(a, one(row::command, kRun));
+  EXPECT_LE(most_against(kOtherSpeed), 1'500) << "0.001 rpm";
+  EXPECT_TRUE(plant_->reaches(kOtherSpeed)) << plant_->velocity();
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, CrossingMovesAndSpeeds, testing::ValuesIn(subjects([](Subject s) {
+                           return has_speeds(s) && has_positions(s) && s != Subject::id286pro;
+                         })),
+                         named);
+INSTANTIATE_TEST_SUITE_P(Every, CrossingSpeeds, testing::ValuesIn(subjects(has_speeds)), named);
+INSTANTIATE_TEST_SUITE_P(Every, CrossingLadder, testing::ValuesIn(subjects(is_cia402)), named);
+INSTANTIATE_TEST_SUITE_P(Every, Crossing, testing::ValuesIn(kSubjects), named);
+INSTANTIATE_TEST_SUITE_P(Every, CrossingWithDisable,
+                         testing::ValuesIn(subjects([](Subject s) { return s != Subject::id286pro; })), named);
+
+}  // namespace
+}  // namespace axisgate::test::obey
