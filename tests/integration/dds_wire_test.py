@@ -18,6 +18,7 @@ from modbus import Axis  # noqa: E402
 from processes import NEVER, Program, until  # noqa: E402
 
 OTHER = "ag0"
+PROTOCOLS = {"frame", "eth", "ip", "ipv6", "udp", "icmp", "rtps", "rtpsvt", "rtpsproc", "data", "_ws.malformed"}
 
 
 def ip(*arguments):
@@ -42,11 +43,24 @@ class Wire(DdsStory):
         self.shark.wait_for("Capture started|Capturing on")
         until("it writes", lambda: os.path.exists(self.captured) and os.path.getsize(self.captured) > 0)
 
+    def dissector(self):
+        """A configuration of tshark that knows RTPS alone. The kernel gives away ports that belong to other protocols (57000 is an
+        exchange's), and tshark would rather take a sound packet for a malformed one of theirs."""
+        folder = self.path("wireshark")
+        if not os.path.exists(folder):
+            os.mkdir(folder)
+            known = subprocess.run(["tshark", "-G", "protocols"], capture_output=True, text=True, timeout=NEVER, check=True).stdout
+            names = [line.split("\t")[2] for line in known.splitlines()]
+            self.assertLessEqual(PROTOCOLS, set(names))
+            with open(os.path.join(folder, "disabled_protos"), "w", encoding="ascii") as file:
+                file.writelines(f"{name}\n" for name in names if name not in PROTOCOLS)
+        return {**os.environ, "WIRESHARK_CONFIG_DIR": folder}
+
     def dissect(self, what, *fields):
         """Each packet of this kind: the values of these fields."""
         words = [word for field in fields for word in ("-e", field)]
         done = subprocess.run(["tshark", "-r", self.captured, "-Y", what, "-T", "fields", "-E", "separator=|", *words],
-                              capture_output=True, text=True, timeout=NEVER, check=False)
+                              capture_output=True, text=True, timeout=NEVER, check=False, env=self.dissector())
         self.assertIn(done.returncode, (0, 2), done.stderr)  # 2: the last packet of the file was cut short
         return [line.split("|") for line in done.stdout.splitlines()]
 
