@@ -18,10 +18,16 @@ std::string source_of(AxisNumber axis) { return axis == 0 ? std::string("gateway
 }  // namespace
 
 Gateway::Gateway(const Config& config, Models models, Runtime& runtime, const Log& log, const MakeWire& make_wire)
-    : runtime_(runtime), log_(log), models_(std::move(models)), events_([this](const Event& e) {
+    : runtime_(runtime),
+      log_(log),
+      models_(std::move(models)),
+      events_([this](const Event& e) {
         log_.write(level_of(e.kind), source_of(e.axis), e.text);
         image_.changes.mark(0);
-      }) {
+      }),
+      closing_(runtime.make_timer([this] {
+        if (closed_) std::exchange(closed_, nullptr)();
+      })) {
   image_.buses.resize(config.buses.size());
   for (std::size_t i = 0; i < config.buses.size(); ++i) add_bus(config.buses[i], i, make_wire);
   image_.refresh = [this] { refresh(); };
@@ -54,9 +60,24 @@ void Gateway::start() {
   for (auto& bus : buses_) bus->start();
 }
 
-void Gateway::stop() {
+void Gateway::close(std::function<void()> closed) {
+  if (stopping_) return;
   stopping_ = true;
   image_.gateway.state = GatewayState::stopping;
+  closed_ = std::move(closed);
+  closing_->expires_at(runtime_.now() + kClosing);
+  open_drives_ = drives_.size() + 1;  // and this function, so that the last one is told once
+  for (const auto& drive : drives_) drive->close([this] { drive_closed(); });
+  drive_closed();
+}
+
+void Gateway::stop() {
+  stopping_ = stopped_ = true;
+  image_.gateway.state = GatewayState::stopping;
+}
+
+void Gateway::drive_closed() {
+  if (--open_drives_ == 0) closing_->expires_at(runtime_.now());
 }
 
 std::optional<GroupResult> Gateway::submit(AxisNumber axis, const Group& group, GroupCallback on_result) {
@@ -65,7 +86,7 @@ std::optional<GroupResult> Gateway::submit(AxisNumber axis, const Group& group, 
 }
 
 void Gateway::client_gone(ClientId client) {
-  if (stopping_) return;  // it ends them all itself, and nothing is sent any more
+  if (stopped_) return;  // it ends them all itself
   for (const auto& drive : drives_) drive->client_gone(client);
 }
 

@@ -18,6 +18,8 @@ namespace axisgate::app {
 
 /// Per bus, per drive, in configuration order.
 using Models = std::vector<std::vector<drive::DriveModel>>;
+/// The end on purpose takes at most so long, whatever the buses do.
+inline constexpr Duration kClosing = std::chrono::seconds(3);
 using MakeWire = std::function<std::unique_ptr<bus::Wire>(const BusConfig&, const std::vector<drive::DriveModel>&)>;
 
 /// An event loop turn this late raises the gateway alarm "event loop slow".
@@ -31,7 +33,12 @@ class Gateway final : public CommandPort {
 
   /// Opens the wires. A device that is missing is picked up when it appears.
   void start();
-  /// Nothing is stopped or disabled by it: drives keep what they do (SECURITY.md).
+  /// The end on purpose: from now on only stops are accepted; what waits ends as never started, what is on a wire is
+  /// awaited. A drive that watches for a dead gateway, and of which a read shows that no motor has torque, is told not
+  /// to; every other one keeps what it does, and will miss the gateway (SECURITY.md). `closed` is called once, after
+  /// kClosing at the latest.
+  void close(std::function<void()> closed);
+  /// The last word before everything is taken apart: nothing is sent any more, whoever goes.
   void stop();
 
   [[nodiscard]] std::optional<GroupResult> submit(AxisNumber axis, const Group& group,
@@ -58,6 +65,7 @@ class Gateway final : public CommandPort {
     drive::Drive* drive = nullptr;
     bus::AxisSlot slot = 0;
   };
+  void drive_closed();
   void add_bus(const BusConfig& config, std::size_t index, const MakeWire& make_wire);
   void refresh();
   void refresh_bus(std::size_t index);
@@ -75,6 +83,10 @@ class Gateway final : public CommandPort {
   Instant started_ = kLongAgo;
   Instant slow_loop_at_ = kLongAgo;
   bool stopping_ = false;
+  bool stopped_ = false;
+  std::size_t open_drives_ = 0;
+  std::function<void()> closed_{};
+  std::unique_ptr<Timer> closing_;
   bool dds_down_ = false;
 };
 

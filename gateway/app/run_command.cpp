@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -15,6 +15,7 @@
 #include "gateway/app/config_loader.hpp"
 #include "gateway/app/descriptor_needs.hpp"
 #include "gateway/app/device_wires.hpp"
+#include "gateway/app/end_signals.hpp"
 #include "gateway/app/faults_told.hpp"
 #include "gateway/app/gateway.hpp"
 #include "gateway/app/loop_watch.hpp"
@@ -26,6 +27,9 @@
 
 namespace axisgate::app {
 namespace {
+
+/// When all drives are done, what their clients are told still has to leave this process.
+constexpr Duration kLastAnswers = std::chrono::milliseconds(50);
 
 /// Names given with --decode; one that no bus has is told, not passed over.
 bool switch_decode_on(Config& config, const std::vector<std::string>& names) {
@@ -67,17 +71,15 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   gateway.start();
   if (dds) dds->start();
   LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
-  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
-  signals.async_wait([&](const boost::system::error_code& error, int signal) {
-    if (error) return;
-    log.write(
-        LogLevel::info, "gateway",
-        fmt::format(
-            "signal {}: ending; the drives keep what they do, and those that watch for a dead gateway will miss it",
-            signal));
+  const auto end = [&] {
     gateway.stop();
     server.stop();
     io.stop();
+  };
+  const std::unique_ptr<Timer> last_answers = runtime.make_timer(end);
+  EndSignals signals(io, log, [&](bool at_once) {
+    if (at_once) return end();
+    gateway.close([&] { last_answers->expires_at(runtime.now() + kLastAnswers); });
   });
   io.run();
   if (dds) dds->stop();

@@ -232,6 +232,10 @@ std::optional<bus::Exchange> Axis::on_grant(bus::OrderId id) {
   Pending* pending = find(id);
   if (pending == nullptr) return std::nullopt;
   core_.link = host_.link_state();
+  if (ends_with_gateway(*pending)) {
+    end_begun(*pending);
+    return std::nullopt;
+  }
   if (!pending->conversation->is_stop() && waits_for_stop(*pending)) {
     constexpr Duration kStopsFirst = std::chrono::milliseconds(20);
     host_.order_waits(id, host_.now() + kStopsFirst);
@@ -313,6 +317,7 @@ void Axis::carry_on(Pending& pending) {
     complete(pending.id, pending.conversation->result());
     return;
   }
+  if (ends_with_gateway(pending)) return end_begun(pending);
   if (move.kind == Conversation::Move::Kind::wait) host_.order_waits(pending.id, move.until);
   if (!pending.conversation->stop_is_over()) return;
   note_stop(pending, false);

@@ -69,6 +69,11 @@ class Axis {
   /// This client will never speak again: its lease is an orphan. Where leases are off, a motion that it commanded is
   /// stopped if nothing else would stop it.
   void on_client_gone(ClientId client);
+  /// The gateway ends: from now on only stops are accepted. What waits ends as never started; what has begun ends after
+  /// its exchange; stops, owed ones too, go on to their end.
+  void close();
+  /// Nothing of it waits for the wire or is on it.
+  [[nodiscard]] bool idle() const { return pending_.empty(); }
   /// Bring-up has found the axis enabled: it is open to every operator, until its lease runs out (design 3.5).
   void on_adopted();
   /// Somebody answers for what the axis does: its owner's lease runs, or leases are off. What must be commanded again
@@ -180,6 +185,8 @@ class Axis {
   void show_latest(const Group& group, const Outcome& outcome);
   void enqueue(Pending pending, bool stop, std::optional<GroupResult>& refused);
   void carry_on(Pending& pending);
+  [[nodiscard]] bool ends_with_gateway(const Pending& pending) const;
+  void end_begun(Pending& pending);
   void complete(bus::OrderId id, const GroupResult& result);
   void tell_endings();
   void tell_changes(const AxisImage& before);
@@ -204,6 +211,7 @@ class Axis {
   Jog jog_;
   OwedStop owed_;
   bool owed_told_ = false;    ///< an event has told of it: its end is told as well
+  bool closing_ = false;      ///< the gateway ends
   bool was_enabled_ = false;  ///< by the newest read, also while the drive is out of sight
 };
 

@@ -60,6 +60,9 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
   if (!reads_alone(group))
     ownership_.wrote(group.life, group.beats, !asks_nothing(group) || group.jog_again, core_.now);
   if (refusal == Errc::ok && !asks_nothing(group) && stop_comes_first(group)) refusal = Errc::stop_owed;
+  if (refusal == Errc::ok && closing_ && !asks_nothing(group) && !stops_alone(group) &&
+      group.command != Command::jog_end)
+    refusal = Errc::never_started;
   if (refusal != Errc::ok) {
     if (!holds_stop(group)) return refuse(asked, refusal);
     group = stop_alone(group);

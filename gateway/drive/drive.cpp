@@ -25,7 +25,8 @@ Drive::Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> imag
       backoff_(bus.settings().timeout),
       start_backoff_(bus.settings().timeout),
       timer_(runtime.make_timer([this] { on_time(); })),
-      mapped_(model_.objects.size(), false) {
+      mapped_(model_.objects.size(), false),
+      disarming_(model_) {
   assert(images.size() == model_.axes.size());
   for (const ObjectDef& object : model_.objects) width_.push_back(object.size);
   AxisHost& host = *this;
@@ -96,6 +97,7 @@ std::optional<bus::Exchange> Drive::exchange_of(bus::OrderId id, bus::Priority p
     }
     return owner->on_grant(id);
   }
+  if (id == closing_order_) return next_of_closing();
   return id == setup_order_ ? next_of_bring_up() : std::nullopt;
 }
 
@@ -192,6 +194,10 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
   if (asked.order != 0) {
     bool owned = asked.order == setup_order_;
     if (owned) carry_on_bring_up(exchange, result);
+    if (asked.order == closing_order_) {
+      owned = true;
+      carry_on_closing(result, trusted);
+    }
     for (auto& axis : axes_) {
       if (!axis->has(asked.order)) continue;
       owned = true;
@@ -276,6 +282,7 @@ void Drive::on_order_ended(bus::OrderId id, Errc code) {
   for (auto& axis : axes_) axis->on_order_ended(id, code);
   if (id == setup_order_) setup_order_ = 0;
   if (id == keep_alive_order_) keep_alive_order_ = 0;
+  if (id == closing_order_) end_closing();
   after_event();
 }
 
@@ -289,6 +296,7 @@ void Drive::on_time() {
 void Drive::after_event() {
   bring_up_to_date();
   for (auto& axis : axes_) axis->call_back();
+  tell_closed();
 }
 
 void Drive::bring_up_to_date() {

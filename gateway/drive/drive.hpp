@@ -4,6 +4,7 @@
 // answers for its axis. Never enables anything.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "gateway/drive/axis.hpp"
 #include "gateway/drive/bring_up.hpp"
 #include "gateway/drive/control_frame.hpp"
+#include "gateway/drive/disarming.hpp"
 #include "gateway/drive/fence.hpp"
 #include "gateway/drive/keep_alive.hpp"
 #include "gateway/drive/read_blocks.hpp"
@@ -39,6 +41,10 @@ class Drive final : public bus::BusDrive, private AxisHost {
   [[nodiscard]] LinkState link_state() const override { return state_; }
   [[nodiscard]] const ObjectStore& store() const { return store_; }
   void client_gone(ClientId client);
+  /// The gateway ends on purpose: only stops are accepted from now on. Where no motor has torque, the drive is told not
+  /// to miss the gateway; any other one stops as if the gateway had died. `closed` is called once, when nothing of this
+  /// drive is on the wire or waits for it, perhaps from inside; nothing begins after that but stops.
+  void close(std::function<void()> closed);
 
   // BusDrive
   [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::OrderId id, bus::Priority priority) override;
@@ -128,6 +134,11 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void map_values();
   void unmap_values();
   void tell_all(EventKind kind, std::uint32_t code, const std::string& text);
+  // The end on purpose (drive_closing.cpp).
+  [[nodiscard]] std::optional<bus::Exchange> next_of_closing();
+  void carry_on_closing(const bus::ExchangeResult& result, bool trusted);
+  void end_closing();
+  void tell_closed();
   void set_state(LinkState state);
   void after_event();
   void bring_up_to_date();
@@ -175,6 +186,10 @@ class Drive final : public bus::BusDrive, private AxisHost {
   std::vector<std::uint8_t> width_;                      ///< bytes of each object, as the drive answered last
   std::vector<bool> mapped_;                             ///< objects that come by TPDO
   Instant twin_until_ = kLongAgo;                        ///< alarm duplicate_node
+  Disarming disarming_;
+  bus::OrderId closing_order_ = 0;
+  bool closing_ = false;  ///< the gateway ends
+  std::function<void()> closed_{};
 };
 
 }  // namespace axisgate::drive

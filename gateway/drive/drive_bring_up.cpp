@@ -26,6 +26,11 @@ std::optional<bus::Exchange> Drive::next_of_bring_up() {
 }
 
 void Drive::begin_bring_up(bool restarted) {
+  if (closing_) {  // nobody would see its end
+    set_state(LinkState::unknown);
+    probe_due_ = kNever;
+    return;
+  }
   set_state(LinkState::setup);
   store_.forget_all();
   fence_.answered();
@@ -120,7 +125,7 @@ void Drive::judge_loss_reaction() {
 
 // An enable that is under way, or waits for its turn, would meet the NMT commands of a bring-up.
 bool Drive::may_be_set_up_anew() const {
-  const bool wanted = adopted_ || (fell_back_ && now() >= set_up_after_);
+  const bool wanted = !closing_ && (adopted_ || (fell_back_ && now() >= set_up_after_));
   return wanted && std::none_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->enable_is_asked(); });
 }
 

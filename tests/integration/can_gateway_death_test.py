@@ -105,6 +105,23 @@ class MotorsRun(CanStory):
         self.all_stop_by_themselves()
 
 
+class Idle(CanStory):
+    def test_an_idle_drive_does_not_miss_a_gateway_that_is_ended(self):
+        """And misses the next one as before."""
+        self.begin()
+        for _ in range(2):
+            self.assertEqual(self.gateway.terminate(), 0)
+            for axis in self.axes:
+                self.gateway.wait_for(f"axis {axis.number}: the gateway ends: no motor has torque: it misses the gateway no more")
+            self.run_gateway()
+            self.client = self.connect()
+            self.until_online()
+            self.look_around()
+            for axis in self.axes:
+                until("it is watched", lambda: not axis.get("axis_alarms") & ALARM_NO_COMM_WATCHDOG)
+                self.assertNotIn("fault", axis.inputs())
+
+
 class Prepared(CanStory):
     def setUp(self):
         super().setUp()

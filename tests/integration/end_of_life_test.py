@@ -6,7 +6,7 @@ import socket
 import subprocess
 
 from modbus import ALARM_ADOPTED, COMPLETED, CONTINUOUS, DISABLED, NO_MOTION, STANDSTILL, Closed
-from processes import NEVER, until
+from processes import NEVER, Program, until
 from stage import AXISGATE, Story, main
 
 TURN = 10000
@@ -82,6 +82,54 @@ class Told(End):
         until("it is at the drive", lambda: self.sim.writes("lift/1", "6083.00") > 0)
         self.assertEqual(self.end(signal.SIGTERM), 0)
         self.assertIsNotNone(write.exception(timeout=NEVER))
+
+    def test_what_waits_ends_and_a_stop_is_done(self):
+        """The drive is silent, so that the end takes its time: a stop still goes to the wire, everything else is refused."""
+        self.run_velocity(self.axis(1))
+        stopper, starter = self.connect().axis(1), self.connect().axis(1)
+        self.sim.ask("lose lift/1 on")
+        waiting = self.later(lambda: starter.set(profile_acceleration=12345))
+        until("it is at the drive", lambda: self.sim.writes("lift/1", "6083.00") > 0)
+        self.gateway.send(signal.SIGTERM)
+        self.gateway.wait_for("signal 15: ending")
+        stop = self.later(lambda: stopper.command("quick_stop"))
+        self.assertEqual(self.gateway.ended(), 0)
+        self.assertIsNotNone(waiting.exception(timeout=NEVER))
+        stop.exception(timeout=NEVER)  # nobody has acknowledged it
+        self.until_it_stands("lift/1")
+
+    def test_a_second_signal_ends_it_at_once(self):
+        self.sim.ask("lose lift/1 on")
+        write = self.later(lambda: self.axis(1).set(profile_acceleration=12345))
+        until("it is at the drive", lambda: self.sim.writes("lift/1", "6083.00") > 0)
+        for _ in range(2):
+            self.gateway.send(signal.SIGTERM)
+            self.gateway.wait_for("signal 15: ending")
+        self.assertEqual(self.gateway.ended(), 0)
+        self.assertIsNotNone(write.exception(timeout=NEVER))
+
+    def from_elsewhere(self, *wrapper, **options):
+        self.gateway = self.keep(Program("axisgate", [*wrapper, AXISGATE, "run", self.config], **options))
+        self.gateway.wait_for("listening on ")
+
+    def test_a_service_is_not_ended_by_sighup(self):
+        self.assertEqual(self.end(signal.SIGTERM), 0)
+        self.from_elsewhere(start_new_session=True)
+        self.client = self.connect()
+        self.until_online()
+        self.gateway.send(signal.SIGHUP)
+        self.gateway.wait_for("signal 1: the configuration is read at start only")
+        self.assertEqual(self.axis(1).get("link_state"), 2)
+        self.assertEqual(self.end(signal.SIGTERM), 0)
+
+    def test_a_terminal_that_is_gone_ends_what_was_started_from_it(self):
+        self.assertEqual(self.end(signal.SIGTERM), 0)
+        terminal, other = os.openpty()
+        self.from_elsewhere("setsid", "--ctty", stdin=other)
+        os.close(other)
+        os.close(terminal)
+        self.gateway.wait_for("signal 1: ending; the drives keep what they do")
+        self.assertEqual(self.gateway.ended(), 0)
 
     def test_the_port_is_free_at_once(self):
         for _ in range(3):

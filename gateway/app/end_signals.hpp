@@ -1,0 +1,30 @@
+// The signals that end the gateway: SIGTERM and SIGINT; SIGHUP where the process was started from a terminal, which is
+// then gone. Promises that the first one begins the end on purpose, and a second one ends the process at once; that a
+// SIGHUP to a service ends nothing. Never decides what becomes of the drives.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <functional>
+
+#include "gateway/core/log.hpp"
+
+namespace axisgate::app {
+
+class EndSignals {
+ public:
+  /// `on_end(at_once)` runs on the loop.
+  EndSignals(boost::asio::io_context& io, const Log& log, std::function<void(bool at_once)> on_end);
+
+ private:
+  void wait();
+  void on_signal(int signal);
+
+  const Log& log_;
+  std::function<void(bool)> on_end_;
+  bool has_terminal_;
+  bool ending_ = false;
+  boost::asio::signal_set signals_;
+};
+
+}  // namespace axisgate::app

@@ -1,0 +1,68 @@
+// A drive when the gateway ends on purpose (design 7).
+#include <string>
+#include <utility>
+
+#include "gateway/drive/drive.hpp"
+
+namespace axisgate::drive {
+
+void Drive::close(std::function<void()> closed) {
+  closing_ = true;
+  closed_ = std::move(closed);
+  for (auto& axis : axes_) axis->close();
+  // A bring-up would arm what is to be disarmed, and start nodes. What it has not read nobody knows: it is left.
+  if (setup_order_ != 0) bus_.finish(std::exchange(setup_order_, 0));
+  if (brought_up()) {
+    bus::Order order;
+    order.priority = bus::Priority::command;  // polls and what else is slow do not hold up the end
+    order.axis = bus::kNoAxis;
+    disarming_.begin(store_);
+    const Queued queued = queue(std::move(order));
+    if (queued.code == Errc::ok) closing_order_ = queued.id;
+  }
+  after_event();
+}
+
+// Stops go first, to their end: what a motor does is not known before.
+std::optional<bus::Exchange> Drive::next_of_closing() {
+  for (const auto& axis : axes_) {
+    if (axis->idle() && !axis->owes_stop()) continue;
+    constexpr Duration kStopsFirst = std::chrono::milliseconds(10);
+    bus_.wait(closing_order_, now() + kStopsFirst);
+    return std::nullopt;
+  }
+  const auto next = disarming_.next();
+  if (!next) {
+    end_closing();
+    return std::nullopt;
+  }
+  bus::Exchange exchange = read(next->object);
+  if (next->write) {
+    exchange.access = bus::Access::write;
+    exchange.size = width_[next->object];
+    exchange.raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(next->number));
+  }
+  return exchange;
+}
+
+void Drive::carry_on_closing(const bus::ExchangeResult& result, bool trusted) {
+  disarming_.on_result(result, trusted, store_);
+  if (!disarming_.next()) end_closing();
+}
+
+void Drive::end_closing() {
+  bus_.finish(std::exchange(closing_order_, 0));
+  if (disarming_.outcome() == Disarming::Outcome::nothing_to_do) return;
+  for (const auto& axis : axes_)
+    event(axis->core().model.number, EventKind::boot, 0,
+          "the gateway ends: " + std::string(text(disarming_.outcome())));
+}
+
+void Drive::tell_closed() {
+  if (!closing_ || closing_order_ != 0 || !closed_) return;
+  for (const auto& axis : axes_)
+    if (!axis->idle()) return;
+  std::exchange(closed_, nullptr)();
+}
+
+}  // namespace axisgate::drive
