@@ -7,6 +7,7 @@
 
 #include "gateway/app/check_command.hpp"
 #include "gateway/app/commission_command.hpp"
+#include "gateway/app/explain_command.hpp"
 #include "gateway/app/map_command.hpp"
 #include "gateway/app/profile_command.hpp"
 #include "gateway/app/profile_folders.hpp"
@@ -29,6 +30,7 @@ struct Parsed {
   ProfileCheckOptions profile;
   CommissionOptions commission;
   ScanOptions scan;
+  ExplainOptions explain;
   std::string scan_nodes;
   int exit_code = 0;
 };
@@ -85,6 +87,9 @@ void add_map(CLI::App& app, Parsed& parsed) {
 void add_top(CLI::App& app, Parsed& parsed) {
   CLI::App* command = app.add_subcommand("top", "Live table of all axes of a running gateway");
   command->add_option("HOST:PORT", parsed.top.endpoint, "the gateway's Modbus-TCP listener")->required();
+  command->add_option("CONFIG", parsed.top.config, "its configuration file: axes are shown with their names");
+  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
+      ->type_name("DIR");
   command->add_option("--interval", parsed.top.interval_ms, "milliseconds between two tables")
       ->check(CLI::Range(50, 60000).description(""))
       ->type_name("MS")
@@ -98,8 +103,10 @@ void add_top(CLI::App& app, Parsed& parsed) {
       ->type_name("N")
       ->capture_default_str();
   command->add_flag("--plain", parsed.top.plain, "print one table after the other, for pipes and logs");
-  command->footer("Example: axisgate top 127.0.0.1:1502");
-  command->callback([&parsed] { parsed.exit_code = run(parsed.top); });
+  command->footer(
+      "A terminal of 80 columns is enough. Lines in red and yellow ask for attention; NO_COLOR=1 leaves colours out.\n"
+      "Example: axisgate top 127.0.0.1:1502");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.top); });
 }
 
 void add_topics(CLI::App& app, Parsed& parsed) {
@@ -190,6 +197,19 @@ void add_scan(CLI::App& app, Parsed& parsed) {
   });
 }
 
+void add_explain(CLI::App& app, Parsed& parsed) {
+  CLI::App* command =
+      app.add_subcommand("explain", "Say what a state, alarm, result, exception or fault code means, and what to do");
+  command->add_option("WORD", parsed.explain.words, "a name, a kind and a number, or a code; none: everything");
+  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
+      ->type_name("DIR");
+  command->add_flag("--page", parsed.explain.page, "print docs/troubleshooting.md");
+  command->footer(
+      "Exit code 1: nothing is called so.\n"
+      "Example: axisgate explain stop_latched; axisgate explain result 9; axisgate explain 0x3130");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.explain); });
+}
+
 /// CLI11 says of an unknown word only that a command is missing.
 bool knows_command(const CLI::App& app, int argc, const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return true;
@@ -215,6 +235,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_profile(app, parsed);
   add_commission(app, parsed);
   add_scan(app, parsed);
+  add_explain(app, parsed);
   if (!knows_command(app, argc, argv)) return kWrongCommandLine;
   try {
     app.parse(argc, argv);

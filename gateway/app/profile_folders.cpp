@@ -1,6 +1,12 @@
 #include "gateway/app/profile_folders.hpp"
 
+#include <fmt/format.h>
+
+#include <cstdio>
 #include <filesystem>
+#include <set>
+
+#include "gateway/drive/profile_loader.hpp"
 
 namespace axisgate::app {
 
@@ -21,6 +27,25 @@ std::vector<std::string> profile_folders(const std::string& given) {
   add(bin.parent_path().parent_path().parent_path() / "schemas/drives");
   add("/usr/share/axisgate/schemas/drives");
   return folders;
+}
+
+std::vector<drive::Profile> profiles_in(const std::vector<std::string>& folders) {
+  std::vector<drive::Profile> out;
+  std::set<std::string> names;
+  for (const std::string& folder : folders) {
+    std::set<fs::path> files;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (entry.path().extension() == ".json") files.insert(entry.path());
+    if (error) fmt::print(stderr, "{}: {}\n", folder, error.message());
+    for (const fs::path& file : files) {
+      if (!names.insert(file.stem().string()).second) continue;
+      const drive::LoadedProfile loaded = drive::load_profile(file.string());
+      if (!loaded.faults.empty()) fmt::print(stderr, "left out: {}\n", text(loaded.faults.front()));
+      if (loaded.faults.empty()) out.push_back(loaded.profile);
+    }
+  }
+  return out;
 }
 
 }  // namespace axisgate::app

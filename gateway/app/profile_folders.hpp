@@ -6,9 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "gateway/drive/profile.hpp"
+
 namespace axisgate::app {
 
 /// `given`: option --profiles, may be empty.
 [[nodiscard]] std::vector<std::string> profile_folders(const std::string& given);
+
+/// All profiles of the folders; of two with one name, the first. One with mistakes is left out, and told on stderr.
+[[nodiscard]] std::vector<drive::Profile> profiles_in(const std::vector<std::string>& folders);
 
 }  // namespace axisgate::app

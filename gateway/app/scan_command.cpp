@@ -8,23 +8,19 @@
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
-#include <set>
 
 #include "adapters/asio/asio_runtime.hpp"
 #include "adapters/bus/bus.hpp"
 #include "adapters/can/can_device.hpp"
 #include "adapters/can/make_can_link.hpp"
 #include "adapters/canopen/canopen_wire.hpp"
+#include "gateway/app/profile_folders.hpp"
 #include "gateway/app/scan_progress.hpp"
 #include "gateway/app/scan_table.hpp"
-#include "gateway/drive/profile_loader.hpp"
 
 namespace axisgate::app {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// A bus that cannot be spoken on by then is not waited for.
 constexpr Duration kUpLimit = std::chrono::seconds(3);
@@ -177,26 +173,6 @@ void Scanner::tell_progress() {
                  now);
 }
 
-/// All profiles of the folders; of two with one name, the first.
-std::vector<drive::Profile> profiles_of(const std::vector<std::string>& folders) {
-  std::vector<drive::Profile> out;
-  std::set<std::string> names;
-  for (const std::string& folder : folders) {
-    std::set<fs::path> files;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error))
-      if (entry.path().extension() == ".json") files.insert(entry.path());
-    if (error) fmt::print(stderr, "{}: {}\n", folder, error.message());
-    for (const fs::path& file : files) {
-      if (!names.insert(file.stem().string()).second) continue;
-      const drive::LoadedProfile loaded = drive::load_profile(file.string());
-      if (!loaded.faults.empty()) fmt::print(stderr, "left out: {}\n", text(loaded.faults.front()));
-      if (loaded.faults.empty()) out.push_back(loaded.profile);
-    }
-  }
-  return out;
-}
-
 std::string where_to_look(const ScanOptions& options) {
   const bool lawicel = can::parse_can_device(options.device).lawicel;
   const std::string rate = lawicel ? fmt::format("the adapter was opened with {} (--bitrate)", options.bitrate)
@@ -245,7 +221,7 @@ int run(const ScanOptions& options) {
     return kWrongCommandLine;
   }
   boost::asio::io_context io(1);
-  Scanner scan(options, ScanPlan(profiles_of(options.profile_folders), options.nodes), io);
+  Scanner scan(options, ScanPlan(profiles_in(options.profile_folders), options.nodes), io);
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code& error, int) {
     if (!error) scan.end("ended before all nodes were asked");

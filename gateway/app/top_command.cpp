@@ -10,8 +10,11 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <charconv>
 #include <csignal>
+#include <map>
 #include <optional>
 
+#include "gateway/app/config_loader.hpp"
+#include "gateway/app/faults_told.hpp"
 #include "gateway/app/top_client.hpp"
 #include "gateway/app/top_screen.hpp"
 #include "gateway/app/top_table.hpp"
@@ -50,8 +53,14 @@ std::optional<Place> parse_place(std::string_view text) {
 
 class Top {
  public:
-  Top(boost::asio::io_context& io, const TopOptions& options, Place place)
-      : options_(options), place_(std::move(place)), client_(io), pause_(io), screen_(options.plain) {}
+  using Names = std::map<AxisNumber, std::string>;
+  Top(boost::asio::io_context& io, const TopOptions& options, Place place, Names names)
+      : options_(options),
+        place_(std::move(place)),
+        names_(std::move(names)),
+        client_(io),
+        pause_(io),
+        screen_(options.plain) {}
 
   [[nodiscard]] bool has_shown() const { return shown_ != 0; }
   /// What stood in the way last; empty where nothing did.
@@ -79,7 +88,7 @@ class Top {
       problem = co_await refresh();
       if (!problem.empty()) co_return problem;
       problem_.clear();
-      screen_.show_table(render_table(reading_));
+      screen_.show_table(render_table(reading_, screen_.columns()));
       if (++shown_ == options_.count) co_return std::string();
       co_await wait(std::chrono::milliseconds(options_.interval_ms));
     }
@@ -97,9 +106,14 @@ class Top {
       const RegistersRead read = co_await client_.read(supported_register(axis), 2, kAnswerLimit);
       if (!read.connected()) co_return read.problem;
       const bool supports = read.ok() && (read.registers[0] != 0 || read.registers[1] != 0);
-      if (supports || read.exception == kTargetFailed) reading_.axes.push_back({axis, {}});
+      if (supports || read.exception == kTargetFailed) reading_.axes.push_back({axis, {}, name_of_axis(axis)});
     }
     co_return std::string();
+  }
+
+  [[nodiscard]] std::string name_of_axis(AxisNumber axis) const {
+    const auto found = names_.find(axis);
+    return found == names_.end() ? std::string() : found->second;
   }
 
   awaitable<std::string> refresh() {
@@ -136,6 +150,7 @@ class Top {
 
   TopOptions options_;
   Place place_;
+  Names names_;
   TopClient client_;
   boost::asio::steady_timer pause_;
   TopScreen screen_;
@@ -177,12 +192,20 @@ int run(const TopOptions& options) {
                options.endpoint);
     return kWrongCommandLine;
   }
+  Top::Names names;
+  if (!options.config.empty()) {
+    const LoadResult result = load_config(options.config, options.profile_folders);
+    if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
+    for (const BusConfig& bus : std::get<LoadedConfig>(result).config.buses)
+      for (const DriveConfig& drive : bus.drives)
+        for (const AxisConfig& axis : drive.axes) names[axis.number] = axis.name;
+  }
   std::string problem;
   bool has_shown = false;
   {
     // A scope of its own: the terminal is as it was before the last word is said.
     boost::asio::io_context io(1);
-    Top top(io, options, std::move(*place));
+    Top top(io, options, std::move(*place), std::move(names));
     if (show_until_told(top, io, options.seconds)) return 0;
     problem = top.problem();
     has_shown = top.has_shown();

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace axisgate::app {
 
@@ -14,6 +15,8 @@ struct TopOptions {
   std::uint32_t seconds = 0;        ///< end after so long; 0: until Ctrl-C
   std::uint32_t count = 0;          ///< end after so many tables; 0: no such end
   bool plain = false;               ///< one table after the other, also on a terminal
+  std::string config{};             ///< the gateway's configuration file, for the axes' names; empty: numbers alone
+  std::vector<std::string> profile_folders{};
 };
 
 /// Exit status: 0 after Ctrl-C, the last table or the last second; 1 where no table could be shown by then, or where

@@ -4,6 +4,9 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
+
+#include "gateway/app/top_table.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -13,6 +16,7 @@ constexpr std::string_view kEnter = "\x1b[?1049h\x1b[?25l";
 constexpr std::string_view kLeave = "\x1b[?25h\x1b[?1049l";
 constexpr std::string_view kHome = "\x1b[H";
 constexpr std::string_view kWipeLine = "\x1b[K";
+constexpr std::string_view kRed = "\x1b[31m", kYellow = "\x1b[33m", kPlain = "\x1b[0m";
 constexpr std::string_view kWipeBelow = "\x1b[J";
 constexpr std::size_t kUsualColumns = 160;
 constexpr std::size_t kUsualRows = 50;
@@ -22,14 +26,35 @@ void put(std::string_view text) {
   std::fflush(stdout);
 }
 
+struct Window {
+  std::size_t columns = kUsualColumns, rows = kUsualRows;
+};
+
+Window window() {
+  winsize size{};
+  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0;
+  return known ? Window{size.ws_col, size.ws_row} : Window{};
+}
+
+/// no-color.org; and a terminal that knows none says so.
+bool wants_colours() {
+  const char* none = std::getenv("NO_COLOR");
+  const char* terminal = std::getenv("TERM");
+  return (none == nullptr || *none == '\0') && terminal != nullptr && std::string_view(terminal) != "dumb";
+}
+
 }  // namespace
 
-std::string terminal_frame(std::string_view text, std::size_t columns, std::size_t rows) {
+std::string terminal_frame(std::string_view text, std::size_t columns, std::size_t rows, bool colours) {
   std::string frame(kHome);
   for (std::size_t line_number = 0; !text.empty() && line_number < rows; ++line_number) {
     const std::size_t end = text.find('\n');
     if (line_number != 0) frame += "\r\n";
-    frame += text.substr(0, end).substr(0, columns);
+    const std::string_view line = text.substr(0, end).substr(0, columns);
+    const Attention asks = colours ? attention(line) : Attention::none;
+    if (asks != Attention::none) frame += asks == Attention::act ? kRed : kYellow;
+    frame += line;
+    if (asks != Attention::none) frame += kPlain;
     frame += kWipeLine;
     text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
   }
@@ -37,7 +62,7 @@ std::string terminal_frame(std::string_view text, std::size_t columns, std::size
   return frame;
 }
 
-TopScreen::TopScreen(bool plain) : redraws_(!plain && isatty(STDOUT_FILENO) == 1) {
+TopScreen::TopScreen(bool plain) : redraws_(!plain && isatty(STDOUT_FILENO) == 1), colours_(wants_colours()) {
   if (redraws_) put(kEnter);
 }
 
@@ -65,10 +90,11 @@ void TopScreen::show_notice(const std::string& notice) {
   last_notice_ = notice;
 }
 
+std::size_t TopScreen::columns() const { return redraws_ ? window().columns : 0; }
+
 void TopScreen::draw(const std::string& text) {
-  winsize window{};
-  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0 && window.ws_row > 0;
-  put(terminal_frame(text, known ? window.ws_col : kUsualColumns, known ? window.ws_row : kUsualRows));
+  const Window shown = window();
+  put(terminal_frame(text, shown.columns, shown.rows, colours_));
 }
 
 }  // namespace axisgate::app

@@ -9,8 +9,10 @@
 
 namespace axisgate::app {
 
-/// One frame of a redrawn terminal: `text` cut to the window and what was there before wiped. Pure.
-[[nodiscard]] std::string terminal_frame(std::string_view text, std::size_t columns, std::size_t rows);
+/// One frame of a redrawn terminal: `text` cut to the window and what was there before wiped. Pure. `colours`: lines
+/// that ask for attention are yellow or red.
+[[nodiscard]] std::string terminal_frame(std::string_view text, std::size_t columns, std::size_t rows,
+                                         bool colours = false);
 
 class TopScreen {
  public:
@@ -19,6 +21,8 @@ class TopScreen {
   TopScreen(const TopScreen&) = delete;
   TopScreen& operator=(const TopScreen&) = delete;
 
+  /// Of the window; 0: lines may be as long as they like.
+  [[nodiscard]] std::size_t columns() const;
   void show_table(const std::string& table);
   /// On a terminal above the last table; in plain output only when it changes, so that a log is not filled with it.
   void show_notice(const std::string& notice);
@@ -27,6 +31,7 @@ class TopScreen {
   void draw(const std::string& text);
 
   bool redraws_;
+  bool colours_;
   std::string last_table_;
   std::string last_notice_;
 };

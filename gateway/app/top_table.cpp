@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "gateway/core/words.hpp"
 #include "gateway/image/command.hpp"
 #include "gateway/image/process_image.hpp"
 #include "gateway/image/quantity.hpp"
@@ -73,38 +74,9 @@ class AxisCells {
 std::string mode_text(const AxisCells& cells) {
   const auto mode = static_cast<std::int16_t>(cells.word(kModeDisplay));
   if (mode == no_value(RegisterType::i16)) return "?";
+  const Word* word = mode < 0 ? nullptr : find_word(WordKind::mode, static_cast<std::uint32_t>(mode));
   std::string name = mode < 0 ? fmt::format("own {}", mode) : fmt::format("mode {}", mode);
-  switch (mode) {
-    case 0:
-      name = "none";
-      break;
-    case 1:
-      name = "profile position";
-      break;
-    case 3:
-      name = "profile velocity";
-      break;
-    case 4:
-      name = "torque";
-      break;
-    case 6:
-      name = "homing";
-      break;
-    case 7:
-      name = "interpolated";
-      break;
-    case 8:
-      name = "csp";
-      break;
-    case 9:
-      name = "csv";
-      break;
-    case 10:
-      name = "cst";
-      break;
-    default:
-      break;
-  }
+  if (word != nullptr) name = word->name;
   return name + (cells.good(Quantity::mode_display) ? "" : "?");
 }
 
@@ -115,53 +87,87 @@ std::string error_text(const AxisCells& cells) {
   if (code == no_value(RegisterType::u16)) return "?";
   const std::uint32_t vendor = cells.pair(kVendorError);
   const bool has_vendor = cells.good(Quantity::vendor_error) && vendor != 0 && vendor != no_value(RegisterType::u32);
-  const std::string shown = code == 0 ? "none" : fmt::format("0x{:04X}", code);
+  const Word* word = find_error(code);
+  std::string shown = code == 0 ? "none" : fmt::format("0x{:04X}", code);
+  if (word != nullptr) shown += fmt::format(" {}", word->name);
   return has_vendor ? fmt::format("{} (0x{:X})", shown, vendor) : shown;
 }
 
 std::string age_text(std::uint16_t age) { return age == 0xFFFF ? ">65 s" : fmt::format("{}", age); }
 
-template <typename Word>
-void add_word(std::string& list, const Word& word) {
-  if (!list.empty()) list += ", ";
-  list += word;
-}
-
-std::string alarms_text(std::uint32_t bits) {
-  std::string list;
-  for (unsigned i = 0; i < 32; ++i) {
-    if ((static_cast<unsigned>(bits) >> i & 1U) == 0) continue;
-    add_word(list, i < kAxisAlarmCount ? std::string(text(static_cast<AxisAlarm>(i))) : fmt::format("bit {}", i));
-  }
-  return list.empty() ? "-" : list;
-}
-
-std::string gateway_alarms_text(std::uint16_t bits) {
-  // In the order of GatewayAlarm.
-  static constexpr std::array<std::string_view, 13> kNames{
-      "axis offline",        "bus down",         "drive fault",
-      "identity mismatch",   "no comm watchdog", "check failed",
-      "adopted running",     "DDS process down", "configuration changed",
-      "certificate expires", "event loop slow",  "EEPROM write budget",
-      "bus overloaded"};
-  std::string list;
-  for (unsigned i = 0; i < 16; ++i) {
-    if ((static_cast<unsigned>(bits) >> i & 1U) == 0) continue;
-    add_word(list, i < kNames.size() ? std::string(kNames[i]) : fmt::format("bit {}", i));
-  }
-  return list.empty() ? "none" : list;
-}
-
-std::string_view gateway_state_text(std::uint16_t state) {
-  static constexpr std::array<std::string_view, 4> kNames{"starting", "running", "degraded", "stopping"};
-  return state < kNames.size() ? kNames[state] : "?";
+std::string alarms_text(WordKind kind, std::uint32_t bits, std::string_view none) {
+  const std::string names = names_of_bits(kind, bits);
+  return names.empty() ? std::string(none) : names;
 }
 
 std::string_view role_text(std::uint16_t role) {
   return role <= static_cast<std::uint16_t>(Role::engineer) ? text(static_cast<Role>(role)) : "?";
 }
 
-constexpr std::string_view kRow = "{:>4}  {:<9}  {:<17}  {:<17}  {:>12}  {:>12}  {:>8}  {:>9}  {:>6}  {:<18}  {}\n";
+/// What a line of the table tells of an axis.
+struct AxisTexts {
+  std::string number, name, link, state, mode, position, velocity, torque, current, age, error, alarms;
+};
+
+AxisTexts texts_of(const AxisReading& axis, WordOrder order) {
+  const AxisCells cells(axis, order);
+  return {.number = fmt::format("{}", axis.axis),
+          .name = axis.name,
+          .link = std::string(name_of(WordKind::link_state, cells.word(kLinkState))),
+          .state = std::string(name_of(WordKind::axis_state, cells.word(kAxisState))),
+          .mode = mode_text(cells),
+          .position = cells.number(Quantity::position_actual, kPosition, 0),
+          .velocity = cells.number(Quantity::velocity_actual, kVelocity, 3),
+          .torque = cells.number(Quantity::torque_actual, kTorque, 1),
+          .current = cells.number(Quantity::current_actual, kCurrent, 2),
+          .age = age_text(cells.word(kAge)),
+          .error = error_text(cells),
+          .alarms = alarms_text(WordKind::axis_alarm, cells.pair(kAlarms), "-")};
+}
+
+std::string wide_row(const AxisTexts& t, std::size_t name_width) {
+  const std::string name = name_width == 0 ? std::string() : fmt::format("  {:<{}}", t.name, name_width);
+  return fmt::format("{:>4}{}  {:<9}  {:<17}  {:<17}  {:>12}  {:>12}  {:>8}  {:>9}  {:>6}  {:<18}  {}\n", t.number,
+                     name, t.link, t.state, t.mode, t.position, t.velocity, t.torque, t.current, t.age, t.error,
+                     t.alarms);
+}
+
+AxisTexts column_names() {
+  return {"axis",         "name",     "link",      "state",  "mode",  "position",
+          "velocity rpm", "torque %", "current A", "age ms", "error", "alarms"};
+}
+
+/// Between words, so that no line is longer; one word that is, stands alone.
+std::string wrapped(std::string_view text, std::size_t columns, std::string_view first_indent,
+                    std::string_view indent) {
+  std::string out, line;
+  while (!text.empty()) {
+    const std::size_t end = text.find(' ');
+    const std::string_view word = text.substr(0, end);
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+    if (!line.empty() && line.size() + 1 + word.size() > columns) {
+      out += line + "\n";
+      line.clear();
+    }
+    if (line.empty())
+      line = std::string(out.empty() ? first_indent : indent) + std::string(word);
+    else
+      line += " " + std::string(word);
+  }
+  return out + line + "\n";
+}
+
+constexpr std::string_view kNarrowRow = "{:>4}  {:<9}  {:<17}  {:>12}  {:>14}  {:>9}\n";
+
+std::string narrow_rows(const AxisTexts& t, std::size_t columns) {
+  std::string more = t.name.empty() ? std::string() : t.name + ": ";
+  more += t.mode + ", " + t.current + " A, age " + t.age + " ms";
+  if (t.error != "none") more += ", error " + t.error;
+  if (t.alarms != "-") more += ", alarms: " + t.alarms;
+  constexpr std::string_view kIndent = "      ";
+  return fmt::format(fmt::runtime(kNarrowRow), t.number, t.link, t.state, t.position, t.velocity, t.torque) +
+         wrapped(more, columns, kIndent, kIndent);
+}
 
 }  // namespace
 
@@ -177,28 +183,52 @@ void mark_out_of_reach(AxisReading& axis) {
   axis.registers[kValid + 1] = 0;
 }
 
-std::string render_table(const TopReading& reading) {
+std::string render_table(const TopReading& reading, std::size_t columns) {
   const WordOrder order = word_order(reading.gateway);
   const std::uint32_t up = word32(reading.gateway[4], reading.gateway[5], order);
-  std::string out =
-      fmt::format("axisgate {}  {}  axes online {} of {}  up {}:{:02}:{:02}  role {}  alarms: {}\n", reading.server,
-                  gateway_state_text(reading.gateway[2]), reading.gateway[3], reading.gateway[1], up / 3600,
-                  up / 60 % 60, up % 60, role_text(reading.gateway[7]), gateway_alarms_text(reading.gateway[6]));
-  out += fmt::format(fmt::runtime(kRow), "axis", "link", "state", "mode", "position", "velocity rpm", "torque %",
-                     "current A", "age ms", "error", "alarms");
+  const std::string first =
+      fmt::format("axisgate {}  {}  axes online {} of {}  up {}:{:02}:{:02}  role {}  alarms: {}", reading.server,
+                  name_of(WordKind::gateway_state, reading.gateway[2]), reading.gateway[3], reading.gateway[1],
+                  up / 3600, up / 60 % 60, up % 60, role_text(reading.gateway[7]),
+                  alarms_text(WordKind::gateway_alarm, reading.gateway[6], "none"));
+  std::vector<AxisTexts> axes;
+  std::size_t name_width = 0;
   for (const AxisReading& axis : reading.axes) {
-    const AxisCells cells(axis, order);
-    const auto link = std::min<std::uint16_t>(cells.word(kLinkState), 0xFF);
-    const auto state = std::min<std::uint16_t>(cells.word(kAxisState), 0xFF);
-    out += fmt::format(
-        fmt::runtime(kRow), axis.axis, text(static_cast<LinkState>(link)), text(static_cast<AxisState>(state)),
-        mode_text(cells), cells.number(Quantity::position_actual, kPosition, 0),
-        cells.number(Quantity::velocity_actual, kVelocity, 3), cells.number(Quantity::torque_actual, kTorque, 1),
-        cells.number(Quantity::current_actual, kCurrent, 2), age_text(cells.word(kAge)), error_text(cells),
-        alarms_text(cells.pair(kAlarms)));
+    axes.push_back(texts_of(axis, order));
+    name_width = std::max(name_width, axis.name.size());
   }
+  if (name_width != 0) name_width = std::max(name_width, column_names().name.size());
+  std::string rows = wide_row(column_names(), name_width);
+  for (const AxisTexts& axis : axes) rows += wide_row(axis, name_width);
+  std::size_t widest = 0;
+  for (std::size_t at = 0; at < rows.size(); at = rows.find('\n', at) + 1)
+    widest = std::max(widest, rows.find('\n', at) - at);
+  const bool narrow = columns != 0 && std::max(widest, first.size()) > columns;
+  std::string out = first + "\n";
+  if (narrow) {
+    out = wrapped(first, columns, "", "  ");
+    const AxisTexts names = column_names();
+    rows = fmt::format(fmt::runtime(kNarrowRow), names.number, names.link, names.state, names.position, names.velocity,
+                       names.torque);
+    for (const AxisTexts& axis : axes) rows += narrow_rows(axis, columns);
+  }
+  out += rows;
   if (reading.axes.empty()) out += "no axes\n";
   return out;
+}
+
+Attention attention(std::string_view line) {
+  const auto says = [&](WordKind kind, auto number) {
+    return line.find("  " + std::string(name_of(kind, static_cast<std::uint32_t>(number)))) != std::string_view::npos;
+  };
+  using enum WordKind;
+  if (says(axis_state, AxisState::error_stop) || says(link_state, LinkState::offline) ||
+      says(link_state, LinkState::link_down))
+    return Attention::act;
+  if (says(link_state, LinkState::suspect) || says(axis_state, AxisState::stopping) ||
+      line.find("alarms: ") != std::string_view::npos)
+    return line.ends_with("alarms: none") ? Attention::none : Attention::look;
+  return Attention::none;
 }
 
 }  // namespace axisgate::app

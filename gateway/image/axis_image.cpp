@@ -3,77 +3,14 @@
 #include <cassert>
 #include <string_view>
 
+#include "gateway/core/words.hpp"
 #include "gateway/image/shown.hpp"
 
 namespace axisgate {
 
-std::string_view text(AxisAlarm alarm) {
-  switch (alarm) {
-    case AxisAlarm::no_comm_watchdog:
-      return "no_comm_watchdog";
-    case AxisAlarm::adopted_running:
-      return "adopted_running";
-    case AxisAlarm::identity_mismatch:
-      return "identity_mismatch";
-    case AxisAlarm::local_control:
-      return "local_control";
-    case AxisAlarm::limit_inputs_open:
-      return "limit_inputs_open";
-    case AxisAlarm::not_homed:
-      return "not_homed";
-    case AxisAlarm::cannot_deenergise:
-      return "cannot_deenergise";
-    case AxisAlarm::stop_latched:
-      return "stop_latched";
-    case AxisAlarm::duplicate_node:
-      return "duplicate_node";
-    case AxisAlarm::nvm_budget:
-      return "nvm_budget";
-    case AxisAlarm::clamped:
-      return "clamped";
-    case AxisAlarm::stop_options:
-      return "stop_options";
-  }
-  return "?";
-}
-
-std::string_view text(LinkState state) {
-  switch (state) {
-    case LinkState::unknown:
-      return "unknown";
-    case LinkState::setup:
-      return "setup";
-    case LinkState::online:
-      return "online";
-    case LinkState::suspect:
-      return "suspect";
-    case LinkState::offline:
-      return "offline";
-    case LinkState::link_down:
-      return "link_down";
-  }
-  return "?";
-}
-
-std::string_view text(AxisState state) {
-  switch (state) {
-    case AxisState::disabled:
-      return "disabled";
-    case AxisState::standstill:
-      return "standstill";
-    case AxisState::discrete_motion:
-      return "discrete motion";
-    case AxisState::continuous_motion:
-      return "continuous motion";
-    case AxisState::homing:
-      return "homing";
-    case AxisState::stopping:
-      return "stopping";
-    case AxisState::error_stop:
-      return "error stop";
-  }
-  return "?";
-}
+std::string_view text(AxisAlarm alarm) { return name_of(WordKind::axis_alarm, static_cast<std::uint32_t>(alarm)); }
+std::string_view text(LinkState state) { return name_of(WordKind::link_state, static_cast<std::uint32_t>(state)); }
+std::string_view text(AxisState state) { return name_of(WordKind::axis_state, static_cast<std::uint32_t>(state)); }
 
 std::uint32_t AxisImage::valid_bits() const {
   if (!reachable()) return 0;

@@ -3,29 +3,21 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "gateway/core/words.hpp"
+
 namespace axisgate::dds {
 namespace {
 
-// Numbers of design 3.1, registers 18 and 31.
-constexpr std::array<std::string_view, 6> kLinks{"unknown", "setup", "online", "suspect", "offline", "link down"};
-constexpr std::array<std::string_view, 7> kStates{"disabled", "standstill", "moving to target", "moving",
-                                                  "homing",   "stopping",   "error stop"};
 // Bits of `supported` and `valid`.
 constexpr std::uint32_t kStatusword = 1U << 0;
 constexpr std::uint32_t kMode = 1U << 1;
 constexpr std::uint32_t kPosition = 1U << 2;
 constexpr std::uint32_t kVelocity = 1U << 3;
 constexpr std::uint32_t kTorque = 1U << 4;
-
-template <std::size_t Size>
-std::string name_of(const std::array<std::string_view, Size>& names, std::uint8_t number) {
-  return number < Size ? std::string(names[number]) : fmt::format("{}", number);
-}
 
 std::string marked(const axisgate::AxisState& axis, std::uint32_t bit, std::string text) {
   if ((axis.supported() & bit) == 0) return "-";
@@ -42,7 +34,7 @@ std::string age(const axisgate::Time& stamp, std::int64_t now_ns) {
   return fmt::format("{:.2f}", static_cast<double>(age_ns) / static_cast<double>(kSecond));
 }
 
-constexpr const char* kRow = "{:>4}  {:<16} {:<9}  {:<16} {:>6} {:>5} {:>13} {:>12} {:>9} {:>6} {:>10} {:>8}\n";
+constexpr const char* kRow = "{:>4}  {:<16} {:<9}  {:<17} {:>6} {:>5} {:>13} {:>12} {:>9} {:>6} {:>10} {:>8}\n";
 
 }  // namespace
 
@@ -51,8 +43,9 @@ std::string topics_table(const AxisSamples& axes, std::int64_t now_ns) {
                                  "torque", "error", "alarms", "age s");
   for (const auto& [number_of_axis, axis] : axes) {
     text += fmt::format(
-        fmt::runtime(kRow), number_of_axis, axis.name().to_string(), name_of(kLinks, axis.link_state()),
-        name_of(kStates, axis.axis_state()), marked(axis, kStatusword, fmt::format("{:04X}", axis.statusword())),
+        fmt::runtime(kRow), number_of_axis, axis.name().to_string(), name_of(WordKind::link_state, axis.link_state()),
+        name_of(WordKind::axis_state, axis.axis_state()),
+        marked(axis, kStatusword, fmt::format("{:04X}", axis.statusword())),
         marked(axis, kMode, fmt::format("{}", axis.mode())), number(axis, kPosition, axis.position(), 3),
         number(axis, kVelocity, axis.velocity(), 3), number(axis, kTorque, axis.torque(), 1),
         fmt::format("{:04X}", axis.error_code()), fmt::format("{:08X}", axis.alarms()), age(axis.stamp(), now_ns));
@@ -61,12 +54,13 @@ std::string topics_table(const AxisSamples& axes, std::int64_t now_ns) {
 }
 
 std::string topics_line(const axisgate::AxisState& axis) {
-  return fmt::format(
-      "axis {} {}: {}, {}, statusword {}, mode {}, position {}, velocity {}, torque {}, error {:04X}", axis.axis(),
-      axis.name().to_string(), name_of(kLinks, axis.link_state()), name_of(kStates, axis.axis_state()),
-      marked(axis, kStatusword, fmt::format("{:04X}", axis.statusword())),
-      marked(axis, kMode, fmt::format("{}", axis.mode())), number(axis, kPosition, axis.position(), 3),
-      number(axis, kVelocity, axis.velocity(), 3), number(axis, kTorque, axis.torque(), 1), axis.error_code());
+  return fmt::format("axis {} {}: {}, {}, statusword {}, mode {}, position {}, velocity {}, torque {}, error {:04X}",
+                     axis.axis(), axis.name().to_string(), name_of(WordKind::link_state, axis.link_state()),
+                     name_of(WordKind::axis_state, axis.axis_state()),
+                     marked(axis, kStatusword, fmt::format("{:04X}", axis.statusword())),
+                     marked(axis, kMode, fmt::format("{}", axis.mode())), number(axis, kPosition, axis.position(), 3),
+                     number(axis, kVelocity, axis.velocity(), 3), number(axis, kTorque, axis.torque(), 1),
+                     axis.error_code());
 }
 
 std::string topics_json(const axisgate::AxisState& axis) {

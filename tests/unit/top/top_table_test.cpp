@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "gateway/app/top_screen.hpp"
+#include "gateway/core/words.hpp"
 #include "gateway/image/process_image.hpp"
 
 namespace axisgate::app {
@@ -118,7 +119,7 @@ TEST(TopTable, NamesAlarmsErrorsAndOwnModes) {
   put32(axis, 34, bit(AxisAlarm::not_homed) | bit(AxisAlarm::stop_latched) | 1U << 31);
   const std::string line = axis_line(axis);
   EXPECT_THAT(line, HasSubstr("own -3"));
-  EXPECT_THAT(line, HasSubstr("0x3210 (0x40)"));
+  EXPECT_THAT(line, HasSubstr("0x3210 overvoltage (0x40)"));
   EXPECT_THAT(line, EndsWith("not_homed, stop_latched, bit 31"));
 }
 
@@ -158,6 +159,56 @@ TEST(TopTable, AnAxisOutOfReachIsShownOfflineWithItsLastValuesMarked) {
   mark_out_of_reach(axis);
   EXPECT_THAT(axis_line(axis), HasSubstr("offline"));
   EXPECT_THAT(axis_line(axis), HasSubstr("123456?"));
+}
+
+TEST(TopTable, FitsIntoEightyColumnsWithEveryNumberWhole) {
+  AxisReading axis = good_axis(499);
+  axis.name = "lift";
+  put32(axis, 2, 0x80000001);
+  put32(axis, 4, 0x80000001);
+  axis.registers[6] = 0x8001;
+  axis.registers[7] = 0x8001;
+  axis.registers[18] = 4;
+  axis.registers[10] = 0x8130;
+  put32(axis, 12, 0xFFFF);
+  put32(axis, 22, 0);
+  put32(axis, 34, 0xFFF);
+  TopReading reading = reading_of({axis});
+  reading.server = "a-rather-long-name.of-a-gateway.example.org:1502";
+  reading.gateway[6] = 0x1FFF;
+  const std::string table = render_table(reading, kNarrow);
+  for (const std::string& line : lines_of(table)) EXPECT_LE(line.size(), kNarrow) << line;
+  for (const char* whole :
+       {" -2147483647? ", " -2147483.647? ", " -3276.7?", "lift: profile position?, -327.67? A, age 12 ms",
+        "error 0x8130 no contact", "offline", "discrete motion"})
+    EXPECT_THAT(table, HasSubstr(whole));
+  for (const Word& word : axisgate::words())
+    if (word.kind == WordKind::axis_alarm && word.number < kAxisAlarmCount) {
+      EXPECT_THAT(table, HasSubstr(std::string(word.name)));
+    }
+}
+
+TEST(TopTable, StaysOneLineAnAxisWhereThereIsRoom) {
+  AxisReading axis = good_axis(1);
+  axis.name = "lift";
+  const std::string table = render_table(reading_of({axis}), 200);
+  EXPECT_THAT(lines_of(table), SizeIs(3));
+  EXPECT_THAT(words(lines_of(table)[1])[1], "name");
+  EXPECT_THAT(words(lines_of(table)[2])[1], "lift");
+  EXPECT_THAT(lines_of(render_table(reading_of({axis}), kNarrow)), SizeIs(5)) << "the first line takes two";
+}
+
+TEST(TopScreen, ColoursLinesThatAskForAttentionWithoutCuttingTheirColour) {
+  AxisReading failed = good_axis(2);
+  failed.registers[31] = 6;
+  AxisReading doubtful = good_axis(3);
+  doubtful.registers[18] = 3;
+  const std::string table = render_table(reading_of({good_axis(1), failed, doubtful}));
+  const std::string frame = terminal_frame(table, 60, 50, true);
+  EXPECT_THAT(frame, HasSubstr("\x1b[31m   2  online     error stop"));
+  EXPECT_THAT(frame, HasSubstr("\x1b[33m   3  suspect"));
+  EXPECT_THAT(frame, HasSubstr("\r\n   1  online"));
+  EXPECT_THAT(terminal_frame(table, 60, 50), Not(HasSubstr("\x1b[31m")));
 }
 
 TEST(TopScreen, AFrameIsCutToTheWindowAndWipesWhatWasThereBefore) {

@@ -1,0 +1,137 @@
+#include "gateway/core/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+
+namespace axisgate {
+namespace {
+
+using enum WordKind;
+
+/// As people type it: small letters, and one blank for any of "_-".
+std::string plain(std::string_view text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '_' || c == '-' ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+}  // namespace
+
+const Word* find_word(WordKind kind, std::uint32_t number) {
+  const auto found = std::ranges::find_if(words(), [&](const Word& w) { return w.kind == kind && w.number == number; });
+  return found == words().end() ? nullptr : &*found;
+}
+
+const Word* find_error(std::uint16_t code) {
+  for (const std::uint32_t mask : {0xFFFFU, 0xFF00U, 0xF000U})
+    if (const Word* word = find_word(error_code, code & mask); word != nullptr) return word;
+  return nullptr;
+}
+
+std::string_view name_of(WordKind kind, std::uint32_t number) {
+  const Word* word = find_word(kind, number);
+  return word == nullptr ? "?" : word->name;
+}
+
+std::string names_of_bits(WordKind kind, std::uint32_t bits) {
+  std::string out;
+  constexpr unsigned kBits = 32;
+  for (unsigned bit = 0; bit < kBits; ++bit) {
+    if ((bits >> bit & 1U) == 0) continue;
+    const Word* word = find_word(kind, bit);
+    if (!out.empty()) out += ", ";
+    out += word == nullptr ? "bit " + std::to_string(bit) : std::string(word->name);
+  }
+  return out;
+}
+
+std::string number_text(const Word& word) {
+  if (word.kind == abort_code) return fmt::format("0x{:08X}", word.number);
+  return word.kind == error_code ? fmt::format("0x{:04X}", word.number) : fmt::format("{}", word.number);
+}
+
+std::string_view title(WordKind kind) {
+  static constexpr std::array<std::string_view, kWordKinds> kTitles{
+      "axis state",    "motion state", "link state", "mode",       "axis alarm", "gateway state",
+      "gateway alarm", "result",       "exception",  "abort code", "error code"};
+  return kTitles[static_cast<std::size_t>(kind)];
+}
+
+std::string_view place(WordKind kind) {
+  static constexpr std::array<std::string_view, kWordKinds> kPlaces{"register 31 of the axis",
+                                                                    "register 32 of the axis",
+                                                                    "register 18 of the axis",
+                                                                    "registers 1 and 41 of the axis",
+                                                                    "bits of registers 34 and 35 of the axis",
+                                                                    "register 2 of the gateway block",
+                                                                    "bits of register 6 of the gateway block",
+                                                                    "register 25 of the axis, `result` of DDS replies",
+                                                                    "the answer to a Modbus request",
+                                                                    "registers 26 and 27 of the axis after result 3",
+                                                                    "register 10 of the axis"};
+  return kPlaces[static_cast<std::size_t>(kind)];
+}
+
+std::optional<std::uint32_t> typed_number(std::string_view typed) {
+  const bool hex = typed.starts_with("0x") || typed.starts_with("0X");
+  if (hex) typed.remove_prefix(2);
+  constexpr int kHex = 16, kDecimal = 10;
+  std::uint32_t number = 0;
+  const char* const last = typed.data() + typed.size();
+  const auto [end, error] = std::from_chars(typed.data(), last, number, hex ? kHex : kDecimal);
+  if (error != std::errc() || end != last) return std::nullopt;
+  return number;
+}
+
+std::vector<const Word*> look_up(std::string_view typed) {
+  std::vector<const Word*> out;
+  const auto take = [&](const auto& which) {
+    for (const Word& word : words())
+      if (which(word)) out.push_back(&word);
+  };
+  if (const auto number = typed_number(typed)) {
+    take([&](const Word& word) { return word.number == *number; });
+    return out;
+  }
+  const std::string wanted = plain(typed);
+  const std::size_t blank = wanted.rfind(' ');
+  const auto number = blank == std::string::npos ? std::nullopt : typed_number(wanted.substr(blank + 1));
+  // "alarm 7" is of the axes and of the gateway.
+  if (number)
+    take([&](const Word& word) {
+      return word.number == *number && title(word.kind).find(wanted.substr(0, blank)) != std::string_view::npos;
+    });
+  if (!out.empty()) return out;
+  take([&](const Word& word) { return plain(word.name) == wanted; });
+  if (out.empty() && !wanted.empty())
+    take([&](const Word& word) { return plain(word.name).find(wanted) != std::string::npos; });
+  return out;
+}
+
+std::string troubleshooting_page() {
+  std::string out = R"(# Troubleshooting
+
+What axisgate shows, what it means, what usually causes it and what to do. `axisgate explain` prints the same for one word or
+number, and for the fault codes of the drives: `axisgate explain stop_latched`, `axisgate explain result 9`,
+`axisgate explain 0x3130`. This page is made from the table that the program itself uses.
+)";
+  const auto cell = [](std::string_view text) { return " " + std::string(text) + " |"; };
+  for (int k = 0; k < kWordKinds; ++k) {
+    const auto kind = static_cast<WordKind>(k);
+    out += "\n## " + std::string(title(kind)) + ": " + std::string(place(kind)) +
+           "\n\n| number | name | meaning | usual causes | remedy |\n|---|---|---|---|---|\n";
+    for (const Word& word : words()) {
+      if (word.kind != kind) continue;
+      out += "|" + cell(number_text(word)) + cell(word.name) + cell(word.meaning) + cell(word.causes) +
+             cell(word.remedy) + "\n";
+    }
+  }
+  return out;
+}
+
+}  // namespace axisgate

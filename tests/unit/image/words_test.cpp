@@ -1,0 +1,98 @@
+#include "gateway/core/words.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "gateway/core/error.hpp"
+#include "gateway/image/process_image.hpp"
+
+namespace axisgate {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+std::vector<std::string> names(const std::vector<const Word*>& found) {
+  std::vector<std::string> out;
+  for (const Word* word : found) out.push_back(std::string(title(word->kind)) + ": " + std::string(word->name));
+  return out;
+}
+
+TEST(Words, AreInOrderAndUniqueAndTroubleHasARemedyOrACause) {
+  std::set<std::pair<WordKind, std::string_view>> seen;
+  const Word* before = nullptr;
+  for (const Word& word : words()) {
+    EXPECT_FALSE(word.name.empty());
+    EXPECT_FALSE(word.meaning.empty()) << word.name;
+    EXPECT_TRUE(seen.insert({word.kind, word.name}).second) << word.name;
+    if (before != nullptr) {
+      EXPECT_LT(std::pair(before->kind, before->number), std::pair(word.kind, word.number)) << word.name;
+    }
+    if (word.kind == WordKind::axis_alarm || word.kind == WordKind::gateway_alarm) {
+      EXPECT_FALSE(word.causes.empty() && word.remedy.empty() && word.number != 9) << word.name;
+    }
+    before = &word;
+  }
+}
+
+// Whatever a client can be shown has a name.
+TEST(Words, CoverEverythingThatIsShown) {
+  for (int code = 0; code < kErrcCount; ++code) {
+    const auto exception = static_cast<std::uint32_t>(modbus_exception(static_cast<Errc>(code)));
+    EXPECT_TRUE(exception == 0 || find_word(WordKind::exception, exception) != nullptr) << code;
+    EXPECT_NE(find_word(WordKind::result, dds_result(static_cast<Errc>(code))), nullptr) << code;
+    const auto result = static_cast<std::uint32_t>(command_result(static_cast<Errc>(code)));
+    EXPECT_NE(find_word(WordKind::result, result), nullptr) << code;
+  }
+  for (unsigned alarm = 0; alarm < kAxisAlarmCount; ++alarm) EXPECT_NE(text(static_cast<AxisAlarm>(alarm)), "?");
+  for (unsigned state = 0; state <= static_cast<unsigned>(AxisState::error_stop); ++state)
+    EXPECT_NE(text(static_cast<AxisState>(state)), "?");
+  for (unsigned state = 0; state <= static_cast<unsigned>(LinkState::link_down); ++state)
+    EXPECT_NE(text(static_cast<LinkState>(state)), "?");
+  EXPECT_NE(find_word(WordKind::gateway_alarm, static_cast<std::uint32_t>(GatewayAlarm::bus_overloaded)), nullptr);
+}
+
+TEST(Words, AreFoundAsSomebodyTypesThem) {
+  EXPECT_THAT(names(look_up("Stop-Latched")), ElementsAre("axis alarm: stop_latched"));
+  EXPECT_THAT(names(look_up("result 9")), ElementsAre("result: state unsuitable"));
+  EXPECT_THAT(names(look_up("alarm 7")), ElementsAre("axis alarm: stop_latched", "gateway alarm: DDS process down"));
+  EXPECT_THAT(names(look_up("exception 0x0B")), ElementsAre("exception: gateway target failed"));
+  EXPECT_THAT(names(look_up("0x06010002")), ElementsAre("abort code: read only"));
+  EXPECT_THAT(names(look_up("11")), ElementsAre("axis alarm: stop_options", "gateway alarm: EEPROM write budget",
+                                                "result: not_reached", "exception: gateway target failed"));
+  EXPECT_THAT(names(look_up("unsuit")), ElementsAre("result: state unsuitable")) << "a part is enough";
+  EXPECT_THAT(look_up("no such thing"), IsEmpty());
+  EXPECT_THAT(look_up(""), IsEmpty());
+  EXPECT_THAT(look_up("99999999999"), IsEmpty());
+}
+
+TEST(Words, NameAnErrorByItsClassWhereTheyHaveNoOther) {
+  EXPECT_EQ(find_error(0x8130)->name, "no contact");
+  EXPECT_EQ(find_error(0x7328)->name, "sensor");
+  EXPECT_EQ(find_error(0x4999)->name, "temperature");
+  EXPECT_EQ(find_error(0), nullptr);
+}
+
+TEST(Words, NameTheBitsThatAreSet) {
+  EXPECT_EQ(names_of_bits(WordKind::axis_alarm, 1U << 5 | 1U << 7 | 1U << 31), "not_homed, stop_latched, bit 31");
+  EXPECT_EQ(names_of_bits(WordKind::axis_alarm, 0), "");
+  EXPECT_EQ(name_of(WordKind::axis_state, 200), "?");
+}
+
+TEST(TroubleshootingPage, IsTheOneInDocs) {
+  const std::string path = AXISGATE_SOURCE_DIR "/docs/troubleshooting.md";
+  if (std::getenv("AXISGATE_WRITE_PAGES") != nullptr) std::ofstream(path) << troubleshooting_page();
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  EXPECT_EQ(text.str(), troubleshooting_page())
+      << "docs/troubleshooting.md is not what the table says. Write it anew with\n"
+         "  AXISGATE_WRITE_PAGES=1 ctest --test-dir BUILD -R TroubleshootingPage";
+}
+
+}  // namespace
+}  // namespace axisgate
