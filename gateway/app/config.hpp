@@ -79,6 +79,7 @@ struct BusConfig {
 
 struct Config {
   std::string file;
+  std::vector<std::string> profile_files{};  ///< read for it, each once
   std::vector<modbus_tcp::ListenerSettings> modbus_tcp;
   std::optional<dds::DdsSettings> dds;
   std::vector<BusConfig> buses;

@@ -63,6 +63,12 @@ class Profiles {
     return nullptr;
   }
 
+  [[nodiscard]] std::vector<std::string> files() const {
+    std::vector<std::string> out;
+    for (const auto& [file, profile] : loaded_) out.push_back(file);
+    return out;
+  }
+
  private:
   [[nodiscard]] std::string missing(const std::string& profile) const {
     if (profile.find('/') != std::string::npos || profile.ends_with(".json")) {
@@ -141,6 +147,7 @@ std::vector<std::vector<drive::DriveModel>> load_models(Config& config, const st
       if (auto model = load_model(bus, drive, profiles, faults)) drives.push_back(std::move(*model));
     }
   }
+  config.profile_files = profiles.files();
   return models;
 }
 

@@ -113,6 +113,14 @@ void Gateway::report_loop_delay(Duration delay) {
   if (delay >= kSlowLoop) slow_loop_at_ = runtime_.now();
 }
 
+void Gateway::report_file_changed(const std::string& file) {
+  file_changed_ = !file.empty();
+  report(EventKind::warning, file_changed_ ? file +
+                                                 " is not what the gateway runs with: check it, and restart the "
+                                                 "gateway when its axes are disabled"
+                                           : "the files on disk are what the gateway runs with again");
+}
+
 // --- Rows of the gateway and of the buses, gathered when somebody reads them
 // ------------------------------------------
 
@@ -185,6 +193,7 @@ std::uint16_t Gateway::gateway_alarms() const {
   const bool slow = slow_loop_at_ != kLongAgo && runtime_.now() - slow_loop_at_ < kSlowLoopShown;
   set(GatewayAlarm::event_loop_slow, slow);
   set(GatewayAlarm::dds_process_down, dds_down_);
+  set(GatewayAlarm::configuration_changed, file_changed_);
   return out;
 }
 

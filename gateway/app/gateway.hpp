@@ -57,6 +57,8 @@ class Gateway final : public CommandPort {
   void report_loop_delay(Duration delay);
   /// The DDS face is configured and its process does not run: gateway alarm "DDS process down".
   void report_dds_down(bool down) { dds_down_ = down; }
+  /// A file that the gateway was started with is not what it runs with any more; empty: all are again.
+  void report_file_changed(const std::string& file);
   /// An event of the gateway itself, and so a line of the log.
   void report(EventKind kind, std::string text) { events_.add(runtime_.now(), 0, kind, 0, std::move(text)); }
 
@@ -88,6 +90,7 @@ class Gateway final : public CommandPort {
   std::function<void()> closed_{};
   std::unique_ptr<Timer> closing_;
   bool dds_down_ = false;
+  bool file_changed_ = false;
 };
 
 }  // namespace axisgate::app

@@ -9,7 +9,9 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "adapters/asio/asio_runtime.hpp"
 #include "gateway/app/config_loader.hpp"
@@ -17,6 +19,7 @@
 #include "gateway/app/device_wires.hpp"
 #include "gateway/app/end_signals.hpp"
 #include "gateway/app/faults_told.hpp"
+#include "gateway/app/file_watch.hpp"
 #include "gateway/app/gateway.hpp"
 #include "gateway/app/loop_watch.hpp"
 #include "gateway/app/stderr_log.hpp"
@@ -70,6 +73,10 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   if (descriptors.limited()) gateway.report(EventKind::warning, modbus_tcp::text(descriptors));
   gateway.start();
   if (dds) dds->start();
+  std::vector<std::string> files = loaded.config.profile_files;
+  files.insert(files.begin(), loaded.config.file);
+  FileWatch file_watch(io, runtime, std::move(files),
+                       [&](const std::string& file) { gateway.report_file_changed(file); });
   LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
   const auto end = [&] {
     gateway.stop();

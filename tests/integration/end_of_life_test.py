@@ -137,6 +137,27 @@ class Told(End):
             self.again()
 
 
+class FileOnDisk(End):
+    CHANGED = 1 << 8  # gateway alarm
+
+    def test_the_alarm_stands_while_the_file_differs_from_what_runs(self):
+        alarms = lambda: self.client.gateway()["alarms"]
+        self.assertFalse(alarms() & self.CHANGED)
+        with open(self.config, encoding="utf-8") as file:
+            before = file.read()
+        for text in (before.replace('"name"', '"name" '), None):
+            if text is None:
+                os.remove(self.config)
+            else:
+                with open(self.config, "w", encoding="utf-8") as file:
+                    file.write(text)
+            until("the alarm", lambda: alarms() & self.CHANGED)
+            self.gateway.wait_for(f"{self.config} is not what the gateway runs with")
+            with open(self.config, "w", encoding="utf-8") as file:
+                file.write(before)
+            until("no alarm", lambda: not alarms() & self.CHANGED)
+
+
 class Killed(End):
     def test_an_axis_that_runs_is_adopted_and_left_alone(self):
         self.run_velocity(self.axis(1))
