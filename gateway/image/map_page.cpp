@@ -1,5 +1,6 @@
 #include "gateway/image/map_page.hpp"
 
+#include "gateway/image/commands_page.hpp"
 #include "gateway/image/register_map.hpp"
 
 namespace axisgate {
@@ -94,7 +95,8 @@ Twelve axes in one request. Between configured axes a missing number reads 0.
 
 Buses count from 0 in the order of the configuration.
 
-)" + registers(Block::bus);
+)" + registers(Block::bus) +
+         commands_page();
 }
 
 }  // namespace axisgate

@@ -69,6 +69,7 @@ class GroupMaker {
   struct Made {
     Group group;
     bool not_new = false;  ///< something in it was remembered, or repeated, and did not act: its client is told
+    bool repeats = false;  ///< nothing in it is new: it asks because the axis does not hold it any more
   };
   [[nodiscard]] Made make() {
     // A viewer comes this far with the mailbox alone, which it may ask to read.
@@ -86,7 +87,8 @@ class GroupMaker {
     put_heartbeat();
     if (!found_.zeros && !only_remembered) put_rows();
     group_.claims = register_claims(group_);
-    return {group_, not_new_};
+    const bool commands = group_.command != Command::none || group_.controlword;
+    return {group_, not_new_, !single_ && !commands && !anew_};
   }
 
  private:
@@ -190,7 +192,9 @@ class GroupMaker {
       // What the drive holds and this role may not write is nobody's question.
       if (each.ignored || (each.held && onlooker_.role < each.row->may_write)) continue;
       const Asks how = asks(each, changed);
-      if (how != Asks::no) put(each, how == Asks::with_command);
+      if (how == Asks::no) continue;
+      anew_ = anew_ || changed;
+      put(each, how == Asks::with_command);
     }
   }
 
@@ -219,6 +223,7 @@ class GroupMaker {
   boost::container::static_vector<bool, kMaxWriteRegisters> changed_{};
   bool acting_ = false;
   bool not_new_ = false;
+  bool anew_ = false;  ///< a set-point that asks is another one than this client wrote before
 };
 
 Group object_group(const Mailbox& box, const Client& client, Role role) {
@@ -272,6 +277,7 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
     plan.object = object_group(box.mailbox, client, onlooker.role);
   }
   plan.not_new = made.not_new;
+  plan.repeats = made.repeats;
   plan.single = !found.block;
   // The mailbox's own request stands for a group that asks for nothing beside it.
   if (!box.requested || made.group.beats || !asks_nothing(made.group)) plan.groups.push_back(made.group);

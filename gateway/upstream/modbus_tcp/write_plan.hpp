@@ -37,6 +37,7 @@ struct WritePlan {
   std::vector<AxisNumber> reclaims;
   bool single = false;   ///< a single write: where it is not new, its answer is an exception
   bool not_new = false;  ///< something in it did not act, and its client is told: result 10
+  bool repeats = false;  ///< a block in which nothing is new: its client's result stands, unless it is refused
   WriteMemory before{};  ///< of the client, before this request
 };
 

@@ -17,7 +17,8 @@ bool is_wrong(Errc code) {
   return code == Errc::bad_value || code == Errc::not_supported || code == Errc::role_forbidden;
 }
 
-/// Of a group that asks for nothing: its client's result registers go on telling of what was asked last.
+/// Of a group that asks for nothing, or for what its client asked for before: the client's result registers go on
+/// telling of what was asked last.
 constexpr std::uint64_t kNoSubmission = 0;
 
 /// CiA 301: "length of service parameter does not match". The object is longer than registers 84 and 85.
@@ -72,7 +73,8 @@ void WriteRun::abandon() {
 std::optional<Outcome> WriteRun::carry_on() {
   while (next_ < plan_.groups.size()) {
     const Group& group = plan_.groups[next_++];
-    const std::uint64_t submission = asks_nothing(group) ? kNoSubmission : begin(group.command_id);
+    const bool silent = plan_.repeats || asks_nothing(group);
+    const std::uint64_t submission = silent ? kNoSubmission : begin(group.command_id);
     // The callback holds the run: results are recorded even when the session that began it is gone.
     const auto at_once = commands_.submit(
         plan_.axis, group,

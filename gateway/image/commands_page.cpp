@@ -1,0 +1,211 @@
+#include "gateway/image/commands_page.hpp"
+
+#include <array>
+
+#include "gateway/core/words.hpp"
+#include "gateway/image/command.hpp"
+
+namespace axisgate {
+namespace {
+
+using enum MotorDoes;
+
+constexpr std::array kWithIds{
+    Cycle{"PLC", "command 0, command_id 1", 0, kAsBefore, 0, stands,
+          "so a program begins: nothing is asked, and the id is remembered"},
+    Cycle{"PLC", "command 1, command_id 2", 0, 2, 1, stands, "another id: enable"},
+    Cycle{"PLC", "", 0, 2, 1, stands, "the same id asks for nothing, however often it is sent"},
+    Cycle{"PLC", "target_position 50000, command 6, command_id 3", 0, 2, 2, starts,
+          "the set-point goes with the start"},
+    Cycle{"PLC", "", 0, 2, 1, arrives, "the result stays as long as the id does"},
+    Cycle{"PLC", "target_position 100000", 0, 2, 1, stands, "a set-point is no start: it is kept for the next one"},
+    Cycle{"PLC", "command_id 4", 0, 2, 2, starts, "the same command with another id is new"},
+    Cycle{"PLC", "command 3, command_id 5", 0, 2, 5, stops, "quick_stop; the stop is latched"},
+    Cycle{"PLC", "command 6, command_id 6", 4, 9, 5, stands, "no start while it is latched"},
+    Cycle{"PLC", "command 1, command_id 7", 0, 2, 1, stands, "enable clears the latch, and starts nothing"},
+    Cycle{"PLC", "command 6, command_id 8", 0, 2, 2, starts, "to the target that was accepted last"},
+    Cycle{"PLC", "", 0, 2, 1, arrives, ""},
+    Cycle{"PLC", "command 2, command_id 9", 0, 2, 0, stands, "disable"},
+};
+
+constexpr std::array kWithoutIds{
+    Cycle{"PLC", "command 1", 0, 10, 0, stands,
+          "the first block is only remembered: a PLC that is started moves nothing"},
+    Cycle{"PLC", "", 0, 10, 0, stands, "nor does the same block later"},
+    Cycle{"PLC", "command 0", 0, 10, 0, stands, "so begin with 0"},
+    Cycle{"PLC", "command 1", 0, 2, 1, stands, "enable: another command than the one remembered"},
+    Cycle{"PLC", "target_position 50000, command 6", 0, 2, 2, starts, "1 to 6 is a change as well"},
+    Cycle{"PLC", "", 0, 2, 1, arrives, ""},
+    Cycle{"PLC", "target_position 100000", 0, 10, 1, stands,
+          "the command stays 6, which is not new: result 10 says that the new target was only kept"},
+    Cycle{"PLC", "command 0", 0, 10, 1, stands, "0 in between makes the next 6 new"},
+    Cycle{"PLC", "command 6", 0, 2, 2, starts, "to the target that was accepted last"},
+    Cycle{"PLC", "command 3", 0, 2, 5, stops, "quick_stop; the stop is latched"},
+    Cycle{"PLC", "command 6", 4, 9, 5, stands, "no start while it is latched"},
+    Cycle{"PLC", "command 1", 0, 2, 1, stands, "enable clears the latch, and starts nothing"},
+    Cycle{"PLC", "command 6", 0, 2, 2, starts, "to the target that was accepted last"},
+    Cycle{"PLC", "", 0, 2, 1, arrives, ""},
+    Cycle{"PLC", "command 2", 0, 2, 0, stands, "disable"},
+};
+
+constexpr std::array kOneShot{
+    Cycle{"PLC", "command 1", 0, 2, 1, stands, "a single write acts at once"},
+    Cycle{"PLC", "command 1", 0, 2, 1, stands, "what is so already is answered normally"},
+    Cycle{"PLC", "target_position 50000", 0, 2, 1, stands, "a set-point is no start"},
+    Cycle{"PLC", "command 6", 0, 2, 2, starts, ""},
+    Cycle{"PLC", "command 6", 0, 2, 1, arrives, "the same move to the same target: done already"},
+    Cycle{"PLC", "target_position 200000", 0, 2, 1, stands, ""},
+    Cycle{"PLC", "command 6", 0, 2, 2, starts, "a new connection remembers nothing, and a single write acts"},
+    Cycle{"PLC", "command 3", 0, 2, 5, stops, "quick_stop"},
+    Cycle{"PLC", "command 6", 4, 9, 5, stands, "no start while the stop is latched"},
+    Cycle{"PLC", "command 1", 0, 2, 1, stands, "enable clears the latch, and starts nothing"},
+    Cycle{"PLC", "command 2", 0, 2, 0, stands, "disable"},
+};
+
+constexpr std::array kWithPanel{
+    Cycle{"PLC", "command 0, command_id 1", 0, kAsBefore, 0, stands, "remembered; nobody owns the axis"},
+    Cycle{"PLC", "command 1, command_id 2", 0, 2, 1, stands, "the PLC owns it now"},
+    Cycle{"panel", "target_position 10000", 6, 7, 1, stands, "only the owner's set-points are accepted"},
+    Cycle{"PLC", "target_position 50000, command 6, command_id 3", 0, 2, 2, starts, ""},
+    Cycle{"panel", "coil 2", 0, 2, 5, stops, "a stop is open to every operator: quick_stop by its coil"},
+    Cycle{"PLC", "", 0, 2, 5, stands,
+          "the same id starts nothing again: the start was done, and motion_state is 3, aborted"},
+    Cycle{"PLC", "command_id 4", 4, 9, 5, stands, "nor does a new one while the stop is latched"},
+    Cycle{"PLC", "command 1, command_id 5", 0, 2, 1, stands, "the owner clears it by an enable"},
+    Cycle{"PLC", "command 6, command_id 6", 0, 2, 2, starts, ""},
+    Cycle{"PLC", "", 0, 2, 1, arrives, ""},
+    Cycle{"PLC", "command 2, command_id 7", 0, 2, 0, stands, "disabled: from here its lease runs out, scan or not"},
+};
+
+constexpr std::array kTables{
+    CycleTable{"A cyclic scanner with ids",
+               "One connection; each cycle one block of registers 40 to 55. The form to prefer.",
+               CycleTable::How::scanner, false, true, kWithIds},
+    CycleTable{"A cyclic scanner without ids", "The same with command_id 0 in every block.", CycleTable::How::scanner,
+               false, true, kWithoutIds},
+    CycleTable{"A one-shot client",
+               "mbpoll, or a script that opens a connection for each request: one row at a time, no lease (`\"lease\": "
+               "null`).",
+               CycleTable::How::single, true, false, kOneShot},
+    CycleTable{"PLC and panel on one axis", "A scanner with ids that owns the axis, and a panel with a stop button.",
+               CycleTable::How::scanner, false, true, kWithPanel},
+};
+
+std::string_view text(MotorDoes motor) {
+  constexpr std::array<std::string_view, 4> kTexts{"stands", "starts", "arrives", "stops"};
+  return kTexts[static_cast<std::size_t>(motor)];
+}
+
+std::string cells(std::initializer_list<std::string> texts) {
+  std::string out = "|";
+  for (const std::string& each : texts) out += " " + each + " |";
+  return out + "\n";
+}
+
+std::string numbered(WordKind kind, std::uint32_t number) {
+  return std::to_string(number) + " " + std::string(name_of(kind, number));
+}
+
+std::string page_of(const CycleTable& table) {
+  std::string out = "\n### " + std::string(table.title) + "\n\n" + std::string(table.text) +
+                    "\n\n| cycle | client | writes | answer | result (25) | state (31) | motor | why |\n"
+                    "|---|---|---|---|---|---|---|---|\n";
+  int number = 0;
+  for (const Cycle& cycle : table.cycles)
+    out += cells({std::to_string(++number), std::string(cycle.client),
+                  cycle.writes.empty() ? "the same" : std::string(cycle.writes),
+                  cycle.exception == 0 ? "normal" : "exception 0x0" + std::to_string(cycle.exception),
+                  cycle.result == kAsBefore ? "as before" : numbered(WordKind::result, cycle.result),
+                  numbered(WordKind::axis_state, cycle.state), std::string(text(cycle.motor)), std::string(cycle.why)});
+  return out;
+}
+
+struct CommandText {
+  Command command;
+  std::string_view does, needs, done;
+};
+constexpr std::array kCommands{
+    CommandText{
+        Command::enable,
+        "torque on; never moves the axis: set-points in the drive are made harmless before; clears the stop latch",
+        "no fault", "operation enabled was seen"},
+    CommandText{Command::disable, "a stop: torque off, by the drive's disable option", "nothing",
+                "not enabled was seen"},
+    CommandText{Command::quick_stop, "a stop: the fastest controlled one of the drive; sets the stop latch", "nothing",
+                "seen"},
+    CommandText{Command::halt, "a stop: with profile_deceleration; stays enabled, and nothing resumes", "nothing",
+                "seen"},
+    CommandText{Command::fault_reset, "clears a fault whose cause is gone; the axis ends disabled", "nothing",
+                "no fault was seen"},
+    CommandText{Command::move_absolute, "to target_position; replaces a move that is under way", "enabled, no latch",
+                "it has begun"},
+    CommandText{Command::move_relative, "by target_position; while it moves 0x06", "standstill, no latch",
+                "it has begun"},
+    CommandText{Command::run_velocity, "at target_velocity, a later one acts at once", "enabled, no latch",
+                "it has begun"},
+    CommandText{Command::run_torque, "with target_torque, a later one acts at once; needs max_velocity",
+                "enabled, no latch", "it has begun"},
+    CommandText{Command::home, "by homing_method", "enabled, no latch", "it has begun"},
+    CommandText{Command::set_position, "the position becomes set_position_value, and nothing moves", "standstill",
+                "read back"},
+    CommandText{Command::save_parameters, "keeps the drive's parameters over a restart (engineer)", "disabled",
+                "the drive says so, or 2 s"},
+    CommandText{Command::release,
+                "gives the lease back; an axis that is enabled stays so until the lease's time is over", "to own it",
+                "at once"},
+    CommandText{Command::take_over, "takes the axis from a client of a lower rank, after a halt", "a higher rank",
+                "it stands"},
+};
+
+}  // namespace
+
+std::span<const CycleTable> cycle_tables() { return kTables; }
+
+std::string commands_page() {
+  std::string out = R"(
+## Commands
+
+Register 54 takes a command, register 55 its id. *Done* (result 2) means that the drive has accepted it; where the motion is,
+motion_state (32) tells. `axisgate explain result 9` says more of a result.
+
+| command | name | does | needs | done when |
+|---|---|---|---|---|
+)";
+  for (const CommandText& each : kCommands)
+    out += cells({std::to_string(static_cast<int>(each.command)), std::string(axisgate::text(each.command)),
+                  std::string(each.does), std::string(each.needs), std::string(each.done)});
+  out += R"(
+**When a command acts.** A *single write* is FC 5, 6 or 22, or FC 15 or 16 with one row. Everything else is a *block*.
+
+- With an id other than 0 only the id decides: another id than the last one of this client is new. Ids are kept 60 s after the
+  client's last connection. Where none is kept, the first pair is only remembered: result 10. A program begins by writing command 0
+  with an id that it will not use next.
+- With id 0, or without register 55, another command than the one remembered is new. The first block of a connection is only
+  remembered. A single write acts on an empty memory too, and again after `rearm_ms`, but not when a stop of another client, a fault
+  or a loss has ended its last action: then 0 must come first.
+- Edge coils are commands without id. Level coils 7, 8 and 9, and coil 0 after a stop or fault, act on 1 only after a 0.
+- Stops (2, 3, 4, coils 2 and 3) act if command or id differ from what is remembered, in a single write always.
+
+**What does not act says so**: result 10; a single write is answered 0x06 as well. Repeating what has acted leaves the result alone.
+
+**Set-points** (41 to 53) are no starts. The one accepted last is what every start uses. In a block, 0 leaves rows 41, 47, 48, 50,
+52, 58, 62, 64, 66, 70 and 76 as they are; alone it is refused (0x03). A block of zeros asks for nothing.
+
+**The stop latch** is set by quick_stop and by a lease's end. Until an enable that is accepted later, commands 6 to 11 and jog are
+refused: 0x04, result 9.
+
+**Who may.** A write that asks for something claims the axis for its client (register 28), for the time of its lease (29). Others are
+refused then: 0x06, result 7; their stops are not. When the owner falls silent the axis is stopped and latched. While it is disabled
+only what asks for something renews the lease.
+
+**Owed stops.** A stop that could not be sent, or was not seen to act, is owed: when the drive is back the stop comes first, and all
+but stops and reads is refused: 0x06, result 9.
+
+The next tables are replayed by a test on each drive that has these commands. Each begins with an axis that is disabled and owned by
+nobody, with speeds and ramps that are set.
+)";
+  for (const CycleTable& table : kTables) out += page_of(table);
+  return out;
+}
+
+}  // namespace axisgate
