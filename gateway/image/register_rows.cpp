@@ -63,8 +63,10 @@ std::vector<RegisterRow> axis_register_rows() {
       shows(25, "command_result", u16, Source::command_result,
             "0 none, 1 pending, 2 done, 3 refused by drive, 4 outcome unknown, 5 superseded, 6 never started, "
             "7 not owner, 8 stopped by another client, 9 state unsuitable, 10 not new: nothing was done"),
-      shows(26, "command_detail", u32, Source::command_detail,
-            "SDO abort code, Modbus exception or the drive's own code"),
+      shows(
+          26, "command_detail", u32, Source::command_detail,
+          "SDO abort code, Modbus exception or the drive's own code; of a block write refused with 0x01, 0x02 or 0x03: "
+          "0x0A000000 + offset of the first row, or coil, refused"),
       shows(28, "owner", u16, Source::owner, "0 nobody, 1 this client, 2 another"),
       shows(29, "lease_remaining_ms", u16, Source::lease_remaining_ms,
             "until the lease runs out as things stand, saturating; 0: none runs", "ms"),

@@ -109,18 +109,12 @@ AxisNumber Pipeline::written_axis(const Entry& entry) const {
 void Pipeline::start(Entry& entry, Instant now) {
   if (entry.request.reference) return start_object(entry, now);
   Planned planned = plan_write(entry.request, *entry.view, onlooker(now), *client_);
-  if (const Errc* const refused = std::get_if<Errc>(&planned)) {
-    // The outcome table's "command_result 0": no older result may be taken for this write's.
-    if (const AxisNumber axis = axis_of_write(entry.request, *entry.view, context_.image); axis != 0) {
-      ClientAxis& own = client_->at(axis);
-      own.used = true;
-      own.result = {};
-      ++own.submission;
-    }
-    return finish(entry, {*refused, 0});
+  if (const Refused* const refused = std::get_if<Refused>(&planned)) {
+    tell_refused(entry, *refused);
+    return finish(entry, {refused->code, 0});
   }
   entry.run = std::make_shared<WriteRun>(context_.commands, client_, std::get<WritePlan>(std::move(planned)), now,
-                                         context_.settings);
+                                         context_.settings, context_.log);
   entry.stage = Stage::running;
   const bool posted = context_.settings.posted_writes;
   WriteRun::OnDone on_done;
@@ -131,6 +125,20 @@ void Pipeline::start(Entry& entry, Instant now) {
   } else if (at_once) {
     finish(entry, *at_once);
   }
+}
+
+/// The outcome table's "command_result 0": no older result may be taken for this write's.
+void Pipeline::tell_refused(const Entry& entry, const Refused& refused) {
+  const AxisNumber axis = axis_of_write(entry.request, *entry.view, context_.image);
+  if (axis == 0) return;
+  ClientAxis& own = client_->at(axis);
+  if (refused.row) {
+    show_refused(own, *refused.row);
+    return log_refused(block_write(entry.request, axis), {*refused.row, refused.code}, *client_, context_.log);
+  }
+  own.used = true;
+  own.result = {};
+  ++own.submission;
 }
 
 /// "writes": "posted" changes nothing here: the reply is the only place that tells how it ended.

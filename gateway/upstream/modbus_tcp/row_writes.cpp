@@ -24,6 +24,10 @@ std::uint32_t written_bits(const Request& request, std::size_t i, int registers,
 RowWrites gather(const Request& request, const UnitView& view, const Onlooker& onlooker) {
   RowWrites found;
   const std::size_t count = request.write_count;
+  const auto reject = [&found](std::uint16_t at) {
+    if (!found.outside) found.outside_at = at;
+    found.outside = true;
+  };
   for (std::size_t i = 0; i < count; ++i) {
     const auto place = view.place_register(static_cast<std::uint32_t>(request.write_address + i), onlooker.image);
     const RegisterRow* row = place ? register_table(place->block).covering(place->offset) : nullptr;
@@ -31,12 +35,12 @@ RowWrites gather(const Request& request, const UnitView& view, const Onlooker& o
     if (row == nullptr) {
       const bool ignored = count > 1 && place && place->block == Block::axis && place->offset >= kFirstWritable &&
                            place->offset <= kLastWritable;
-      found.outside = found.outside || !ignored;
+      if (!ignored) reject(place ? place->offset : std::uint16_t{0});
       continue;
     }
     const auto registers = static_cast<std::size_t>(row->registers());
     if (!row->writable || place->offset != row->offset || i + registers > count) {
-      found.outside = true;
+      reject(row->offset);
       continue;
     }
     const std::uint32_t bits = request.function == Function::mask_write_register
@@ -116,38 +120,59 @@ Role needed_role(const RowWrite& write) {
   return write.row->may_write;
 }
 
-Errc check_role(const RowWrites& found, Role role) {
-  if ((found.outside || found.zeros) && role < Role::operator_) return Errc::role_forbidden;
-  for (const RowWrite& each : found.rows)
-    if (!each.skipped() && role < needed_role(each)) return Errc::role_forbidden;
-  return Errc::ok;
+WrongRow check_role(const RowWrites& found, Role role) {
+  const bool viewer = role < Role::operator_;
+  for (const RowWrite& each : found.rows) {
+    if (viewer && found.outside && found.outside_at < each.row->offset) break;
+    if (role < needed_role(each) && (!each.skipped() || (viewer && found.zeros)))
+      return {Errc::role_forbidden, each.row->offset};
+  }
+  if (viewer && found.outside) return {Errc::role_forbidden, found.outside_at};
+  return {};
 }
 
-Errc check_addresses(const RowWrites& found) {
-  if (found.outside) return Errc::not_supported;
+bool is_not_there(const RowWrite& write, const AxisImage* axis) {
+  if (!exists(*write.row, axis)) return true;
+  const bool known_command = write.row->source == Source::command && write.value >= 1 && write.value <= kLastCommand;
+  return known_command && (axis->supported_commands >> write.value & 1U) == 0;
+}
+
+WrongRow check_addresses(const RowWrites& found) {
   for (const RowWrite& each : found.rows) {
-    if (each.skipped()) continue;
-    if (!exists(*each.row, found.axis)) return Errc::not_supported;
-    const bool known_command = each.row->source == Source::command && each.value >= 1 && each.value <= kLastCommand;
-    if (known_command && (found.axis->supported_commands >> each.value & 1U) == 0) return Errc::not_supported;
+    if (found.outside && found.outside_at < each.row->offset) break;
+    if (!each.skipped() && is_not_there(each, found.axis)) return {Errc::not_supported, each.row->offset};
   }
-  return Errc::ok;
+  if (found.outside) return {Errc::not_supported, found.outside_at};
+  return {};
 }
 
 /// What the table alone knows: unknown commands and requests, and the number that means "no value".
-Errc check_values(const RowWrites& found) {
-  for (const RowWrite& each : found.rows) {
-    if (each.skipped()) continue;
-    const RegisterRow& row = *each.row;
-    if (!found.block && leaves_as_it_is(row, each.value)) return Errc::bad_value;
-    if (row.source == Source::command && each.value > kLastCommand) return Errc::bad_value;
-    if (row.source == Source::object_request && each.value > 2) return Errc::bad_value;
-    if (row.kind != Kind::code && each.value == no_value(row.type)) return Errc::bad_value;
-    // Masking a value that was never received would make a number out of none.
-    const bool unknown = row.source == Source::quantity && !(*found.axis)[row.quantity].received;
-    if (found.masks && unknown && found.axis->reachable()) return Errc::bad_value;
-  }
-  return Errc::ok;
+bool is_no_value(const RowWrite& write, const RowWrites& found) {
+  const RegisterRow& row = *write.row;
+  if (!found.block && leaves_as_it_is(row, write.value)) return true;
+  if (row.source == Source::command && write.value > kLastCommand) return true;
+  if (row.source == Source::object_request && write.value > 2) return true;
+  if (row.kind != Kind::code && write.value == no_value(row.type)) return true;
+  // Masking a value that was never received would make a number out of none.
+  const bool unknown = row.source == Source::quantity && !(*found.axis)[row.quantity].received;
+  return found.masks && unknown && found.axis->reachable();
+}
+
+WrongRow check_values(const RowWrites& found) {
+  for (const RowWrite& each : found.rows)
+    if (!each.skipped() && is_no_value(each, found)) return {Errc::bad_value, each.row->offset};
+  return {};
+}
+
+/// Registers that belong to more than one row, or to none.
+bool touches_several(const Request& request, const UnitView& view, const ProcessImage& image) {
+  if (request.write_count == 1) return false;
+  const auto row_at = [&](std::uint32_t address) -> const RegisterRow* {
+    const auto place = view.place_register(address, image);
+    return place ? register_table(place->block).covering(place->offset) : nullptr;
+  };
+  const RegisterRow* const first = row_at(request.write_address);
+  return request.write_count > 2 || first == nullptr || first != row_at(request.write_address + 1U);
 }
 
 }  // namespace
@@ -163,6 +188,7 @@ RowWrites resolve_rows(const Request& request, const UnitView& view, const Onloo
   writes.masks = request.function == Function::mask_write_register && request.and_mask != 0;
   // A single write is FC 5, 6, 22, or FC 15 or 16 with exactly one row.
   writes.block = writes.rows.size() > 1 || request.function == Function::read_write_registers;
+  writes.several = writes.block || (writes.outside && touches_several(request, view, onlooker.image));
   if (writes.axis != nullptr && writes.block) {
     writes.zeros = !writes.outside && is_all_zero(request, view, onlooker);
     for (RowWrite& each : writes.rows) {
@@ -173,9 +199,9 @@ RowWrites resolve_rows(const Request& request, const UnitView& view, const Onloo
   return writes;
 }
 
-Errc check_rows(const RowWrites& writes, Role role) {
-  if (const Errc wrong = check_role(writes, role); wrong != Errc::ok) return wrong;
-  if (const Errc wrong = check_addresses(writes); wrong != Errc::ok) return wrong;
+WrongRow check_rows(const RowWrites& writes, Role role) {
+  if (const WrongRow wrong = check_role(writes, role); wrong.code != Errc::ok) return wrong;
+  if (const WrongRow wrong = check_addresses(writes); wrong.code != Errc::ok) return wrong;
   return check_values(writes);
 }
 

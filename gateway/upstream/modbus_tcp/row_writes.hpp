@@ -27,11 +27,19 @@ struct RowWrites {
   bool block = false;               ///< more than one row, or FC 23
   bool zeros = false;               ///< a block that covers 40..54 and is 0 in all of it: a scanner's image before its
                                     ///< program runs
+  /// Where something is that is no whole writable row, of `outside`: its row's offset, or its own.
+  std::uint16_t outside_at = 0;
+  bool several = false;  ///< more than one row is touched, whole or not: what is refused is a block write
   [[nodiscard]] const RowWrite* of(Source source) const;
 };
 
 [[nodiscard]] RowWrites resolve_rows(const Request& request, const UnitView& view, const Onlooker& onlooker);
-/// ok, role_forbidden, not_supported or bad_value, in this order; axis limits are the command port's to check.
-[[nodiscard]] Errc check_rows(const RowWrites& writes, Role role);
+/// Role, then addresses, then values: what is wrong first, and the first row of which it is. Axis limits are the
+/// command port's to check.
+struct WrongRow {
+  Errc code = Errc::ok;
+  std::uint16_t row = 0;
+};
+[[nodiscard]] WrongRow check_rows(const RowWrites& writes, Role role);
 
 }  // namespace axisgate::modbus_tcp
