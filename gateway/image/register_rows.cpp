@@ -119,6 +119,13 @@ std::vector<RegisterRow> axis_register_rows() {
       takes(84, "object_data", u32, Source::object_data, kViewer),
       shows(86, "object_status", u16, Source::object_status, "0 idle, 1 busy, 2 done, 3 failed"),
       shows(88, "object_detail", u32, Source::object_detail),
+      shows(90, "units_per_rev_numerator", u32, Source::units_numerator,
+            "position units of a motor turn, in lowest terms: 90 divided by 92"),
+      shows(92, "units_per_rev_denominator", u32, Source::units_denominator),
+      shows(94, "rated_speed", u32, Source::rated_speed,
+            "of the motor, as its drive's constants say; 4294967295: not known", "0.001 rpm"),
+      shows(96, "owner_address", u32, Source::owner_address,
+            "IPv4 address of the owner, 192.168.1.7 as 0xC0A80107; 0: nobody, or not IPv4"),
   };
 }
 
