@@ -1,5 +1,6 @@
 #include "gateway/upstream/modbus_tcp/row_writes.hpp"
 
+#include "gateway/image/float_rows.hpp"
 #include "gateway/upstream/modbus_tcp/reads.hpp"
 
 namespace axisgate::modbus_tcp {
@@ -18,6 +19,40 @@ std::uint32_t written_bits(const Request& request, std::size_t i, int registers,
   if (registers == 1) return first;
   const std::uint32_t second = request.written_register(i + 1);
   return low_word_first ? (second << 16) | first : (first << 16) | second;
+}
+
+/// In a block, 0 in these rows means "leave as it is" (mode: CiA 402-2, 6060h, "no mode change"); alone it is refused.
+bool leaves_as_it_is(const RegisterRow& row, std::int64_t value) {
+  if (value != 0) return false;
+  switch (row.offset) {
+    case 41:  // mode
+    case 47:  // max_torque
+    case 48:  // profile_velocity
+    case 50:  // profile_acceleration
+    case 52:  // profile_deceleration
+    case 58:  // jog_velocity
+    case 62:  // homing_speed_switch
+    case 64:  // homing_speed_zero
+    case 66:  // homing_acceleration
+    case 70:  // quick_stop_deceleration
+    case 76:  // max_velocity
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// A number other than 0 that is 0 in register units would be taken for the 0 that leaves a row as it is.
+std::int64_t number_of_float(const RegisterRow& row, std::uint32_t bits, const AxisImage& axis) {
+  constexpr std::uint32_t kSign = 1U << 31;
+  const std::int64_t value = float_value(row, bits, axis.units_per_rev);
+  return leaves_as_it_is(row, value) && (bits & ~kSign) != 0 ? kNoNumber : value;
+}
+
+RowWrite row_write(const RegisterRow& row, std::uint32_t bits, const AxisImage* axis,
+                   const ListenerSettings& settings) {
+  if (!settings.float_numbers || axis == nullptr || !is_float_row(row)) return {&row, number_of(bits, row.type)};
+  return {&row, number_of_float(row, bits, *axis), bits};
 }
 
 /// A block never reaches into the next one: the last offsets of a block take no write, so `outside` is set before.
@@ -46,7 +81,7 @@ RowWrites gather(const Request& request, const UnitView& view, const Onlooker& o
     const std::uint32_t bits = request.function == Function::mask_write_register
                                    ? masked(request, read_one(request.write_address, view, onlooker).value_or(0))
                                    : written_bits(request, i, row->registers(), onlooker.settings.low_word_first);
-    found.rows.push_back({row, number_of(bits, row->type)});
+    found.rows.push_back(row_write(*row, bits, found.axis, onlooker.settings));
     i += registers - 1;
   }
   return found;
@@ -62,27 +97,6 @@ bool exists(const RegisterRow& row, const AxisImage* axis) {
   return true;
 }
 
-/// In a block, 0 in these rows means "leave as it is" (mode: CiA 402-2, 6060h, "no mode change"); alone it is refused.
-bool leaves_as_it_is(const RegisterRow& row, std::int64_t value) {
-  if (value != 0) return false;
-  switch (row.offset) {
-    case 41:  // mode
-    case 47:  // max_torque
-    case 48:  // profile_velocity
-    case 50:  // profile_acceleration
-    case 52:  // profile_deceleration
-    case 58:  // jog_velocity
-    case 62:  // homing_speed_switch
-    case 64:  // homing_speed_zero
-    case 66:  // homing_acceleration
-    case 70:  // quick_stop_deceleration
-    case 76:  // max_velocity
-      return true;
-    default:
-      return false;
-  }
-}
-
 /// A row that this drive does not have, written in a block with what it reads as or with 0: one function block serves
 /// all axes, and a scanner may write back the block that it has read.
 bool is_ignored(const RowWrite& write, const AxisImage& axis, const Onlooker& onlooker) {
@@ -93,14 +107,20 @@ bool is_ignored(const RowWrite& write, const AxisImage& axis, const Onlooker& on
 }
 
 /// "In a block write a row whose value the drive already holds is skipped without asking the role."
+bool holds(const RegisterRow& row, std::int64_t value, const AxisImage& axis, const Onlooker& onlooker) {
+  if (row.source == Source::set_position_value) return onlooker.commands.set_position_value(axis.number) == value;
+  if (row.source == Source::jog_velocity) return axis.jog_velocity == value;
+  return row.source == Source::quantity && row.quantity != Quantity::controlword &&
+         onlooker.commands.holds(axis.number, row.quantity, value);
+}
+
 bool is_held(const RowWrite& write, const AxisImage& axis, const Onlooker& onlooker) {
   const RegisterRow& row = *write.row;
-  if (row.source == Source::set_position_value) {
-    return onlooker.commands.set_position_value(axis.number) == write.value;
-  }
-  if (row.source == Source::jog_velocity) return axis.jog_velocity == write.value;
-  return row.source == Source::quantity && row.quantity != Quantity::controlword &&
-         onlooker.commands.holds(axis.number, row.quantity, write.value);
+  if (holds(row, write.value, axis, onlooker)) return true;
+  if (!write.as_float) return false;
+  // What a float is too coarse for: it reads as what was written.
+  const std::int64_t shown = number_of(axis_value(row, axis, onlooker), row.type);
+  return float_bits(row, shown, axis.units_per_rev) == *write.as_float && holds(row, shown, axis, onlooker);
 }
 
 bool is_all_zero(const Request& request, const UnitView& view, const Onlooker& onlooker) {
@@ -152,7 +172,7 @@ bool is_no_value(const RowWrite& write, const RowWrites& found) {
   if (!found.block && leaves_as_it_is(row, write.value)) return true;
   if (row.source == Source::command && write.value > kLastCommand) return true;
   if (row.source == Source::object_request && write.value > 2) return true;
-  if (row.kind != Kind::code && write.value == no_value(row.type)) return true;
+  if (row.kind != Kind::code && !range_of(row.type).holds(write.value)) return true;
   // Masking a value that was never received would make a number out of none.
   const bool unknown = row.source == Source::quantity && !(*found.axis)[row.quantity].received;
   return found.masks && unknown && found.axis->reachable();

@@ -13,7 +13,8 @@ namespace axisgate::modbus_tcp {
 
 struct RowWrite {
   const RegisterRow* row;
-  std::int64_t value;
+  std::int64_t value;                       ///< in register units
+  std::optional<std::uint32_t> as_float{};  ///< where it was written as IEEE 754: its bits
   bool ignored = false;  ///< in a block: this drive does not have it, or its 0 means "leave as it is"
   bool held = false;     ///< in a block: the drive holds it already, so no role and no range is asked
   [[nodiscard]] bool skipped() const { return ignored || held; }
