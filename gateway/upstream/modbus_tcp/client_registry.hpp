@@ -38,7 +38,8 @@ struct Mailbox {
   std::uint32_t detail = 0;
 };
 
-/// Of a block write that was refused: the first row or coil, by its offset, and why.
+/// Of a block write that was refused: the first row or coil, by its offset, and why; of a row's half that was dropped:
+/// the row, and never_started.
 struct RefusedRow {
   std::uint16_t offset = 0;
   Errc why = Errc::ok;

@@ -44,6 +44,21 @@ void log_refused(const BlockWrite& block, const RefusedRow& refused, Client& cli
                 std::to_string(block.axis) + named(block, refused.offset) + ": " + std::string(text(refused.why)));
 }
 
+void tell_dropped_half(AxisNumber axis, std::uint16_t row, const char* why, Client& client, const Log& log) {
+  ClientAxis& own = client.at(axis);
+  if (show_refused(own, row)) own.result.result = CommandResult::never_started;
+  const RefusedRow dropped{row, Errc::never_started};
+  if (own.refused == dropped) return;
+  own.refused = dropped;
+  log.write(LogLevel::info, "modbus",
+            client.life->name + ": half of row " + std::to_string(row) + " of axis " + std::to_string(axis) +
+                named({.axis = axis}, row) + ", was written and is dropped: " + why);
+}
+
+void note_whole_row(ClientAxis& axis) {
+  if (axis.refused && axis.refused->why == Errc::never_started) axis.refused.reset();
+}
+
 void note_block_done(ClientAxis& axis) { axis.refused.reset(); }
 
 std::uint16_t coil_of(Command command) {

@@ -34,6 +34,10 @@ bool show_refused(ClientAxis& axis, std::uint16_t row);
 /// Who, what and why: once, until the row or the reason differs or a block of this client to this axis has succeeded.
 void log_refused(const BlockWrite& block, const RefusedRow& refused, Client& client, const Log& log);
 void note_block_done(ClientAxis& axis);
+/// A lone half of this row is dropped: result 6 with the row as detail, as above, and once in the log.
+void tell_dropped_half(AxisNumber axis, std::uint16_t row, const char* why, Client& client, const Log& log);
+/// Both halves of a row have come: the next one that comes alone is told again.
+void note_whole_row(ClientAxis& axis);
 /// The coil that asks for this command, of a group that coils have asked for.
 [[nodiscard]] std::uint16_t coil_of(Command command);
 

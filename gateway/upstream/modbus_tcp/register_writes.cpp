@@ -249,6 +249,10 @@ std::vector<AxisNumber> beat(Client& client, std::uint16_t value, const Onlooker
 
 }  // namespace
 
+Errc check_row(const Request& request, const UnitView& view, const Onlooker& onlooker) {
+  return check_role_and_addresses(resolve_rows(request, view, onlooker), onlooker.role).code;
+}
+
 Planned plan_register_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
   const RowWrites found = resolve_rows(request, view, onlooker);
   const auto refuse = [&found](const WrongRow& wrong) {

@@ -219,9 +219,13 @@ RowWrites resolve_rows(const Request& request, const UnitView& view, const Onloo
   return writes;
 }
 
-WrongRow check_rows(const RowWrites& writes, Role role) {
+WrongRow check_role_and_addresses(const RowWrites& writes, Role role) {
   if (const WrongRow wrong = check_role(writes, role); wrong.code != Errc::ok) return wrong;
-  if (const WrongRow wrong = check_addresses(writes); wrong.code != Errc::ok) return wrong;
+  return check_addresses(writes);
+}
+
+WrongRow check_rows(const RowWrites& writes, Role role) {
+  if (const WrongRow wrong = check_role_and_addresses(writes, role); wrong.code != Errc::ok) return wrong;
   return check_values(writes);
 }
 

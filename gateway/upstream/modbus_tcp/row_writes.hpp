@@ -42,5 +42,7 @@ struct WrongRow {
   std::uint16_t row = 0;
 };
 [[nodiscard]] WrongRow check_rows(const RowWrites& writes, Role role);
+/// The same but for the values.
+[[nodiscard]] WrongRow check_role_and_addresses(const RowWrites& writes, Role role);
 
 }  // namespace axisgate::modbus_tcp

@@ -59,6 +59,9 @@ using Planned = std::variant<WritePlan, Refused>;
 [[nodiscard]] Planned plan_coil_write(const Request& request, const UnitView& view, const Onlooker& onlooker,
                                       Client& client);
 
+/// Of what is written to one row alone: role and address, whatever the value. Errors: role_forbidden, not_supported.
+[[nodiscard]] Errc check_row(const Request& request, const UnitView& view, const Onlooker& onlooker);
+
 /// The request is a single write that is a stop whatever was written before: it starts ahead of a request that has to
 /// wait.
 [[nodiscard]] bool asks_for_a_stop(const Request& request, const UnitView& view, const ProcessImage& image);

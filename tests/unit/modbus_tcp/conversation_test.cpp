@@ -106,7 +106,7 @@ class Player {
     } else if (words[0].ends_with("nd") || words[0].ends_with("th")) {
       desk_.port.finish_with(result_of(words), std::stoul(words[0]) - 1);
     } else if (words[0][0] == '+') {
-      desk_.runtime.advance_by(std::stoi(words[0]) * (words[0].ends_with("ms") ? Duration(1ms) : Duration(1s)));
+      pass(std::stoi(words[0]) * (words[0].ends_with("ms") ? Duration(1ms) : Duration(1s)));
     } else if (!setting(words)) {
       speak(named ? words[0] : "plc", named ? trimmed(whole.substr(words[0].size())) : whole);
     }
@@ -182,6 +182,13 @@ class Player {
     const auto found = settings.find(words[0]);
     if (found != settings.end()) found->second();
     return found != settings.end();
+  }
+
+  void pass(Duration time) {
+    desk_.runtime.advance_by(time);
+    if (!desk_.settings.staged_halves) return;  // no deadline but that of a half is looked at here
+    for (const auto& [name, line] : clients_)
+      if (line->session().next_deadline() <= desk_.runtime.now()) line->session().on_deadline(desk_.runtime.now());
   }
 
   Line& client(const std::string& name) {
