@@ -26,6 +26,7 @@ struct ListedAxis {
 
 struct ListedMap {
   bool low_word_first = false;     ///< of the listener the listing is made for
+  bool float_numbers = false;      ///< of the same
   std::vector<ListedAxis> axes;    ///< in ascending order of number
   std::vector<std::string> buses;  ///< names in configuration order
 };

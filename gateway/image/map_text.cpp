@@ -22,7 +22,8 @@ Cells cells_of(const MapEntry& entry) {
 /// One entry a line: readable for people, and lines can be compared between two versions of a configuration.
 std::string json_text(const ListedMap& map, const std::vector<MapEntry>& entries) {
   std::string out = "{\"map_version\": " + std::to_string(kMapVersion) + ", \"word_order\": \"" +
-                    (map.low_word_first ? "low-first" : "high-first") + "\", \"entries\": [";
+                    (map.low_word_first ? "low-first" : "high-first") +
+                    (map.float_numbers ? "\", \"numbers\": \"float" : "") + "\", \"entries\": [";
   const char* separator = "\n  ";
   for (const MapEntry& entry : entries) {
     nlohmann::ordered_json line;
@@ -96,7 +97,8 @@ std::string aligned(const std::vector<MapEntry>& entries) {
 
 std::string titles(const ListedMap& map) {
   std::string out = "map version " + std::to_string(kMapVersion) + ", 32-bit values " +
-                    (map.low_word_first ? "low" : "high") + " word first, addresses count from 0\n";
+                    (map.low_word_first ? "low" : "high") + " word first, addresses count from 0" +
+                    (map.float_numbers ? ", f32: IEEE 754" : "") + "\n";
   for (const ListedAxis& axis : map.axes) {
     out +=
         "axis " + std::to_string(axis.number) + ": " + axis.name + (axis.bus.empty() ? "" : ", on " + axis.bus) + "\n";

@@ -103,6 +103,32 @@ TEST(MapListing, PrintsPositionsInTheAxissOwnUnit) {
   EXPECT_EQ(position_unit(60000, 37), "37/60000 rev");
 }
 
+TEST(MapListing, OfAListenerWithFloatsNamesTheirTypeAndUnit) {
+  ListedMap map = two_axes();
+  EXPECT_EQ(map_text(map, MapFormat::json).find("numbers"), std::string::npos);
+  map.float_numbers = true;
+  const auto entries = map_entries(map);
+  const auto told = [&](int address) {
+    const MapEntry* const entry = find(entries, "holding", address);
+    return std::string(entry->type) + " " + entry->unit;
+  };
+  EXPECT_EQ(told(502), "f32 rev");
+  EXPECT_EQ(told(104), "f32 rpm");
+  EXPECT_EQ(told(150), "f32 rpm/s");
+  EXPECT_EQ(told(158), "f32 rpm");
+  EXPECT_EQ(told(60052), "f32 rev");
+  EXPECT_EQ(told(146), "i16 0.1 %");
+  EXPECT_EQ(told(194), "u32 0.001 rpm");
+  EXPECT_EQ(told(120), "u32 ");
+  // The rows of design A13, and no others.
+  std::set<int> floats;
+  for (const MapEntry& entry : entries)
+    if (entry.type == "f32" && entry.address < 200) floats.insert(entry.address - 100);
+  EXPECT_EQ(floats, (std::set<int>{2, 4, 8, 42, 44, 48, 50, 52, 58, 62, 64, 66, 68, 70, 72, 74, 76, 78}));
+  EXPECT_EQ(nlohmann::json::parse(map_text(map, MapFormat::json))["numbers"], "float");
+  EXPECT_NE(map_text(map, MapFormat::table).find("f32: IEEE 754"), std::string::npos);
+}
+
 TEST(MapListing, NamesTheBusOfBusRowsAndNoAxis) {
   const auto entries = map_entries(two_axes());
   const MapEntry* entry = find(entries, "holding", 50104);
