@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <string_view>
 
+#include "gateway/core/binary32.hpp"
 #include "gateway/image/command.hpp"
 #include "gateway/image/process_image.hpp"
 #include "gateway/image/quantity.hpp"
@@ -38,7 +40,8 @@ std::uint32_t word32(std::uint16_t first, std::uint16_t second, WordOrder order)
 /// One axis's registers, read as the quantities they are.
 class AxisCells {
  public:
-  AxisCells(const AxisReading& reading, WordOrder order) : registers_(reading.registers), order_(order) {}
+  AxisCells(const AxisReading& reading, WordOrder order, bool floats)
+      : registers_(reading.registers), order_(order), floats_(floats) {}
 
   [[nodiscard]] std::uint16_t word(std::size_t offset) const { return registers_[offset]; }
   [[nodiscard]] std::uint32_t pair(std::size_t offset) const {
@@ -48,6 +51,7 @@ class AxisCells {
   [[nodiscard]] std::string number(Quantity quantity, std::size_t offset, int decimals) const {
     if ((pair(kSupported) & bit(quantity)) == 0) return "-";
     const RegisterType type = row(quantity).type;
+    if (floats_ && type == RegisterType::i32) return float_number(quantity, offset, decimals);
     const std::int64_t value = type == RegisterType::i32   ? static_cast<std::int32_t>(pair(offset))
                                : type == RegisterType::i16 ? static_cast<std::int16_t>(word(offset))
                                                            : word(offset);
@@ -57,6 +61,12 @@ class AxisCells {
   [[nodiscard]] bool good(Quantity quantity) const { return (pair(kValid) & bit(quantity)) != 0; }
 
  private:
+  [[nodiscard]] std::string float_number(Quantity quantity, std::size_t offset, int decimals) const {
+    if (is_nan_binary32(pair(offset))) return "?";
+    constexpr int kOfATurn = 4;
+    const int places = row(quantity).kind == Kind::position ? kOfATurn : decimals;
+    return fmt::format("{:.{}f}", std::bit_cast<float>(pair(offset)), places) + (good(quantity) ? "" : "?");
+  }
   static std::string with_point(std::int64_t value, int decimals) {
     std::int64_t unit = 1;
     for (int i = 0; i < decimals; ++i) unit *= 10;
@@ -68,6 +78,7 @@ class AxisCells {
 
   std::span<const std::uint16_t, kAxisRegisters> registers_;
   WordOrder order_;
+  bool floats_;
 };
 
 std::string mode_text(const AxisCells& cells) {
@@ -187,7 +198,7 @@ std::string render_table(const TopReading& reading) {
   out += fmt::format(fmt::runtime(kRow), "axis", "link", "state", "mode", "position", "velocity rpm", "torque %",
                      "current A", "age ms", "error", "alarms");
   for (const AxisReading& axis : reading.axes) {
-    const AxisCells cells(axis, order);
+    const AxisCells cells(axis, order, reading.float_numbers);
     const auto link = std::min<std::uint16_t>(cells.word(kLinkState), 0xFF);
     const auto state = std::min<std::uint16_t>(cells.word(kAxisState), 0xFF);
     out += fmt::format(
