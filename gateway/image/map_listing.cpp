@@ -30,6 +30,7 @@ MapEntry holding(const RegisterRow& row, std::uint16_t block) {
   entry.type = text(row.type);
   entry.unit = unit_of(row, "");
   entry.access = row.writable ? "rw" : "r";
+  entry.note = row.note;
   return entry;
 }
 

@@ -113,6 +113,7 @@ std::optional<MapFormat> map_format_named(std::string_view name) {
   if (name == "csv") return MapFormat::csv;
   if (name == "md") return MapFormat::markdown;
   if (name == "table") return MapFormat::table;
+  if (name == "st") return MapFormat::structured_text;
   return std::nullopt;
 }
 
@@ -123,6 +124,8 @@ std::string map_text(const ListedMap& map, MapFormat format) {
       return json_text(map, entries);
     case MapFormat::table:
       return titles(map) + aligned(entries);
+    case MapFormat::structured_text:
+      return map_st(map, entries);
     case MapFormat::csv: {
       std::string out = csv_line(heading());
       for (const MapEntry& entry : entries) out += csv_line(cells_of(entry));
