@@ -21,6 +21,7 @@ using std::chrono::milliseconds;
 constexpr std::array<std::string_view, 3> kClassNames{"fast", "normal", "slow"};
 /// Largest position a register shows.
 constexpr double kRegisterReach = 2147483647;
+constexpr double kFloatNumbers = 16777216;  // 2^24
 
 std::string polls_text(const BusBudget& budget) {
   std::vector<std::string> parts;
@@ -132,11 +133,18 @@ std::string units_text(const AxisConfig& config) {
                      config.inverted ? ", inverted" : "", kRegisterReach / units.to_double());
 }
 
-void add_axis(std::string& out, const MasteredAxis& whole) {
+/// A binary32 has 24 bits: below a power of two turns each position unit has a number of its own.
+std::string float_text(const AxisConfig& config) {
+  const double turns = std::exp2(std::floor(std::log2(kFloatNumbers / config.units_per_rev.to_double())));
+  return fmt::format("on listeners with \"numbers\": \"float\" each unit has its own number up to ±{:g} turns", turns);
+}
+
+void add_axis(std::string& out, const MasteredAxis& whole, bool floats) {
   const auto& [config, axis, drive, budget, dds] = whole;
   out += fmt::format("\nAxis {} \"{}\": {}, registers {} to {}\n", config.number, config.name, drive.title,
                      config.number * 100, config.number * 100 + 99);
   add_line(out, "units", units_text(config) + counter_text(config, axis, drive));
+  if (floats) add_line(out, "", float_text(config));
   if (config.limits.position) {
     const double units = config.units_per_rev.to_double();
     add_line(out, "position limits",
@@ -160,6 +168,8 @@ CheckReport check(const LoadedConfig& loaded) {
   std::string& out = report.text;
   out = fmt::format("{} is valid.\n", config.file);
   std::vector<BusBudget> budgets;
+  const bool floats = std::any_of(config.modbus_tcp.begin(), config.modbus_tcp.end(),
+                                  [](const auto& listener) { return listener.float_numbers; });
   for (std::size_t b = 0; b < config.buses.size(); ++b) {
     const BusConfig& bus = config.buses[b];
     budgets.push_back(plan_bus(timing_of(bus), loaded.models[b]));
@@ -168,7 +178,7 @@ CheckReport check(const LoadedConfig& loaded) {
     for (std::size_t d = 0; d < bus.drives.size(); ++d) {
       const drive::DriveModel& model = loaded.models[b][d];
       for (std::size_t a = 0; a < model.axes.size(); ++a)
-        add_axis(out, {bus.drives[d].axes[a], model.axes[a], model, budgets[b], config.dds});
+        add_axis(out, {bus.drives[d].axes[a], model.axes[a], model, budgets[b], config.dds}, floats);
     }
   }
   if (config.dds) {

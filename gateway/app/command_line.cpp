@@ -76,8 +76,8 @@ void add_check(CLI::App& app, Parsed& parsed) {
 
 void add_map(CLI::App& app, Parsed& parsed) {
   CLI::App* command = add_config_command(app, parsed, "map", "Print every register, coil and input", parsed.map.config);
-  command->add_option("--format", parsed.map.format, "table, md, csv or json")
-      ->check(CLI::IsMember({"table", "md", "csv", "json"}).description(""))
+  command->add_option("--format", parsed.map.format, "table, md, csv, json or st (IEC 61131-3)")
+      ->check(CLI::IsMember({"table", "md", "csv", "json", "st"}).description(""))
       ->type_name("FORMAT")
       ->capture_default_str();
   command->footer("Example: axisgate map /etc/axisgate/gateway.json --format csv > registers.csv");

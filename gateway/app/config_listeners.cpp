@@ -71,6 +71,8 @@ ListenerSettings read_listener(const ConfigNode& node, ConfigFaults& faults) {
   ListenerSettings settings;
   settings.port = 0;  // until it is known: two listeners that both lack it do not collide
   settings.low_word_first = node.string("word_order") == "low-first";
+  settings.float_numbers = node.string("numbers") == "float";
+  settings.staged_halves = node.string("halves") == "staged";
   settings.per_axis_units = node.string("unit_ids") == "per-axis";
   settings.client_is_address = node.string("client") == "address";
   settings.posted_writes = node.string("writes") == "posted";

@@ -27,6 +27,7 @@ ListedMap listed(const LoadedConfig& loaded) {
   ListedMap map;
   // Listeners may differ; the first one is what a configuration is made for.
   map.low_word_first = loaded.config.modbus_tcp.front().low_word_first;
+  map.float_numbers = loaded.config.modbus_tcp.front().float_numbers;
   for (std::size_t b = 0; b < loaded.config.buses.size(); ++b) {
     const BusConfig& bus = loaded.config.buses[b];
     map.buses.push_back(bus.name);

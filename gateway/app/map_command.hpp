@@ -11,7 +11,7 @@ namespace axisgate::app {
 struct MapOptions {
   std::string config;
   std::vector<std::string> profile_folders;
-  std::string format = "table";  ///< json, csv, md or table
+  std::string format = "table";  ///< json, csv, md, st or table
 };
 
 [[nodiscard]] int run(const MapOptions& options);

@@ -1,5 +1,6 @@
 #include "gateway/app/top_client.hpp"
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
@@ -19,6 +20,9 @@ constexpr auto kAwait = boost::asio::as_tuple(boost::asio::use_awaitable);
 constexpr std::size_t kHeader = 7;  // MBAP: transaction, protocol, length, unit
 constexpr Byte kReadHolding = 0x03;
 constexpr Byte kExceptionFlag = 0x80;
+constexpr std::array<Byte, 3> kIdentify{0x2B, 0x0E, 0x04};  // one object alone
+constexpr std::size_t kObjectHead = 9;                      // of the answer: up to the object's length
+constexpr std::size_t kLargestPdu = 253;
 
 }  // namespace
 
@@ -40,6 +44,42 @@ awaitable<std::string> TopClient::connect(std::string host, std::uint16_t port, 
   error_code ignored;
   socket_.set_option(boost::asio::ip::tcp::no_delay(true), ignored);
   co_return std::string();
+}
+
+awaitable<ObjectRead> TopClient::identification(std::uint8_t object, Limit limit) {
+  ObjectRead result;
+  std::array<Byte, kHeader + 4> request{};
+  store_be16(request, 0, ++transaction_);
+  store_be16(request, 4, 5);
+  request[6] = kFlatMapUnit;
+  std::copy(kIdentify.begin(), kIdentify.end(), request.begin() + kHeader);
+  request[kHeader + kIdentify.size()] = object;
+
+  arm(limit);
+  auto [error, written] = co_await boost::asio::async_write(socket_, boost::asio::buffer(request), kAwait);
+  std::array<Byte, kHeader> head{};
+  if (!error) error = co_await receive(head);
+  std::vector<Byte> pdu;
+  if (!error) {
+    const std::size_t size = load_be16(head, 4);
+    const bool mine = load_be16(head, 0) == transaction_ && load_be16(head, 2) == 0 && head[6] == kFlatMapUnit;
+    if (mine && size > 2 && size <= kLargestPdu + 1) {
+      pdu.resize(size - 1);
+      error = co_await receive(pdu);
+    }
+  }
+  limit_timer_.cancel();
+  const bool refused = pdu.size() == 2 && pdu[0] == (kIdentify[0] | kExceptionFlag);
+  const bool answered = pdu.size() >= kObjectHead && pdu[0] == kIdentify[0] && pdu[kObjectHead - 2] == object &&
+                        pdu.size() == kObjectHead + pdu[kObjectHead - 1];
+  if (error)
+    result.problem = reason(error);
+  else if (!refused && !answered)
+    result.problem = "the answer is no Modbus-TCP reply to the request";
+  else if (answered)
+    result.text.assign(pdu.begin() + kObjectHead, pdu.end());
+  if (!result.problem.empty()) close();
+  co_return result;
 }
 
 awaitable<RegistersRead> TopClient::read(std::uint16_t address, std::uint16_t count, Limit limit) {

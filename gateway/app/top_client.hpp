@@ -27,6 +27,11 @@ struct RegistersRead {
   [[nodiscard]] bool ok() const { return problem.empty() && exception == 0; }
 };
 
+struct ObjectRead {
+  std::string text;     ///< empty where the server has no such object
+  std::string problem;  ///< as RegistersRead's
+};
+
 class TopClient {
  public:
   using Limit = std::chrono::milliseconds;
@@ -34,6 +39,8 @@ class TopClient {
 
   /// Empty: connected. Otherwise what went wrong, in words.
   [[nodiscard]] boost::asio::awaitable<std::string> connect(std::string host, std::uint16_t port, Limit limit);
+  /// Device identification (43/14): the text of one object.
+  [[nodiscard]] boost::asio::awaitable<ObjectRead> identification(std::uint8_t object, Limit limit);
   /// Function 3. `count` 1..125.
   [[nodiscard]] boost::asio::awaitable<RegistersRead> read(std::uint16_t address, std::uint16_t count, Limit limit);
   void close();

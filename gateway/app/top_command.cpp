@@ -18,6 +18,7 @@
 #include "gateway/app/top_client.hpp"
 #include "gateway/app/top_screen.hpp"
 #include "gateway/app/top_table.hpp"
+#include "gateway/upstream/modbus_tcp/device_identification.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -101,6 +102,9 @@ class Top {
     reading_.server = options_.endpoint;
     std::string problem = co_await read_gateway();
     if (!problem.empty()) co_return problem;
+    const ObjectRead numbers = co_await client_.identification(modbus_tcp::kNumbersObject, kAnswerLimit);
+    if (!numbers.problem.empty()) co_return numbers.problem;
+    reading_.float_numbers = numbers.text == "float";
     const std::uint16_t expected = reading_.gateway[1];
     for (AxisNumber axis = 1; axis <= kMaxAxisNumber && reading_.axes.size() < expected; ++axis) {
       const RegistersRead read = co_await client_.read(supported_register(axis), 2, kAnswerLimit);

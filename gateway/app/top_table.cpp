@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <string_view>
 
+#include "gateway/core/binary32.hpp"
 #include "gateway/core/words.hpp"
 #include "gateway/image/command.hpp"
 #include "gateway/image/process_image.hpp"
@@ -39,7 +41,8 @@ std::uint32_t word32(std::uint16_t first, std::uint16_t second, WordOrder order)
 /// One axis's registers, read as the quantities they are.
 class AxisCells {
  public:
-  AxisCells(const AxisReading& reading, WordOrder order) : registers_(reading.registers), order_(order) {}
+  AxisCells(const AxisReading& reading, WordOrder order, bool floats)
+      : registers_(reading.registers), order_(order), floats_(floats) {}
 
   [[nodiscard]] std::uint16_t word(std::size_t offset) const { return registers_[offset]; }
   [[nodiscard]] std::uint32_t pair(std::size_t offset) const {
@@ -49,6 +52,7 @@ class AxisCells {
   [[nodiscard]] std::string number(Quantity quantity, std::size_t offset, int decimals) const {
     if ((pair(kSupported) & bit(quantity)) == 0) return "-";
     const RegisterType type = row(quantity).type;
+    if (floats_ && type == RegisterType::i32) return float_number(quantity, offset, decimals);
     const std::int64_t value = type == RegisterType::i32   ? static_cast<std::int32_t>(pair(offset))
                                : type == RegisterType::i16 ? static_cast<std::int16_t>(word(offset))
                                                            : word(offset);
@@ -58,6 +62,12 @@ class AxisCells {
   [[nodiscard]] bool good(Quantity quantity) const { return (pair(kValid) & bit(quantity)) != 0; }
 
  private:
+  [[nodiscard]] std::string float_number(Quantity quantity, std::size_t offset, int decimals) const {
+    if (is_nan_binary32(pair(offset))) return "?";
+    constexpr int kOfATurn = 4;
+    const int places = row(quantity).kind == Kind::position ? kOfATurn : decimals;
+    return fmt::format("{:.{}f}", std::bit_cast<float>(pair(offset)), places) + (good(quantity) ? "" : "?");
+  }
   static std::string with_point(std::int64_t value, int decimals) {
     std::int64_t unit = 1;
     for (int i = 0; i < decimals; ++i) unit *= 10;
@@ -69,6 +79,7 @@ class AxisCells {
 
   std::span<const std::uint16_t, kAxisRegisters> registers_;
   WordOrder order_;
+  bool floats_;
 };
 
 std::string mode_text(const AxisCells& cells) {
@@ -109,8 +120,8 @@ struct AxisTexts {
   std::string number, name, link, state, mode, position, velocity, torque, current, age, error, alarms;
 };
 
-AxisTexts texts_of(const AxisReading& axis, WordOrder order) {
-  const AxisCells cells(axis, order);
+AxisTexts texts_of(const AxisReading& axis, WordOrder order, bool float_numbers) {
+  const AxisCells cells(axis, order, float_numbers);
   return {.number = fmt::format("{}", axis.axis),
           .name = axis.name,
           .link = std::string(name_of(WordKind::link_state, cells.word(kLinkState))),
@@ -194,7 +205,7 @@ std::string render_table(const TopReading& reading, std::size_t columns) {
   std::vector<AxisTexts> axes;
   std::size_t name_width = 0;
   for (const AxisReading& axis : reading.axes) {
-    axes.push_back(texts_of(axis, order));
+    axes.push_back(texts_of(axis, order, reading.float_numbers));
     name_width = std::max(name_width, axis.name.size());
   }
   if (name_width != 0) name_width = std::max(name_width, column_names().name.size());

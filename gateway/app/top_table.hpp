@@ -36,6 +36,7 @@ struct TopReading {
   std::string server;  ///< "127.0.0.1:1502"
   std::array<std::uint16_t, kGatewayRegisters> gateway{};
   std::vector<AxisReading> axes;
+  bool float_numbers = false;  ///< position and velocity are IEEE 754, in turns and rpm
 };
 
 enum class WordOrder : std::uint8_t { high_first, low_first, unknown };

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "gateway/drive/planner.hpp"
+#include "gateway/image/register_map.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -106,7 +107,59 @@ bool size_fits(const AxisCore& core, const ObjectRequest& request) {
   return is_canopen(core.drive) && request.bytes && !request.bytes->empty() && request.bytes->size() <= kMaxObjectBytes;
 }
 
+// What a row of the register map has given to the group, alone. No value: nothing.
+std::optional<Group> part_of(const Group& group, const RegisterRow& row) {
+  Group part;
+  if (row.source == Source::command && group.command != Command::none) {
+    part.command = group.command;
+  } else if (row.source == Source::jog_velocity && group.jog_velocity) {
+    part.jog_velocity = group.jog_velocity;
+  } else if (row.source == Source::set_position_value && group.set_position_value) {
+    part.set_position_value = group.set_position_value;
+  } else if (row.source == Source::object_request && group.object) {
+    part.object = group.object;
+  } else if (row.source == Source::quantity && row.quantity == Quantity::controlword && group.controlword) {
+    part.controlword = group.controlword;
+  } else if (row.source == Source::quantity && row.quantity == Quantity::mode && group.mode) {
+    part.mode = group.mode;
+  } else if (row.source == Source::quantity) {
+    for (const Setpoint& sp : group.setpoints)
+      if (sp.quantity == row.quantity) part.setpoints.push_back(sp);
+    if (part.setpoints.empty()) return std::nullopt;
+  } else {
+    return std::nullopt;
+  }
+  return part;
+}
+
+bool is_position_limit(const RegisterRow& row) {
+  return row.source == Source::quantity &&
+         (row.quantity == Quantity::position_limit_min || row.quantity == Quantity::position_limit_max);
+}
+
+// What is refused at its turn although each part of it could be: first what acts, since the rest goes before it.
+int weight(const RegisterRow& row) {
+  if (row.source == Source::object_request) return 4;
+  if (row.source == Source::command) return 3;
+  if (row.source != Source::quantity) return 0;
+  return row.quantity == Quantity::controlword ? 2 : row.quantity == Quantity::mode ? 1 : 0;
+}
+
 }  // namespace
+
+std::optional<std::uint16_t> refused_row(const AxisCore& core, const Group& group, Errc code) {
+  if (code != Errc::not_supported && code != Errc::bad_value) return std::nullopt;
+  const bool crossed = code == Errc::bad_value && !limits_in_order(core, group);
+  const RegisterRow* acts = nullptr;
+  for (const RegisterRow& row : register_table(Block::axis).rows()) {
+    if (!row.writable) continue;
+    const std::optional<Group> part = part_of(group, row);
+    if (!part) continue;
+    if (admit(core, *part) == code || (crossed && is_position_limit(row))) return row.offset;
+    if (acts == nullptr || weight(row) > weight(*acts)) acts = &row;
+  }
+  return acts == nullptr ? std::nullopt : std::optional(acts->offset);
+}
 
 Errc admit(const AxisCore& core, const Group& group) {
   for (const Setpoint& sp : group.setpoints)

@@ -11,6 +11,10 @@ namespace axisgate::drive {
 
 /// ok, not_supported, bad_value, or still_in_setup where the drive has not told yet what it needs to be judged.
 [[nodiscard]] Errc admit(const AxisCore& core, const Group& group);
+/// Of a group that was refused with not_supported or bad_value, here or at its turn: the first row of the register map
+/// that is refused so by itself, or with the one that it is checked with; else the one that asks for the action. No
+/// value with any other code.
+[[nodiscard]] std::optional<std::uint16_t> refused_row(const AxisCore& core, const Group& group, Errc code);
 /// The group reads an object and does nothing else.
 [[nodiscard]] bool reads_alone(const Group& group);
 /// The group holds a stop by design 3.4.

@@ -128,7 +128,7 @@ void Axis::show_latest(const Group& group, const Outcome& outcome) {
 GroupResult Axis::refuse(const Group& group, Errc code) {
   const Outcome outcome = refusal(code);
   if (!group.object && command_result(code) != CommandResult::none) show_latest(group, outcome);
-  return {outcome, 0, 0};
+  return {.outcome = outcome, .refused_row = refused_row(core_, group, code)};
 }
 
 std::optional<GroupResult> Axis::carry_out(const Group& asked, Errc refusal, GroupCallback on_result) {
@@ -151,6 +151,7 @@ std::optional<GroupResult> Axis::carry_out(const Group& asked, Errc refusal, Gro
     const Errc of_link = code == Errc::still_in_setup ? link_admits(stop, false) : Errc::ok;
     if (!stop) return refuse(asked, of_link == Errc::ok ? code : of_link);
     pending.refusal = code;
+    pending.refused_row = refused_row(core_, group, code);
     group = stop_alone(group);
     if (const Errc of_stop = admit(core_, group); of_stop != Errc::ok) return refuse(asked, of_stop);
   }
@@ -362,7 +363,11 @@ void Axis::complete(bus::OrderId id, const GroupResult& result) {
   note_jog(pending, result.outcome.code);
   if (!motion_pending()) core_.motion.unmask_target_reached();
   GroupResult told = result;
-  if (told.outcome.code == Errc::ok && pending.refusal != Errc::ok) told.outcome = {pending.refusal, 0};
+  told.refused_row = refused_row(core_, pending.conversation->group(), told.outcome.code);
+  if (told.outcome.code == Errc::ok && pending.refusal != Errc::ok) {
+    told.outcome = {pending.refusal, 0};
+    told.refused_row = pending.refused_row;
+  }
   if (told.outcome.code != Errc::ok && !pending.conversation->begun()) forget_accepted(pending.conversation->group());
   if (!pending.by_mailbox) show_latest(pending.conversation->group(), told.outcome);
   if (!pending.callbacks.empty()) due_.push_back({told, std::move(pending.callbacks)});

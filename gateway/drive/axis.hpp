@@ -136,6 +136,8 @@ class Axis {
     std::uint64_t ends_jog = 0;               ///< once it has started what it starts, this jog is over
     Errc refusal = Errc::ok;                  ///< of what stood beside the stop; the answer once the stop is done
     std::optional<ClientId> stopped_by{};     ///< whose stop came first after it
+    /// What the refusal is of.
+    std::optional<std::uint16_t> refused_row{};
   };
   struct Due {
     GroupResult result;

@@ -230,7 +230,8 @@ struct AxisModel {
   std::string name;
   bool inverted = false;
   Rational units_per_rev{10000};
-  std::int64_t standstill_velocity = 1000;  ///< 0.001 rpm
+  std::optional<std::uint32_t> rated_speed;  ///< 0.001 rpm; where the profile has a constant for it
+  std::int64_t standstill_velocity = 1000;   ///< 0.001 rpm
   Duration homing_timeout = std::chrono::seconds(60);
   std::optional<std::int16_t> homing_method;  ///< configured
   bool configured_torque_limit = false;

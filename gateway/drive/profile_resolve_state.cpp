@@ -1,5 +1,6 @@
 // How the state of one axis is known, its modes and its homing.
 #include <algorithm>
+#include <cctype>
 
 #include "gateway/drive/profile_resolving.hpp"
 
@@ -114,6 +115,21 @@ void resolve_homing(Resolving& r, bus::AxisSlot slot) {
                                                                   (known.empty() ? "none" : known));
 }
 
+/// The constant rated_speed_rpm; of a drive with several motors rated_speed_a_rpm, after the motor's name.
+std::optional<std::uint32_t> rated_speed(const Resolving& r, bus::AxisSlot slot) {
+  std::string name = "rated_speed_rpm";
+  if (r.profile.axes.size() > 1) {
+    std::string motor = r.profile.axes.at(r.motor(slot));
+    for (char& each : motor) each = static_cast<char>(std::tolower(static_cast<unsigned char>(each)));
+    name = "rated_speed_" + motor + "_rpm";
+  }
+  const auto found = r.constants.find(name);
+  if (found == r.constants.end()) return std::nullopt;
+  const auto registers = (found->second / base_per_register(Base::rpm, Rational(1))).scale(1);
+  const bool fits = registers && range_of(RegisterType::u32).holds(*registers);
+  return fits ? std::optional(static_cast<std::uint32_t>(*registers)) : std::nullopt;
+}
+
 }  // namespace
 
 void make_objects(Resolving& r, bus::AxisSlot slot) {
@@ -132,6 +148,7 @@ void resolve_state(Resolving& r, bus::AxisSlot slot) {
   axis.inverted = input.inverted;
   axis.standstill_velocity = input.standstill_velocity;
   axis.units_per_rev = input.units_per_rev;
+  axis.rated_speed = rated_speed(r, slot);
   axis.lease = input.lease;
   axis.jog_timeout = input.jog_timeout;
   axis.homing_timeout = input.homing_timeout;

@@ -131,6 +131,8 @@ void show_model(const AxisModel& model, AxisImage& image) {
     for (const Command command : {Command::release, Command::take_over})
       image.supported_commands |= 1U << static_cast<unsigned>(command);
   image.supported_modes = model.supported_modes;
+  image.units_per_rev = model.units_per_rev;
+  image.rated_speed = model.rated_speed;
   for (const QuantityRow& row : quantity_table())
     image.limits[static_cast<std::size_t>(row.quantity)] = range_of(row.type);
   for (const Binding& binding : model.bindings)

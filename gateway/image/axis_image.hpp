@@ -10,6 +10,7 @@
 
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
+#include "gateway/core/rational.hpp"
 #include "gateway/image/changes.hpp"
 #include "gateway/image/endings.hpp"
 #include "gateway/image/lease.hpp"
@@ -99,6 +100,8 @@ struct AxisImage {
   std::uint32_t writable = 0;  ///< quantities of `supported` that can be written on this drive
   std::uint32_t supported_commands = 0;
   std::uint16_t supported_modes = 0;
+  Rational units_per_rev{10000};
+  std::optional<std::uint32_t> rated_speed{};  ///< 0.001 rpm; none: not known
   /// Per quantity, what a write may carry: the axis's, profile's and drive's limits together, in register units.
   std::array<Range, kQuantityCount> limits{};
 

@@ -129,6 +129,9 @@ struct GroupResult {
   /// Of an object request that the drive refused: the reason as a CiA 301 abort code, whatever the drive speaks
   /// (`outcome.detail` is what it said itself).
   std::uint32_t abort_code = 0;
+  /// Of a group that asks for what is not there or not allowed (not_supported, bad_value): the first row that this is
+  /// of, by its offset in the axis's block of registers.
+  std::optional<std::uint16_t> refused_row{};
 };
 
 }  // namespace axisgate

@@ -1,5 +1,7 @@
 #include "gateway/image/map_listing.hpp"
 
+#include "gateway/image/float_rows.hpp"
+
 namespace axisgate {
 namespace {
 
@@ -28,15 +30,21 @@ MapEntry holding(const RegisterRow& row, std::uint16_t block) {
   entry.type = text(row.type);
   entry.unit = unit_of(row, "");
   entry.access = row.writable ? "rw" : "r";
+  entry.note = row.note;
   return entry;
 }
 
-void list_axis(std::vector<MapEntry>& entries, Block block, const std::string& prefix, const ListedAxis& axis) {
+void list_axis(std::vector<MapEntry>& entries, Block block, const std::string& prefix, const ListedAxis& axis,
+               bool float_numbers) {
   for (const RegisterRow& row : register_table(block).rows()) {
     MapEntry& entry = entries.emplace_back(holding(row, address_of(block, axis.number)));
     entry.axis = axis.number;
     entry.name = prefix + entry.name;
     entry.unit = unit_of(row, axis.position_unit);
+    if (float_numbers && is_float_row(row)) {
+      entry.type = "f32";
+      entry.unit = float_unit(row);
+    }
     entry.access = can_write(row, axis) ? "rw" : "r";
     entry.supported = is_supported(row, axis);
   }
@@ -58,14 +66,14 @@ MapEntry one_bit(std::string_view table, const ListedAxis& axis, std::uint16_t o
 std::vector<MapEntry> map_entries(const ListedMap& map) {
   std::vector<MapEntry> entries;
   for (const RegisterRow& row : register_table(Block::gateway).rows()) entries.push_back(holding(row, 0));
-  for (const ListedAxis& axis : map.axes) list_axis(entries, Block::axis, "", axis);
+  for (const ListedAxis& axis : map.axes) list_axis(entries, Block::axis, "", axis, map.float_numbers);
   for (std::size_t b = 0; b < map.buses.size(); ++b) {
     for (const RegisterRow& row : register_table(Block::bus).rows()) {
       entries.push_back(holding(row, address_of(Block::bus, static_cast<std::uint16_t>(b))));
       entries.back().bus = map.buses[b];
     }
   }
-  for (const ListedAxis& axis : map.axes) list_axis(entries, Block::overview, "overview_", axis);
+  for (const ListedAxis& axis : map.axes) list_axis(entries, Block::overview, "overview_", axis, map.float_numbers);
   for (const ListedAxis& axis : map.axes) {
     for (const CoilRow& coil : coil_rows()) {
       entries.push_back(one_bit("coil", axis, coil.offset, coil.name));

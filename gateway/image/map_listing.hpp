@@ -26,6 +26,7 @@ struct ListedAxis {
 
 struct ListedMap {
   bool low_word_first = false;     ///< of the listener the listing is made for
+  bool float_numbers = false;      ///< of the same
   std::vector<ListedAxis> axes;    ///< in ascending order of number
   std::vector<std::string> buses;  ///< names in configuration order
 };
@@ -42,15 +43,19 @@ struct MapEntry {
   std::string unit;
   std::string_view access;  ///< "r" or "rw"
   bool supported = true;
+  std::string_view note = {};  ///< what it means, where the name does not say it
 };
 
 [[nodiscard]] std::vector<MapEntry> map_entries(const ListedMap& map);
 
-enum class MapFormat : std::uint8_t { json, csv, markdown, table };
-/// "json", "csv", "md", "table".
+enum class MapFormat : std::uint8_t { json, csv, markdown, table, structured_text };
+/// "json", "csv", "md", "table", "st".
 [[nodiscard]] std::optional<MapFormat> map_format_named(std::string_view name);
 /// Ends with a newline.
 [[nodiscard]] std::string map_text(const ListedMap& map, MapFormat format);
+
+/// The entries as IEC 61131-3 structured text.
+[[nodiscard]] std::string map_st(const ListedMap& map, const std::vector<MapEntry>& entries);
 
 /// "1/10000 rev" for units_per_rev 10000, "37/60000 rev" for 60000/37.
 [[nodiscard]] std::string position_unit(std::int64_t numerator, std::int64_t denominator);

@@ -59,10 +59,30 @@ count from 0; an HMI that counts from 40001 adds 1. 32-bit values take two regis
 with the listener option `"word_order": "low-first"`; register 10 of the gateway block tells which. *bit* is the number of
 the quantity in `supported` and `valid`.
 
-A read may begin or end inside a 32-bit value; a write of half of one is refused (0x02). Offsets that are not listed read 0.
+A read may begin or end inside a 32-bit value; a write of half of one is refused (0x02), but for panels (below). Offsets that are not listed read 0.
 In a longer write they are ignored from 40 to 89, else refused. Addresses outside every block, and blocks of axes or buses
 that are not configured, are refused (0x02). A value never received, not supported or not representable reads as the end of
 its type: i16 -32768, u16 65535, i32 -2147483648, u32 4294967295; as a setpoint that number is refused (0x03).
+
+A block write (more than one row in a request, and every FC 23) that is refused with 0x01, 0x02 or 0x03 tells in
+`command_detail` which row it was: 0x0A000000 + the offset of the first one that the answer is about; of FC 15 the coil's
+offset. Not while a command of the same client is pending.
+
+## Panels
+
+With the listener option `"numbers": "float"` the 32-bit rows of positions, velocities and accelerations (offsets 2, 4, 8, 42,
+44, 48, 50, 52, 58 and 62 to 78; 2 and 4 of the overview) are IEEE 754 numbers in turns, rpm and rpm/s, at the same offsets and
+in the listener's word order; all other rows are as below. Where there is no value they read NaN (0x7FC00000). A written number
+is rounded once, half away from zero, to the unit of the row; NaN, an infinite number, one beyond the row's range, and one
+that would round to the 0 that leaves a row as it is, are refused (0x03). Minus zero is 0. A number has 24 bits: with 10000 units a
+turn each 1/10000 turn has a number of its own up to 1024 turns; at 1677 turns the numbers are 0.00012 turn apart.
+`axisgate check` says it for each axis.
+
+With `"halves": "staged"`, for panels that only have FC 6, a 32-bit row is written in two requests: either half first, then the other,
+on the same connection, with no other write between. The first half is answered, and checked for role and address; the row
+is written, as one single write, with the second one, and its answer is the row's. Until then the row reads its old value.
+A half whose other half has not come within 1 s, or before another write, is dropped: result 6, detail 0x0A000000 + the row's
+offset, a line in the log. A half of FC 16 or FC 22 is refused on every listener, and counts as another write.
 
 ## Axis n: registers from 100 * n
 

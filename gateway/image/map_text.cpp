@@ -22,7 +22,8 @@ Cells cells_of(const MapEntry& entry) {
 /// One entry a line: readable for people, and lines can be compared between two versions of a configuration.
 std::string json_text(const ListedMap& map, const std::vector<MapEntry>& entries) {
   std::string out = "{\"map_version\": " + std::to_string(kMapVersion) + ", \"word_order\": \"" +
-                    (map.low_word_first ? "low-first" : "high-first") + "\", \"entries\": [";
+                    (map.low_word_first ? "low-first" : "high-first") +
+                    (map.float_numbers ? "\", \"numbers\": \"float" : "") + "\", \"entries\": [";
   const char* separator = "\n  ";
   for (const MapEntry& entry : entries) {
     nlohmann::ordered_json line;
@@ -96,7 +97,8 @@ std::string aligned(const std::vector<MapEntry>& entries) {
 
 std::string titles(const ListedMap& map) {
   std::string out = "map version " + std::to_string(kMapVersion) + ", 32-bit values " +
-                    (map.low_word_first ? "low" : "high") + " word first, addresses count from 0\n";
+                    (map.low_word_first ? "low" : "high") + " word first, addresses count from 0" +
+                    (map.float_numbers ? ", f32: IEEE 754" : "") + "\n";
   for (const ListedAxis& axis : map.axes) {
     out +=
         "axis " + std::to_string(axis.number) + ": " + axis.name + (axis.bus.empty() ? "" : ", on " + axis.bus) + "\n";
@@ -111,6 +113,7 @@ std::optional<MapFormat> map_format_named(std::string_view name) {
   if (name == "csv") return MapFormat::csv;
   if (name == "md") return MapFormat::markdown;
   if (name == "table") return MapFormat::table;
+  if (name == "st") return MapFormat::structured_text;
   return std::nullopt;
 }
 
@@ -121,6 +124,8 @@ std::string map_text(const ListedMap& map, MapFormat format) {
       return json_text(map, entries);
     case MapFormat::table:
       return titles(map) + aligned(entries);
+    case MapFormat::structured_text:
+      return map_st(map, entries);
     case MapFormat::csv: {
       std::string out = csv_line(heading());
       for (const MapEntry& entry : entries) out += csv_line(cells_of(entry));

@@ -36,6 +36,10 @@ enum class Source : std::uint8_t {
   set_position_value,
   jog_velocity,
   lease_remaining_ms,
+  units_numerator,
+  units_denominator,
+  rated_speed,
+  owner_address,
   // The client's own, per axis.
   command_result,
   command_detail,

@@ -63,8 +63,10 @@ std::vector<RegisterRow> axis_register_rows() {
       shows(25, "command_result", u16, Source::command_result,
             "0 none, 1 pending, 2 done, 3 refused by drive, 4 outcome unknown, 5 superseded, 6 never started, "
             "7 not owner, 8 stopped by another client, 9 state unsuitable, 10 not new: nothing was done"),
-      shows(26, "command_detail", u32, Source::command_detail,
-            "SDO abort code, Modbus exception or the drive's own code"),
+      shows(
+          26, "command_detail", u32, Source::command_detail,
+          "SDO abort code, Modbus exception or the drive's own code; of a block write refused with 0x01, 0x02 or 0x03: "
+          "0x0A000000 + offset of the first row, or coil, refused"),
       shows(28, "owner", u16, Source::owner, "0 nobody, 1 this client, 2 another"),
       shows(29, "lease_remaining_ms", u16, Source::lease_remaining_ms,
             "until the lease runs out as things stand, saturating; 0: none runs", "ms"),
@@ -117,6 +119,13 @@ std::vector<RegisterRow> axis_register_rows() {
       takes(84, "object_data", u32, Source::object_data, kViewer),
       shows(86, "object_status", u16, Source::object_status, "0 idle, 1 busy, 2 done, 3 failed"),
       shows(88, "object_detail", u32, Source::object_detail),
+      shows(90, "units_per_rev_numerator", u32, Source::units_numerator,
+            "position units of a motor turn, in lowest terms: 90 divided by 92"),
+      shows(92, "units_per_rev_denominator", u32, Source::units_denominator),
+      shows(94, "rated_speed", u32, Source::rated_speed,
+            "of the motor, as its drive's constants say; 4294967295: not known", "0.001 rpm"),
+      shows(96, "owner_address", u32, Source::owner_address,
+            "IPv4 address of the owner, 192.168.1.7 as 0xC0A80107; 0: nobody, or not IPv4"),
   };
 }
 

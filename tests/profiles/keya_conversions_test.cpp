@@ -102,6 +102,8 @@ TEST(KeyaConversions, EachMotorCountsByItsOwnConstants) {
     const Binding* binding = model.axes[axis].binding(quantity);
     return binding->to_raw(value, model.object(binding->object));
   };
+  EXPECT_EQ(model.axes[0].rated_speed, 1'500'000U);
+  EXPECT_EQ(model.axes[1].rated_speed, 3'000'000U);
   EXPECT_EQ(raw(0, Quantity::target_velocity, 1500000), 10000);
   EXPECT_EQ(raw(1, Quantity::target_velocity, 1500000), 5000);
   EXPECT_EQ(model.axes[0].binding(Quantity::target_velocity)->limits, (Range{-1500000, 1500000}));

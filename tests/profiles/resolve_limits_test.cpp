@@ -68,6 +68,14 @@ TEST(ResolvedLimits, TheProfilesLimitFollowsItsConstant) {
             (Range{-2500000, 2500000}));
 }
 
+TEST(RatedSpeed, IsTheConstantOfTheMotorOrNotKnown) {
+  ResolveInput input = kinco_axis();
+  EXPECT_EQ(resolved(shipped("kinco-md"), input).axes[0].rated_speed, 3'000'000U);
+  EXPECT_FALSE(resolved(shipped("kinco-jd"), input).axes[0].rated_speed.has_value());
+  input.constants["rated_speed_rpm"] = Rational(25001, 10);
+  EXPECT_EQ(resolved(shipped("kinco-md"), input).axes[0].rated_speed, 2'500'100U);
+}
+
 TEST(ResolvedLimits, AnAxisLimitThatLeavesNothingIsAFault) {
   ResolveInput input = kinco_axis();
   input.axes[0].position_limits = Range{3000000000, 4000000000};

@@ -38,6 +38,14 @@ struct Mailbox {
   std::uint32_t detail = 0;
 };
 
+/// Of a block write that was refused: the first row or coil, by its offset, and why; of a row's half that was dropped:
+/// the row, and never_started.
+struct RefusedRow {
+  std::uint16_t offset = 0;
+  Errc why = Errc::ok;
+  friend bool operator==(const RefusedRow&, const RefusedRow&) = default;
+};
+
 /// One client's side of one axis.
 struct ClientAxis {
   /// False until it has used registers 25..28 or 80..89: it sees the axis's latest result till then.
@@ -46,7 +54,8 @@ struct ClientAxis {
   std::uint64_t submission = 0;  ///< counts its groups: an older one's result does not replace a newer one's
   EdgeMemory edges;
   RowMemory rows;
-  bool told_not_new = false;  ///< in the log, since something of it acted last
+  bool told_not_new = false;            ///< in the log, since something of it acted last
+  std::optional<RefusedRow> refused{};  ///< in the log, since a block of it succeeded last
   std::uint16_t command_id = 0;
   std::optional<std::uint16_t> heartbeat{};  ///< none written yet: the first one is a change
   Mailbox mailbox;

@@ -27,6 +27,14 @@ bool has(const Acting& acting, Command command) {
   return std::find(acting.begin(), acting.end(), command) != acting.end();
 }
 
+/// The lowest of the coils that ask for a start.
+std::uint16_t first_start(const Acting& acting) {
+  std::uint16_t first = kCoils;
+  for (const Command command : acting)
+    if (starts_motion(command)) first = std::min(first, coil_of(command));
+  return first;
+}
+
 bool any_of(const Acting& acting, bool (*is)(Command)) { return std::any_of(acting.begin(), acting.end(), is); }
 
 /// What a stop in the same request drops: every start, and the enable that a quick stop or a disable contradicts.
@@ -112,14 +120,17 @@ bool is_all_zero(const Request& request) {
 }  // namespace
 
 Planned plan_coil_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
-  if (onlooker.role < Role::operator_) return Errc::role_forbidden;
   const auto first = view.place_bit(request.write_address, onlooker.image);
   const bool single = request.write_count == 1;
-  if (!first || first->offset + request.write_count > kReservedCoilsEnd) return Errc::not_supported;
+  const auto refuse = [&](Errc code, std::size_t coil) {
+    return Refused{code, single ? std::nullopt : std::optional(static_cast<std::uint16_t>(coil))};
+  };
+  if (onlooker.role < Role::operator_) return refuse(Errc::role_forbidden, first ? first->offset : 0U);
+  if (!first) return Refused{Errc::not_supported};
   const AxisImage& axis = *first->axis;
   for (std::uint16_t i = 0; i < request.write_count; ++i) {
     const auto offset = static_cast<std::uint16_t>(first->offset + i);
-    if (!takes(axis, offset, request.written_coil(i), single)) return Errc::not_supported;
+    if (!takes(axis, offset, request.written_coil(i), single)) return refuse(Errc::not_supported, offset);
   }
 
   const ClientAxis* before = client.find(axis.number);
@@ -128,11 +139,13 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
   const Writing writing = writing_to(axis, onlooker, single ? WriteForm::single : WriteForm::block);
   const Asked asked = ask(request, first->offset, axis, writing, rows, edges);
   // Two starts at once: no one can say which motion was meant.
-  if (std::count_if(asked.acting.begin(), asked.acting.end(), starts_motion) > 1) return Errc::bad_value;
+  if (std::count_if(asked.acting.begin(), asked.acting.end(), starts_motion) > 1)
+    return refuse(Errc::bad_value, first_start(asked.acting));
 
   WritePlan plan;
   plan.axis = axis.number;
   plan.single = single;
+  plan.block = block_write(request, axis.number);
   plan.not_new = asked.not_new;
   plan.before = memory_of(client, axis.number);
   client.at(axis.number).edges = edges;

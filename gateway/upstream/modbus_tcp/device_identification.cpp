@@ -45,6 +45,8 @@ std::vector<IdentificationObject> identification_objects(const ProcessImage& ima
       {kMapVersionObject, std::to_string(kMapVersion)},
       {kWordOrderObject, settings.low_word_first ? "low-first" : "high-first"},
       {kUnitIdsObject, settings.per_axis_units ? "per-axis" : "flat"},
+      {kNumbersObject, settings.float_numbers ? "float" : "integer"},
+      {kHalvesObject, settings.staged_halves ? "staged" : "refused"},
   };
 }
 

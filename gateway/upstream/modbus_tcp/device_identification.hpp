@@ -25,6 +25,8 @@ inline constexpr std::uint8_t kAxisCountObject = 0x80;
 inline constexpr std::uint8_t kMapVersionObject = 0x81;
 inline constexpr std::uint8_t kWordOrderObject = 0x82;
 inline constexpr std::uint8_t kUnitIdsObject = 0x83;
+inline constexpr std::uint8_t kNumbersObject = 0x84;
+inline constexpr std::uint8_t kHalvesObject = 0x85;
 
 [[nodiscard]] std::vector<IdentificationObject> identification_objects(const ProcessImage& image,
                                                                        const ListenerSettings& settings);

@@ -27,6 +27,8 @@ struct ListenerSettings {
   std::string host = "127.0.0.1";
   std::uint16_t port = 1502;
   bool low_word_first = false;
+  bool float_numbers = false;  ///< "numbers": "float": 32-bit positions, velocities and accelerations as IEEE 754
+  bool staged_halves = false;  ///< "halves": "staged": function 6 writes a 32-bit row in two requests
   bool per_axis_units = false;
   bool client_is_address = false;  ///< "client": "address": all connections of one host are one client
   bool posted_writes = false;

@@ -128,6 +128,20 @@ std::variant<Request, ModbusException> decode_request(Bytes pdu) {
   return decoded;
 }
 
+bool is_write_function(std::uint8_t function) {
+  switch (Function{function}) {
+    case Function::write_single_coil:
+    case Function::write_single_register:
+    case Function::write_multiple_coils:
+    case Function::write_multiple_registers:
+    case Function::mask_write_register:
+    case Function::read_write_registers:
+      return true;
+    default:
+      return false;
+  }
+}
+
 Pdu exception_pdu(std::uint8_t function, ModbusException exception) {
   return {static_cast<Byte>(function | 0x80U), static_cast<Byte>(exception)};
 }

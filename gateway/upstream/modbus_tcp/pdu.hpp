@@ -68,6 +68,9 @@ struct Request {
 /// `pdu`: 1..253 bytes. Exceptions: illegal_function, illegal_data_value for lengths and counts (6.x state diagrams).
 [[nodiscard]] std::variant<Request, ModbusException> decode_request(Bytes pdu);
 
+/// Functions 5, 6, 15, 16, 22 and 23, whatever stands behind.
+[[nodiscard]] bool is_write_function(std::uint8_t function);
+
 /// `function` as it was in the request, known or not (section 7).
 [[nodiscard]] Pdu exception_pdu(std::uint8_t function, ModbusException exception);
 /// Answers of functions 5, 6, 15, 16 and 22 repeat the head of the request.

@@ -45,6 +45,7 @@ void Pipeline::accept(const Frame& frame, Instant now) {
   // A client that is an address has programs that only look: their reads are no sign of the one that commands.
   const bool writes = request != nullptr && (request->writes() || (request->reference && request->reference->write));
   if (writes || !context_.settings.client_is_address) client_->life->last_request = now;
+  on_deadline(now);
   // The common case, and the only one that must be quick: a read with nothing before it.
   if (entries_.empty() && view && request != nullptr && !is_carried_out(*request)) {
     return send(frame.transaction, frame.unit, answer(*request, *view, now));
@@ -62,8 +63,41 @@ void Pipeline::accept(const Frame& frame, Instant now) {
     entry.stage = is_carried_out(*request) ? Stage::waiting : Stage::at_turn;
     entry.request = *request;
   }
+  const bool is_write = writes || (request == nullptr && is_write_function(frame.pdu[0]));
+  if (context_.settings.staged_halves && is_write) stage_half(entry, now);
   start_ready(now);
   flush(now);
+}
+
+/// A first half is answered as written, and waits; with the second one the row is written whole. Any other write, also
+/// one that is refused, drops a half that waits.
+void Pipeline::stage_half(Entry& entry, Instant now) {
+  const auto half = entry.view ? half_write(entry.request, *entry.view, context_.image) : std::nullopt;
+  if (!half) return drop_half("another write came between");
+  const auto other = half_.take_other(*half);
+  if (!other) drop_half("another write came between");
+  const Request whole = whole_write(*half, other ? other->word : std::uint16_t{0});
+  if (!other) {
+    if (const Errc wrong = check_row(whole, *entry.view, onlooker(now)); wrong != Errc::ok) {
+      tell_refused(entry, {wrong});
+      return finish(entry, {wrong, 0});
+    }
+    half_.keep(*half, now);
+  }
+  entry.reply = write_reply(entry.request);
+  entry.stage = other ? Stage::waiting : Stage::answered;
+  entry.halves = true;
+  if (!other) return;
+  entry.request = whole;
+  note_whole_row(client_->at(half->axis));
+}
+
+void Pipeline::on_deadline(Instant now) {
+  if (half_.until() <= now) drop_half("the other half did not come within a second");
+}
+
+void Pipeline::drop_half(const char* why) {
+  if (const auto half = half_.take()) tell_dropped_half(half->axis, half->row, why, *client_, context_.log);
 }
 
 /// FC 22 masks the value at the moment it is carried out, so what this connection has under way must have ended first.
@@ -109,18 +143,12 @@ AxisNumber Pipeline::written_axis(const Entry& entry) const {
 void Pipeline::start(Entry& entry, Instant now) {
   if (entry.request.reference) return start_object(entry, now);
   Planned planned = plan_write(entry.request, *entry.view, onlooker(now), *client_);
-  if (const Errc* const refused = std::get_if<Errc>(&planned)) {
-    // The outcome table's "command_result 0": no older result may be taken for this write's.
-    if (const AxisNumber axis = axis_of_write(entry.request, *entry.view, context_.image); axis != 0) {
-      ClientAxis& own = client_->at(axis);
-      own.used = true;
-      own.result = {};
-      ++own.submission;
-    }
-    return finish(entry, {*refused, 0});
+  if (const Refused* const refused = std::get_if<Refused>(&planned)) {
+    tell_refused(entry, *refused);
+    return finish(entry, {refused->code, 0});
   }
   entry.run = std::make_shared<WriteRun>(context_.commands, client_, std::get<WritePlan>(std::move(planned)), now,
-                                         context_.settings);
+                                         context_.settings, context_.log);
   entry.stage = Stage::running;
   const bool posted = context_.settings.posted_writes;
   WriteRun::OnDone on_done;
@@ -131,6 +159,20 @@ void Pipeline::start(Entry& entry, Instant now) {
   } else if (at_once) {
     finish(entry, *at_once);
   }
+}
+
+/// The outcome table's "command_result 0": no older result may be taken for this write's.
+void Pipeline::tell_refused(const Entry& entry, const Refused& refused) {
+  const AxisNumber axis = axis_of_write(entry.request, *entry.view, context_.image);
+  if (axis == 0) return;
+  ClientAxis& own = client_->at(axis);
+  if (refused.row) {
+    show_refused(own, *refused.row);
+    return log_refused(block_write(entry.request, axis), {*refused.row, refused.code}, *client_, context_.log);
+  }
+  own.used = true;
+  own.result = {};
+  ++own.submission;
 }
 
 /// "writes": "posted" changes nothing here: the reply is the only place that tells how it ended.
@@ -169,7 +211,7 @@ void Pipeline::finish(Entry& entry, const Outcome& outcome) {
     return;
   }
   entry.stage = Stage::answered;
-  entry.reply = write_reply(entry.request);
+  if (!entry.halves) entry.reply = write_reply(entry.request);
 }
 
 void Pipeline::log_failure(const Request& request, const Outcome& outcome) const {
@@ -241,6 +283,7 @@ void Pipeline::send(std::uint16_t transaction, std::uint8_t unit, const Pdu& rep
 }
 
 void Pipeline::abandon() {
+  drop_half("its connection has ended");
   context_.clients.counters.unanswered += static_cast<std::uint32_t>(entries_.size());
   for (Entry& entry : entries_) {
     if (entry.run != nullptr) entry.run->abandon();

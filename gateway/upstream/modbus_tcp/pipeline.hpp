@@ -11,6 +11,7 @@
 #include "gateway/upstream/modbus_tcp/object_run.hpp"
 #include "gateway/upstream/modbus_tcp/pdu.hpp"
 #include "gateway/upstream/modbus_tcp/session.hpp"
+#include "gateway/upstream/modbus_tcp/staged_half.hpp"
 #include "gateway/upstream/modbus_tcp/unit_view.hpp"
 #include "gateway/upstream/modbus_tcp/write_run.hpp"
 
@@ -33,6 +34,9 @@ class Pipeline {
   void accept(const Frame& frame, Instant now);
   /// The end of a request, as on_result told it. Unknown numbers are harmless.
   void conclude(std::uint64_t number, const Outcome& outcome, Instant now);
+  /// When something is to be done although nothing came: on_deadline().
+  [[nodiscard]] Instant next_deadline() const { return half_.until(); }
+  void on_deadline(Instant now);
   /// Nobody is left to answer.
   void abandon();
 
@@ -50,7 +54,8 @@ class Pipeline {
     Stage stage = Stage::answered;
     std::optional<UnitView> view;
     Request request;
-    Pdu reply;
+    Pdu reply;  ///< of a write of two halves it is made on arrival: it repeats the second one
+    bool halves = false;
     std::shared_ptr<WriteRun> run;
     // Of function 43/13.
     std::shared_ptr<ObjectRun> object_run;
@@ -63,6 +68,8 @@ class Pipeline {
     }
   };
 
+  void stage_half(Entry& entry, Instant now);
+  void drop_half(const char* why);
   void start_ready(Instant now);
   [[nodiscard]] bool must_wait(std::size_t position) const;
   void drop_waiting_before(std::size_t stop);
@@ -72,6 +79,7 @@ class Pipeline {
   void finish_object(Entry& entry, const GroupResult& result);
   void log_not_new(const Entry& entry);
   void log_failure(const Request& request, const Outcome& outcome) const;
+  void tell_refused(const Entry& entry, const Refused& refused);
   void refuse(Entry& entry, ModbusException exception);
   void flush(Instant now);
   [[nodiscard]] AxisNumber written_axis(const Entry& entry) const;
@@ -86,6 +94,7 @@ class Pipeline {
   Emit emit_;
   OnResult on_result_;
   std::deque<Entry> entries_;
+  StagedHalf half_;
   std::uint64_t last_number_ = 0;
 };
 

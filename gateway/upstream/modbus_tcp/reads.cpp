@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "gateway/image/float_rows.hpp"
 #include "gateway/image/shown.hpp"
 
 namespace axisgate::modbus_tcp {
@@ -28,6 +29,12 @@ struct FoundBlock {
         return axis == nullptr ? 0 : axis_value(row, *axis, onlooker);
     }
     return 0;
+  }
+  /// The bits that this listener's clients read.
+  [[nodiscard]] std::uint32_t shown(const RegisterRow& row, const Onlooker& onlooker) const {
+    const std::uint32_t bits = value(row, onlooker);
+    if (!onlooker.settings.float_numbers || axis == nullptr || !is_float_row(row)) return bits;
+    return float_bits(row, number_of(bits, row.type), axis->units_per_rev);
   }
 };
 
@@ -58,7 +65,7 @@ std::size_t read_block(const FoundBlock& block, std::size_t wanted, const Onlook
       ++i;  // already 0
       continue;
     }
-    const std::uint32_t value = block.value(*row, onlooker);
+    const std::uint32_t value = block.shown(*row, onlooker);
     for (std::uint16_t at = offset; i < count && at < row->offset + row->registers(); ++at, ++i) {
       store_be16(to, 2 * i, part_of(*row, value, at, onlooker.settings.low_word_first));
     }

@@ -15,11 +15,11 @@ bool is_quantity(const RegisterRow& row, Quantity quantity) {
 struct MailboxWrite {
   Mailbox mailbox;
   bool requested = false;
-  Errc refused = Errc::ok;
+  WrongRow refused{};
 };
 
 MailboxWrite write_mailbox(const RowWrites& found, const Mailbox& before) {
-  MailboxWrite write{before, false, Errc::ok};
+  MailboxWrite write{before};
   Mailbox& box = write.mailbox;
   for (const RowWrite& each : found.rows) {
     const auto word = static_cast<std::uint16_t>(each.value);
@@ -45,11 +45,13 @@ MailboxWrite write_mailbox(const RowWrites& found, const Mailbox& before) {
   }
   write.requested = found.of(Source::object_request) != nullptr && box.request != 0;
   if (!write.requested) return write;
-  const bool possible = (box.size == 1 || box.size == 2 || box.size == 4) && box.subindex <= UINT8_MAX;
-  if (!possible)
-    write.refused = Errc::bad_value;
+  constexpr std::uint16_t kSubindexRow = 82, kSizeRow = 83;
+  if (box.subindex > UINT8_MAX)
+    write.refused = {Errc::bad_value, kSubindexRow};
+  else if (box.size != 1 && box.size != 2 && box.size != 4)
+    write.refused = {Errc::bad_value, kSizeRow};
   else if (before.status == ObjectStatus::busy)
-    write.refused = Errc::busy;
+    write.refused = {Errc::busy};
   return write;
 }
 
@@ -252,9 +254,16 @@ std::vector<AxisNumber> beat(Client& client, std::uint16_t value, const Onlooker
 
 }  // namespace
 
+Errc check_row(const Request& request, const UnitView& view, const Onlooker& onlooker) {
+  return check_role_and_addresses(resolve_rows(request, view, onlooker), onlooker.role).code;
+}
+
 Planned plan_register_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
   const RowWrites found = resolve_rows(request, view, onlooker);
-  if (const Errc wrong = check_rows(found, onlooker.role); wrong != Errc::ok) return wrong;
+  const auto refuse = [&found](const WrongRow& wrong) {
+    return Refused{wrong.code, found.several && is_wrong(wrong.code) ? std::optional(wrong.row) : std::nullopt};
+  };
+  if (const WrongRow wrong = check_rows(found, onlooker.role); wrong.code != Errc::ok) return refuse(wrong);
 
   WritePlan plan;
   if (found.axis == nullptr) {
@@ -264,7 +273,7 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
   plan.axis = found.axis->number;
   const ClientAxis* before = client.find(plan.axis);
   const MailboxWrite box = write_mailbox(found, before == nullptr ? Mailbox{} : before->mailbox);
-  if (box.refused != Errc::ok) return box.refused;
+  if (box.refused.code != Errc::ok) return refuse(box.refused);
 
   ClientAxis& own = client.at(plan.axis);
   plan.before = memory_of(client, plan.axis);
@@ -279,6 +288,7 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
   plan.not_new = made.not_new;
   plan.repeats = made.repeats;
   plan.single = !found.block;
+  plan.block = block_write(request, plan.axis);
   // The mailbox's own request stands for a group that asks for nothing beside it.
   if (!box.requested || made.group.beats || !asks_nothing(made.group)) plan.groups.push_back(made.group);
   return plan;

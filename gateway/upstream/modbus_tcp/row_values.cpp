@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "gateway/image/shown.hpp"
+#include "gateway/upstream/modbus_tcp/peer.hpp"
 
 namespace axisgate::modbus_tcp {
 namespace {
@@ -54,6 +55,13 @@ std::uint32_t owner(const Lease& lease, ClientId onlooker) {
   return lease.owned_by(onlooker) ? this_client : another;
 }
 
+std::uint32_t owner_address(const Lease& lease) {
+  // A DDS writer's GUID is no address, whatever its bytes.
+  if (!lease.owner || lease.owner->strength || !is_mapped(lease.owner->origin)) return 0;
+  const Origin& origin = lease.owner->origin;
+  return static_cast<std::uint32_t>(load_be16(origin, kMappedBytes) << 16) | load_be16(origin, kMappedBytes + 2);
+}
+
 std::uint32_t lease_remaining(const Lease& lease, Instant now) {
   const Instant until = lease.until();
   if (until == kNever) return 0;
@@ -96,6 +104,14 @@ std::uint32_t axis_value(const RegisterRow& row, const AxisImage& axis, const On
       return owner(axis.lease, onlooker.client.id);
     case Source::lease_remaining_ms:
       return lease_remaining(axis.lease, onlooker.now);
+    case Source::units_numerator:
+      return static_cast<std::uint32_t>(axis.units_per_rev.numerator());
+    case Source::units_denominator:
+      return static_cast<std::uint32_t>(axis.units_per_rev.denominator());
+    case Source::rated_speed:
+      return axis.rated_speed.value_or(static_cast<std::uint32_t>(no_value(RegisterType::u32)));
+    case Source::owner_address:
+      return owner_address(axis.lease);
     case Source::jog_velocity:
       return axis.jog_velocity;
     case Source::set_position_value:

@@ -148,12 +148,13 @@ Instant Session::Impl::idle_deadline() const {
 Instant Session::Impl::next_deadline() const {
   if (closed_) return kNever;
   if (why_ != nullptr) return reply_deadline();
-  return std::min({part_deadline(), reply_deadline(), idle_deadline()});
+  return std::min({part_deadline(), reply_deadline(), idle_deadline(), pipeline_.next_deadline()});
 }
 
 void Session::Impl::on_deadline(Instant now) {
   now_ = now;
   if (closed_) return;
+  pipeline_.on_deadline(now);
   if (reply_deadline() <= now) {
     // A client that takes no replies gets no more of them either.
     pipeline_.abandon();

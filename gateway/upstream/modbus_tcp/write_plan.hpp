@@ -10,6 +10,7 @@
 #include "gateway/image/command_port.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
 #include "gateway/upstream/modbus_tcp/pdu.hpp"
+#include "gateway/upstream/modbus_tcp/refused_blocks.hpp"
 #include "gateway/upstream/modbus_tcp/row_values.hpp"
 #include "gateway/upstream/modbus_tcp/unit_view.hpp"
 
@@ -36,14 +37,20 @@ struct WritePlan {
   /// Axes whose orphan leases a changed heartbeat of the gateway (register 8) takes over.
   std::vector<AxisNumber> reclaims;
   bool single = false;   ///< a single write: where it is not new, its answer is an exception
+  BlockWrite block{};    ///< what it is where it is none, for its client to be told of a refusal
   bool not_new = false;  ///< something in it did not act, and its client is told: result 10
   bool repeats = false;  ///< a block in which nothing is new: its client's result stands, unless it is refused
   WriteMemory before{};  ///< of the client, before this request
 };
 
-/// `client` is the one that writes: what is its own is stored there. Errors: role_forbidden, not_supported, bad_value
-/// and, for a second mailbox request, busy.
-using Planned = std::variant<WritePlan, Errc>;
+/// role_forbidden, not_supported, bad_value and, for a second mailbox request, busy.
+struct Refused {
+  Errc code;
+  std::optional<std::uint16_t> row{};  ///< of a block write, and not of busy: the first row or coil refused
+};
+
+/// `client` is the one that writes: what is its own is stored there.
+using Planned = std::variant<WritePlan, Refused>;
 [[nodiscard]] Planned plan_write(const Request& request, const UnitView& view, const Onlooker& onlooker,
                                  Client& client);
 
@@ -52,6 +59,9 @@ using Planned = std::variant<WritePlan, Errc>;
                                           Client& client);
 [[nodiscard]] Planned plan_coil_write(const Request& request, const UnitView& view, const Onlooker& onlooker,
                                       Client& client);
+
+/// Of what is written to one row alone: role and address, whatever the value. Errors: role_forbidden, not_supported.
+[[nodiscard]] Errc check_row(const Request& request, const UnitView& view, const Onlooker& onlooker);
 
 /// The request is a single write that is a stop whatever was written before: it starts ahead of a request that has to
 /// wait.

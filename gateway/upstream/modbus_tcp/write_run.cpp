@@ -12,11 +12,6 @@ bool did_nothing(Errc code) {
          command_result(code) != CommandResult::outcome_unknown;
 }
 
-/// The request itself was wrong: what it wrote is not even remembered, so that the same block is refused again.
-bool is_wrong(Errc code) {
-  return code == Errc::bad_value || code == Errc::not_supported || code == Errc::role_forbidden;
-}
-
 /// Of a group that asks for nothing, or for what its client asked for before: the client's result registers go on
 /// telling of what was asked last.
 constexpr std::uint64_t kNoSubmission = 0;
@@ -35,8 +30,8 @@ std::uint32_t object_detail(const GroupResult& result) {
 }  // namespace
 
 WriteRun::WriteRun(CommandPort& commands, const std::shared_ptr<Client>& client, WritePlan plan, Instant now,
-                   const ListenerSettings& settings)
-    : commands_(commands), client_(client), plan_(std::move(plan)), began_(now) {
+                   const ListenerSettings& settings, const Log& log)
+    : commands_(commands), client_(client), plan_(std::move(plan)), log_(log), began_(now) {
   const auto set_deadlines = [&](Group& group) {
     group.start_by = now + settings.start_deadline;
     group.answer_by = now + settings.reply_deadline;
@@ -73,6 +68,7 @@ void WriteRun::abandon() {
 std::optional<Outcome> WriteRun::carry_on() {
   while (next_ < plan_.groups.size()) {
     const Group& group = plan_.groups[next_++];
+    const std::optional<Shown> pending = shown_pending();
     const bool silent = plan_.repeats || asks_nothing(group);
     const std::uint64_t submission = silent ? kNoSubmission : begin(group.command_id);
     // The callback holds the run: results are recorded even when the session that began it is gone.
@@ -83,6 +79,7 @@ std::optional<Outcome> WriteRun::carry_on() {
     const Outcome outcome = told(at_once->outcome);
     if (is_wrong(outcome.code)) forget();
     settle(submission, outcome);
+    if (is_wrong(outcome.code)) tell_refused({at_once->outcome.code, row_of(*at_once)}, pending);
     if (outcome.code != Errc::ok) return end(outcome);
   }
   if (plan_.not_new) {
@@ -103,7 +100,12 @@ Outcome WriteRun::told(const Outcome& outcome) const {
 }
 
 void WriteRun::on_result(std::uint64_t submission, const GroupResult& result) {
+  const ClientAxis* const axis = own();
+  const bool newest = axis != nullptr && axis->submission == submission;
   settle(submission, result.outcome);
+  if (is_wrong(result.outcome.code)) {
+    tell_refused({result.outcome.code, row_of(result)}, newest ? std::nullopt : shown());
+  }
   std::optional<Outcome> outcome;
   if (result.outcome.code != Errc::ok || abandoned_) {
     outcome = end(result.outcome);
@@ -112,6 +114,34 @@ void WriteRun::on_result(std::uint64_t submission, const GroupResult& result) {
   }
   // Moved out first: whoever is told may let go of this run.
   if (outcome && on_done_) std::exchange(on_done_, nullptr)(*outcome);
+}
+
+std::optional<std::uint16_t> WriteRun::row_of(const GroupResult& result) const {
+  return plan_.block.coils ? coil_of(plan_.groups[next_ - 1].command) : result.refused_row;
+}
+
+std::optional<WriteRun::Shown> WriteRun::shown() const {
+  const ClientAxis* const axis = own();
+  return axis == nullptr ? std::nullopt : std::optional(Shown{axis->result, axis->submission});
+}
+
+std::optional<WriteRun::Shown> WriteRun::shown_pending() const {
+  const std::optional<Shown> now = shown();
+  return now && now->result.result == CommandResult::pending ? now : std::nullopt;
+}
+
+/// `stays`: what the client's registers tell of all the same, since it was asked later or has not ended yet.
+void WriteRun::tell_refused(const Refused& refused, const std::optional<Shown>& stays) {
+  const std::shared_ptr<Client> client = client_.lock();
+  if (plan_.single || !refused.row || client == nullptr) return;
+  ClientAxis& axis = client->at(plan_.axis);
+  if (stays) {
+    axis.result = stays->result;
+    axis.submission = stays->submission;
+  } else {
+    show_refused(axis, *refused.row);
+  }
+  log_refused(plan_.block, {*refused.row, refused.code}, *client, log_);
 }
 
 void WriteRun::forget() {
@@ -155,13 +185,22 @@ void WriteRun::settle(std::uint64_t submission, const Outcome& outcome) {
 }
 
 Outcome WriteRun::submit_object() {
-  if (!plan_.object) return {};
+  if (!plan_.object) return done();
+  const std::optional<Shown> pending = shown_pending();
   const auto at_once =
       commands_.submit(plan_.axis, *plan_.object,
                        [self = shared_from_this()](const GroupResult& result) { self->settle_object(result); });
-  if (!at_once) return {};  // "writing 80 returns at once and 86 tells the rest"
+  if (!at_once) return done();  // "writing 80 returns at once and 86 tells the rest"
   settle_object(*at_once);
+  if (at_once->outcome.code == Errc::ok) return done();
+  if (is_wrong(at_once->outcome.code)) tell_refused({at_once->outcome.code, at_once->refused_row}, pending);
   return at_once->outcome;
+}
+
+Outcome WriteRun::done() {
+  ClientAxis* const axis = own();
+  if (axis != nullptr && !plan_.single) note_block_done(*axis);
+  return {};
 }
 
 void WriteRun::settle_object(const GroupResult& result) {

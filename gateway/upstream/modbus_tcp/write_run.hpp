@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "gateway/core/log.hpp"
 #include "gateway/image/command_port.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
 #include "gateway/upstream/modbus_tcp/write_plan.hpp"
@@ -19,7 +20,7 @@ class WriteRun : public std::enable_shared_from_this<WriteRun> {
 
   /// The deadlines hold for the request as a whole (start_deadline_ms, reply_deadline_ms).
   WriteRun(CommandPort& commands, const std::shared_ptr<Client>& client, WritePlan plan, Instant now,
-           const ListenerSettings& settings);
+           const ListenerSettings& settings, const Log& log);
 
   /// With a value: that is the end, and `on_done` is never called. Without: it is called once, later.
   [[nodiscard]] std::optional<Outcome> start(OnDone on_done);
@@ -34,6 +35,16 @@ class WriteRun : public std::enable_shared_from_this<WriteRun> {
   std::uint64_t begin(std::uint16_t command_id);
   [[nodiscard]] Outcome told(const Outcome& outcome) const;
   void forget();
+  /// What registers 25 to 27 tell the client, and of which of its groups.
+  struct Shown {
+    LatestResult result;
+    std::uint64_t submission;
+  };
+  [[nodiscard]] std::optional<Shown> shown() const;
+  [[nodiscard]] std::optional<Shown> shown_pending() const;
+  [[nodiscard]] std::optional<std::uint16_t> row_of(const GroupResult& result) const;
+  void tell_refused(const Refused& refused, const std::optional<Shown>& stays);
+  [[nodiscard]] Outcome done();
   void tell_not_new();
   void settle(std::uint64_t submission, const Outcome& outcome);
   [[nodiscard]] Outcome submit_object();
@@ -44,6 +55,7 @@ class WriteRun : public std::enable_shared_from_this<WriteRun> {
   CommandPort& commands_;
   std::weak_ptr<Client> client_;
   WritePlan plan_;
+  const Log& log_;
   Instant began_;
   std::size_t next_ = 0;
   bool abandoned_ = false;

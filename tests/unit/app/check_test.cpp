@@ -52,6 +52,16 @@ TEST(Check, SaysThatTheFileIsValidAndPlansEachBus) {
   EXPECT_FALSE(report.overloaded);
 }
 
+TEST(Check, SaysHowFarFloatsTellUnitsApart) {
+  LoadedConfig loaded = one_axis();
+  loaded.config.modbus_tcp.resize(2);
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("float")));
+  loaded.config.modbus_tcp[1].float_numbers = true;
+  EXPECT_THAT(check(loaded).text, HasSubstr("each unit has its own number up to ±1024 turns\n"));
+  loaded.config.buses[0].drives[0].axes[0].units_per_rev = Rational(65536);
+  EXPECT_THAT(check(loaded).text, HasSubstr("up to ±256 turns\n"));
+}
+
 TEST(Check, SaysWhatADriveDoesWhenTheGatewayDies) {
   LoadedConfig loaded = one_axis();
   EXPECT_THAT(check(loaded).text, HasSubstr("THE DRIVE DOES NOT STOP BY ITSELF on kinco-serial"));

@@ -62,7 +62,8 @@ TEST_F(ConfigLoader, FillsInEveryDefault) {
   EXPECT_EQ(listener.host, "127.0.0.1");
   EXPECT_EQ(listener.port, 1502);
   EXPECT_FALSE(listener.low_word_first || listener.per_axis_units || listener.client_is_address ||
-               listener.posted_writes || listener.offline_reads_fail || listener.has_allow);
+               listener.posted_writes || listener.offline_reads_fail || listener.has_allow || listener.float_numbers ||
+               listener.staged_halves);
   EXPECT_EQ(listener.rearm, milliseconds(1000));
   EXPECT_EQ(listener.start_deadline, milliseconds(500));
   EXPECT_EQ(listener.reply_deadline, milliseconds(900));
@@ -98,13 +99,14 @@ TEST_F(ConfigLoader, FillsInEveryDefault) {
 
 TEST_F(ConfigLoader, ReadsEveryKeyOfAListener) {
   const LoadedConfig loaded = load_good(one_drive(
-      R"(, "word_order": "low-first", "unit_ids": "per-axis", "client": "address", "writes": "posted",
+      R"(, "word_order": "low-first", "numbers": "float", "halves": "staged", "unit_ids": "per-axis", "client": "address", "writes": "posted",
          "offline_reads": "exception", "rearm_ms": 0, "start_deadline_ms": 200, "reply_deadline_ms": 700, "max_clients": 5,
          "max_clients_per_address": 0, "allow": [{"from": "192.168.1.0/24", "role": "operator", "rank": 3},
                                                  {"from": "::1", "role": "engineer"}])"));
   const auto& listener = loaded.config.modbus_tcp.at(0);
   EXPECT_TRUE(listener.low_word_first && listener.per_axis_units && listener.client_is_address &&
-              listener.posted_writes && listener.offline_reads_fail && listener.has_allow);
+              listener.posted_writes && listener.offline_reads_fail && listener.has_allow && listener.float_numbers &&
+              listener.staged_halves);
   EXPECT_EQ(listener.rearm, Duration{});
   EXPECT_EQ(listener.start_deadline, milliseconds(200));
   EXPECT_EQ(listener.reply_deadline, milliseconds(700));

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
+#include <sstream>
 
 namespace axisgate {
 namespace {
@@ -52,7 +54,7 @@ TEST(MapListing, JsonCarriesVersionWordOrderAndEveryEntry) {
 
 TEST(MapListing, CountsEveryRowOfEveryBlock) {
   // gateway 9; per axis 60 registers, 8 of the overview, 10 coils, 13 inputs; per bus 14.
-  EXPECT_EQ(map_entries(two_axes()).size(), 9U + 2U * (60 + 8 + 10 + 13) + 2U * 14);
+  EXPECT_EQ(map_entries(two_axes()).size(), 9U + 2U * (64 + 8 + 10 + 13) + 2U * 14);
 }
 
 TEST(MapListing, IsSortedByTableAndAddressAndNamesNoAddressTwice) {
@@ -103,6 +105,32 @@ TEST(MapListing, PrintsPositionsInTheAxissOwnUnit) {
   EXPECT_EQ(position_unit(60000, 37), "37/60000 rev");
 }
 
+TEST(MapListing, OfAListenerWithFloatsNamesTheirTypeAndUnit) {
+  ListedMap map = two_axes();
+  EXPECT_EQ(map_text(map, MapFormat::json).find("numbers"), std::string::npos);
+  map.float_numbers = true;
+  const auto entries = map_entries(map);
+  const auto told = [&](int address) {
+    const MapEntry* const entry = find(entries, "holding", address);
+    return std::string(entry->type) + " " + entry->unit;
+  };
+  EXPECT_EQ(told(502), "f32 rev");
+  EXPECT_EQ(told(104), "f32 rpm");
+  EXPECT_EQ(told(150), "f32 rpm/s");
+  EXPECT_EQ(told(158), "f32 rpm");
+  EXPECT_EQ(told(60052), "f32 rev");
+  EXPECT_EQ(told(146), "i16 0.1 %");
+  EXPECT_EQ(told(194), "u32 0.001 rpm");
+  EXPECT_EQ(told(120), "u32 ");
+  // The rows of design A13, and no others.
+  std::set<int> floats;
+  for (const MapEntry& entry : entries)
+    if (entry.type == "f32" && entry.address < 200) floats.insert(entry.address - 100);
+  EXPECT_EQ(floats, (std::set<int>{2, 4, 8, 42, 44, 48, 50, 52, 58, 62, 64, 66, 68, 70, 72, 74, 76, 78}));
+  EXPECT_EQ(nlohmann::json::parse(map_text(map, MapFormat::json))["numbers"], "float");
+  EXPECT_NE(map_text(map, MapFormat::table).find("f32: IEEE 754"), std::string::npos);
+}
+
 TEST(MapListing, NamesTheBusOfBusRowsAndNoAxis) {
   const auto entries = map_entries(two_axes());
   const MapEntry* entry = find(entries, "holding", 50104);
@@ -131,11 +159,68 @@ TEST(MapListing, MarkdownAndTableCarryTheSameRows) {
   EXPECT_EQ(lines(table), rows + 1 + 4) << "a heading, and four lines of titles";
 }
 
+// Each line is one that the grammar of IEC 61131-3 allows, no identifier is there twice (they have no cases), and no
+// two variables share a register.
+TEST(MapListing, AsStructuredTextDeclaresEachRowOnceAtItsRegisters) {
+  ListedMap map = two_axes();
+  map.buses[1] = "a (* bus *) called\nso";
+  map.float_numbers = true;
+  const std::string kName = "([a-z][a-z0-9]*(?:_[a-z0-9]+)*)";
+  const std::regex constant("  " + kName + " : UINT := ([0-9]+);");
+  const std::regex variable("  " + kName + R"( AT %(MW|MD)([0-9]+) : (INT|UINT|DINT|UDINT|REAL);  \(\* .* \*\))");
+  const std::regex whole_comment(R"(\(\* .* \*\))");
+  std::set<std::string> names;
+  std::set<int> registers;
+  std::istringstream text(map_text(map, MapFormat::structured_text));
+  for (std::string line; std::getline(text, line);) {
+    std::smatch found;
+    const auto at = line.find("(* ");
+    EXPECT_TRUE(at == std::string::npos || line.find("*)") == line.size() - 2) << line;
+    if (std::regex_match(line, found, constant)) {
+      EXPECT_TRUE(names.insert(found[1]).second) << line;
+      EXPECT_LE(std::stoi(found[2]), 65535);
+    } else if (std::regex_match(line, found, variable)) {
+      EXPECT_TRUE(names.insert(found[1]).second) << line;
+      const bool pair = found[2] == "MD";
+      const bool wide = found[4] == "DINT" || found[4] == "UDINT" || found[4] == "REAL";
+      EXPECT_EQ(pair, wide) << line;
+      const int first = std::stoi(found[3]) * (pair ? 2 : 1);
+      for (int part = 0; part < (pair ? 2 : 1); ++part) EXPECT_TRUE(registers.insert(first + part).second) << line;
+    } else {
+      EXPECT_TRUE(line.empty() || line == "VAR_GLOBAL" || line == "VAR_GLOBAL CONSTANT" || line == "END_VAR" ||
+                  std::regex_match(line, whole_comment))
+          << line;
+    }
+  }
+  std::size_t holding = 0;
+  for (const MapEntry& entry : map_entries(map)) holding += entry.table == "holding" ? 1U : 0U;
+  EXPECT_EQ(names.size(), map_entries(map).size() + holding);
+}
+
+TEST(MapListing, AsStructuredTextSaysWhatARowIs) {
+  ListedMap map = two_axes();
+  const std::string st = map_text(map, MapFormat::structured_text);
+  EXPECT_NE(st.find("(* axis1: lift, on lift-serial *)\n"), std::string::npos);
+  EXPECT_NE(st.find("  axis1_position_actual_adr : UINT := 102;\n"), std::string::npos);
+  EXPECT_NE(st.find("  axis1_coil_start_absolute_adr : UINT := 104;\n"), std::string::npos);
+  EXPECT_NE(st.find("  axis5_position_actual AT %MD251 : DINT;  (* r, 1/360 rev *)\n"), std::string::npos);
+  EXPECT_NE(st.find("  axis1_target_torque AT %MW146 : INT;  (* rw, 0.1 % *)\n"), std::string::npos);
+  EXPECT_NE(st.find("  axis1_owner AT %MW128 : UINT;  (* r: 0 nobody, 1 this client, 2 another *)\n"),
+            std::string::npos);
+  EXPECT_NE(st.find("  axis1_motor_temperature AT %MW116 : INT;  (* r, not on this drive, 0.1 degC *)\n"),
+            std::string::npos);
+  EXPECT_NE(st.find("  bus1_link AT %MW50100 : UINT;"), std::string::npos);
+  map.float_numbers = true;
+  EXPECT_NE(map_text(map, MapFormat::structured_text).find("  axis1_target_position AT %MD71 : REAL;  (* rw, rev *)\n"),
+            std::string::npos);
+}
+
 TEST(MapListing, KnowsItsFormatsByName) {
   EXPECT_EQ(map_format_named("json"), MapFormat::json);
   EXPECT_EQ(map_format_named("csv"), MapFormat::csv);
   EXPECT_EQ(map_format_named("md"), MapFormat::markdown);
   EXPECT_EQ(map_format_named("table"), MapFormat::table);
+  EXPECT_EQ(map_format_named("st"), MapFormat::structured_text);
   EXPECT_FALSE(map_format_named("xml").has_value());
 }
 

@@ -83,6 +83,10 @@ constexpr Printed kAxis[] = {
     {84, "object_data", u32, true, -1},
     {86, "object_status", u16, false, -1},
     {88, "object_detail", u32, false, -1},
+    {90, "units_per_rev_numerator", u32, false, -1},
+    {92, "units_per_rev_denominator", u32, false, -1},
+    {94, "rated_speed", u32, false, -1},
+    {96, "owner_address", u32, false, -1},
 };
 constexpr Printed kOverview[] = {
     {0, "statusword", u16, false, 0},      {1, "mode_display", i16, false, 1},  {2, "position_actual", i32, false, 2},
@@ -143,7 +147,7 @@ TEST(RegisterMap, ARowIsFoundByEachOfItsRegisters) {
   EXPECT_EQ(axis.covering(2), axis.covering(3));
   EXPECT_EQ(axis.covering(3)->name, "position_actual");
   EXPECT_EQ(axis.covering(0)->name, "statusword");
-  for (const int offset : {39, 57, 61, 87, 90, 99, 100, 60000}) {
+  for (const int offset : {39, 57, 61, 87, 98, 99, 100, 60000}) {
     EXPECT_EQ(axis.covering(static_cast<std::uint16_t>(offset)), nullptr) << offset;
   }
 }

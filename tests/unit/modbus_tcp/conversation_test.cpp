@@ -15,6 +15,7 @@
 //   waited longest, or second longest, ends reply ok                    the next reply that has come by now +100ms
 //   panel leaves       time passes; a connection ends slow, lacks max_torque      the rest is in Player::setting(): how
 //   port, listener and axis 1 are, or what is counted
+//   logged -, logged some, logged a line      what was logged at info and above since the last time
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -92,6 +93,12 @@ class Player {
     const bool named = std::find(std::begin(kOthers), std::end(kOthers), words[0]) != std::end(kOthers);
     if (words[0] == "asked") {
       EXPECT_EQ(desk_.asked(), trimmed(whole.substr(5)));
+    } else if (words[0] == "logged") {
+      const std::string lines = desk_.logged();
+      if (words[1] == "some")
+        EXPECT_NE(lines, "-");
+      else
+        EXPECT_EQ(lines, trimmed(whole.substr(6)));
     } else if (words[0] == "next") {
       desk_.port.at_once.push_back(result_of(words));
     } else if (words[0] == "done") {
@@ -99,14 +106,15 @@ class Player {
     } else if (words[0].ends_with("nd") || words[0].ends_with("th")) {
       desk_.port.finish_with(result_of(words), std::stoul(words[0]) - 1);
     } else if (words[0][0] == '+') {
-      desk_.runtime.advance_by(std::stoi(words[0]) * (words[0].ends_with("ms") ? Duration(1ms) : Duration(1s)));
+      pass(std::stoi(words[0]) * (words[0].ends_with("ms") ? Duration(1ms) : Duration(1s)));
     } else if (!setting(words)) {
       speak(named ? words[0] : "plc", named ? trimmed(whole.substr(words[0].size())) : whole);
     }
   }
 
  private:
-  /// "done", "next refused_by_drive 3 abort 08000000", "done = DEADBEEF", "next text axisdrive".
+  /// "done", "next refused_by_drive 3 abort 08000000", "next bad_value row 42", "done = DEADBEEF", "next text
+  /// axisdrive".
   static GroupResult result_of(const std::vector<std::string>& words) {
     const auto number = [&](std::size_t at) {
       return words.size() > at ? static_cast<std::uint32_t>(std::stoul(words[at], nullptr, 16)) : 0U;
@@ -117,6 +125,9 @@ class Player {
     if (words[1] == "text") {
       const std::string content = words.size() > 2 ? words[2] : "";
       result.object_bytes = std::make_shared<const std::vector<Byte>>(content.begin(), content.end());
+    } else if (words.size() > 3 && words[2] == "row") {
+      result.outcome.code = errc_named(words[1]);
+      result.refused_row = static_cast<std::uint16_t>(std::stoi(words[3]));
     } else {
       result.outcome = {errc_named(words[1]), number(2)};
       result.abort_code = number(4);
@@ -137,6 +148,9 @@ class Player {
         {"by-address", [&] { desk_.settings.client_is_address = true; }},
         {"per-axis", [&] { desk_.settings.per_axis_units = true; }},
         {"low-first", [&] { desk_.settings.low_word_first = true; }},
+        {"float", [&] { desk_.settings.float_numbers = true; }},
+        {"staged", [&] { desk_.settings.staged_halves = true; }},
+        {"units", [&] { axis.units_per_rev = Rational(number(), number(2)); }},
         {"offline-reads-fail", [&] { desk_.settings.offline_reads_fail = true; }},
         {"unit", [&] { unit_ = static_cast<std::uint8_t>(number()); }},
         {"add", [&] { desk_.image.add_axis(static_cast<AxisNumber>(number()), "far", 0); }},
@@ -168,6 +182,13 @@ class Player {
     const auto found = settings.find(words[0]);
     if (found != settings.end()) found->second();
     return found != settings.end();
+  }
+
+  void pass(Duration time) {
+    desk_.runtime.advance_by(time);
+    if (!desk_.settings.staged_halves) return;  // no deadline but that of a half is looked at here
+    for (const auto& [name, line] : clients_)
+      if (line->session().next_deadline() <= desk_.runtime.now()) line->session().on_deadline(desk_.runtime.now());
   }
 
   Line& client(const std::string& name) {

@@ -47,11 +47,16 @@ TEST_F(Identification, RegularAddsNamesAndLeavesOutWhatThereIsNot) {
 
 TEST_F(Identification, ExtendedAddsWhatIsOurs) {
   const auto objects = objects_in(plc.ask("2B 0E 03 00"));
-  ASSERT_EQ(objects.size(), 10U);
+  ASSERT_EQ(objects.size(), 12U);
   EXPECT_EQ(objects[6], "80 3");
   EXPECT_EQ(objects[7], "81 1");
   EXPECT_EQ(objects[8], "82 high-first");
   EXPECT_EQ(objects[9], "83 flat");
+  EXPECT_EQ(objects[10], "84 integer");
+  EXPECT_EQ(objects[11], "85 refused");
+  desk.settings.float_numbers = desk.settings.staged_halves = true;
+  const auto of_a_panel = objects_in(plc.ask("2B 0E 03 84"));
+  EXPECT_EQ(of_a_panel, (std::vector<std::string>{"84 float", "85 staged"}));
 }
 
 TEST_F(Identification, AStreamBeginsAtTheObjectAskedForOrAtTheFirst) {

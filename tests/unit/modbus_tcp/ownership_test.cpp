@@ -29,6 +29,24 @@ TEST_F(OwnerRegisters, TellAlsoOfAnAxisThatIsOffline) {
   EXPECT_EQ(plc.ask("02 00 6F 00 01"), "02 01 01");
 }
 
+TEST_F(OwnerRegisters, TellTheOwnersAddress) {
+  EXPECT_EQ(plc.read(196, 2), "00 00 00 00") << "nobody";
+  desk.axis(1).lease = {.owner = plc.life(), .running = true, .renewed = desk.runtime.now()};
+  EXPECT_EQ(panel.read(196, 2), "C0 A8 01 07");
+  EXPECT_EQ(plc.read(196, 2), "C0 A8 01 07");
+  EXPECT_EQ(panel.read(296, 2), "00 00 00 00") << "another axis";
+  const Address v6{0x20, 0x01, 0x0D, 0xB8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
+  Line far{desk, Role::engineer, v6};
+  desk.axis(1).lease.owner = far.life();
+  EXPECT_EQ(panel.read(128, 1), "00 02");
+  EXPECT_EQ(panel.read(196, 2), "00 00 00 00") << "not IPv4";
+  ClientLife writer;  // of DDS, with a GUID that looks like an address
+  writer.origin = kPlc;
+  writer.strength = 0;
+  desk.axis(1).lease.owner = std::make_shared<const ClientLife>(writer);
+  EXPECT_EQ(panel.read(196, 2), "00 00 00 00");
+}
+
 TEST_F(OwnerRegisters, TellHowLongTheLeaseStillRuns) {
   Lease& lease = desk.axis(1).lease;
   lease = {.owner = plc.life(), .running = true, .renewed = desk.runtime.now()};

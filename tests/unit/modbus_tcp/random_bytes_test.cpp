@@ -105,6 +105,8 @@ void play(std::uint64_t seed) {
   desk.settings.offline_reads_fail = random.chance(1, 4);
   desk.settings.low_word_first = random.chance(1, 2);
   desk.settings.per_axis_units = random.chance(1, 4);
+  desk.settings.float_numbers = seed % 2 == 0;
+  desk.settings.staged_halves = seed % 3 == 0;
   Line plc(desk, static_cast<Role>(random.below(4)));
   std::deque<Byte> asked;
   std::vector<Byte> stream;

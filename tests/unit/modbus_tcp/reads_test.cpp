@@ -46,6 +46,28 @@ TEST_F(Reads, TheOtherRowsOfTheAxisBlockShowTheAxis) {
   EXPECT_EQ(plc.read(138), "00 2D");
 }
 
+TEST_F(Reads, TellThePositionUnitOfTheAxisAndTheMotorsSpeed) {
+  EXPECT_EQ(plc.read(190, 8), words(10000) + " " + words(1) + " FF FF FF FF 00 00 00 00") << "not known, and nobody";
+  desk.axis(1).units_per_rev = Rational(60000, 37);
+  desk.axis(1).rated_speed = 3'000'000;
+  EXPECT_EQ(plc.read(190, 6), words(60000) + " " + words(37) + " " + words(3'000'000));
+  EXPECT_EQ(plc.read(290, 6), words(10000) + " " + words(1) + " FF FF FF FF") << "another axis";
+  desk.settings.low_word_first = true;
+  EXPECT_EQ(plc.read(194, 2), "C6 C0 00 2D");
+  desk.settings.per_axis_units = true;
+  EXPECT_EQ(plc.read(94, 2, 1), "C6 C0 00 2D");
+  EXPECT_EQ(plc.read(94, 2, 2), "FF FF FF FF");
+  desk.axis(1).link_state = LinkState::offline;
+  EXPECT_EQ(plc.read(94, 2, 1), "C6 C0 00 2D") << "no value of the drive's";
+}
+
+TEST_F(Reads, TheRowsFrom90OnTakeNoWrite) {
+  for (std::uint16_t address = 190; address < 198; address += 2)
+    EXPECT_EQ(plc.write_block(address, words(1)), "90 02") << address;
+  EXPECT_EQ(plc.write(196, 1), "86 02");
+  EXPECT_EQ(desk.asked(), "-");
+}
+
 TEST_F(Reads, AgeIsOfTheOldestCyclicValueAndSaturates) {
   EXPECT_EQ(plc.read(119), "00 00");
   desk.runtime.advance_by(1234ms);

@@ -82,6 +82,15 @@ std::size_t times(const std::string& text, const std::string& part) {
   return found;
 }
 
+TEST(TopCommand, ShowsTheFloatsOfAListenerThatHasThem) {
+  modbus_tcp::ListenerSettings settings;
+  settings.float_numbers = settings.low_word_first = true;
+  const RunningServer server(settings);
+  const Shown shown = shown_by(once(server.endpoint()));
+  EXPECT_EQ(shown.status, 0);
+  EXPECT_THAT(shown.out, AllOf(HasSubstr("  10.0000  "), HasSubstr("  20.0000  "), HasSubstr("  30.0000  ")));
+}
+
 TEST(TopCommand, ShowsOneTableOfAllAxes) {
   const RunningServer server;
   const Shown shown = shown_by(once(server.endpoint()));

@@ -11,6 +11,7 @@
 namespace axisgate::app {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -66,6 +67,19 @@ std::vector<std::string> words(const std::string& line) {
 TEST(TopTable, TellsOfTheGatewayInItsFirstLine) {
   EXPECT_EQ(lines_of(render_table(reading_of({good_axis(1)})))[0],
             "axisgate 127.0.0.1:1502  running  axes online 2 of 2  up 1:02:05  role engineer  alarms: none");
+}
+
+TEST(TopTable, WritesFloatsInTurnsAndRpm) {
+  AxisReading axis = good_axis(1);
+  put32(axis, 2, 0xC1200000);  // -10
+  put32(axis, 4, 0x44BB8000);  // 1500
+  TopReading reading = reading_of({axis});
+  reading.float_numbers = true;
+  EXPECT_THAT(lines_of(render_table(reading)).at(2),
+              AllOf(HasSubstr(" -10.0000 "), HasSubstr(" 1500.000 "), HasSubstr(" -0.5 ")));
+  put32(reading.axes[0], 2, 0x7FC00000);
+  put32(reading.axes[0], 22, 0);
+  EXPECT_THAT(lines_of(render_table(reading)).at(2), AllOf(HasSubstr(" ? "), HasSubstr(" 1500.000? ")));
 }
 
 TEST(TopTable, WritesAnAxisInItsUnits) {

@@ -48,6 +48,12 @@ class Desk {
       out += (out.empty() ? "" : ", ") + (number == 1 ? "" : "axis " + std::to_string(number) + ": ") + told(group);
     return out.empty() ? "-" : out;
   }
+  /// What was logged since the last time, lines between " | "; "-" for nothing.
+  std::string logged() {
+    std::string out;
+    for (const std::string& line : std::exchange(lines_, {})) out += (out.empty() ? "" : " | ") + line;
+    return out.empty() ? "-" : out;
+  }
   SessionContext context() { return {settings, image, port, registry, log, &runtime}; }
 
   static std::string told(const Group& group) {
@@ -89,7 +95,10 @@ class Desk {
   ProcessImage image;
   FakeCommandPort port;
   ClientRegistry registry;
-  Log log;
+  Log log{[this](LogLevel, std::string_view, std::string_view line) { lines_.emplace_back(line); }};
+
+ private:
+  std::vector<std::string> lines_;
 };
 
 /// One connection to the desk.

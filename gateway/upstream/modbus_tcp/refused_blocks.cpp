@@ -1,0 +1,70 @@
+#include "gateway/upstream/modbus_tcp/refused_blocks.hpp"
+
+#include <string>
+
+#include "gateway/image/register_map.hpp"
+
+namespace axisgate::modbus_tcp {
+namespace {
+
+/// ", target_position"; empty where no row or coil is listed there.
+std::string named(const BlockWrite& block, std::uint16_t offset) {
+  if (block.coils) return offset < kCoils ? ", " + std::string(coil_rows()[offset].name) : "";
+  const RegisterRow* const row = register_table(Block::axis).covering(offset);
+  return row == nullptr ? "" : ", " + std::string(row->name);
+}
+
+}  // namespace
+
+bool is_wrong(Errc code) {
+  return code == Errc::bad_value || code == Errc::not_supported || code == Errc::role_forbidden;
+}
+
+BlockWrite block_write(const Request& request, AxisNumber axis) {
+  return {axis, request.write_address, request.write_count, request.writes_coils()};
+}
+
+bool show_refused(ClientAxis& axis, std::uint16_t row) {
+  if (axis.result.result == CommandResult::pending) return false;
+  axis.used = true;
+  axis.result = {CommandResult::none, row_detail(row), 0};
+  ++axis.submission;
+  return true;
+}
+
+void log_refused(const BlockWrite& block, const RefusedRow& refused, Client& client, const Log& log) {
+  ClientAxis& axis = client.at(block.axis);
+  if (axis.refused == refused) return;
+  axis.refused = refused;
+  const std::string what = block.coils ? "coil" : "row";
+  log.write(LogLevel::info, "modbus",
+            client.life->name + ": a block write of " + std::to_string(block.count) +
+                (block.coils ? " coils from " : " registers from ") + std::to_string(block.address) +
+                " is refused at " + what + " " + std::to_string(refused.offset) + " of axis " +
+                std::to_string(block.axis) + named(block, refused.offset) + ": " + std::string(text(refused.why)));
+}
+
+void tell_dropped_half(AxisNumber axis, std::uint16_t row, const char* why, Client& client, const Log& log) {
+  ClientAxis& own = client.at(axis);
+  if (show_refused(own, row)) own.result.result = CommandResult::never_started;
+  const RefusedRow dropped{row, Errc::never_started};
+  if (own.refused == dropped) return;
+  own.refused = dropped;
+  log.write(LogLevel::info, "modbus",
+            client.life->name + ": half of row " + std::to_string(row) + " of axis " + std::to_string(axis) +
+                named({.axis = axis}, row) + ", was written and is dropped: " + why);
+}
+
+void note_whole_row(ClientAxis& axis) {
+  if (axis.refused && axis.refused->why == Errc::never_started) axis.refused.reset();
+}
+
+void note_block_done(ClientAxis& axis) { axis.refused.reset(); }
+
+std::uint16_t coil_of(Command command) {
+  for (const CoilRow& coil : coil_rows())
+    if (command != Command::none && (coil.on == command || coil.off == command)) return coil.offset;
+  return 0;
+}
+
+}  // namespace axisgate::modbus_tcp
