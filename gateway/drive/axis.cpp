@@ -55,7 +55,7 @@ void Axis::on_bring_up() {
   core_.offset_owed.reset();
   core_.mode_chosen = false;
   accepted_.forget_parameters();
-  core_.emergency = 0;
+  core_.fault.forget_emergency();
   reference_doubted_ = false;
   core_.homed = false;
   lose_sight();

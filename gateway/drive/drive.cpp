@@ -96,6 +96,7 @@ std::optional<bus::Exchange> Drive::exchange_of(bus::OrderId id, bus::Priority p
     }
     return owner->on_grant(id);
   }
+  if (id == cause_order_) return next_of_causes();
   return id == setup_order_ ? next_of_bring_up() : std::nullopt;
 }
 
@@ -276,6 +277,7 @@ void Drive::on_order_ended(bus::OrderId id, Errc code) {
   for (auto& axis : axes_) axis->on_order_ended(id, code);
   if (id == setup_order_) setup_order_ = 0;
   if (id == keep_alive_order_) keep_alive_order_ = 0;
+  if (id == cause_order_) cause_order_ = 0;
   after_event();
 }
 
@@ -312,6 +314,7 @@ void Drive::bring_up_to_date() {
     next = std::min({next, axis->next_deadline(), stale_deadline(axis->core(), now())});
     if (axis->has_due()) next = now();
   }
+  schedule_causes();
   next = std::min(next, schedule_keep_alive());
   timer_->expires_at(next);
   if (state_ == LinkState::link_down) {

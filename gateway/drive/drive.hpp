@@ -101,6 +101,11 @@ class Drive final : public bus::BusDrive, private AxisHost {
                          ObjectId written, bool trusted);
   void map_unasked();
   [[nodiscard]] std::optional<bus::Exchange> next_of_bring_up();
+  // What names a fault (drive_causes.cpp).
+  [[nodiscard]] std::optional<ObjectId> cause_to_read();
+  [[nodiscard]] std::optional<bus::Exchange> next_of_causes();
+  [[nodiscard]] bool causes_are_open() const;
+  void schedule_causes();
   /// A long object is under way in another order: an order that can wait does, any other ends it.
   [[nodiscard]] bool waits_for_chain(bus::OrderId id, bus::Priority priority);
   [[nodiscard]] bool chain_open() const;
@@ -149,6 +154,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   ControlFrame frame_;
   KeepAlive keep_alive_;
   bus::OrderId keep_alive_order_ = 0;
+  bus::OrderId cause_order_ = 0;
   bus::Backoff backoff_;
   bus::Backoff start_backoff_;  ///< between two set-ups of a node that does not become operational
   std::vector<std::unique_ptr<Axis>> axes_;

@@ -9,6 +9,12 @@ namespace axisgate::drive {
 std::optional<bus::Exchange> Drive::next_of_bring_up() {
   const auto next = bring_up_.next(store_);
   if (!next) {
+    // A drive that was found faulted comes online with the cause of it.
+    if (causes_are_open()) {
+      if (const auto object = cause_to_read()) return next_of_causes();
+      bus_.wait(setup_order_, now() + kCausePause);
+      return std::nullopt;
+    }
     end_bring_up();
     return std::nullopt;
   }

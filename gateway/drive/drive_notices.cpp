@@ -118,12 +118,13 @@ void Drive::on_values(const bus::ReplyFields& fields) {
 
 // The code may be all that is told (faults.md row 12): what the fault words say is asked for at once.
 void Drive::on_emergency(const bus::Notice& notice) {
-  for (auto& axis : axes_) axis->on_emergency(notice.code);
+  for (auto& axis : axes_) axis->on_emergency(notice.code, now());
   std::string text = notice.code == 0 ? std::string("EMCY 0x0000: the errors are over")
                                       : fmt::format("EMCY 0x{:04X}, error register 0x{:02X}, {}", notice.code,
                                                     notice.error_register, hex_text(notice.vendor));
   if (notice.repeats > 0) text += fmt::format(" ({} more were left out)", notice.repeats);
-  tell_all(notice.code == 0 ? EventKind::warning : EventKind::fault, notice.code, text);
+  // Whether it is a fault the statusword tells, and then its cause is told once.
+  tell_all(EventKind::warning, notice.code, text);
   for (const AxisModel& axis : model_.axes) {
     for (const ObjectId id : axis.state_sources) plan_.hurry(id, now());
     for (const ObjectId id : axis.fault_words)
