@@ -90,7 +90,8 @@ void Axis::tell_changes(const AxisImage& before) {
   const std::uint32_t raised = image_.alarms & ~before.alarms;
   for (std::size_t i = 0; i < kAxisAlarmCount; ++i) {
     const auto alarm = static_cast<AxisAlarm>(i);
-    if ((raised & bit(alarm)) != 0)
+    const bool told = alarm == AxisAlarm::profile_mismatch;  // by its drive, with what it lacks
+    if ((raised & bit(alarm)) != 0 && !told)
       host_.event(image_.number, EventKind::warning, static_cast<std::uint32_t>(i), alarm_text(core_, alarm));
   }
 }

@@ -136,6 +136,11 @@ std::optional<bus::Exchange> Drive::probe() {
     probe_due_ = now() + backoff_.next();
     return nmt(model_.node, NmtCommand::enter_pre_operational);
   }
+  // A call that nobody has answered is a timeout as well, but it kept nobody from the wire.
+  if (state_ == LinkState::unknown && !heard_ && calls_ > 0 && ++mute_ >= kMuteTimeouts) {
+    go_offline();
+    return std::nullopt;
+  }
   if (is_canopen(model_) && asked_ && !heard_ && calls_ < kCallsPerQuestion && bus_.call(model_.node)) {
     ++calls_;
     probe_due_ = now() + backoff_.next();

@@ -119,6 +119,9 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void begin_bring_up(bool restarted);
   void carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result);
   void end_bring_up();
+  [[nodiscard]] std::string lacking(ObjectId object) const;
+  void tell_mismatch(const std::string& lacks);
+  void judge_profile();
   void judge_checks();
   void judge_loss_reaction();
   void leave_adoption();
@@ -163,6 +166,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   OnWire on_wire_;
   bus::OrderId setup_order_ = 0;
   int mute_ = 0;
+  std::string lacks_;  ///< what its profile needs and it refuses
   std::uint64_t doubts_seen_ = 0;
   Instant probe_due_ = kNever;
   bool adopted_ = false;

@@ -74,7 +74,7 @@ void Drive::on_present(bus::NodeState state) {
     return;
   }
   // A drive that was adopted, or is another than configured, was never told to start.
-  const bool was_started = !adopted_ && bring_up_.mismatch().empty();
+  const bool was_started = !adopted_ && bring_up_.mismatch().empty() && lacks_.empty();
   const bool left = state == bus::NodeState::pre_operational || state == bus::NodeState::stopped;
   if (left && was_started && brought_up() && !fell_back_ && now() - started_at_ > kNmtSettles) left_operational(state);
 }

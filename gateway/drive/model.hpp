@@ -273,6 +273,11 @@ struct AxisModel {
   std::uint16_t supported_modes = 0;
 
   [[nodiscard]] const Binding* binding(Quantity q) const;
+  /// Without this object nobody can say what the axis does: its statusword, or what a virtual axis makes it from.
+  [[nodiscard]] bool needs_for_state(ObjectId object) const {
+    if (!virtual_axis) return object == statusword;
+    return object == virtual_axis->enabled.object || object == virtual_axis->fault.object;
+  }
   [[nodiscard]] const std::optional<CommandDef>& command(Command c) const {
     return commands[static_cast<std::size_t>(c)];
   }
@@ -371,6 +376,16 @@ struct DriveModel {
 
   [[nodiscard]] const ObjectDef& object(ObjectId id) const { return objects[id]; }
   [[nodiscard]] ObjectId find(bus::ObjectAddress address) const;  ///< kNoObject where no object has it
+  [[nodiscard]] bool needs_for_state(ObjectId object) const {
+    return std::any_of(axes.begin(), axes.end(), [object](const AxisModel& axis) { return axis.needs_for_state(object); });
+  }
+  /// Without this object nothing may move: what needs_for_state() says, and the position.
+  [[nodiscard]] bool needs(ObjectId object) const {
+    return needs_for_state(object) || std::any_of(axes.begin(), axes.end(), [object](const AxisModel& axis) {
+             const Binding* position = axis.binding(Quantity::position_actual);
+             return position != nullptr && position->object == object;
+           });
+  }
 };
 
 [[nodiscard]] inline bool is_canopen(const DriveModel& model) { return model.protocol == "canopen"; }

@@ -55,8 +55,10 @@ Duration stale_after(const AxisCore& core, const Binding& binding) {
   };
   mapped(binding.object);
   for (const BitField& field : binding.bits) mapped(field.object);
-  if (binding.quantity == Quantity::error_code)
+  if (binding.quantity == Quantity::error_code) {
+    mapped(core.model.statusword);
     for (const ObjectId word : core.model.fault_words) mapped(word);
+  }
   return std::max(kStaleAtLeast, 3 * period);
 }
 
@@ -120,7 +122,8 @@ std::uint16_t inputs_of(const AxisCore& core, const AxisImage& image, const Axis
   const bool limits_valid = image[Quantity::digital_inputs].valid;
   constexpr std::int64_t kLimitInputs = 0x3;
   const bool ready =
-      !facts.faulted() && !core.alarm(AxisAlarm::local_control) && !core.alarm(AxisAlarm::identity_mismatch);
+      !facts.faulted() && !core.alarm(AxisAlarm::local_control) && !core.alarm(AxisAlarm::identity_mismatch) &&
+      !core.alarm(AxisAlarm::profile_mismatch);
   std::uint16_t out = 0;
   const auto set = [&](AxisInput input, bool on) { out = on ? static_cast<std::uint16_t>(out | bit(input)) : out; };
   set(AxisInput::stop_latched, core.motion.latched());

@@ -33,6 +33,8 @@ std::string_view text(AxisAlarm alarm) {
       return "clamped";
     case AxisAlarm::stop_options:
       return "stop_options";
+    case AxisAlarm::profile_mismatch:
+      return "profile_mismatch";
   }
   return "?";
 }

@@ -178,6 +178,120 @@ TEST_P(Causes, AFaultThatIsThereAtTheStartIsShownWithItsCause) {
   }
 }
 
+// A lost answer delays both together, and what is known late is told all the same.
+TEST_P(Causes, ALostAnswerPartsNoFaultFromItsCause) {
+  const auto causes = causes_of(GetParam());
+  for (int i = 0; i < 12; ++i) {
+    SCOPED_TRACE(i);
+    ready();
+    plant_->run(i * 11ms);
+    const std::uint64_t from = told_until_now();
+    trip(causes[0]);
+    plant_->run(i % 4 * 2ms);
+    ASSERT_TRUE(plant_->strike(i % 2 == 0 ? Strike::lose_reply : Strike::lose_request));
+    EXPECT_EQ(wrong_until_shown(), "");
+    plant_->run(1500ms);
+    const auto told = faults_told(from);
+    ASSERT_EQ(told.size(), 1U) << texts(told);
+    EXPECT_NE(told.front().text.find(causes[0].text), std::string::npos) << told.front().text;
+    EXPECT_EQ(axis()[Quantity::error_code].value, causes[0].code);
+  }
+}
+
+constexpr std::uint16_t kGeneric = 0x1000;
+
+class CausesUnnamed : public Causes {};
+
+// "0x1000 only if the drive has named no cause within 500 ms".
+TEST_P(CausesUnnamed, ADriveThatRefusesItsFaultWordsIsShownFaultedAfterHalfASecond) {
+  plant_.emplace(GetParam());
+  lack(plant_->stage, GetParam(), {{0x2601}, {0x2602}, {0x603F}});
+  const bool on_can = GetParam() == Subject::leadshine || GetParam() == Subject::jd_can || GetParam() == Subject::md_can;
+  if (on_can) plant_->stage.can_node(0).facts().sends_emergencies = false;
+  plant_->ready();
+  const std::uint64_t from = told_until_now();
+  const Instant tripped = plant_->stage.runtime().now();
+  trip(causes_of(GetParam())[0]);
+  ASSERT_TRUE(plant_->stage.run_until([this] { return axis().has(AxisInput::fault); }, 3s));
+  EXPECT_GE(plant_->stage.runtime().now() - tripped, 500ms);
+  EXPECT_LE(plant_->stage.runtime().now() - tripped, 1000ms);
+  EXPECT_EQ(axis()[Quantity::error_code].value, kGeneric);
+  EXPECT_TRUE(axis()[Quantity::error_code].valid);
+  plant_->run(2s);
+  ASSERT_EQ(faults_told(from).size(), 1U) << texts(faults_told(from));
+  EXPECT_NE(faults_told(from).front().text.find("names no cause"), std::string::npos);
+  EXPECT_EQ(plant_->motor().enabled, false);
+}
+
+class CausesOnCan : public Causes {};
+
+TEST_P(CausesOnCan, ALostEmergencyIsNotMissed) {
+  ready();
+  plant_->stage.can_node(0).facts().sends_emergencies = false;
+  const auto causes = causes_of(GetParam());
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::uint64_t from = told_until_now();
+    trip(causes.at(i % 2));
+    EXPECT_EQ(wrong_until_shown(), "");
+    expect_shown(causes.at(i % 2), from);
+    reset();
+  }
+}
+
+// What it sends is all that it tells, and of the fault before it tells nothing.
+TEST_P(CausesOnCan, AnEmergencyNamesTheFaultOfADriveThatRefusesItsWords) {
+  plant_.emplace(GetParam());
+  lack(plant_->stage, GetParam(), {{0x2601}, {0x2602}, {0x603F}});
+  plant_->ready();
+  const auto causes = causes_of(GetParam());
+  for (std::size_t i = 0; i < 3; ++i) {
+    SCOPED_TRACE(i);
+    if (i == 2) plant_->stage.can_node(0).facts().sends_emergencies = false;
+    const std::uint64_t from = told_until_now();
+    trip(causes.at(i % 2));
+    ASSERT_TRUE(plant_->stage.run_until([this] { return axis().has(AxisInput::fault); }, 3s));
+    EXPECT_EQ(axis()[Quantity::error_code].value, i == 2 ? kGeneric : causes.at(i).code);
+    plant_->run(1s);
+    const auto told = faults_told(from);
+    ASSERT_EQ(told.size(), 1U) << texts(told);
+    EXPECT_NE(told.front().text.find(i == 2 ? std::string("names no cause") : causes.at(i).text), std::string::npos)
+        << told.front().text;
+    EXPECT_EQ(told.front().code, axis()[Quantity::error_code].value);
+    if (i == 1) plant_->stage.can_node(0).facts().sends_emergencies = false;  // nor does it say that the error is over
+    ASSERT_EQ(plant_->a.command(0), kOk);
+    ASSERT_EQ(plant_->a.command(kReset), kOk);
+    EXPECT_EQ(axis()[Quantity::error_code].value, 0);
+  }
+}
+
+class CausesOfTheMd : public Causes {};
+
+// The first word says "see the second": the gateway has it.
+TEST_P(CausesOfTheMd, TheSecondFaultWordSpeaks) {
+  ready();
+  const bool readable = GetParam() != Subject::md_rtu;  // it has no Modbus address (MD 3)
+  constexpr std::uint16_t kWatchdog = 0x0002, kNotPrinted = 0x1000;
+  for (const std::uint16_t bits : {kWatchdog, kNotPrinted}) {
+    const std::uint64_t from = told_until_now();
+    plant_->stage.drive(0).inject_fault(2, bits);
+    plant_->stage.drive(0).clear_fault_cause(2, bits);
+    ASSERT_TRUE(plant_->stage.run_until([this] { return axis().has(AxisInput::fault); }, 3s));
+    plant_->run(1s);
+    ASSERT_EQ(faults_told(from).size(), 1U) << texts(faults_told(from));
+    const std::string told = faults_told(from).front().text;
+    EXPECT_EQ(told.find("software watchdog") != std::string::npos, readable && bits == kWatchdog) << told;
+    EXPECT_EQ(told.find(bits == kWatchdog ? "0x0002" : "0x1000") != std::string::npos, readable) << told;
+    EXPECT_EQ(told.find("read 2602"), std::string::npos) << told;
+    reset();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, CausesUnnamed,
+                         testing::ValuesIn(subjects([](Subject s) { return is_cia402(s); })), named);
+INSTANTIATE_TEST_SUITE_P(Every, CausesOnCan,
+                         testing::Values(Subject::jd_can, Subject::md_can, Subject::leadshine), named);
+INSTANTIATE_TEST_SUITE_P(Every, CausesOfTheMd,
+                         testing::Values(Subject::md_serial, Subject::md_rtu, Subject::md_can), named);
 INSTANTIATE_TEST_SUITE_P(Every, Causes, testing::ValuesIn(kSubjects), named);
 
 }  // namespace
