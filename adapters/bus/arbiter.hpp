@@ -1,7 +1,7 @@
 // The arbiter of one bus: the only queue to a wire. Pure: orders and instants go in, one grant at a time comes out.
-// Promises at most one exchange outstanding; stop before cause before command before interactive before setup before poll; turns
-// between drives inside a class; every fifth exchange to poll when one is due; each order ends exactly once; every
-// queue bounded. Never looks at a clock or a wire, and never repeats anything.
+// Promises at most one exchange outstanding; stop before cause before command before interactive before setup before
+// poll; turns between drives inside a class; every fifth exchange to poll when one is due; each order ends exactly
+// once; every queue bounded. Never looks at a clock or a wire, and never repeats anything.
 #pragma once
 
 #include <algorithm>

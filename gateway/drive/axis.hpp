@@ -60,6 +60,8 @@ class Axis {
   /// What is to be read next so that a fault can be shown with its cause; and it goes on the wire.
   [[nodiscard]] std::optional<ObjectId> cause_to_read(Instant now) const { return core_.fault.next(now); }
   void cause_asked(Instant now) { core_.fault.asked(now); }
+  /// What came by itself shows the end of the motion, and a read must settle it.
+  [[nodiscard]] bool end_wants_sample() const { return core_.motion.end_wants_sample(core_.facts()); }
   /// The axis has shown a fault until now; told once.
   [[nodiscard]] bool fault_is_over() { return core_.fault.take_over(); }
   /// It says that it has started anew: no motor of it has torque.

@@ -320,6 +320,7 @@ void Drive::bring_up_to_date() {
     if (axis->has_due()) next = now();
   }
   schedule_causes();
+  watch_positions();
   next = std::min(next, schedule_keep_alive());
   timer_->expires_at(next);
   if (state_ == LinkState::link_down) {

@@ -24,6 +24,8 @@ class Drive final : public bus::BusDrive, private AxisHost {
   /// A mute drive is offline after this many timeouts in a row.
   static constexpr int kMuteTimeouts = 3;
   static constexpr int kCallsPerQuestion = 4;
+  /// A position that comes by TPDO is read after so long without one while its axis moves.
+  static constexpr Duration kMovingConfirm = std::chrono::milliseconds(250);
   /// Alarm duplicate_node stands so long after the last sign of a twin: a second SDO client that asks for the same
   /// object at the same time looks like one, once.
   static constexpr Duration kTwinStands = std::chrono::seconds(60);
@@ -134,6 +136,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void left_operational(bus::NodeState state);
   [[nodiscard]] bool may_be_set_up_anew() const;
   void map_values();
+  void watch_positions();
   void unmap_values();
   void tell_all(EventKind kind, std::uint32_t code, const std::string& text);
   void set_state(LinkState state);

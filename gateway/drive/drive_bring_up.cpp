@@ -94,11 +94,12 @@ void Drive::tell_mismatch(const std::string& lacks) {
   const bool news = lacks != std::exchange(lacks_, lacks) && !lacks.empty();
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::profile_mismatch, !lacks.empty());
   if (!news) return;
-  tell_all(EventKind::warning, static_cast<std::uint32_t>(AxisAlarm::profile_mismatch),
-           fmt::format("profile_mismatch: the device refuses {}, which profile {} needs: nothing moves it. Put the drive "
-                       "in that the configuration names, or correct its \"profile\" or \"node\"; reads by mailbox and "
-                       "43/13 tell what it is",
-                       lacks, model_.profile));
+  tell_all(
+      EventKind::warning, static_cast<std::uint32_t>(AxisAlarm::profile_mismatch),
+      fmt::format("profile_mismatch: the device refuses {}, which profile {} needs: nothing moves it. Put the drive "
+                  "in that the configuration names, or correct its \"profile\" or \"node\"; reads by mailbox and "
+                  "43/13 tell what it is",
+                  lacks, model_.profile));
 }
 
 void Drive::judge_profile() {

@@ -113,7 +113,21 @@ void Drive::on_values(const bus::ReplyFields& fields) {
     store_.read(id, model_.object(id).number(field.raw), now());
     plan_.received(id, now());
   }
-  for (auto& axis : axes_) axis->on_samples();
+  for (auto& axis : axes_) {
+    axis->on_samples();
+    if (!axis->end_wants_sample()) continue;
+    for (const ObjectId id : axis->core().model.state_sources) plan_.hurry(id, now());
+  }
+}
+
+// Where it is while it moves must not hang on a TPDO that has failed to come.
+void Drive::watch_positions() {
+  for (auto& axis : axes_) {
+    const Binding* position = axis->core().model.binding(Quantity::position_actual);
+    if (position == nullptr || position->object == kNoObject || !mapped_[position->object]) continue;
+    const bool moves = axis->core().motion.running() != MotionKind::none || axis->core().facts().moving;
+    plan_.confirm_within(position->object, moves ? std::optional(kMovingConfirm) : std::nullopt, now());
+  }
 }
 
 // The code may be all that is told (faults.md row 12): what the fault words say is asked for at once.

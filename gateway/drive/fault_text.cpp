@@ -33,7 +33,8 @@ void add_words(const AxisCore& core, const AxisModel& axis, bool own, std::strin
 
 }  // namespace
 
-// A remedy may send its reader to another word of the drive: all of them stand behind it, of other motors what is not 0.
+// A remedy may send its reader to another word of the drive: all of them stand behind it, of other motors what is not
+// 0.
 std::string fault_text(const AxisCore& core) {
   const AlarmRow* row = active_alarm(core);
   std::string out = row != nullptr ? named_by(*row) : named_by_code(core, core.fault.code());

@@ -81,10 +81,10 @@ class FaultWatch {
   bool fresh_ = false;  ///< all that names causes was read after the fault was seen
   bool missed_ = false;
   bool over_ = false;
-  Instant seen_ = kLongAgo;    ///< the newest instant of observe()
-  Instant since_ = kLongAgo;   ///< of the fault
-  std::uint64_t risen_ = 0;    ///< the exchange whose statusword has shown it first
-  std::uint16_t code_ = 0;     ///< what it was named
+  Instant seen_ = kLongAgo;   ///< the newest instant of observe()
+  Instant since_ = kLongAgo;  ///< of the fault
+  std::uint64_t risen_ = 0;   ///< the exchange whose statusword has shown it first
+  std::uint16_t code_ = 0;    ///< what it was named
   Instant ahead_since_ = kLongAgo;
   boost::container::static_vector<std::int64_t, kMaxCauseObjects> settled_;  ///< words that are no fault's, as known
   struct Emergency {

@@ -274,10 +274,7 @@ struct AxisModel {
 
   [[nodiscard]] const Binding* binding(Quantity q) const;
   /// Without this object nobody can say what the axis does: its statusword, or what a virtual axis makes it from.
-  [[nodiscard]] bool needs_for_state(ObjectId object) const {
-    if (!virtual_axis) return object == statusword;
-    return object == virtual_axis->enabled.object || object == virtual_axis->fault.object;
-  }
+  [[nodiscard]] bool needs_for_state(ObjectId object) const;
   [[nodiscard]] const std::optional<CommandDef>& command(Command c) const {
     return commands[static_cast<std::size_t>(c)];
   }
@@ -376,16 +373,9 @@ struct DriveModel {
 
   [[nodiscard]] const ObjectDef& object(ObjectId id) const { return objects[id]; }
   [[nodiscard]] ObjectId find(bus::ObjectAddress address) const;  ///< kNoObject where no object has it
-  [[nodiscard]] bool needs_for_state(ObjectId object) const {
-    return std::any_of(axes.begin(), axes.end(), [object](const AxisModel& axis) { return axis.needs_for_state(object); });
-  }
+  [[nodiscard]] bool needs_for_state(ObjectId object) const;
   /// Without this object nothing may move: what needs_for_state() says, and the position.
-  [[nodiscard]] bool needs(ObjectId object) const {
-    return needs_for_state(object) || std::any_of(axes.begin(), axes.end(), [object](const AxisModel& axis) {
-             const Binding* position = axis.binding(Quantity::position_actual);
-             return position != nullptr && position->object == object;
-           });
-  }
+  [[nodiscard]] bool needs(ObjectId object) const;
 };
 
 [[nodiscard]] inline bool is_canopen(const DriveModel& model) { return model.protocol == "canopen"; }

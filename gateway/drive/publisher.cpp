@@ -121,9 +121,8 @@ std::uint16_t inputs_of(const AxisCore& core, const AxisImage& image, const Axis
   const std::int64_t digital = image[Quantity::digital_inputs].value;
   const bool limits_valid = image[Quantity::digital_inputs].valid;
   constexpr std::int64_t kLimitInputs = 0x3;
-  const bool ready =
-      !facts.faulted() && !core.alarm(AxisAlarm::local_control) && !core.alarm(AxisAlarm::identity_mismatch) &&
-      !core.alarm(AxisAlarm::profile_mismatch);
+  const bool ready = !facts.faulted() && !core.alarm(AxisAlarm::local_control) &&
+                     !core.alarm(AxisAlarm::identity_mismatch) && !core.alarm(AxisAlarm::profile_mismatch);
   std::uint16_t out = 0;
   const auto set = [&](AxisInput input, bool on) { out = on ? static_cast<std::uint16_t>(out | bit(input)) : out; };
   set(AxisInput::stop_latched, core.motion.latched());

@@ -206,7 +206,8 @@ class CausesUnnamed : public Causes {};
 TEST_P(CausesUnnamed, ADriveThatRefusesItsFaultWordsIsShownFaultedAfterHalfASecond) {
   plant_.emplace(GetParam());
   lack(plant_->stage, GetParam(), {{0x2601}, {0x2602}, {0x603F}});
-  const bool on_can = GetParam() == Subject::leadshine || GetParam() == Subject::jd_can || GetParam() == Subject::md_can;
+  const bool on_can =
+      GetParam() == Subject::leadshine || GetParam() == Subject::jd_can || GetParam() == Subject::md_can;
   if (on_can) plant_->stage.can_node(0).facts().sends_emergencies = false;
   plant_->ready();
   const std::uint64_t from = told_until_now();
@@ -286,12 +287,12 @@ TEST_P(CausesOfTheMd, TheSecondFaultWordSpeaks) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, CausesUnnamed,
-                         testing::ValuesIn(subjects([](Subject s) { return is_cia402(s); })), named);
-INSTANTIATE_TEST_SUITE_P(Every, CausesOnCan,
-                         testing::Values(Subject::jd_can, Subject::md_can, Subject::leadshine), named);
-INSTANTIATE_TEST_SUITE_P(Every, CausesOfTheMd,
-                         testing::Values(Subject::md_serial, Subject::md_rtu, Subject::md_can), named);
+INSTANTIATE_TEST_SUITE_P(Every, CausesUnnamed, testing::ValuesIn(subjects([](Subject s) { return is_cia402(s); })),
+                         named);
+INSTANTIATE_TEST_SUITE_P(Every, CausesOnCan, testing::Values(Subject::jd_can, Subject::md_can, Subject::leadshine),
+                         named);
+INSTANTIATE_TEST_SUITE_P(Every, CausesOfTheMd, testing::Values(Subject::md_serial, Subject::md_rtu, Subject::md_can),
+                         named);
 INSTANTIATE_TEST_SUITE_P(Every, Causes, testing::ValuesIn(kSubjects), named);
 
 }  // namespace

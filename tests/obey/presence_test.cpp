@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint8_t kNoPath = 0x0A;
-constexpr std::uint16_t kLinkState = 18, kAlarms = 34;
+constexpr std::uint16_t kLinkStateRow = 18, kAlarmsRow = 34;
 constexpr unsigned kBitOfMismatch = 12;
 
 class Presence : public testing::TestWithParam<Subject> {};
@@ -46,7 +46,9 @@ void PrintTo(const Lacking& lacking, std::ostream* out) { *out << name(lacking.s
 
 class Mismatch : public testing::TestWithParam<Lacking> {
  protected:
-  [[nodiscard]] bool alarmed() { return (static_cast<std::uint32_t>(plant_->a.wide(kAlarms)) >> kBitOfMismatch & 1U) != 0; }
+  [[nodiscard]] bool alarmed() {
+    return (static_cast<std::uint32_t>(plant_->a.wide(kAlarmsRow)) >> kBitOfMismatch & 1U) != 0;
+  }
   [[nodiscard]] std::size_t told() {
     std::size_t count = 0;
     for (const Event& event : plant_->stage.gateway().events().events())
@@ -60,7 +62,8 @@ class Mismatch : public testing::TestWithParam<Lacking> {
     EXPECT_EQ(plant_->a.row(80, 1), kOk);
     plant_->run(1s);
     EXPECT_EQ(plant_->a.word(86), 2) << "done";
-    EXPECT_FALSE(plant_->a.mailbox_write(there.index, there.sub, GetParam().size, 1));
+    EXPECT_FALSE(plant_->a.mailbox_write(there.index, there.sub, GetParam().size, 15))
+        << "an enable, where it is a controlword";
   }
   void expect_nothing_moves() {
     for (const std::int64_t command : {kEnable, kMove, kRun, kRelative})
@@ -86,7 +89,7 @@ TEST_P(Mismatch, ADeviceWithoutAStatuswordIsToldOnceAndReadButNotMoved) {
   plant_->start_gateway();
   plant_->a.connect();
   plant_->run(20s);
-  EXPECT_EQ(plant_->a.word(kLinkState), 1) << "setup";
+  EXPECT_EQ(plant_->a.word(kLinkStateRow), 1) << "setup";
   EXPECT_TRUE(alarmed());
   EXPECT_EQ(told(), 1U);
   expect_nothing_moves();
@@ -122,18 +125,17 @@ TEST_P(Mismatch, ADeviceWithoutAPositionIsToldOnceAndReadButNotMoved) {
   EXPECT_NE(plant_->motor().enabled, false);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Every, Mismatch,
-    testing::Values(Lacking{Subject::jd_serial, {0x6041}, {0x6063}, {0x6040}},
-                    Lacking{Subject::md_serial, {0x6041}, {0x6063}, {0x6040}},
-                    Lacking{Subject::jd_rtu, {0x6041}, {0x6063}, {0x3100}},
-                    Lacking{Subject::md_rtu, {0x6041}, {0x6063}, {0x3100}},
-                    Lacking{Subject::jd_can, {0x6041}, {0x6063}, {0x6040}},
-                    Lacking{Subject::md_can, {0x6041}, {0x6063}, {0x6040}},
-                    Lacking{Subject::leadshine, {0x6041}, {0x6064}, {0x6040}},
-                    Lacking{Subject::id286pro, {108}, {117}, {101}},
-                    Lacking{Subject::id286pro, {109}, {117}, {101}}),
-    [](const auto& tested) { return name(tested.param.subject) + std::to_string(tested.index); });
+INSTANTIATE_TEST_SUITE_P(Every, Mismatch,
+                         testing::Values(Lacking{Subject::jd_serial, {0x6041}, {0x6063}, {0x6040}},
+                                         Lacking{Subject::md_serial, {0x6041}, {0x6063}, {0x6040}},
+                                         Lacking{Subject::jd_rtu, {0x6041}, {0x6063}, {0x3100}},
+                                         Lacking{Subject::md_rtu, {0x6041}, {0x6063}, {0x3100}},
+                                         Lacking{Subject::jd_can, {0x6041}, {0x6063}, {0x6040}},
+                                         Lacking{Subject::md_can, {0x6041}, {0x6063}, {0x6040}},
+                                         Lacking{Subject::leadshine, {0x6041}, {0x6064}, {0x6040}},
+                                         Lacking{Subject::id286pro, {108}, {117}, {101}},
+                                         Lacking{Subject::id286pro, {109}, {117}, {101}}),
+                         [](const auto& tested) { return name(tested.param.subject) + std::to_string(tested.index); });
 
 }  // namespace
 }  // namespace axisgate::test::obey

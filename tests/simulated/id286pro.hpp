@@ -41,7 +41,7 @@ class Id286pro final : public RtuSlave {
 
   // What a world does to it.
   void lack(std::set<std::uint16_t> registers) { lacks_ = std::move(registers); }  // of another type: refused
-  void inject_fault(std::uint16_t code, bool clearable = true);  // the cause stays until cleared
+  void inject_fault(std::uint16_t code, bool clearable = true);                    // the cause stays until cleared
   void clear_fault_cause() { cause_ = 0; }
   void set_enable_switch(bool on);  // the hard-wired one: off frees the motor
   void set_input(int input, bool on);

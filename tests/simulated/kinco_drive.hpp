@@ -45,7 +45,7 @@ class KincoDrive {
   void clear_fault_cause(int error_word, std::uint16_t bits);
   void trip(std::uint16_t word_1, std::uint16_t word_2) { raise_fault(word_1, word_2); }  // a fault whose cause is over
   void set_input(int input, bool high) { inputs_.set_pin(input, high); }
-  void jam(bool jammed) { axis_.jam(jammed); }  // the motor stands while the demand goes on
+  void jam(bool jammed) { axis_.jam(jammed); }                             // the motor stands while the demand goes on
   void lack(std::set<ObjectKey> objects) { lacks_ = std::move(objects); }  // of another type or firmware: refused
   // As the panel or another port would write it: same effects, not counted. Measured values that nothing computes
   // (voltage, temperature) may be set too.
