@@ -215,7 +215,7 @@ void AxisCore::watch_fault() {
                         .statusword = to_read(model.statusword),
                         .statusword_exchange = status.exchange,
                         .words = {}};
-  for (const ObjectId id : cause_objects(model)) {
+  for (const ObjectId id : causes) {
     const ObjectState& word = store[id];
     seen.words.push_back({.object = id,
                           .refused = word.refused,

@@ -21,6 +21,7 @@ struct AxisCore {
   std::uint32_t alarms = 0;                     ///< AxisAlarm bits found by checks and by what was seen
   LinkState link = LinkState::unknown;          ///< the drive's
   FaultWatch fault{};                           ///< when a fault is shown, and what must be read before
+  CauseObjects causes = cause_objects(model);   ///< what names the cause of one
   std::optional<std::int64_t> homing_method{};  ///< written or configured since bring-up
   std::optional<std::int64_t> offset_owed{};    ///< homing offset that set_position could not put back yet
   /// While a jog runs: the velocity that a client asked for last. It waits for a start of its own.

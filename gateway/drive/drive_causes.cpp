@@ -31,7 +31,8 @@ bool Drive::causes_are_open() const {
 void Drive::schedule_causes() {
   for (auto& axis : axes_)
     if (axis->fault_is_over())
-      for (const ObjectId word : cause_objects(axis->core().model)) plan_.hurry(word, now());
+      for (const ObjectId word : axis->core().causes)
+        if (!tells_state(word)) plan_.hurry(word, now());
   if (!brought_up() || !cause_to_read() || cause_order_ != 0) return;
   bus::Order order;
   order.priority = bus::Priority::cause;

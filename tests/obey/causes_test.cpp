@@ -265,6 +265,26 @@ TEST_P(CausesOnCan, AnEmergencyNamesTheFaultOfADriveThatRefusesItsWords) {
   }
 }
 
+TEST_P(CausesOnCan, AnEmergencyThatComesLateChangesNothing) {
+  ready();
+  plant_->stage.can_node(0).facts().sends_emergencies = false;
+  const auto causes = causes_of(GetParam());
+  const auto emergency = [&](std::uint16_t code) {
+    auto& link = plant_->stage.can_link(0);
+    link.line().send_emergency(0, code, link.time_of(plant_->stage.runtime().now()));
+  };
+  for (const std::size_t late : {0U, 1U}) {
+    const std::uint64_t from = told_until_now();
+    if (late == 0) emergency(causes[1].code);  // what it had still to say of another fault
+    trip(causes[0]);
+    if (late == 1) ASSERT_TRUE(plant_->stage.run_until([this] { return axis().has(AxisInput::fault); }, 3s));
+    if (late == 1) emergency(causes[1].code);
+    EXPECT_EQ(wrong_until_shown(), "");
+    expect_shown(causes[0], from);
+    reset();
+  }
+}
+
 class CausesOfTheMd : public Causes {};
 
 // The first word says "see the second": the gateway has it.
