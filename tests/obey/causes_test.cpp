@@ -277,8 +277,10 @@ TEST_P(CausesOnCan, AnEmergencyThatComesLateChangesNothing) {
     const std::uint64_t from = told_until_now();
     if (late == 0) emergency(causes[1].code);  // what it had still to say of another fault
     trip(causes[0]);
-    if (late == 1) ASSERT_TRUE(plant_->stage.run_until([this] { return axis().has(AxisInput::fault); }, 3s));
-    if (late == 1) emergency(causes[1].code);
+    if (late == 1) {
+      ASSERT_TRUE(plant_->stage.run_until([this] { return axis().has(AxisInput::fault); }, 3s));
+      emergency(causes[1].code);
+    }
     EXPECT_EQ(wrong_until_shown(), "");
     expect_shown(causes[0], from);
     reset();
