@@ -35,7 +35,7 @@ struct Arbiter::Candidate {
 
   /// The order in which the wire is given away, in four comparisons.
   [[nodiscard]] bool goes_before(const Candidate& other) const {
-    if (rank != other.rank) return rank < other.rank;            // stop, a poll that is owed, then by class
+    if (rank != other.rank) return rank < other.rank;            // stop, cause, a poll that is owed, then by class
     if (rank == 0 && started != other.started) return !started;  // a new stop before what follows from an older one
     if (served != other.served) return served < other.served;    // drives take turns inside a class
     return place < other.place;                                  // in order of acceptance
@@ -44,7 +44,7 @@ struct Arbiter::Candidate {
 
 Arbiter::Arbiter(std::size_t drives) : drives_(drives) {
   assert(drives <= kMaxDrivesPerBus);
-  const std::size_t most = kMaxOrdersPerBus + kMaxStopsPerBus + kMaxSetupsPerDrive * drives;
+  const std::size_t most = kMaxOrdersPerBus + kMaxStopsPerBus + (kMaxSetupsPerDrive + kMaxCausesPerDrive) * drives;
   entries_.reserve(most);
   endings_.reserve(most);
 }
@@ -108,7 +108,7 @@ std::optional<Arbiter::Candidate> Arbiter::choose(Instant now) const {
 }
 
 Arbiter::Candidate Arbiter::candidate(const Entry& entry) const {
-  static constexpr std::array<int, kPriorityCount> kRanks{0, 2, 3, 4, 5};
+  static constexpr std::array<int, kPriorityCount> kRanks{0, 1, 3, 4, 5, 6};
   const auto priority = static_cast<std::size_t>(entry.order.priority);
   return {.grant = {entry.id, entry.order.drive, entry.order.priority},
           .rank = kRanks[priority],
@@ -119,7 +119,7 @@ Arbiter::Candidate Arbiter::candidate(const Entry& entry) const {
 
 Arbiter::Candidate Arbiter::poll_candidate(DriveSlot drive) const {
   return {.grant = {0, drive, Priority::poll},
-          .rank = others_since_poll_ >= kOthersPerPoll ? 1 : 5,
+          .rank = others_since_poll_ >= kOthersPerPoll ? 2 : 6,
           .served = drives_[drive].served[static_cast<std::size_t>(Priority::poll)]};
 }
 
@@ -203,6 +203,8 @@ bool Arbiter::full(const Order& order) const {
       return count(same_class) >= kMaxStopsPerBus || count(same_class_and_axis) >= kMaxStopsPerAxis;
     case Priority::setup:
       return count([&](const Order& o) { return same_class(o) && o.drive == order.drive; }) >= kMaxSetupsPerDrive;
+    case Priority::cause:
+      return count([&](const Order& o) { return same_class(o) && o.drive == order.drive; }) >= kMaxCausesPerDrive;
     default:
       return count([](const Order& o) {
                return o.priority == Priority::command || o.priority == Priority::interactive;

@@ -1,7 +1,7 @@
 // The arbiter of one bus: the only queue to a wire. Pure: orders and instants go in, one grant at a time comes out.
-// Promises at most one exchange outstanding; stop before command before interactive before setup before poll; turns
-// between drives inside a class; every fifth exchange to poll when one is due; each order ends exactly once; every
-// queue bounded. Never looks at a clock or a wire, and never repeats anything.
+// Promises at most one exchange outstanding; stop before cause before command before interactive before setup before
+// poll; turns between drives inside a class; every fifth exchange to poll when one is due; each order ends exactly
+// once; every queue bounded. Never looks at a clock or a wire, and never repeats anything.
 #pragma once
 
 #include <algorithm>
@@ -24,6 +24,8 @@ inline constexpr std::size_t kMaxStopsPerAxis = 16;
 inline constexpr std::size_t kMaxStopsPerBus = 256;
 /// Setup is the gateway's own: clients that fill the queue must not keep a drive from coming up.
 inline constexpr std::size_t kMaxSetupsPerDrive = 2;
+/// So is the reading of causes: one order is enough for all axes of a drive.
+inline constexpr std::size_t kMaxCausesPerDrive = 1;
 /// A drive that declines a grant and neither waits nor finishes is asked again then, not at once: the loop must rest.
 inline constexpr Duration kDeclinePause = std::chrono::milliseconds(1);
 

@@ -12,6 +12,7 @@ Bus::Bus(BusSettings settings, std::size_t drives, std::unique_ptr<Wire> wire, R
       runtime_(runtime),
       log_(log),
       drives_(drives, nullptr),
+      bits_(settings_.bit_rate),
       timer_(runtime.make_timer([this] { pump(); })),
       wire_(std::move(wire)) {
   assert(wire_ != nullptr);
@@ -107,6 +108,7 @@ bool Bus::take_wire_event() {
 /// A drive that has started anew, or is gone, will answer nothing any more: its exchange ends now, not at its timeout.
 bool Bus::take_notice() {
   if (heard_notices_.empty()) return false;
+  count_bits();
   const Notice notice = heard_notices_.front();
   heard_notices_.pop_front();
   if (!up_) return true;
@@ -150,6 +152,7 @@ void Bus::grant(const Arbiter::Grant& grant) {
   ++statistics_.requests;
   outstanding_ = {*exchange, grant.drive, now() + settings_.timeout};
   load_.set_busy(true, now());
+  count_bits();
   wire_->send(*exchange);
 }
 
@@ -210,7 +213,14 @@ Statistics Bus::statistics() const { return statistics_ + arbiter_.statistics() 
 
 std::size_t Bus::queue_depth() const { return arbiter_.waiting(); }
 
-std::uint16_t Bus::load_permille() const { return load_.permille(now()); }
+void Bus::count_bits() {
+  if (const auto carried = wire_->bits_carried()) bits_.count(*carried, now());
+}
+
+std::uint16_t Bus::load_permille() const {
+  const auto carried = settings_.bit_rate == 0 ? std::nullopt : wire_->bits_carried();
+  return carried ? bits_.permille(*carried, now()) : load_.permille(now());
+}
 
 void Bus::set_decode(bool on) { wire_->set_decode(on); }
 

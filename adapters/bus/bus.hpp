@@ -44,6 +44,7 @@ struct BusSettings {
   Duration timeout = std::chrono::milliseconds(100);  ///< from the request's sending to its last byte of reply
   Duration min_gap{};                                 ///< silence between two exchanges
   Duration settle{};                                  ///< silence after a timeout, where two talkers could collide
+  std::uint32_t bit_rate = 0;                         ///< of a wire that counts its bits; 0: of another
 };
 
 class Bus final : private WireEvents {
@@ -73,7 +74,7 @@ class Bus final : private WireEvents {
   [[nodiscard]] Instant now() const { return runtime_.now(); }
   [[nodiscard]] Statistics statistics() const;
   [[nodiscard]] std::size_t queue_depth() const;
-  /// Share of the last whole second in which an exchange was on the wire, in 0.1 %.
+  /// Share of the last whole second in which an exchange was on the wire, in 0.1 %; on CAN, in which any frame was.
   [[nodiscard]] std::uint16_t load_permille() const;
   void set_decode(bool on);
 
@@ -101,6 +102,7 @@ class Bus final : private WireEvents {
   void link_up();
   void link_down(const std::string& why);
   void soon();
+  void count_bits();
   [[nodiscard]] std::string log_source() const { return "bus " + settings_.name; }
 
   BusSettings settings_;
@@ -118,6 +120,7 @@ class Bus final : private WireEvents {
   std::deque<Notice> heard_notices_;
   Statistics statistics_;  // requests, replies, timeouts
   LoadMeter load_;
+  BitMeter bits_;
   // Last, so that they go first: neither may call into a bus that is half gone.
   std::unique_ptr<Timer> timer_;
   std::unique_ptr<Wire> wire_;

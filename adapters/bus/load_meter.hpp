@@ -1,4 +1,5 @@
-// How busy a bus is: the share of the last whole second in which an exchange was on the wire.
+// How busy a bus is: the share of the last whole second in which an exchange was on the wire, or, where the wire counts
+// them, the share of its bits that were taken.
 // Promises 0..1000 permille at every instant, of seconds counted from the first call. Never used to decide anything.
 #pragma once
 
@@ -48,6 +49,39 @@ class LoadMeter {
   Duration in_window_{};
   std::uint16_t last_ = 0;
   bool busy_ = false;
+};
+
+/// The same of a wire that counts its bits: all of them, also those that nobody asked for (CAN).
+class BitMeter {
+ public:
+  explicit BitMeter(std::uint32_t bit_rate) : bit_rate_(bit_rate) {}
+
+  /// So many bits since the beginning. A window ends with the first call after a second of it.
+  void count(std::uint64_t bits, Instant now) {
+    if (start_ == kLongAgo) return begin(bits, now);
+    const auto elapsed = std::chrono::duration_cast<std::chrono::microseconds>(now - start_).count();
+    if (now - start_ < LoadMeter::kWindow || bit_rate_ == 0) return;
+    constexpr std::uint64_t kPermille = 1000, kMicros = 1'000'000;
+    const std::uint64_t room = std::uint64_t{bit_rate_} * static_cast<std::uint64_t>(elapsed) / kMicros;
+    last_ =
+        static_cast<std::uint16_t>(std::min((bits - from_) * kPermille / std::max<std::uint64_t>(room, 1), kPermille));
+    begin(bits, now);
+  }
+  [[nodiscard]] std::uint16_t permille(std::uint64_t bits, Instant now) const {
+    BitMeter then = *this;
+    then.count(bits, now);
+    return then.last_;
+  }
+
+ private:
+  void begin(std::uint64_t bits, Instant now) {
+    from_ = bits;
+    start_ = now;
+  }
+  std::uint32_t bit_rate_;
+  std::uint64_t from_ = 0;
+  Instant start_ = kLongAgo;
+  std::uint16_t last_ = 0;
 };
 
 }  // namespace axisgate::bus

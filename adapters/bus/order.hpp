@@ -12,8 +12,9 @@
 namespace axisgate::bus {
 
 /// In the order in which the wire is given away (design 7, point 3).
-enum class Priority : std::uint8_t { stop, command, interactive, setup, poll };
-inline constexpr std::size_t kPriorityCount = 5;
+/// `cause`: reads what names a fault that was just seen, before anything but stops (design-2 A10).
+enum class Priority : std::uint8_t { stop, cause, command, interactive, setup, poll };
+inline constexpr std::size_t kPriorityCount = 6;
 
 /// Position of a drive in the configuration of its bus.
 using DriveSlot = std::uint8_t;

@@ -3,6 +3,7 @@
 // Never queues, repeats or orders requests: that is the arbiter's work alone.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "adapters/bus/exchange.hpp"
@@ -43,6 +44,8 @@ class Wire {
   /// Asks the node for a sign of life, beside the exchanges (CANopen: a node guarding frame); it answers with a notice,
   /// if it does. False: this protocol has no such thing, only exchanges tell.
   [[nodiscard]] virtual bool call(std::uint8_t /*node*/) { return false; }
+  /// Bits of all frames that it has sent and heard, with stuff bits and the space between frames; none: not counted.
+  [[nodiscard]] virtual std::optional<std::uint64_t> bits_carried() const { return std::nullopt; }
   /// The adapter adds what it counts: bad_frames, late_replies, dropped_bytes, reconnects.
   [[nodiscard]] virtual const Statistics& statistics() const = 0;
   /// Decode level (design section 6): log every frame sent and received.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "adapters/can/frame_bits.hpp"
 #include "adapters/canopen/canopen_text.hpp"
 #include "adapters/canopen/heartbeat_plan.hpp"
 #include "adapters/canopen/sdo_client.hpp"
@@ -29,6 +30,7 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   void map_process_data(std::uint8_t node, std::uint8_t number, const bus::ProcessMap& objects) override;
   [[nodiscard]] bool call(std::uint8_t node) override;
   [[nodiscard]] const bus::Statistics& statistics() const override;
+  [[nodiscard]] std::optional<std::uint64_t> bits_carried() const override { return bits_; }
   void set_decode(bool on) override { decode_ = on; }
 
  private:
@@ -71,6 +73,7 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   bool up_ = false;
   bool ever_up_ = false;
   mutable bus::Statistics statistics_;
+  std::uint64_t bits_ = 0;  ///< of all frames, sent and heard
   // Last, so that they go first: neither may call into a wire that is half gone.
   std::unique_ptr<Timer> timer_;
   std::unique_ptr<can::CanLink> link_;
@@ -181,6 +184,7 @@ void CanopenWire::transmit(std::uint8_t node, const SdoFrames& frames) {
 
 void CanopenWire::transmit(const can::CanFrame& frame, bool urgent) {
   if (decode_) log_frame("->", frame);
+  bits_ += static_cast<std::uint64_t>(can::bits_on_wire(frame));
   link_->send(frame, urgent);
 }
 
@@ -212,6 +216,7 @@ void CanopenWire::on_link_down(std::string_view why) {
 }
 
 void CanopenWire::on_frame(const can::CanFrame& frame, Instant received) {
+  bits_ += static_cast<std::uint64_t>(can::bits_on_wire(frame));
   const auto id = frame.extended || frame.remote ? std::nullopt : cob_id(frame.id);
   Node* node = up_ && id ? find(id->node) : nullptr;
   // Another master's guarding, a node nobody configured: not ours to judge.

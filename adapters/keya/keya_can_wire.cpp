@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "adapters/can/frame_bits.hpp"
 #include "adapters/keya/keya_can_client.hpp"
 #include "adapters/keya/keya_can_signs.hpp"
 #include "adapters/keya/keya_text.hpp"
@@ -23,6 +24,7 @@ class KeyaCanWire final : public bus::Wire, private can::CanLinkEvents {
   void send(const bus::Exchange& exchange) override;
   void abandon() override;
   [[nodiscard]] const bus::Statistics& statistics() const override;
+  [[nodiscard]] std::optional<std::uint64_t> bits_carried() const override { return bits_; }
   void set_decode(bool on) override { decode_ = on; }
 
  private:
@@ -54,6 +56,7 @@ class KeyaCanWire final : public bus::Wire, private can::CanLinkEvents {
   bool up_ = false;
   bool ever_up_ = false;
   mutable bus::Statistics statistics_;
+  std::uint64_t bits_ = 0;  ///< of all frames, sent and heard
   // Last, so that they go first: neither may call into a wire that is half gone.
   std::unique_ptr<Timer> timer_;
   std::unique_ptr<can::CanLink> link_;
@@ -102,6 +105,7 @@ void KeyaCanWire::send(const bus::Exchange& exchange) {
   }
   const can::CanFrame frame = request_frame(exchange.node, client_.begin(exchange));
   log_frame("->", frame);
+  bits_ += static_cast<std::uint64_t>(can::bits_on_wire(frame));
   link_->send(frame);
 }
 
@@ -133,6 +137,7 @@ void KeyaCanWire::on_link_down(std::string_view why) {
 }
 
 void KeyaCanWire::on_frame(const can::CanFrame& frame, Instant received) {
+  bits_ += static_cast<std::uint64_t>(can::bits_on_wire(frame));
   const auto origin = origin_of(frame);
   Node* node = up_ && origin ? find(origin->node) : nullptr;
   // A drive nobody configured, another protocol on the same cable: not ours to judge.

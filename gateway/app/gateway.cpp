@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "gateway/app/adapter_names.hpp"
+
 namespace axisgate::app {
 namespace {
 
@@ -36,7 +38,8 @@ Gateway::Gateway(const Config& config, Models models, Runtime& runtime, const Lo
 Gateway::~Gateway() = default;
 
 void Gateway::add_bus(const BusConfig& config, std::size_t index, const MakeWire& make_wire) {
-  bus::BusSettings settings{config.name, config.timeout, config.min_gap, config.settle};
+  const std::uint32_t bit_rate = adapter::on_can(config.adapter) ? config.bitrate : 0;
+  bus::BusSettings settings{config.name, config.timeout, config.min_gap, config.settle, bit_rate};
   image_.buses[index].name = config.name;
   buses_.push_back(std::make_unique<bus::Bus>(std::move(settings), config.drives.size(),
                                               make_wire(config, models_[index]), runtime_, log_));

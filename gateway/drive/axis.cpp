@@ -55,7 +55,7 @@ void Axis::on_bring_up() {
   core_.offset_owed.reset();
   core_.mode_chosen = false;
   accepted_.forget_parameters();
-  core_.emergency = 0;
+  core_.fault.forget_emergency();
   reference_doubted_ = false;
   core_.homed = false;
   lose_sight();
@@ -78,7 +78,8 @@ void Axis::on_scale() { show_model(core_.model, image_); }
 // --- Taking a group ------------------------------------------------------------------------------------------------
 
 Errc Axis::link_admits(bool stop, bool reads_alone) const {
-  const bool another = core_.alarm(AxisAlarm::identity_mismatch);
+  const bool unlike_profile = core_.alarm(AxisAlarm::profile_mismatch);
+  const bool another = unlike_profile || core_.alarm(AxisAlarm::identity_mismatch);
   switch (host_.link_state()) {
     case LinkState::online:
     case LinkState::suspect:
@@ -86,8 +87,9 @@ Errc Axis::link_admits(bool stop, bool reads_alone) const {
       return another && !stop && !reads_alone ? Errc::identity_mismatch : Errc::ok;
     case LinkState::setup:
     case LinkState::unknown:
-      // Nothing is known of it yet, and it may be running: a stop is worth its try.
-      return stop ? Errc::ok : Errc::still_in_setup;
+      // Nothing is known of it yet, and it may be running: a stop is worth its try. What a device is that refuses what
+      // its profile needs, a person finds out by reading.
+      return stop || (unlike_profile && reads_alone) ? Errc::ok : Errc::still_in_setup;
     case LinkState::offline:
     case LinkState::link_down:
       break;

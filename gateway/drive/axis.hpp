@@ -56,7 +56,14 @@ class Axis {
   /// The drive comes up anew: nothing is known, nothing survives.
   void on_bring_up();
   /// The drive has sent an emergency code; 0: what it told of is over.
-  void on_emergency(std::uint16_t code) { core_.emergency = code; }
+  void on_emergency(std::uint16_t code, Instant now) { core_.fault.emergency(code, now, core_.store.exchange()); }
+  /// What is to be read next so that a fault can be shown with its cause; and it goes on the wire.
+  [[nodiscard]] std::optional<ObjectId> cause_to_read(Instant now) const { return core_.fault.next(now); }
+  void cause_asked(Instant now) { core_.fault.asked(now); }
+  /// What came by itself shows the end of the motion, and a read must settle it.
+  [[nodiscard]] bool end_wants_sample() const { return core_.motion.end_wants_sample(core_.facts()); }
+  /// The axis has shown a fault until now; told once.
+  [[nodiscard]] bool fault_is_over() { return core_.fault.take_over(); }
   /// It says that it has started anew: no motor of it has torque.
   void on_restarted();
   /// It was suspect: it may have restarted unseen.
@@ -111,7 +118,7 @@ class Axis {
   /// Brings the image up to date; then calls what is due to be called.
   void publish(Instant now);
   void call_back();
-  [[nodiscard]] bool has_due() const { return !due_.empty(); }
+  [[nodiscard]] bool has_due() const { return !due_.empty() && !core_.fault.withheld(); }
 
   [[nodiscard]] const AxisCore& core() const { return core_; }
   /// Between the last two samples of the statusword: the poll cycle as it really is.
@@ -190,6 +197,7 @@ class Axis {
   [[nodiscard]] bool ends_with_gateway(const Pending& pending) const;
   void end_begun(Pending& pending);
   void complete(bus::OrderId id, const GroupResult& result);
+  void watch_fault();
   void tell_endings();
   void tell_changes(const AxisImage& before);
   [[nodiscard]] Pending* find(bus::OrderId id);

@@ -193,14 +193,55 @@ std::optional<Wanted> AxisCore::target_position() const {
 
 Wanted AxisCore::running_target(Quantity quantity) const { return motion.wanted(quantity).value_or(Wanted{}); }
 
+// --- Faults --------------------------------------------------------------------------------------------------------
+
+namespace {
+
+bool tells_state(const AxisModel& model, ObjectId id) {
+  return std::find(model.state_sources.begin(), model.state_sources.end(), id) != model.state_sources.end();
+}
+
+}  // namespace
+
+bool AxisCore::names_cause(ObjectId id) const {
+  return store[id].known && fault.counts(tells_state(model, id), store[id].exchange);
+}
+
+void AxisCore::watch_fault() {
+  const ObjectState& status = store[model.statusword];
+  FaultWatch::Seen seen{.at = now,
+                        .known = status.known,
+                        .faulted = status.known && facts().faulted(),
+                        .statusword = to_read(model.statusword),
+                        .statusword_exchange = status.exchange,
+                        .words = {}};
+  for (const ObjectId id : causes) {
+    const ObjectState& word = store[id];
+    seen.words.push_back({.object = id,
+                          .refused = word.refused,
+                          .tells_state = tells_state(model, id),
+                          .number = word.number,
+                          .exchange = word.exchange});
+  }
+  fault.observe(seen);
+  fault.name(named_code(*this));
+}
+
 const AlarmRow* active_alarm(const AxisCore& core) {
   for (const AlarmRow& row : core.drive.alarms) {
     const ObjectId id = core.model.fault_words[row.word];
-    if (id == kNoObject || !core.store[id].known) continue;
+    if (id == kNoObject || !core.names_cause(id)) continue;
     const auto word = static_cast<std::uint64_t>(core.store[id].number);
     if (row.value ? word == *row.value : ((word >> row.bit) & 1U) != 0) return &row;
   }
   return nullptr;
+}
+
+std::uint16_t named_code(const AxisCore& core) {
+  if (const AlarmRow* row = active_alarm(core)) return row->code;
+  const Binding* listed = core.model.binding(Quantity::error_code);
+  if (listed == nullptr || listed->object == kNoObject || !core.names_cause(listed->object)) return 0;
+  return static_cast<std::uint16_t>(core.store[listed->object].number);
 }
 
 }  // namespace axisgate::drive

@@ -3,6 +3,7 @@
 // Never sends and never waits.
 #pragma once
 
+#include "gateway/drive/fault_watch.hpp"
 #include "gateway/drive/model.hpp"
 #include "gateway/drive/motion.hpp"
 #include "gateway/drive/nvm_budget.hpp"
@@ -19,7 +20,8 @@ struct AxisCore {
   Instant now = kLongAgo;                       ///< of the turn in which this is looked at
   std::uint32_t alarms = 0;                     ///< AxisAlarm bits found by checks and by what was seen
   LinkState link = LinkState::unknown;          ///< the drive's
-  std::uint16_t emergency = 0;                  ///< the drive's last EMCY code; 0: none, or it said that it is over
+  FaultWatch fault{};                           ///< when a fault is shown, and what must be read before
+  CauseObjects causes = cause_objects(model);   ///< what names the cause of one
   std::optional<std::int64_t> homing_method{};  ///< written or configured since bring-up
   std::optional<std::int64_t> offset_owed{};    ///< homing offset that set_position could not put back yet
   /// While a jog runs: the velocity that a client asked for last. It waits for a start of its own.
@@ -44,6 +46,10 @@ struct AxisCore {
   void started(MotionKind kind, bool relative);
   /// What must be read to know this object: itself, or, of a `made` statusword, the oldest of its samples.
   [[nodiscard]] ObjectId to_read(ObjectId id) const;
+  /// New samples, or time has passed: whether there is a fault, and what names it.
+  void watch_fault();
+  /// A sample of this object names the cause of the fault that there is now, not of one before.
+  [[nodiscard]] bool names_cause(ObjectId id) const;
   /// The newest number of the quantity in register units; none where there is no good one.
   [[nodiscard]] std::optional<std::int64_t> value(Quantity quantity) const;
   /// The unified number of the mode in force, 0 where it is unknown or the drive's number stands for none.
@@ -68,5 +74,9 @@ struct AxisCore {
 
 /// The fault words of an axis and what they mean: the first active row of the profile's alarm table.
 [[nodiscard]] const AlarmRow* active_alarm(const AxisCore& core);
+/// What the drive names now: the code of that row, or else what it holds as its error code itself; 0: nothing.
+[[nodiscard]] std::uint16_t named_code(const AxisCore& core);
+/// The cause of the fault that there is, what is to be done, and the words it was found in (fault_text.cpp).
+[[nodiscard]] std::string fault_text(const AxisCore& core);
 
 }  // namespace axisgate::drive

@@ -11,6 +11,7 @@ void Axis::observe(Instant now) {
   core_.now = now;
   core_.link = host_.link_state();
   const AxisFacts facts = core_.facts();
+  watch_fault();
   core_.motion.observe(facts, core_.model.homing_timeout);
   if (core_.is_virtual() && facts.reference) core_.homed = true;
   const bool homing = core_.motion.running() == MotionKind::homing;
@@ -42,6 +43,7 @@ void Axis::publish(Instant now) {
   }
   core_.now = now;
   core_.link = host_.link_state();
+  watch_fault();
   core_.motion.observe(core_.facts(), core_.model.homing_timeout);
   tell_endings();
   const AxisImage before = image_;
@@ -56,6 +58,12 @@ void Axis::publish(Instant now) {
     if (image_.board != nullptr) image_.board->mark(image_.number);
     tell_changes(before);
   }
+}
+
+void Axis::watch_fault() {
+  core_.watch_fault();
+  if (core_.fault.take_missed())
+    host_.event(image_.number, EventKind::fault, 0, "a fault came and was gone before its cause could be read");
 }
 
 // What the faces must know of it: what was commanded before is over, and its client must ask anew.
@@ -74,17 +82,16 @@ void Axis::tell_changes(const AxisImage& before) {
                 "link " + std::string(text(before.link_state)) + " -> " + std::string(text(image_.link_state)));
   if (!image_.reachable()) return;
   if (image_.has(AxisInput::fault) && !before.has(AxisInput::fault)) {
-    const AlarmRow* row = active_alarm(core_);
     const auto code = static_cast<std::uint32_t>(image_[Quantity::error_code].value);
-    host_.event(image_.number, EventKind::fault, code,
-                row == nullptr ? "the drive reports a fault" : row->text + "; " + row->remedy);
+    host_.event(image_.number, EventKind::fault, code, fault_text(core_));
   }
   if (image_.has(AxisInput::homed) && !before.has(AxisInput::homed))
     host_.event(image_.number, EventKind::homed, 0, "homed");
   const std::uint32_t raised = image_.alarms & ~before.alarms;
   for (std::size_t i = 0; i < kAxisAlarmCount; ++i) {
     const auto alarm = static_cast<AxisAlarm>(i);
-    if ((raised & bit(alarm)) != 0)
+    const bool told = alarm == AxisAlarm::profile_mismatch;  // by its drive, with what it lacks
+    if ((raised & bit(alarm)) != 0 && !told)
       host_.event(image_.number, EventKind::warning, static_cast<std::uint32_t>(i), alarm_text(core_, alarm));
   }
 }

@@ -52,15 +52,26 @@ void Axis::on_time(Instant now) {
 }
 
 Instant Axis::next_deadline() const {
-  Instant next = std::min({core_.motion.deadline(), ownership_.until(), jog_.until(), owed_.next_deadline(core_.now)});
+  Instant next = std::min({core_.motion.deadline(), core_.fault.deadline(), ownership_.until(), jog_.until(),
+                           owed_.next_deadline(core_.now)});
   for (const Pending& p : pending_)
     for (const Waiting& client : p.callbacks) next = std::min(next, deadline_of(p, client));
+  for (const Due& d : due_)
+    for (const Waiting& client : d.callbacks) next = std::min(next, client.answer_by);
   return next;
 }
 
+// A reply waits for the image to show the statusword that it is about: a fault is shown when its cause is known.
 void Axis::call_back() {
   std::vector<Due> due;
   due.swap(due_);
+  const auto waits = [this](const Due& d) {
+    return core_.fault.withheld() && std::none_of(d.callbacks.begin(), d.callbacks.end(),
+                                                  [this](const Waiting& c) { return core_.now >= c.answer_by; });
+  };
+  const auto waiting = std::stable_partition(due.begin(), due.end(), std::not_fn(waits));
+  due_.assign(std::make_move_iterator(waiting), std::make_move_iterator(due.end()));
+  due.erase(waiting, due.end());
   for (Due& d : due)
     for (const Waiting& client : d.callbacks) client.tell(d.result);
 }

@@ -47,7 +47,8 @@ bool BringUp::any_enabled(const ObjectStore& store) const {
 std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
   while (read_at_ < reads_.size()) {
     const ObjectState& s = store[reads_[read_at_]];
-    if (!s.known && !s.refused) return Next{reads_[read_at_], false, 0};
+    // The state is asked for ever: without it there is no axis.
+    if (!s.known && (!s.refused || model_.needs_for_state(reads_[read_at_]))) return Next{reads_[read_at_], false, 0};
     ++read_at_;
   }
   if (is_node())
@@ -58,11 +59,18 @@ std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
   for (const ObjectId id : confirmed_)
     if (!store[id].refused && store[id].exchange <= *confirm_after_) return Next{id, false, 0};
   adopted_ = any_enabled(store);
-  if (adopted_ || !identity_.mismatch().empty()) return std::nullopt;
+  if (adopted_ || !identity_.mismatch().empty() || lacks_needed(store)) return std::nullopt;
   if (const auto setup = next_setup(store)) return setup;
   if (is_node())
     if (const auto node = node_.next()) return Next{kNoObject, false, 0, node};
   return std::nullopt;
+}
+
+// It is not what its profile says: nothing of that profile is written to it.
+bool BringUp::lacks_needed(const ObjectStore& store) const {
+  for (std::size_t i = 0; i < model_.objects.size(); ++i)
+    if (const auto id = static_cast<ObjectId>(i); store[id].refused && model_.needs(id)) return true;
+  return false;
 }
 
 std::optional<BringUp::Next> BringUp::next_setup(const ObjectStore& store) {

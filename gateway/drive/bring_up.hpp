@@ -48,6 +48,7 @@ class BringUp {
  private:
   [[nodiscard]] bool any_enabled(const ObjectStore& store) const;
   [[nodiscard]] bool is_node() const { return is_canopen(model_); }
+  [[nodiscard]] bool lacks_needed(const ObjectStore& store) const;
   [[nodiscard]] std::optional<Next> next_setup(const ObjectStore& store);
   const DriveModel& model_;
   IdentityCheck identity_;

@@ -98,6 +98,7 @@ std::optional<bus::Exchange> Drive::exchange_of(bus::OrderId id, bus::Priority p
     return owner->on_grant(id);
   }
   if (id == closing_order_) return next_of_closing();
+  if (id == cause_order_) return next_of_causes();
   return id == setup_order_ ? next_of_bring_up() : std::nullopt;
 }
 
@@ -136,6 +137,11 @@ std::optional<bus::Exchange> Drive::probe() {
     on_wire_.probe = false;
     probe_due_ = now() + backoff_.next();
     return nmt(model_.node, NmtCommand::enter_pre_operational);
+  }
+  // A call that nobody has answered is a timeout as well, but it kept nobody from the wire.
+  if (state_ == LinkState::unknown && !heard_ && calls_ > 0 && ++mute_ >= kMuteTimeouts) {
+    go_offline();
+    return std::nullopt;
   }
   if (is_canopen(model_) && asked_ && !heard_ && calls_ < kCallsPerQuestion && bus_.call(model_.node)) {
     ++calls_;
@@ -283,6 +289,7 @@ void Drive::on_order_ended(bus::OrderId id, Errc code) {
   if (id == setup_order_) setup_order_ = 0;
   if (id == keep_alive_order_) keep_alive_order_ = 0;
   if (id == closing_order_) end_closing();
+  if (id == cause_order_) cause_order_ = 0;
   after_event();
 }
 
@@ -320,6 +327,8 @@ void Drive::bring_up_to_date() {
     next = std::min({next, axis->next_deadline(), stale_deadline(axis->core(), now())});
     if (axis->has_due()) next = now();
   }
+  schedule_causes();
+  watch_positions();
   next = std::min(next, schedule_keep_alive());
   timer_->expires_at(next);
   if (state_ == LinkState::link_down) {

@@ -26,6 +26,8 @@ class Drive final : public bus::BusDrive, private AxisHost {
   /// A mute drive is offline after this many timeouts in a row.
   static constexpr int kMuteTimeouts = 3;
   static constexpr int kCallsPerQuestion = 4;
+  /// A position that comes by TPDO is read after so long without one while its axis moves.
+  static constexpr Duration kMovingConfirm = std::chrono::milliseconds(250);
   /// Alarm duplicate_node stands so long after the last sign of a twin: a second SDO client that asks for the same
   /// object at the same time looks like one, once.
   static constexpr Duration kTwinStands = std::chrono::seconds(60);
@@ -107,6 +109,11 @@ class Drive final : public bus::BusDrive, private AxisHost {
                          ObjectId written, bool trusted);
   void map_unasked();
   [[nodiscard]] std::optional<bus::Exchange> next_of_bring_up();
+  // What names a fault (drive_causes.cpp).
+  [[nodiscard]] std::optional<ObjectId> cause_to_read();
+  [[nodiscard]] std::optional<bus::Exchange> next_of_causes();
+  [[nodiscard]] bool causes_are_open() const;
+  void schedule_causes();
   /// A long object is under way in another order: an order that can wait does, any other ends it.
   [[nodiscard]] bool waits_for_chain(bus::OrderId id, bus::Priority priority);
   [[nodiscard]] bool chain_open() const;
@@ -120,6 +127,9 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void begin_bring_up(bool restarted);
   void carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result);
   void end_bring_up();
+  [[nodiscard]] std::string lacking(ObjectId object) const;
+  void tell_mismatch(const std::string& lacks);
+  void judge_profile();
   void judge_checks();
   void judge_loss_reaction();
   void leave_adoption();
@@ -132,6 +142,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void left_operational(bus::NodeState state);
   [[nodiscard]] bool may_be_set_up_anew() const;
   void map_values();
+  void watch_positions();
   void unmap_values();
   void tell_all(EventKind kind, std::uint32_t code, const std::string& text);
   // The end on purpose (drive_closing.cpp).
@@ -160,6 +171,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   ControlFrame frame_;
   KeepAlive keep_alive_;
   bus::OrderId keep_alive_order_ = 0;
+  bus::OrderId cause_order_ = 0;
   bus::Backoff backoff_;
   bus::Backoff start_backoff_;  ///< between two set-ups of a node that does not become operational
   std::vector<std::unique_ptr<Axis>> axes_;
@@ -168,6 +180,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   OnWire on_wire_;
   bus::OrderId setup_order_ = 0;
   int mute_ = 0;
+  std::string lacks_;  ///< what its profile needs and it refuses
   std::uint64_t doubts_seen_ = 0;
   Instant probe_due_ = kNever;
   bool adopted_ = false;

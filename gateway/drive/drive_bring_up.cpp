@@ -1,4 +1,6 @@
 // How a drive comes up: bring-up, the checks, and what an adopted one is owed (design 7, point 7).
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -9,6 +11,12 @@ namespace axisgate::drive {
 std::optional<bus::Exchange> Drive::next_of_bring_up() {
   const auto next = bring_up_.next(store_);
   if (!next) {
+    // A drive that was found faulted comes online with the cause of it.
+    if (causes_are_open()) {
+      if (const auto object = cause_to_read()) return next_of_causes();
+      bus_.wait(setup_order_, now() + kCausePause);
+      return std::nullopt;
+    }
     end_bring_up();
     return std::nullopt;
   }
@@ -72,11 +80,40 @@ void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::Exchange
   } else if (result.code == Errc::ok) {
     bring_up_.read_back_answered();
   }
+  const ObjectId asked = model_.find(exchange.object);
+  const bool of_state = !was_write && asked != kNoObject && model_.needs_for_state(asked);
   const bool state_refused =
-      !was_write && result.code == Errc::refused_by_drive && exchange.object == plain_read().object;
+      of_state && (result.code == Errc::refused_by_drive || (result.code == Errc::ok && store_[asked].refused));
+  if (state_refused && !result.for_now) tell_mismatch(lacking(asked));
   // A drive that refuses its statusword is none we can speak for: it stays in setup and is asked again, slowly; and so
   // is one that is busy.
   if (state_refused || (!was_write && result.for_now)) bus_.wait(setup_order_, now() + std::chrono::seconds(1));
+}
+
+std::string Drive::lacking(ObjectId object) const {
+  return fmt::format("{} (0x{:04X})", model_.object(object).name, model_.object(object).address.index);
+}
+
+// What its profile needs and it does not have, told once; empty: it has it all.
+void Drive::tell_mismatch(const std::string& lacks) {
+  const bool news = lacks != std::exchange(lacks_, lacks) && !lacks.empty();
+  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::profile_mismatch, !lacks.empty());
+  if (!news) return;
+  tell_all(
+      EventKind::warning, static_cast<std::uint32_t>(AxisAlarm::profile_mismatch),
+      fmt::format("profile_mismatch: the device refuses {}, which profile {} needs: nothing moves it. Put the drive "
+                  "in that the configuration names, or correct its \"profile\" or \"node\"; reads by mailbox and "
+                  "43/13 tell what it is",
+                  lacks, model_.profile));
+}
+
+void Drive::judge_profile() {
+  std::string lacks;
+  for (std::size_t i = 0; i < model_.objects.size(); ++i) {
+    const auto id = static_cast<ObjectId>(i);
+    if (store_[id].refused && model_.needs(id)) lacks += (lacks.empty() ? "" : ", ") + lacking(id);
+  }
+  tell_mismatch(lacks);
 }
 
 void Drive::end_bring_up() {
@@ -87,7 +124,8 @@ void Drive::end_bring_up() {
   if (!mismatch.empty()) tell_all(EventKind::warning, 0, "not the configured drive: " + mismatch + ": read-only");
   for (const std::string& note : bring_up_.node().notes()) tell_all(EventKind::warning, 0, note);
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::identity_mismatch, !mismatch.empty());
-  if (!adopted_ && mismatch.empty()) map_values();
+  judge_profile();
+  if (!adopted_ && mismatch.empty() && lacks_.empty()) map_values();
   for (const ObjectId id : bring_up_.unheld())
     event(axes_.front()->core().model.number, EventKind::warning, 0,
           "setup: the drive does not hold what was written to " + model_.object(id).name);

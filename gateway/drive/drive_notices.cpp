@@ -74,7 +74,7 @@ void Drive::on_present(bus::NodeState state) {
     return;
   }
   // A drive that was adopted, or is another than configured, was never told to start.
-  const bool was_started = !adopted_ && bring_up_.mismatch().empty();
+  const bool was_started = !adopted_ && bring_up_.mismatch().empty() && lacks_.empty();
   const bool left = state == bus::NodeState::pre_operational || state == bus::NodeState::stopped;
   if (left && was_started && brought_up() && !fell_back_ && now() - started_at_ > kNmtSettles) left_operational(state);
 }
@@ -113,17 +113,32 @@ void Drive::on_values(const bus::ReplyFields& fields) {
     store_.read(id, model_.object(id).number(field.raw), now());
     plan_.received(id, now());
   }
-  for (auto& axis : axes_) axis->on_samples();
+  for (auto& axis : axes_) {
+    axis->on_samples();
+    if (!axis->end_wants_sample()) continue;
+    for (const ObjectId id : axis->core().model.state_sources) plan_.hurry(id, now());
+  }
+}
+
+// Where it is while it moves must not hang on a TPDO that has failed to come.
+void Drive::watch_positions() {
+  for (auto& axis : axes_) {
+    const Binding* position = axis->core().model.binding(Quantity::position_actual);
+    if (position == nullptr || position->object == kNoObject || !mapped_[position->object]) continue;
+    const bool moves = axis->core().motion.running() != MotionKind::none || axis->core().facts().moving;
+    plan_.confirm_within(position->object, moves ? std::optional(kMovingConfirm) : std::nullopt, now());
+  }
 }
 
 // The code may be all that is told (faults.md row 12): what the fault words say is asked for at once.
 void Drive::on_emergency(const bus::Notice& notice) {
-  for (auto& axis : axes_) axis->on_emergency(notice.code);
+  for (auto& axis : axes_) axis->on_emergency(notice.code, now());
   std::string text = notice.code == 0 ? std::string("EMCY 0x0000: the errors are over")
                                       : fmt::format("EMCY 0x{:04X}, error register 0x{:02X}, {}", notice.code,
                                                     notice.error_register, hex_text(notice.vendor));
   if (notice.repeats > 0) text += fmt::format(" ({} more were left out)", notice.repeats);
-  tell_all(notice.code == 0 ? EventKind::warning : EventKind::fault, notice.code, text);
+  // Whether it is a fault the statusword tells, and then its cause is told once.
+  tell_all(EventKind::warning, notice.code, text);
   for (const AxisModel& axis : model_.axes) {
     for (const ObjectId id : axis.state_sources) plan_.hurry(id, now());
     for (const ObjectId id : axis.fault_words)

@@ -64,7 +64,7 @@ void Drive::store_refusal(const bus::Exchange& exchange, const bus::ExchangeResu
   if (on_wire_.widened && !result.for_now) return;  // which of them it was is not known yet
   plan_.done(id, now());
   for (const bus::Neighbour& neighbour : exchange.more) plan_.done(model_.find(neighbour.object), now());
-  if (result.for_now || plain_read().object == exchange.object) return;
+  if (result.for_now || plain_read().object == exchange.object || model_.needs_for_state(id)) return;
   const auto refuse = [this](ObjectId object) {
     if (object == kNoObject) return;
     store_.refused(object);
@@ -108,7 +108,7 @@ void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResul
       continue;  // the mailbox asks in its client's width: what comes proves nothing of the profile
     } else if (!store_[id].refused) {
       store_.refused(id);
-      plan_.drop(id);
+      if (!model_.needs_for_state(id)) plan_.drop(id);
       event(axes_.front()->core().model.number, EventKind::warning, 0,
             object.name + ": the drive answers " + std::to_string(field.size) + " bytes, the profile says " +
                 std::to_string(object.size) + ": not used");

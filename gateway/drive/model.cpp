@@ -140,6 +140,23 @@ std::vector<ObjectWrite> setup_writes(const DriveModel& model,
   return out;
 }
 
+bool AxisModel::needs_for_state(ObjectId object) const {
+  if (!virtual_axis) return object == statusword;
+  return object == virtual_axis->enabled.object || object == virtual_axis->fault.object;
+}
+
+bool DriveModel::needs_for_state(ObjectId object) const {
+  return std::any_of(axes.begin(), axes.end(),
+                     [object](const AxisModel& axis) { return axis.needs_for_state(object); });
+}
+
+bool DriveModel::needs(ObjectId object) const {
+  return needs_for_state(object) || std::any_of(axes.begin(), axes.end(), [object](const AxisModel& axis) {
+           const Binding* position = axis.binding(Quantity::position_actual);
+           return position != nullptr && position->object == object;
+         });
+}
+
 ObjectId DriveModel::find(bus::ObjectAddress address) const {
   const auto at = std::find_if(objects.begin(), objects.end(), [&](const ObjectDef& candidate) {
     return !candidate.made && candidate.address == address;

@@ -274,6 +274,8 @@ struct AxisModel {
   std::uint16_t supported_modes = 0;
 
   [[nodiscard]] const Binding* binding(Quantity q) const;
+  /// Without this object nobody can say what the axis does: its statusword, or what a virtual axis makes it from.
+  [[nodiscard]] bool needs_for_state(ObjectId object) const;
   [[nodiscard]] const std::optional<CommandDef>& command(Command c) const {
     return commands[static_cast<std::size_t>(c)];
   }
@@ -372,6 +374,9 @@ struct DriveModel {
 
   [[nodiscard]] const ObjectDef& object(ObjectId id) const { return objects[id]; }
   [[nodiscard]] ObjectId find(bus::ObjectAddress address) const;  ///< kNoObject where no object has it
+  [[nodiscard]] bool needs_for_state(ObjectId object) const;
+  /// Without this object nothing may move: what needs_for_state() says, and the position.
+  [[nodiscard]] bool needs(ObjectId object) const;
 };
 
 [[nodiscard]] inline bool is_canopen(const DriveModel& model) { return model.protocol == "canopen"; }

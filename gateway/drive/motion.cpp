@@ -153,6 +153,12 @@ void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
   if (kind_ == MotionKind::homing && seen_after_start) observe_homing(facts, homing_timeout);
 }
 
+bool Motion::end_wants_sample(const AxisFacts& facts) const {
+  if (facts.statusword_exchange > started_by_ || !facts.enabled()) return false;
+  if (kind_ == MotionKind::discrete) return facts.target_reached;
+  return kind_ == MotionKind::homing && (facts.reference || facts.homing_failed);
+}
+
 void Motion::observe_homing(const AxisFacts& facts, Duration timeout) {
   homing_until_ = started_ + timeout;
   if (facts.homing_failed) {

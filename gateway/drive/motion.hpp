@@ -112,6 +112,8 @@ class Motion {
   void observe(const AxisFacts& facts, Duration homing_timeout);
   /// Homing has run longer than its timeout: the axis must be halted (once).
   [[nodiscard]] bool take_homing_timeout();
+  /// A value that came by itself shows its end, and may be of before its start (D33): only a read made now settles it.
+  [[nodiscard]] bool end_wants_sample(const AxisFacts& facts) const;
   /// When observe() must be called even without samples.
   [[nodiscard]] Instant deadline() const;
 

@@ -1,6 +1,7 @@
 #include "gateway/drive/poll_plan.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace axisgate::drive {
 namespace {
@@ -94,7 +95,14 @@ void PollPlan::unmap_all(Instant now) {
 
 void PollPlan::received(ObjectId object, Instant now) {
   Entry* e = entry(object);
-  if (e != nullptr && e->silence != Duration{} && !e->dropped) e->due = now + e->silence;
+  if (e != nullptr && e->silence != Duration{} && !e->dropped) e->due = now + std::min(e->silence, e->limit);
+}
+
+void PollPlan::confirm_within(ObjectId object, std::optional<Duration> limit, Instant now) {
+  Entry* e = entry(object);
+  if (e == nullptr || e->silence == Duration{} || e->dropped) return;
+  const Duration before = std::exchange(e->limit, limit.value_or(Duration::max()));
+  if (e->limit < before) e->due = std::min(e->due, now + e->limit);
 }
 
 void PollPlan::hurry(ObjectId object, Instant now) {
@@ -137,7 +145,7 @@ void PollPlan::done(ObjectId object, Instant now) {
     return;
   }
   if (e->silence != Duration{}) {
-    e->due = now + e->period;
+    e->due = now + std::min(e->period, e->limit);
     return;
   }
   // On time: keep the beat. Read early by somebody else, or late (an overloaded bus stretches instead of piling up):

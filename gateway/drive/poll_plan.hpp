@@ -33,6 +33,8 @@ class PollPlan {
   void unmap_all(Instant now);
   /// It came by TPDO.
   void received(ObjectId object, Instant now);
+  /// What comes by TPDO is read after so long without one at the latest, from now on; none: as it was mapped.
+  void confirm_within(ObjectId object, std::optional<Duration> limit, Instant now);
   /// It is read as soon as its turn comes: something was heard that it will tell of.
   void hurry(ObjectId object, Instant now);
   /// The object to read now: the one longest overdue. None before next_due().
@@ -58,8 +60,9 @@ class PollPlan {
     Duration period;  ///< 0: once
     Instant due;
     bool dropped = false;
-    Duration beat;       ///< its period where it does not come by TPDO
-    Duration silence{};  ///< it comes by TPDO, and is read after so long without one; 0: it does not
+    Duration beat;                     ///< its period where it does not come by TPDO
+    Duration silence{};                ///< it comes by TPDO, and is read after so long without one; 0: it does not
+    Duration limit = Duration::max();  ///< of that silence, and of the time between two such reads
   };
   static constexpr Duration kRefreshPause = std::chrono::milliseconds(20);
   [[nodiscard]] const Entry* earliest() const;

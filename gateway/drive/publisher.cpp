@@ -7,6 +7,11 @@
 namespace axisgate::drive {
 namespace {
 
+Instant confirmed_statusword(const AxisCore& core) {
+  const ObjectState& status = core.store[core.model.statusword];
+  return status.known ? status.sent_at : kLongAgo;
+}
+
 // When the quantity was last confirmed: the oldest of its objects. kLongAgo where one of them never was.
 Instant confirmed_at(const AxisCore& core, const Binding& binding) {
   Instant oldest = kNever;
@@ -16,14 +21,22 @@ Instant confirmed_at(const AxisCore& core, const Binding& binding) {
     if (id == kNoObject || core.store[id].refused) return;
     oldest = std::min(oldest, core.store[id].known ? core.store[id].sent_at : kLongAgo);
   };
-  if (binding.quantity == Quantity::error_code)
+  const bool of_error = binding.quantity == Quantity::error_code;
+  const Instant status = confirmed_statusword(core);
+  // In a fault it is what this fault was named, as long as the statusword shows the fault.
+  if (of_error && core.facts().faulted()) return status;
+  if (of_error)
     for (const ObjectId word : core.model.fault_words) look(word);
   look(binding.object);
   for (const BitField& field : binding.bits) look(field.object);
+  // A drive that has no word of its faults shows by its statusword that it has none.
+  if (of_error && oldest == kNever) return status;
   return oldest == kNever ? kLongAgo : oldest;
 }
 
 bool refused(const AxisCore& core, const Binding& binding) {
+  // What a fault is named does not hang on one object.
+  if (binding.quantity == Quantity::error_code) return false;
   return binding.object != kNoObject && core.store[binding.object].refused;
 }
 
@@ -42,22 +55,40 @@ Duration stale_after(const AxisCore& core, const Binding& binding) {
   };
   mapped(binding.object);
   for (const BitField& field : binding.bits) mapped(field.object);
-  if (binding.quantity == Quantity::error_code)
+  if (binding.quantity == Quantity::error_code) {
+    mapped(core.model.statusword);
     for (const ObjectId word : core.model.fault_words) mapped(word);
+  }
   return std::max(kStaleAtLeast, 3 * period);
 }
 
 std::int64_t error_code(const AxisCore& core, const AxisFacts& facts) {
-  if (const AlarmRow* row = active_alarm(core)) return row->code;
-  if (facts.faulted() && core.emergency != 0) return core.emergency;
+  if (const std::uint16_t named = named_code(core); named != 0) return named;
   constexpr std::int64_t kGenericError = 0x1000;  // CiA 402-2 error codes: generic error
-  return facts.faulted() ? kGenericError : 0;
+  const std::uint16_t cause = core.fault.code();
+  return facts.faulted() ? (cause != 0 ? cause : kGenericError) : 0;
 }
 
 // Where the set-points of several modes lie in one object (Keya: 6081h), it holds that of the mode in force alone.
 bool is_of_another_mode(const AxisCore& core, const AxisFacts& facts, const Binding& binding) {
   if (binding.object == kNoObject || core.object(binding.object).aliases.empty()) return false;
   return is_target(binding.quantity) && setpoint_of_mode(facts.mode) != binding.quantity;
+}
+
+bool tells_cause(Quantity quantity) { return quantity == Quantity::error_code || quantity == Quantity::vendor_error; }
+
+/// A10: what tells of a fault appears in one step. Until then it stays as it was shown.
+bool held_back(const AxisCore& core, Quantity quantity) {
+  if (core.fault.withheld()) return tells_cause(quantity) || quantity == Quantity::statusword;
+  return core.fault.words_ahead() && tells_cause(quantity);
+}
+
+/// The words of the fault before are no value of this one.
+bool of_fault_before(const AxisCore& core, const Binding& binding) {
+  const auto old = [&](const BitField& field) {
+    return !core.store[field.object].refused && !core.names_cause(field.object);
+  };
+  return binding.quantity == Quantity::vendor_error && std::any_of(binding.bits.begin(), binding.bits.end(), old);
 }
 
 std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& facts, const Binding& binding) {
@@ -79,7 +110,7 @@ std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& f
       return *value & ~static_cast<std::int64_t>(statusword::kTargetReached);
     }
     default:
-      if (is_of_another_mode(core, facts, binding)) return std::nullopt;
+      if (is_of_another_mode(core, facts, binding) || of_fault_before(core, binding)) return std::nullopt;
       return core.value(binding.quantity);
   }
 }
@@ -90,8 +121,8 @@ std::uint16_t inputs_of(const AxisCore& core, const AxisImage& image, const Axis
   const std::int64_t digital = image[Quantity::digital_inputs].value;
   const bool limits_valid = image[Quantity::digital_inputs].valid;
   constexpr std::int64_t kLimitInputs = 0x3;
-  const bool ready =
-      !facts.faulted() && !core.alarm(AxisAlarm::local_control) && !core.alarm(AxisAlarm::identity_mismatch);
+  const bool ready = !facts.faulted() && !core.alarm(AxisAlarm::local_control) &&
+                     !core.alarm(AxisAlarm::identity_mismatch) && !core.alarm(AxisAlarm::profile_mismatch);
   std::uint16_t out = 0;
   const auto set = [&](AxisInput input, bool on) { out = on ? static_cast<std::uint16_t>(out | bit(input)) : out; };
   set(AxisInput::stop_latched, core.motion.latched());
@@ -148,11 +179,14 @@ void show_state(const AxisCore& core, AxisImage& image, Instant now) {
     const std::uint32_t mask = bit(binding.quantity);
     image.supported =
         refused(core, binding) ? image.supported & ~mask : image.supported | (core.model.supported & mask);
-    const Instant at = confirmed_at(core, binding);
+    const bool held = image.reachable() && held_back(core, binding.quantity);
+    const Instant at = held ? sample.at : confirmed_at(core, binding);
     const auto value = at == kLongAgo ? std::nullopt : shown_value(core, facts, binding);
     const Range fits = range_of(row(binding.quantity).type);
-    const bool good = value && fits.holds(*value);
-    if (good) {
+    const bool good = held ? sample.received && sample.valid : value && fits.holds(*value);
+    if (held) {
+      // As it was, and as old as it is.
+    } else if (good) {
       sample.value = *value;
       sample.received = true;
       sample.at = at;
@@ -167,6 +201,7 @@ void show_state(const AxisCore& core, AxisImage& image, Instant now) {
   }
   if (image.oldest_cyclic == kNever) image.oldest_cyclic = kLongAgo;
   image.alarms = alarms_of(core);
+  if (image.reachable() && core.fault.withheld()) return;
   image.axis_state = core.motion.axis_state(facts);
   image.motion_state = core.motion.state();
   image.motion_id = core.motion.id();

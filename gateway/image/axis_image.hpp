@@ -47,8 +47,9 @@ enum class AxisAlarm : std::uint8_t {
   nvm_budget = 9,
   clamped = 10,
   stop_options = 11,
+  profile_mismatch = 12,  ///< the device refuses what the profile needs
 };
-inline constexpr std::size_t kAxisAlarmCount = 12;
+inline constexpr std::size_t kAxisAlarmCount = 13;
 [[nodiscard]] constexpr std::uint32_t bit(AxisAlarm alarm) { return 1U << static_cast<unsigned>(alarm); }
 [[nodiscard]] std::string_view text(AxisAlarm alarm);
 [[nodiscard]] std::string_view text(LinkState state);

@@ -80,7 +80,7 @@ std::vector<RegisterRow> axis_register_rows() {
       shows(34, "axis_alarms", u32, Source::axis_alarms,
             "bit 0 no_comm_watchdog, 1 adopted_running, 2 identity_mismatch, 3 local_control, 4 limit_inputs_open, "
             "5 not_homed, 6 cannot_deenergise, 7 stop_latched, 8 duplicate_node, 9 nvm_budget, 10 clamped, "
-            "11 stop_options"),
+            "11 stop_options, 12 profile_mismatch"),
       shows(36, "supported_commands", u32, Source::supported_commands, "bit = command number"),
       shows(38, "supported_modes", u16, Source::supported_modes, "as 6502h, low word"),
       of(40, controlword, kOperator, "reads the controlword in effect"),

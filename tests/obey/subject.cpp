@@ -199,6 +199,26 @@ void trip(GatewayStage& stage, Subject subject) {
   stage.drive(0).clear_fault_cause(1, kBusVoltageTooHigh);
 }
 
+bool lack(GatewayStage& stage, Subject subject, const std::vector<ObjectPlace>& objects) {
+  std::set<simulated::ObjectKey> keys;
+  std::set<std::uint16_t> registers;
+  for (const ObjectPlace& object : objects) {
+    keys.insert({object.index, object.sub});
+    registers.insert(object.index);
+  }
+  const bool on_can = subject == Subject::jd_can || subject == Subject::md_can || subject == Subject::leadshine ||
+                      subject == Subject::keya_canopen_speed || subject == Subject::keya_canopen_position;
+  if (on_can)
+    stage.can_node(0).facts().lacks = keys;
+  else if (is_kinco(subject))
+    stage.drive(0).lack(keys);
+  else if (subject == Subject::id286pro)
+    stage.id286pro(0).lack(registers);
+  else
+    return false;
+  return true;
+}
+
 std::optional<TargetObject> target_object(Subject subject) {
   constexpr std::uint16_t kTargetPosition = 0x607A, kItsRegister = 0x4000;
   if (subject == Subject::jd_rtu || subject == Subject::md_rtu) return TargetObject{kItsRegister, 0};

@@ -116,6 +116,15 @@ struct MotorPlace {
 /// The drive has a fault whose cause is gone already: it stays until somebody resets it.
 void trip(GatewayStage& stage, Subject subject);
 
+/// An object of the drive: index and sub-index, or the register of an iD286pro.
+struct ObjectPlace {
+  std::uint16_t index;
+  std::uint8_t sub = 0;
+};
+/// From now on it has none of these, as one of another type, and refuses them; without any, it is itself again. False:
+/// on this protocol no drive refuses anything.
+bool lack(GatewayStage& stage, Subject subject, const std::vector<ObjectPlace>& objects);
+
 /// The drive's own object for a position target, in its own counts, where the mailbox can write it without the motor
 /// moving for it.
 struct TargetObject {

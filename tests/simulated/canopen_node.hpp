@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "tests/simulated/can_pdos.hpp"
@@ -37,6 +38,7 @@ struct CommunicationFacts {
   std::string software{};                        // 100Ah
   std::optional<std::uint16_t> version_numbers;  // 1009h and 100Ah are numbers, and this one
   std::map<ObjectKey, std::string> texts{};      // more objects that hold a text; may be written
+  std::set<ObjectKey> lacks{};                   // of another type or firmware than the sheet's: refused
 };
 
 class CanopenNode final : public CanNode, private ObjectAccess {

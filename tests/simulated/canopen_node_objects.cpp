@@ -56,7 +56,18 @@ bool CanopenNode::own_index(std::uint16_t index) const {
   return at != cells_.end() && at->first.index == index;
 }
 
+namespace {
+
+/// What a mapping entry names (CiA 301 7.5.2.38).
+std::optional<ObjectKey> mapped_by(ObjectKey key, CanView bytes) {
+  if (key.index < 0x1A00 || key.index > 0x1BFF || key.sub == 0 || bytes.size() != 4) return std::nullopt;
+  return ObjectKey{static_cast<std::uint16_t>(bytes[2] | bytes[3] << 8), bytes[1]};
+}
+
+}  // namespace
+
 ObjectReply CanopenNode::read(ObjectKey key, Time now) {
+  if (facts_.lacks.contains(key)) return {abort_of(Refusal::no_such_object)};
   if (key == error_register) return {0, {device_->error_register()}};
   if (key.index == error_history) {
     if (key.sub == 0) return {0, {static_cast<std::uint8_t>(history_.size())}};
@@ -76,6 +87,7 @@ ObjectReply CanopenNode::read(ObjectKey key, Time now) {
 }
 
 std::uint32_t CanopenNode::write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) {
+  if (facts_.lacks.contains(mapped_by(key, bytes).value_or(key))) return abort_of(Refusal::no_such_object);
   if (key.index == error_history && key.sub == 0 && bytes.size() == 1 && bytes[0] == 0) {
     history_.clear();
     return 0;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <deque>
+#include <set>
 
 #include "tests/simulated/id286pro_inputs.hpp"
 #include "tests/simulated/id286pro_motion.hpp"
@@ -39,7 +40,8 @@ class Id286pro final : public RtuSlave {
   std::string describe() const override { return "id286pro@" + std::to_string(options_.unit); }
 
   // What a world does to it.
-  void inject_fault(std::uint16_t code, bool clearable = true);  // the cause stays until cleared
+  void lack(std::set<std::uint16_t> registers) { lacks_ = std::move(registers); }  // of another type: refused
+  void inject_fault(std::uint16_t code, bool clearable = true);                    // the cause stays until cleared
   void clear_fault_cause() { cause_ = 0; }
   void set_enable_switch(bool on);  // the hard-wired one: off frees the motor
   void set_input(int input, bool on);
@@ -109,6 +111,7 @@ class Id286pro final : public RtuSlave {
   std::optional<Time> restart_at_;
   std::uint64_t restarts_ = 0;
   std::deque<Id286proStart> starts_;
+  std::set<std::uint16_t> lacks_;
 };
 
 }  // namespace axisgate::simulated

@@ -35,6 +35,8 @@ RtuBytes Id286pro::read(const RegisterRequest& request, RtuView pdu) {
   for (const Id286proRow& row : id286pro_rows()) {
     if (const auto value = measured(row.number)) registers_.set(row.number, *value);
   }
+  const auto asked_for = [&](std::uint16_t row) { return row >= request.start && row < request.start + request.count; };
+  if (std::ranges::any_of(lacks_, asked_for)) return refusal(pdu, RtuException::address);
   const auto words = registers_.words(request.start, request.count, options_.holes_read_zero);
   return words ? read_reply(*words) : refusal(pdu, RtuException::address);
 }

@@ -5,6 +5,7 @@
 
 #include <deque>
 #include <optional>
+#include <set>
 
 #include "tests/simulated/axis.hpp"
 #include "tests/simulated/digital_inputs.hpp"
@@ -29,7 +30,7 @@ class KincoDrive {
   // The same for a protocol that addresses objects otherwise. `raw` in the low `width` bytes.
   std::optional<std::int64_t> read(ObjectKey key, Time now);
   Refusal write(ObjectKey key, int width, std::uint32_t raw, std::uint64_t tag, Time now);
-  const ObjectEntry* entry(ObjectKey key) const { return objects_.find(key); }
+  const ObjectEntry* entry(ObjectKey key) const { return lacks_.contains(key) ? nullptr : objects_.find(key); }
   void advance(Time now);
   bool booting() const { return boot_until_.has_value(); }
   std::uint8_t station() const { return station_; }
@@ -44,7 +45,8 @@ class KincoDrive {
   void clear_fault_cause(int error_word, std::uint16_t bits);
   void trip(std::uint16_t word_1, std::uint16_t word_2) { raise_fault(word_1, word_2); }  // a fault whose cause is over
   void set_input(int input, bool high) { inputs_.set_pin(input, high); }
-  void jam(bool jammed) { axis_.jam(jammed); }  // the motor stands while the demand goes on
+  void jam(bool jammed) { axis_.jam(jammed); }                             // the motor stands while the demand goes on
+  void lack(std::set<ObjectKey> objects) { lacks_ = std::move(objects); }  // of another type or firmware: refused
   // As the panel or another port would write it: same effects, not counted. Measured values that nothing computes
   // (voltage, temperature) may be set too.
   Refusal poke(ObjectKey key, std::int64_t value);
@@ -110,6 +112,7 @@ class KincoDrive {
   const KincoModel& model_;
   const std::int64_t encoder_counts_;
   ObjectDictionary objects_;
+  std::set<ObjectKey> lacks_;
   DigitalInputs inputs_;
   Axis axis_;
   Motion motion_;

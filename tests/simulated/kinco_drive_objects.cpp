@@ -83,6 +83,7 @@ Refusal KincoDrive::may_write(ObjectKey key, std::int64_t value) const {
 }
 
 Refusal KincoDrive::take_write(ObjectKey key, int width, std::uint32_t raw, std::uint64_t tag, bool counted) {
+  if (lacks_.contains(key)) return Refusal::no_such_object;
   std::int64_t value = 0;
   Refusal refusal = objects_.check_write(key, width, raw, value);
   if (refusal == Refusal::none) refusal = may_write(key, value);
@@ -193,7 +194,7 @@ Refusal KincoDrive::poke(ObjectKey key, std::int64_t value) {
 }
 
 std::optional<std::int64_t> KincoDrive::peek(ObjectKey key) const {
-  if (objects_.find(key) == nullptr) return std::nullopt;
+  if (entry(key) == nullptr) return std::nullopt;
   if (const auto value = measured(key)) return value;
   return objects_.get(key);
 }

@@ -73,7 +73,7 @@ class RandomRun {
 
   void submit() {
     Order o =
-        order(static_cast<Priority>(random_.below(4)), static_cast<DriveSlot>(random_.below(ArbiterReference::kDrives)),
+        order(static_cast<Priority>(random_.below(5)), static_cast<DriveSlot>(random_.below(ArbiterReference::kDrives)),
               static_cast<bus::AxisSlot>(random_.below(2)));
     if (o.priority == Priority::stop && !random_.chance(1, 4)) o.priority = Priority::command;
     if (random_.chance(1, o.priority == Priority::setup ? 2 : 16)) o.axis = bus::kNoAxis;

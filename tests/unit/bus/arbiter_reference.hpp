@@ -44,6 +44,8 @@ class ArbiterReference {
     EXPECT_LE(count([&](const Order& o) { return o.priority == Priority::command && same_axis(o, order); }),
               bus::kMaxOrdersPerAxis);
     EXPECT_LE(count([](const Order& o) { return o.priority == Priority::stop; }), bus::kMaxStopsPerBus);
+    EXPECT_LE(count([&](const Order& o) { return o.priority == Priority::cause && o.drive == order.drive; }),
+              bus::kMaxCausesPerDrive);
   }
   void on_grant(const Arbiter::Grant& grant, Instant now) {
     expire(now);
@@ -173,7 +175,7 @@ class ArbiterReference {
     due_[grant.drive] = kNever;
     for (const auto& [id, known] : known_) {
       if (!ready(known, now)) continue;
-      EXPECT_NE(known.order.priority, Priority::stop) << "a stop waited for a poll";
+      EXPECT_GT(known.order.priority, Priority::cause) << "a stop, or the cause of a fault, waited for a poll";
       EXPECT_GE(others_, bus::kOthersPerPoll) << "a poll went before order " << id << " and was not owed";
     }
     for (DriveSlot drive = 0; drive < kDrives; ++drive) {
@@ -188,7 +190,7 @@ class ArbiterReference {
     EXPECT_EQ(grant.drive, mine.order.drive);
     EXPECT_EQ(grant.priority, mine.order.priority);
     EXPECT_TRUE(ready(mine, now));
-    if (mine.order.priority != Priority::stop && others_ >= bus::kOthersPerPoll) {
+    if (mine.order.priority > Priority::cause && others_ >= bus::kOthersPerPoll) {
       for (DriveSlot drive = 0; drive < kDrives; ++drive) {
         EXPECT_FALSE(poll_ready(drive, now)) << "poll did not get its share";
       }

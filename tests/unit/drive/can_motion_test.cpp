@@ -51,6 +51,79 @@ TEST_P(CanMotion, AbsoluteMovesEndWhereTheyWereSent) {
   }
 }
 
+// It was told up to a second late, where nothing else was asked of the node meanwhile (D33).
+TEST_P(CanMotion, TheEndOfAMoveIsToldAsSoonAsTheDriveShowsIt) {
+  fast();
+  constexpr std::uint16_t kTargetReached = 1U << 10;
+  const auto reached = [this] {
+    const auto word = rig.node().peek({0x6041, 0}, rig.stage.can_link(0).time_of(rig.stage.runtime().now()));
+    return word && (simulated::little_endian(*word) & kTargetReached) != 0;
+  };
+  for (int i = 1; i <= 6; ++i) {
+    SCOPED_TRACE(i);
+    write(Quantity::target_position, i * 10'000);
+    rig.stage.run(i * 37ms);  // another place in the beat of the polls
+    ASSERT_EQ(command(Command::move_absolute), Errc::ok);
+    ASSERT_TRUE(rig.settles([&] { return rig.axis().has(AxisInput::moving); }));
+    rig.stage.run(200ms);
+    ASSERT_TRUE(rig.settles(reached));
+    const Instant end = rig.stage.runtime().now();
+    ASSERT_TRUE(rig.settles([&] { return rig.axis().motion_state == MotionState::completed; }));
+    EXPECT_TRUE(rig.axis().has(AxisInput::target_reached));
+    EXPECT_LE((rig.stage.runtime().now() - end) / 1ms, 60);
+    ASSERT_EQ(command(Command::move_relative), Errc::ok) << "it stands";
+    ASSERT_TRUE(completes());
+    write(Quantity::target_position, 0);
+    ASSERT_EQ(command(Command::move_absolute), Errc::ok);
+    ASSERT_TRUE(completes());
+    rig.stage.run(500ms);
+  }
+}
+
+// A position that does not come, of a motor that should move, is asked for.
+TEST_P(CanMotion, AMovingAxisIsAskedWhereItIsAfterAQuarterOfASecondWithoutATpdo) {
+  write(Quantity::target_velocity, 300'000);
+  ASSERT_EQ(command(Command::run_velocity), Errc::ok);
+  rig.stage.run(2s);
+  if (GetParam() == CanType::leadshine)
+    rig.stage.leadshine(0).jam(true);
+  else
+    rig.stage.drive(0).jam(true);
+  rig.stage.run(100ms);
+  rig.mark();
+  const auto first = static_cast<std::ptrdiff_t>(rig.stage.can_link(0).received.size());
+  rig.stage.run(1s);
+  const auto& heard = rig.stage.can_link(0).received;
+  const auto came =  // of the TPDO that carries the position
+      std::count_if(heard.begin() + first, heard.end(), [](const auto& one) { return one.frame.id == 0x181; });
+  const auto asked = rig.requests();
+  const auto of_position = std::count_if(asked.begin(), asked.end(), [](const SdoRequest& request) {
+    return !request.write && (request.index == 0x6063 || request.index == 0x6064);
+  });
+  if (rig.axis().has(AxisInput::fault)) return;  // it has noticed that it does not follow, and is off
+  EXPECT_GE(of_position + came, 3) << static_cast<int>(rig.axis().motion_state);
+  EXPECT_LE(of_position, 5);
+}
+
+// 13 % was shown as 70: the time in which an answer was awaited.
+TEST_P(CanMotion, TheLoadOfTheBusIsTheShareOfItsBits) {
+  write(Quantity::target_velocity, 300'000);
+  ASSERT_EQ(command(Command::run_velocity), Errc::ok);
+  rig.line().set_reply_delay(5ms);
+  const auto frames = [this] { return rig.stage.can_link(0).sent.size() + rig.stage.can_link(0).received.size(); };
+  for (int i = 0; i < 3; ++i) {
+    rig.stage.gateway().image().refresh();
+    const std::size_t before = frames();
+    rig.stage.run(3s);
+    rig.stage.gateway().image().refresh();
+    const double per_second = static_cast<double>(frames() - before) / 3;
+    const double permille = 1000.0 * per_second / 500'000;
+    const double shown = rig.stage.gateway().image().buses[0].load_permille;
+    EXPECT_GE(shown, 0.8 * 51 * permille);
+    EXPECT_LE(shown, 1.2 * 135 * permille + 1);
+  }
+}
+
 /// An SDO request that reads (0x40) or writes (0x23) the target velocity.
 bool is_velocity(bool to_drive, const can::CanFrame& frame, std::uint8_t command) {
   return to_drive && frame.id == 0x601 && frame.data[0] == command && frame.data[1] == 0xFF && frame.data[2] == 0x60;

@@ -45,6 +45,25 @@ TEST(PollByTpdo, WithoutAnEventTimerItIsReadOnceInConfirm) {
   EXPECT_EQ(plan.next_due(), kStart + 2400ms);
 }
 
+TEST(PollByTpdo, ASilenceMayBeShortenedForAWhile) {
+  const DriveModel model = one_value();
+  PollPlan plan(model);
+  plan.restart(kStart);
+  plan.map(0, std::nullopt, 1s);
+  plan.received(0, kStart);
+  plan.confirm_within(0, 250ms, kStart + 100ms);
+  EXPECT_EQ(plan.next_due(), kStart + 350ms);
+  plan.received(0, kStart + 200ms);
+  EXPECT_EQ(plan.next_due(), kStart + 450ms);
+  plan.done(0, kStart + 450ms);
+  EXPECT_EQ(plan.next_due(), kStart + 700ms);
+  plan.confirm_within(0, 250ms, kStart + 690ms);
+  EXPECT_EQ(plan.next_due(), kStart + 700ms) << "it is so already";
+  plan.confirm_within(0, std::nullopt, kStart + 690ms);
+  plan.done(0, kStart + 700ms);
+  EXPECT_EQ(plan.next_due(), kStart + 1700ms);
+}
+
 TEST(PollByTpdo, WithAnEventTimerThreeMissedOnesBringThePollBack) {
   const DriveModel model = one_value();
   PollPlan plan(model);

@@ -1,0 +1,141 @@
+// Who is there and who is not: a drive that was never there, and a device that is not what its profile says.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::obey {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint8_t kNoPath = 0x0A;
+constexpr std::uint16_t kLinkStateRow = 18, kAlarmsRow = 34;
+constexpr unsigned kBitOfMismatch = 12;
+
+class Presence : public testing::TestWithParam<Subject> {};
+
+// It read "unknown" for 73 s on CANopen.
+TEST_P(Presence, ADriveThatWasNeverThereIsOfflineAfterThreeTimeouts) {
+  Plant plant(GetParam());
+  plant.crash_gateway();
+  plant.cut_wire();
+  plant.start_gateway();
+  plant.a.connect();
+  ASSERT_TRUE(plant.stage.run_until([&] { return plant.stage.axis(1).link_state == LinkState::offline; }, 5s));
+  EXPECT_EQ(plant.a.command(kEnable), kNoPath);
+  plant.run(60s);
+  EXPECT_EQ(plant.stage.axis(1).link_state, LinkState::offline);
+  // And it is found when it comes.
+  plant.mend_wire();
+  EXPECT_TRUE(plant.stage.run_until([&] { return plant.stage.axis(1).link_state == LinkState::online; }, 150s));
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Presence, testing::ValuesIn(kSubjects), named);
+
+/// What a profile cannot do without, on drives that refuse what they do not have.
+struct Lacking {
+  Subject subject;
+  ObjectPlace status;
+  ObjectPlace position;
+  ObjectPlace there;  ///< what it still has, for the mailbox
+  std::uint16_t size = 2;
+};
+void PrintTo(const Lacking& lacking, std::ostream* out) { *out << name(lacking.subject); }
+
+class Mismatch : public testing::TestWithParam<Lacking> {
+ protected:
+  [[nodiscard]] bool alarmed() {
+    return (static_cast<std::uint32_t>(plant_->a.wide(kAlarmsRow)) >> kBitOfMismatch & 1U) != 0;
+  }
+  [[nodiscard]] std::size_t told() {
+    std::size_t count = 0;
+    for (const Event& event : plant_->stage.gateway().events().events())
+      count += event.axis == 1 && event.text.find("profile_mismatch") != std::string::npos;
+    return count;
+  }
+  /// The mailbox reads, and writes nothing.
+  void expect_readable_alone() {
+    const ObjectPlace& there = GetParam().there;
+    ASSERT_EQ(plant_->a.rows(81, 83, {{81, there.index}, {82, there.sub}, {83, GetParam().size}}), kOk);
+    EXPECT_EQ(plant_->a.row(80, 1), kOk);
+    plant_->run(1s);
+    EXPECT_EQ(plant_->a.word(86), 2) << "done";
+    EXPECT_FALSE(plant_->a.mailbox_write(there.index, there.sub, GetParam().size, 15))
+        << "an enable, where it is a controlword";
+  }
+  void expect_nothing_moves() {
+    for (const std::int64_t command : {kEnable, kMove, kRun, kRelative})
+      EXPECT_EQ(plant_->a.command(command).ok(), false) << command;
+    EXPECT_FALSE(plant_->a.coil(coil::enable, true).ok());
+    EXPECT_FALSE(plant_->a.row(row::controlword, 15).ok());
+    EXPECT_EQ(plant_->velocity(), 0);
+  }
+  void start_again() {
+    plant_->crash_gateway();
+    plant_->run(1500ms);
+    plant_->start_gateway();
+    plant_->a.connect();
+  }
+  std::optional<Plant> plant_;
+};
+
+TEST_P(Mismatch, ADeviceWithoutAStatuswordIsToldOnceAndReadButNotMoved) {
+  plant_.emplace(GetParam().subject);
+  ASSERT_TRUE(plant_->stage.come_online());
+  plant_->crash_gateway();
+  ASSERT_TRUE(lack(plant_->stage, GetParam().subject, {GetParam().status}));
+  plant_->start_gateway();
+  plant_->a.connect();
+  plant_->run(20s);
+  EXPECT_EQ(plant_->a.word(kLinkStateRow), 1) << "setup";
+  EXPECT_TRUE(alarmed());
+  EXPECT_EQ(told(), 1U);
+  expect_nothing_moves();
+  expect_readable_alone();
+  // The right one is put in.
+  lack(plant_->stage, GetParam().subject, {});
+  ASSERT_TRUE(plant_->stage.come_online());
+  EXPECT_FALSE(alarmed());
+  plant_->ready();
+  EXPECT_NE(plant_->motor().enabled, false);
+}
+
+TEST_P(Mismatch, ADeviceWithoutAPositionIsToldOnceAndReadButNotMoved) {
+  plant_.emplace(GetParam().subject);
+  ASSERT_TRUE(plant_->stage.come_online());
+  plant_->crash_gateway();
+  ASSERT_TRUE(lack(plant_->stage, GetParam().subject, {GetParam().position}));
+  plant_->start_gateway();
+  plant_->a.connect();
+  ASSERT_TRUE(plant_->stage.come_online());
+  plant_->run(20s);
+  EXPECT_TRUE(alarmed());
+  EXPECT_EQ(told(), 1U);
+  expect_nothing_moves();
+  expect_readable_alone();
+  plant_->cut_wire();
+  ASSERT_TRUE(plant_->stage.run_until([&] { return plant_->stage.axis(1).link_state == LinkState::offline; }));
+  lack(plant_->stage, GetParam().subject, {});
+  plant_->mend_wire();
+  ASSERT_TRUE(plant_->stage.run_until([&] { return plant_->stage.axis(1).link_state == LinkState::online; }, 150s));
+  EXPECT_FALSE(alarmed());
+  plant_->ready();
+  EXPECT_NE(plant_->motor().enabled, false);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Mismatch,
+                         testing::Values(Lacking{Subject::jd_serial, {0x6041}, {0x6063}, {0x6040}},
+                                         Lacking{Subject::md_serial, {0x6041}, {0x6063}, {0x6040}},
+                                         Lacking{Subject::jd_rtu, {0x6041}, {0x6063}, {0x3100}},
+                                         Lacking{Subject::md_rtu, {0x6041}, {0x6063}, {0x3100}},
+                                         Lacking{Subject::jd_can, {0x6041}, {0x6063}, {0x6040}},
+                                         Lacking{Subject::md_can, {0x6041}, {0x6063}, {0x6040}},
+                                         Lacking{Subject::leadshine, {0x6041}, {0x6064}, {0x6040}},
+                                         Lacking{Subject::id286pro, {108}, {117}, {101}},
+                                         Lacking{Subject::id286pro, {109}, {117}, {101}}),
+                         [](const auto& tested) { return name(tested.param.subject) + std::to_string(tested.index); });
+
+}  // namespace
+}  // namespace axisgate::test::obey
