@@ -23,10 +23,11 @@ TEST_P(KeyaReads, OneQueryShowsTheValuesOfBothAxes) {
   rig.motor(0).faults = 0x0010;
   rig.motor(1).faults = 0x0800;
   rig.mark();
-  ASSERT_TRUE(rig.run_until([&] { return rig.axis(0).has(AxisInput::fault) && rig.axis(1).has(AxisInput::fault); }));
+  ASSERT_TRUE(
+      rig.run_until([&] { return rig.held("A.fault").number == 0x0011 && rig.held("B.fault").number == 0x0801; }));
   EXPECT_LE(rig.reads_of(kFaultQuery), 2U);
-  EXPECT_EQ(rig.held("A.fault").number, 0x0011);
-  EXPECT_EQ(rig.held("B.fault").number, 0x0801);
+  // This model has no alarm table: a fault that nothing names is shown after half a second.
+  EXPECT_TRUE(rig.run_until([&] { return rig.axis(0).has(AxisInput::fault) && rig.axis(1).has(AxisInput::fault); }));
 }
 
 TEST_P(KeyaReads, EachQueryIsPolledOnceInItsPeriodHoweverManyAxesWantIt) {
@@ -94,7 +95,7 @@ TEST(KeyaReading, AMailboxReadInAWidthOfItsOwnSpoilsNoValue) {
   const GroupResult read = rig.mailbox(0, false, kFaultQuery, 1, 4);
   EXPECT_EQ(KeyaRig::code(read), Errc::ok);
   EXPECT_EQ(read.object_size, 4);
-  rig.run(200ms);
+  rig.run(600ms);
   EXPECT_TRUE(rig.axis(0)[Quantity::statusword].valid);
   EXPECT_TRUE(rig.axis(1).has(AxisInput::fault));
 }
