@@ -129,6 +129,8 @@ struct GroupResult {
   /// Of an object request that the drive refused: the reason as a CiA 301 abort code, whatever the drive speaks
   /// (`outcome.detail` is what it said itself).
   std::uint32_t abort_code = 0;
+  bool controlword_done = false;  ///< of a group that failed: its controlword was carried out before
+  bool command_sent = false;      ///< something was written for its command, or for a controlword that was not done
 };
 
 }  // namespace axisgate
