@@ -185,7 +185,7 @@ std::optional<GroupResult> Axis::carry_out(const Group& asked, Errc refusal, Gro
   pending.starts_motion = starts_motion(core_, group);
   if (pending.starts_motion && !pending.jogs) pending.ends_jog = jog_.press();
   pending.start_by = stop ? kNever : group.start_by;
-  pending.callbacks.push_back({std::move(on_result), pending.start_by, group.answer_by});
+  pending.callbacks.push_back({std::move(on_result), pending.start_by, decide_by(group, core_.now)});
   std::optional<GroupResult> refused;
   enqueue(std::move(pending), stop, refused);
   return refused;
@@ -360,6 +360,11 @@ void Axis::complete(bus::OrderId id, const GroupResult& result) {
   if (told.outcome.code == Errc::ok && pending.refusal != Errc::ok) told.outcome = {pending.refusal, 0};
   if (told.outcome.code != Errc::ok && !pending.conversation->begun()) forget_accepted(pending.conversation->group());
   if (!pending.by_mailbox) show_latest(pending.conversation->group(), told.outcome);
+  if (told.outcome.code == Errc::not_reached) {
+    tell_not_reached(pending);
+    const Command stop = pending.conversation->withdrawn_by();
+    if (stop != Command::none) return withdraw(pending.conversation->group(), stop, told, std::move(pending.callbacks));
+  }
   if (!pending.callbacks.empty()) due_.push_back({told, std::move(pending.callbacks)});
 }
 

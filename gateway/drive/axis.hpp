@@ -181,6 +181,10 @@ class Axis {
   void enqueue(Pending pending, bool stop, std::optional<GroupResult>& refused);
   void carry_on(Pending& pending);
   void complete(bus::OrderId id, const GroupResult& result);
+  // A state that did not come in time (axis_time.cpp).
+  [[nodiscard]] static Instant decide_by(const Group& group, Instant now);
+  void tell_not_reached(const Pending& pending);
+  void withdraw(const Group& asked, Command stop, const GroupResult& told, std::vector<Waiting> waiting);
   void tell_endings();
   void tell_changes(const AxisImage& before);
   [[nodiscard]] Pending* find(bus::OrderId id);

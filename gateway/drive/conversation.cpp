@@ -135,6 +135,9 @@ Conversation::Move Conversation::granted(Instant now) {
     if (at_ < todo_.size() && todo_[at_].kind == Action::Kind::write && !verifying_) {
       todo_[at_].number = number_of(todo_[at_]);
       todo_[at_].copy_of = kNoObject;
+      ++step_;
+      last_write_ = todo_[at_];
+      write_under_way_ = true;
     }
     if (phase_ == Phase::preparation) preparation_sent_ = true;
   }
@@ -291,7 +294,7 @@ std::optional<Conversation::Move> Conversation::advance_wait(const Action& actio
                                           is_continuous(core_.mode_in_force()) && core_.facts().moving);
       pop();
     } else {
-      fail(action.otherwise, refusal(action.otherwise).detail);
+      fail(action.otherwise, action.otherwise == Errc::not_reached ? step_ : refusal(action.otherwise).detail);
     }
     return std::nullopt;
   }
