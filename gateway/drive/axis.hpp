@@ -207,8 +207,7 @@ class Axis {
   std::uint64_t losses_told_ = 0;
   Jog jog_;
   OwedStop owed_;
-  bool owed_told_ = false;    ///< an event has told of it: its end is told as well
-  bool was_enabled_ = false;  ///< by the newest read, also while the drive is out of sight
+  bool owed_told_ = false;  ///< an event has told of it: its end is told as well
 };
 
 }  // namespace axisgate::drive

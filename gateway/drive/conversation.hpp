@@ -134,12 +134,12 @@ class Conversation {
   std::uint64_t last_acknowledged_ = 0;  ///< exchange of the last write: samples asked for earlier are too old
   std::uint32_t step_ = 0;               ///< writes sent so far
   std::optional<Action> last_write_{};
-  bool write_under_way_ = false;  ///< not answered yet
-  bool preparation_sent_ = false;        ///< the preparation of the command was more than a judgement
-  Instant wait_until_ = kNever;          ///< of the wait under way; kNever: not begun
-  Instant stop_until_ = kNever;          ///< of the stop's waits together, however often it is repeated
-  Instant repeat_at_ = kNever;           ///< of a stop: sent once more if it has not shown by then
-  std::uint64_t looked_at_ = 0;          ///< exchange of the sample that the wait under way has judged last
+  bool write_under_way_ = false;   ///< not answered yet
+  bool preparation_sent_ = false;  ///< the preparation of the command was more than a judgement
+  Instant wait_until_ = kNever;    ///< of the wait under way; kNever: not begun
+  Instant stop_until_ = kNever;    ///< of the stop's waits together, however often it is repeated
+  Instant repeat_at_ = kNever;     ///< of a stop: sent once more if it has not shown by then
+  std::uint64_t looked_at_ = 0;    ///< exchange of the sample that the wait under way has judged last
   Instant look_after_ = kLongAgo;
   Duration look_pause_{};
   bool object_done_ = false;

@@ -195,6 +195,7 @@ bool Motion::at_rest(const AxisFacts& facts) const {
 }
 
 AxisState Motion::axis_state(const AxisFacts& facts) const {
+  if (!facts.reachable) return AxisState::unknown;
   if (facts.faulted()) return AxisState::error_stop;
   if (latched_ || facts.state == State402::quick_stop_active) return AxisState::stopping;
   if (!facts.enabled()) return AxisState::disabled;  // it may coast: nothing of ours stops it any more

@@ -71,6 +71,8 @@ std::string_view text(AxisState state) {
       return "stopping";
     case AxisState::error_stop:
       return "error stop";
+    case AxisState::unknown:
+      return "unknown";
   }
   return "?";
 }

@@ -13,8 +13,8 @@ namespace {
 
 // Numbers of design 3.1, registers 18 and 31.
 constexpr std::array<std::string_view, 6> kLinks{"unknown", "setup", "online", "suspect", "offline", "link down"};
-constexpr std::array<std::string_view, 7> kStates{"disabled", "standstill", "moving to target", "moving",
-                                                  "homing",   "stopping",   "error stop"};
+constexpr std::array<std::string_view, 8> kStates{"disabled", "standstill", "moving to target", "moving",
+                                                  "homing",   "stopping",   "error stop",       "unknown"};
 // Bits of `supported` and `valid`.
 constexpr std::uint32_t kStatusword = 1U << 0;
 constexpr std::uint32_t kMode = 1U << 1;
