@@ -65,8 +65,8 @@ void Axis::on_bring_up() {
   core_.store.make(core_.model.controlword, 0);
   // Found running, it runs in the mode that it had: no drive of these tells it.
   if (core_.store[core_.model.mode].known) return;
-  // But where a mode can be chosen, nobody can tell a new gateway which one an enabled motor has: a speed would be taken
-  // for a position. It has none until it is seen disabled, and what moves it is refused.
+  // But where a mode can be chosen, nobody can tell a new gateway which one an enabled motor has: a speed would be
+  // taken for a position. It has none until it is seen disabled, and what moves it is refused.
   const bool chosen = core_.model.mode_needs_disabled && core_.model.modes.size() > 1;
   if (chosen)
     core_.store.make(core_.model.mode, 0);

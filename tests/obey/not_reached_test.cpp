@@ -2,6 +2,7 @@
 // still happen is withdrawn before it. Nothing that was told to have failed happens later.
 #include <gtest/gtest.h>
 
+#include "tests/obey/dds_writer.hpp"
 #include "tests/obey/plant.hpp"
 
 namespace axisgate::test::obey {
@@ -55,6 +56,18 @@ TEST_P(NotReached, AnEnableThatIsPressedAgainIsToldAgain) {
   lock(plant_.stage, GetParam(), true);
   fails(kEnable);
   fails(kEnable);
+  lock(plant_.stage, GetParam(), false);
+  plant_.run(3s);
+  EXPECT_FALSE(enabled());
+}
+
+TEST_P(NotReached, ADdsWriterIsToldByTheSameNumber) {
+  plant_.ready_but_disabled();
+  lock(plant_.stage, GetParam(), true);
+  DdsWriter writer(plant_.stage, 1);
+  const std::uint64_t request = writer.begin({.function = fc::sample, .sample = {{row::command, kEnable}}});
+  ASSERT_TRUE(plant_.stage.run_until([&] { return writer.result_of(request).has_value(); }));
+  EXPECT_EQ(*writer.result_of(request), kNotReached);
   lock(plant_.stage, GetParam(), false);
   plant_.run(3s);
   EXPECT_FALSE(enabled());
