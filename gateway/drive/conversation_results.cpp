@@ -154,7 +154,8 @@ void Conversation::on_object(const bus::ExchangeResult& result) {
 Outcome Conversation::outcome_if_late() const {
   if (!begun_) return {stop_ ? Errc::timed_out : Errc::never_started, 0};
   const bool asks_for_a_state = phase_ == Phase::stop || phase_ == Phase::mode || in_command();
-  const bool acknowledged = !write_under_way_ && !verifying_ && core_.link == LinkState::online;
+  // That a look was lost since, and the drive is suspect, takes back no acknowledgement.
+  const bool acknowledged = !write_under_way_ && !verifying_;
   return asks_for_a_state && acknowledged ? Outcome{Errc::not_reached, step_} : Outcome{Errc::timed_out, 0};
 }
 

@@ -92,6 +92,25 @@ TEST_P(Withdrawn, AnEnableIsAlsoWhereTheWithdrawalIsLost) {
   EXPECT_FALSE(*plant_.motor().enabled);
 }
 
+// What is lost beside it is no acknowledgement of its own.
+TEST_P(Withdrawn, AnEnableIsAlsoWhereThePollBeforeItIsLost) {
+  for (Duration lost_at = 650ms; lost_at < 800ms; lost_at += 10ms) {
+    SCOPED_TRACE(lost_at / 1ms);
+    Plant plant(GetParam());
+    plant.ready_but_disabled();
+    lock(plant.stage, GetParam(), true);
+    const RequestNumber enable = plant.a.begin(one(row::command, kEnable));
+    plant.run(lost_at);
+    ASSERT_FALSE(plant.a.answer_of(enable).has_value());
+    plant.strike(Strike::lose_request, 2);
+    ASSERT_TRUE(plant.stage.run_until([&] { return plant.a.answer_of(enable).has_value(); }));
+    EXPECT_EQ(*plant.a.answer_of(enable), kFailed);
+    lock(plant.stage, GetParam(), false);
+    plant.run(3s);
+    EXPECT_FALSE(*plant.motor().enabled);
+  }
+}
+
 TEST_P(NotReached, AFaultResetWhoseCauseIsThereSaysSo) {
   plant_.ready_but_disabled();
   break_down(plant_.stage, GetParam());
