@@ -207,7 +207,8 @@ class Axis {
   std::uint64_t losses_told_ = 0;
   Jog jog_;
   OwedStop owed_;
-  bool owed_told_ = false;  ///< an event has told of it: its end is told as well
+  bool owed_told_ = false;              ///< an event has told of it: its end is told as well
+  Instant withdrawn_until_ = kLongAgo;  ///< an enable was withdrawn: until then one that comes late is taken back
 };
 
 }  // namespace axisgate::drive

@@ -88,6 +88,9 @@ void Axis::withdraw(const Group& asked, Command stop, const GroupResult& told, s
   host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(stop),
               std::string(text(asked.command)) + " is withdrawn: " + std::string(text(stop)));
   accept_stop(group);
+  // Where nobody answers a frame, the read that shows it disabled does not tell that the withdrawal has arrived.
+  constexpr Duration kWatched = std::chrono::seconds(5);
+  if (stop == Command::disable) withdrawn_until_ = core_.now + kWatched;
   Pending pending;
   pending.by_mailbox = true;  // the client's result is that of what it asked for
   pending.conversation = std::make_unique<Conversation>(core_, group, true);
