@@ -52,6 +52,7 @@ enum class CommandResult : std::uint8_t {
   stopped_by_other = 8,
   state_unsuitable = 9,
   not_new = 10,
+  not_reached = 11,
 };
 
 /// Modbus application protocol V1.1b3 section 7; 0 is no exception.
@@ -72,7 +73,9 @@ inline constexpr std::uint32_t kDetailDeviceState = 0x08000022;
 
 struct Outcome {
   Errc code = Errc::ok;
-  std::uint32_t detail = 0;  ///< abort code, Modbus exception or the drive's own code; 0 where there is none
+  /// Abort code, Modbus exception or the drive's own code; 0 where there is none. Of `not_reached` the number of the
+  /// step, from 1; 0: nothing was sent.
+  std::uint32_t detail = 0;
   friend bool operator==(const Outcome&, const Outcome&) = default;
 };
 

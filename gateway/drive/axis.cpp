@@ -64,7 +64,14 @@ void Axis::on_bring_up() {
   core_.store.forget(core_.model.statusword);
   core_.store.make(core_.model.controlword, 0);
   // Found running, it runs in the mode that it had: no drive of these tells it.
-  if (!core_.store[core_.model.mode].known) core_.begin_mode();
+  if (core_.store[core_.model.mode].known) return;
+  // But where a mode can be chosen, nobody can tell a new gateway which one an enabled motor has: a speed would be
+  // taken for a position. It has none until it is seen disabled, and what moves it is refused.
+  const bool chosen = core_.model.mode_needs_disabled && core_.model.modes.size() > 1;
+  if (chosen)
+    core_.store.make(core_.model.mode, 0);
+  else
+    core_.begin_mode();
 }
 
 void Axis::on_samples() {
@@ -188,7 +195,7 @@ std::optional<GroupResult> Axis::carry_out(const Group& asked, Errc refusal, Gro
   pending.starts_motion = starts_motion(core_, group);
   if (pending.starts_motion && !pending.jogs) pending.ends_jog = jog_.press();
   pending.start_by = stop ? kNever : group.start_by;
-  pending.callbacks.push_back({std::move(on_result), pending.start_by, group.answer_by});
+  pending.callbacks.push_back({std::move(on_result), pending.start_by, decide_by(group, core_.now)});
   std::optional<GroupResult> refused;
   enqueue(std::move(pending), stop, refused);
   return refused;
@@ -372,6 +379,11 @@ void Axis::complete(bus::OrderId id, const GroupResult& result) {
   }
   if (told.outcome.code != Errc::ok && !pending.conversation->begun()) forget_accepted(pending.conversation->group());
   if (!pending.by_mailbox) show_latest(pending.conversation->group(), told.outcome);
+  if (told.outcome.code == Errc::not_reached) {
+    tell_not_reached(pending);
+    const Command stop = pending.conversation->withdrawn_by();
+    if (stop != Command::none) return withdraw(pending.conversation->group(), stop, told, std::move(pending.callbacks));
+  }
   if (!pending.callbacks.empty()) due_.push_back({told, std::move(pending.callbacks)});
 }
 

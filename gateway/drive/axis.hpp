@@ -198,6 +198,10 @@ class Axis {
   void end_begun(Pending& pending);
   void complete(bus::OrderId id, const GroupResult& result);
   void watch_fault();
+  // A state that did not come in time (axis_time.cpp).
+  [[nodiscard]] static Instant decide_by(const Group& group, Instant now);
+  void tell_not_reached(const Pending& pending);
+  void withdraw(const Group& asked, Command stop, const GroupResult& told, std::vector<Waiting> waiting);
   void tell_endings();
   void tell_changes(const AxisImage& before);
   [[nodiscard]] Pending* find(bus::OrderId id);
@@ -220,9 +224,9 @@ class Axis {
   std::uint64_t losses_told_ = 0;
   Jog jog_;
   OwedStop owed_;
-  bool owed_told_ = false;    ///< an event has told of it: its end is told as well
-  bool closing_ = false;      ///< the gateway ends
-  bool was_enabled_ = false;  ///< by the newest read, also while the drive is out of sight
+  bool owed_told_ = false;              ///< an event has told of it: its end is told as well
+  bool closing_ = false;                ///< the gateway ends
+  Instant withdrawn_until_ = kLongAgo;  ///< an enable was withdrawn: until then one that comes late is taken back
 };
 
 }  // namespace axisgate::drive

@@ -6,6 +6,8 @@
 namespace axisgate::drive {
 namespace {
 
+constexpr std::int64_t kNoMode = 0;  // which mode is in force nobody knows
+
 bool holds(const AxisCore& core, const std::optional<Condition>& condition) {
   if (!condition) return false;
   const ObjectState& s = core.store[condition->object];
@@ -138,10 +140,14 @@ void AxisCore::refresh_virtual() {
     held = held && store[id].held;
   }
   store.make(model.statusword, machine.statusword(*newest), held, oldest, newest->exchange);
+  // Without torque no mode is in force, and the next enable says in which it is to be.
+  const auto state = state_of(static_cast<std::uint16_t>(store[model.statusword].number));
+  if (store[model.mode].known && store[model.mode].number == kNoMode && state != State402::operation_enabled)
+    begin_mode();
 }
 
 void AxisCore::begin_mode() {
-  if (is_virtual()) store.make(model.mode, model.modes.empty() ? 0 : model.modes.front().first);
+  if (is_virtual()) store.make(model.mode, model.modes.empty() ? kNoMode : model.modes.front().first);
 }
 
 void AxisCore::make(ObjectId id, std::int64_t number) {

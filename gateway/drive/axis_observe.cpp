@@ -73,7 +73,7 @@ void Axis::tell_endings() {
   faults_told_ = core_.motion.faults();
   losses_told_ = core_.motion.losses();
   const AxisFacts facts = core_.facts();
-  ownership_.set_armed(!facts.reachable || holds_motor(facts.state));
+  ownership_.set_armed(core_.link != LinkState::online || holds_motor(facts.state));
 }
 
 void Axis::tell_changes(const AxisImage& before) {

@@ -53,12 +53,11 @@ bool Axis::stop_comes_first(const Group& group) const {
   return owed_.gates() && back && !reads_alone(group) && !stops_alone(group) && group.command != Command::jog_end;
 }
 
-// Out of sight it counts as what it was when it was read last.
-bool Axis::may_be_enabled() const { return core_.reachable() ? core_.facts().enabled() : was_enabled_; }
+// What is not surely read disabled counts as enabled: the motor of a cut cable may be running.
+bool Axis::may_be_enabled() const { return host_.link_state() != LinkState::online || core_.facts().enabled(); }
 
 void Axis::on_restarted() {
   core_.begin_mode();
-  was_enabled_ = false;
   end_jog();
   owed_.restarted();
 }
@@ -81,7 +80,8 @@ void Axis::observe_owed() {
   core_.link = link;
   owed_.link_back(host_.now());
   const auto state = state_of(static_cast<std::uint16_t>(status.number));
-  was_enabled_ = state == State402::operation_enabled;
+  const bool late = state == State402::operation_enabled && core_.now < withdrawn_until_ && !enable_is_asked();
+  if (late && !owed_.owed() && !stopping()) owed_.accepted(StopKind::disable, core_.store.exchange());
   if (!owed_.owed() || stopping()) return;
   tell_end(owed_.state_read(state, status.exchange));
   if (const auto stop = owed_.due(host_.now())) send_owed(*stop);
@@ -134,7 +134,10 @@ void Axis::note_stop(const Pending& pending, bool ended) {
 }
 
 void Axis::note_accepted(const Group& group) {
-  if (asks_to_enable(group)) tell_end(owed_.enable_accepted());
+  if (asks_to_enable(group)) {
+    withdrawn_until_ = kLongAgo;
+    tell_end(owed_.enable_accepted());
+  }
   if (group.command >= Command::move_absolute && group.command <= Command::home) tell_end(owed_.start_accepted());
 }
 

@@ -117,15 +117,16 @@ bool Axis::may_run() const {
   });
   if (waits || core_.motion.running() == MotionKind::velocity || core_.motion.runs_raw()) return true;
   const AxisFacts facts = core_.facts();
-  return core_.reachable() ? facts.enabled() && facts.moving && is_continuous(facts.mode) : may_be_enabled();
+  const bool continuous = facts.mode == 0 || is_continuous(facts.mode);  // 0: it is not known
+  return core_.reachable() ? facts.enabled() && facts.moving && continuous : may_be_enabled();
 }
 
 // A gateway that died has told nobody that a button was held. What runs since before may be its jog: whoever lets a
-// button go then means it. The iD286pro does not tell in which mode it runs.
+// button go then means it. The iD286pro does not tell in which mode it runs, nor does a Keya on CANopen.
 bool Axis::may_be_jog() const {
   const AxisFacts facts = core_.facts();
   if (!core_.motion.found_at_start() || !facts.enabled()) return false;
-  const bool tells_mode = !core_.is_virtual() || !core_.model.virtual_axis->gate_only;
+  const bool tells_mode = !core_.is_virtual() || (!core_.model.virtual_axis->gate_only && facts.mode != 0);
   return tells_mode ? core_.motion.goes_on(Quantity::target_velocity, facts) : facts.moving;
 }
 

@@ -15,6 +15,8 @@ Instant Axis::deadline_of(const Pending& pending, const Waiting& client) {
 }
 
 void Axis::on_time(Instant now) {
+  core_.now = now;
+  core_.link = host_.link_state();
   std::vector<bus::OrderId> late;
   const auto is_late = [now](const Pending& p) {
     return [now, &p](const Waiting& client) { return now >= deadline_of(p, client); };
@@ -23,14 +25,14 @@ void Axis::on_time(Instant now) {
     if (std::any_of(p.callbacks.begin(), p.callbacks.end(), is_late(p))) late.push_back(p.id);
   for (const bus::OrderId id : late) {
     Pending* pending = find(id);
+    if (pending == nullptr) continue;  // what was withdrawn for another has dropped it
     Conversation& conversation = *pending->conversation;
     auto& clients = pending->callbacks;
     const auto first = std::stable_partition(clients.begin(), clients.end(), std::not_fn(is_late(*pending)));
     if (first != clients.begin()) {
       // Others still wait for it.
-      const bool sent = conversation.begun() || conversation.is_stop();
       Due& due = due_.emplace_back();
-      due.result.outcome = {sent ? Errc::timed_out : Errc::never_started, 0};
+      due.result.outcome = conversation.outcome_if_late();
       due.callbacks.assign(std::make_move_iterator(first), std::make_move_iterator(clients.end()));
       clients.erase(first, clients.end());
       continue;
@@ -38,15 +40,14 @@ void Axis::on_time(Instant now) {
     if (conversation.is_stop() && !conversation.stop_is_over()) {
       // Its client has its answer; the stop goes on until it shows, or was repeated as often as it may.
       Due& due = due_.emplace_back();
-      due.result.outcome = {Errc::timed_out, 0};
+      due.result.outcome = conversation.outcome_if_late();
       due.callbacks = std::exchange(pending->callbacks, {});
+      if (due.result.outcome.code == Errc::not_reached) tell_not_reached(*pending);
       continue;
     }
-    conversation.abort({conversation.begun() ? Errc::timed_out : Errc::never_started, 0});
+    conversation.expire();
     complete(id, conversation.result());
   }
-  core_.now = now;
-  core_.link = host_.link_state();
   end_expired_lease();
   if (jog_.expired(now)) halt_jog("its coil was not written 1 again in time");
 }
@@ -59,6 +60,56 @@ Instant Axis::next_deadline() const {
   for (const Due& d : due_)
     for (const Waiting& client : d.callbacks) next = std::min(next, client.answer_by);
   return next;
+}
+
+// --- What did not come in time -------------------------------------------------------------------------------------
+
+// What might still happen is withdrawn before the answer, and the answer is not late for it.
+Instant Axis::decide_by(const Group& group, Instant now) {
+  constexpr Duration kWithdrawing = std::chrono::milliseconds(100);
+  const bool withdrawable = group.command == Command::enable || group.mode ||
+                            (group.command >= Command::move_absolute && group.command <= Command::set_position);
+  if (!withdrawable || group.answer_by == kNever || group.answer_by <= now) return group.answer_by;
+  return group.answer_by - std::min(kWithdrawing, (group.answer_by - now) / 4);
+}
+
+void Axis::tell_not_reached(const Pending& pending) {
+  const Group& group = pending.conversation->group();
+  const std::string what = group.command == Command::none ? "a write" : std::string(text(group.command));
+  host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(group.command),
+              what + " was not reached: " + pending.conversation->missed());
+}
+
+// In its client's name: it has ended nothing of its own. Not confirmed, the stop is owed.
+void Axis::withdraw(const Group& asked, Command stop, const GroupResult& told, std::vector<Waiting> waiting) {
+  constexpr Duration kMostWaits = std::chrono::seconds(1);  // of a request without a time of its own
+  Group group;
+  group.client = asked.client;
+  group.role = Role::engineer;
+  group.command = stop;
+  group.answer_by = std::min(asked.answer_by, core_.now + kMostWaits);
+  host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(stop),
+              std::string(text(asked.command)) + " is withdrawn: " + std::string(text(stop)));
+  accept_stop(group);
+  // Where nobody answers a frame, the read that shows it disabled does not tell that the withdrawal has arrived.
+  constexpr Duration kWatched = std::chrono::seconds(5);
+  if (stop == Command::disable) withdrawn_until_ = core_.now + kWatched;
+  Pending pending;
+  pending.by_mailbox = true;  // the client's result is that of what it asked for
+  pending.conversation = std::make_unique<Conversation>(core_, group, true);
+  bus::Order order = order_for(core_, group, true);
+  order.axis = slot_;
+  const AxisHost::Queued queued = host_.queue(std::move(order));
+  if (queued.code != Errc::ok) {
+    due_.push_back({told, std::move(waiting)});
+    return;
+  }
+  pending.id = queued.id;
+  GroupCallback tell = [told, waiting = std::move(waiting)](const GroupResult&) {
+    for (const Waiting& client : waiting) client.tell(told);
+  };
+  pending.callbacks.push_back({std::move(tell), kNever, group.answer_by});
+  pending_.push_back(std::move(pending));
 }
 
 // A reply waits for the image to show the statusword that it is about: a fault is shown when its cause is known.

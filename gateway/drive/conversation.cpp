@@ -96,6 +96,11 @@ void Conversation::plan_phase() {
 }
 
 void Conversation::next_phase() {
+  // What was done stays done, whatever becomes of the rest.
+  if (phase_ == Phase::controlword && group_.controlword) {
+    result_.controlword_done = true;
+    result_.command_sent = false;
+  }
   phase_ = static_cast<Phase>(static_cast<std::uint8_t>(phase_) + 1);
   planned_ = false;
 }
@@ -125,11 +130,14 @@ Conversation::Move Conversation::granted(Instant now) {
   }
   if (move.kind == Move::Kind::exchange) {
     begun_ = sent_of_plan_ = true;
-    if (in_command() && move.exchange.access != bus::Access::read) acted_ = true;
+    if (in_command() && move.exchange.access != bus::Access::read) acted_ = result_.command_sent = true;
     // What it copies may come anew, by process data, before the write is acknowledged.
     if (at_ < todo_.size() && todo_[at_].kind == Action::Kind::write && !verifying_) {
       todo_[at_].number = number_of(todo_[at_]);
       todo_[at_].copy_of = kNoObject;
+      ++step_;
+      last_write_ = todo_[at_];
+      write_under_way_ = true;
     }
     if (phase_ == Phase::preparation) preparation_sent_ = true;
   }
@@ -210,6 +218,7 @@ Conversation::Move Conversation::advance(Instant now) {
       if (made.object != core_.model.controlword || !opens || !is_stop() || stays_open)
         core_.make(made.object, made.number);
       acted_ = acted_ || in_command();
+      result_.command_sent = result_.command_sent || in_command();
     } else if (would_enable(action)) {
       // It was enabled when this was planned. The same word would now take it back there, which nobody asked for.
       stop_withheld_ = stop_withheld_ || phase_ == Phase::stop;
@@ -285,7 +294,7 @@ std::optional<Conversation::Move> Conversation::advance_wait(const Action& actio
                                           is_continuous(core_.mode_in_force()) && core_.facts().moving);
       pop();
     } else {
-      fail(action.otherwise, refusal(action.otherwise).detail);
+      fail(action.otherwise, action.otherwise == Errc::not_reached ? step_ : refusal(action.otherwise).detail);
     }
     return std::nullopt;
   }

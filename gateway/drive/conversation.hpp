@@ -5,6 +5,8 @@
 // never calls anybody.
 #pragma once
 
+#include <string>
+
 #include "adapters/bus/exchange.hpp"
 #include "gateway/drive/planner.hpp"
 
@@ -34,8 +36,17 @@ class Conversation {
   /// The result of the exchange given last. `sent_at`: when it was sent. `trusted`: the drive was not suspect; else an
   /// acknowledgement proves no write, and the object is read back.
   void on_result(const bus::ExchangeResult& result, Instant sent_at, bool trusted);
-  /// It ends here: stopped, out of time, drive or link lost. What was sent stays sent.
+  /// It ends here: stopped, drive or link lost. What was sent stays sent.
   void abort(Outcome outcome);
+  /// It ends here: its client's time is over.
+  void expire() { abort(outcome_if_late()); }
+  /// Where the drive has acknowledged all that was sent, the state asked for was not reached; else the outcome is
+  /// unknown.
+  [[nodiscard]] Outcome outcome_if_late() const;
+  /// Of an end with not_reached, for the log: the step, what was awaited, what was read.
+  [[nodiscard]] std::string missed() const;
+  /// What might still happen after such an end must be withdrawn by this stop; none: nothing might.
+  [[nodiscard]] Command withdrawn_by() const;
 
   [[nodiscard]] bool finished() const { return phase_ == Phase::finished; }
   [[nodiscard]] bool begun() const { return begun_; }  ///< something was sent
@@ -121,11 +132,14 @@ class Conversation {
   std::size_t at_ = 0;
   bool commanded_ = false;               ///< a set-point that moves by being written went to an enabled axis
   std::uint64_t last_acknowledged_ = 0;  ///< exchange of the last write: samples asked for earlier are too old
-  bool preparation_sent_ = false;        ///< the preparation of the command was more than a judgement
-  Instant wait_until_ = kNever;          ///< of the wait under way; kNever: not begun
-  Instant stop_until_ = kNever;          ///< of the stop's waits together, however often it is repeated
-  Instant repeat_at_ = kNever;           ///< of a stop: sent once more if it has not shown by then
-  std::uint64_t looked_at_ = 0;          ///< exchange of the sample that the wait under way has judged last
+  std::uint32_t step_ = 0;               ///< writes sent so far
+  std::optional<Action> last_write_{};
+  bool write_under_way_ = false;   ///< not answered yet
+  bool preparation_sent_ = false;  ///< the preparation of the command was more than a judgement
+  Instant wait_until_ = kNever;    ///< of the wait under way; kNever: not begun
+  Instant stop_until_ = kNever;    ///< of the stop's waits together, however often it is repeated
+  Instant repeat_at_ = kNever;     ///< of a stop: sent once more if it has not shown by then
+  std::uint64_t looked_at_ = 0;    ///< exchange of the sample that the wait under way has judged last
   Instant look_after_ = kLongAgo;
   Duration look_pause_{};
   bool object_done_ = false;

@@ -1,6 +1,9 @@
 // What a conversation makes of an answer, and what it tells the motion rules at its turning points.
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "gateway/drive/admission.hpp"
 #include "gateway/drive/conversation.hpp"
 
 namespace axisgate::drive {
@@ -20,6 +23,7 @@ bool is_not_there(std::uint32_t detail) {
 // --- Results -------------------------------------------------------------------------------------------------------
 
 void Conversation::on_result(const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
+  write_under_way_ = false;
   if (finished()) return;
   if (result.code == Errc::link_lost) {
     fail(Errc::link_lost);
@@ -143,6 +147,49 @@ void Conversation::on_object(const bus::ExchangeResult& result) {
     result_.object_data = field->raw;
     result_.object_size = field->size;
   }
+}
+
+// --- Not reached ---------------------------------------------------------------------------------------------------
+
+Outcome Conversation::outcome_if_late() const {
+  if (!begun_) return {stop_ ? Errc::timed_out : Errc::never_started, 0};
+  const bool asks_for_a_state = phase_ == Phase::stop || phase_ == Phase::mode || in_command();
+  // That a look was lost since, and the drive is suspect, takes back no acknowledgement.
+  const bool acknowledged = !write_under_way_ && !verifying_;
+  return asks_for_a_state && acknowledged ? Outcome{Errc::not_reached, step_} : Outcome{Errc::timed_out, 0};
+}
+
+std::string Conversation::missed() const {
+  std::string out = step_ == 0 ? "nothing was sent" : fmt::format("step {}", step_);
+  const auto hex = [&](ObjectId id, std::int64_t number) {
+    const std::uint8_t size = core_.object(id).size;
+    return fmt::format("0x{:0{}X}", wire_bits(number, size), 2 * size);
+  };
+  if (last_write_)
+    out += fmt::format(" ({} = {})", core_.object(last_write_->object).name,
+                       hex(last_write_->object, last_write_->number));
+  if (at_ >= todo_.size() || todo_[at_].kind != Action::Kind::wait) return out + ": what follows was not sent in time";
+  const Condition& until = todo_[at_].until;
+  const bool negated = until.test == Condition::Test::not_equals || until.test == Condition::Test::not_in;
+  out += ": awaited " + core_.object(until.object).name;
+  if (until.mask != 0) out += fmt::format(" & {}", hex(until.object, until.mask));
+  out += negated ? " other than" : " =";
+  constexpr std::size_t kMostNamed = 4;  // of a window of values the first tell enough
+  for (std::size_t i = 0; i < std::min(until.values.size(), kMostNamed); ++i)
+    out += (i == 0 ? " " : " or ") + hex(until.object, until.values[i]);
+  const ObjectState& state = core_.store[until.object];
+  return out + ", read " + (state.known ? hex(until.object, state.number) : std::string("nothing"));
+}
+
+// A start waits for its drive no longer, and the drive must not come back to it; nor may a mode that comes late make
+// the motor follow what it did not follow before.
+Command Conversation::withdrawn_by() const {
+  if (stop_ || step_ == 0) return Command::none;
+  const bool enabled = core_.facts().enabled();
+  if (group_.command == Command::enable || (asks_to_enable(group_) && !enabled)) return Command::disable;
+  const bool starts = group_.command >= Command::move_absolute && group_.command <= Command::set_position;
+  const bool follows = group_.mode && enabled;
+  return starts || follows ? Command::halt : Command::none;
 }
 
 // --- Turning points ------------------------------------------------------------------------------------------------

@@ -119,7 +119,7 @@ void Motion::complete(Instant now) {
 
 void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
   seen_ = facts.at;
-  rests_ = at_rest(facts) && !facts.follows;
+  rests_ = at_rest(facts);
   acknowledges_ = facts.acknowledges;
   if (!facts.reachable || (!facts.moving && facts.at >= settled_from_)) stopping_ = false;
   // Targets written while it is disabled or faulted are kept for the start that follows: only the change ends things.
@@ -192,7 +192,8 @@ bool Motion::take_homing_timeout() {
 }
 
 bool Motion::at_rest(const AxisFacts& facts) const {
-  if (kind_ != MotionKind::none) return false;
+  // What follows a velocity or torque turns, or is about to: a raw run's sampled velocity may be of before.
+  if (kind_ != MotionKind::none || facts.follows) return false;
   // In mode 1 the drive itself says so, before the sampled velocity does.
   if (facts.mode == 1 && facts.enabled() && facts.target_reached) return true;
   // Its motion has ended where it should: the sampled velocity may be of before.
@@ -201,11 +202,13 @@ bool Motion::at_rest(const AxisFacts& facts) const {
 }
 
 AxisState Motion::axis_state(const AxisFacts& facts) const {
+  if (!facts.reachable) return AxisState::unknown;
   if (facts.faulted()) return AxisState::error_stop;
   if (latched_ || facts.state == State402::quick_stop_active) return AxisState::stopping;
   if (!facts.enabled()) return AxisState::disabled;  // it may coast: nothing of ours stops it any more
   if (at_rest(facts)) return AxisState::standstill;
-  if (stopping_) return AxisState::stopping;
+  // A raw run that was begun since is no stop, although the axis was never seen to stand between the two.
+  if (stopping_ && !raw_run_) return AxisState::stopping;
   switch (kind_) {
     case MotionKind::discrete:
       return AxisState::discrete_motion;

@@ -37,6 +37,7 @@ std::optional<Command> command_named(std::string_view name) {
 Errc outcome_named(const std::string& name) {
   if (name == "busy") return Errc::busy;
   if (name == "bad_value") return Errc::bad_value;
+  if (name == "not_reached") return Errc::not_reached;
   return Errc::state_unsuitable;
 }
 

@@ -30,6 +30,7 @@ enum class AxisState : std::uint8_t {
   homing = 4,
   stopping = 5,  ///< or stop-latched
   error_stop = 6,
+  unknown = 7,  ///< out of sight: it may be running
 };
 enum class MotionState : std::uint8_t { none = 0, active = 1, completed = 2, aborted = 3, failed = 4 };
 
@@ -109,7 +110,7 @@ struct AxisImage {
   // Changed by the drive alone, through AxisWriter's rules.
   std::array<Sample, kQuantityCount> samples{};
   LinkState link_state = LinkState::unknown;
-  AxisState axis_state = AxisState::disabled;
+  AxisState axis_state = AxisState::unknown;
   MotionState motion_state = MotionState::none;
   std::uint16_t motion_id = 0;
   std::uint32_t alarms = 0;

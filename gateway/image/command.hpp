@@ -132,6 +132,8 @@ struct GroupResult {
   /// Of a group that asks for what is not there or not allowed (not_supported, bad_value): the first row that this is
   /// of, by its offset in the axis's block of registers.
   std::optional<std::uint16_t> refused_row{};
+  bool controlword_done = false;  ///< of a group that failed: its controlword was carried out before
+  bool command_sent = false;      ///< something was written for its command, or for a controlword that was not done
 };
 
 }  // namespace axisgate

@@ -60,20 +60,22 @@ std::vector<RegisterRow> axis_register_rows() {
       shows(20, "supported", u32, Source::supported, "this drive on this protocol has the quantity"),
       shows(22, "valid", u32, Source::valid, "the value is good now"),
       shows(24, "sequence", u16, Source::sequence, "steps when anything of the axis changes but ages"),
-      shows(25, "command_result", u16, Source::command_result,
-            "0 none, 1 pending, 2 done, 3 refused by drive, 4 outcome unknown, 5 superseded, 6 never started, "
-            "7 not owner, 8 stopped by another client, 9 state unsuitable, 10 not new: nothing was done"),
       shows(
-          26, "command_detail", u32, Source::command_detail,
-          "SDO abort code, Modbus exception or the drive's own code; of a block write refused with 0x01, 0x02 or 0x03: "
-          "0x0A000000 + offset of the first row, or coil, refused"),
+          25, "command_result", u16, Source::command_result,
+          "0 none, 1 pending, 2 done, 3 refused by drive, 4 outcome unknown, 5 superseded, 6 never started, "
+          "7 not owner, 8 stopped by another client, 9 state unsuitable, 10 not new: nothing was done, 11 not reached: "
+          "the drive has acknowledged everything, and the state did not come in time"),
+      shows(26, "command_detail", u32, Source::command_detail,
+            "SDO abort code, Modbus exception or the drive's own code; of result 11 the step, from 1, 0: nothing was "
+            "sent; of a block write refused with 0x01, 0x02 or 0x03: 0x0A000000 + offset of the first row, or coil, "
+            "refused"),
       shows(28, "owner", u16, Source::owner, "0 nobody, 1 this client, 2 another"),
       shows(29, "lease_remaining_ms", u16, Source::lease_remaining_ms,
             "until the lease runs out as things stand, saturating; 0: none runs", "ms"),
       shows(30, "command_id_seen", u16, Source::command_id_seen, "the last command_id from this client's address"),
       shows(31, "axis_state", u16, Source::axis_state,
             "0 disabled, 1 standstill, 2 discrete motion, 3 continuous motion, 4 homing, 5 stopping or stop-latched, "
-            "6 error stop"),
+            "6 error stop, 7 unknown: link_state is not 2 or 3, and the motor may be running"),
       shows(32, "motion_state", u16, Source::motion_state,
             "0 none, 1 active, 2 completed, 3 aborted by another command or stop, 4 failed"),
       shows(33, "motion_id", u16, Source::motion_id, "command_id of that motion"),

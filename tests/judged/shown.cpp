@@ -13,7 +13,8 @@ bool bit_of(std::uint32_t word, unsigned bit) { return (word >> bit & 1U) != 0; 
 
 std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Contract& contract,
                                     const History& history) {
-  constexpr std::size_t kAge = 19, kValid = 22, kAlarms = 34;
+  constexpr std::size_t kLink = 18, kAge = 19, kValid = 22, kAlarms = 34;
+  constexpr std::uint16_t kOnline = 2, kSuspect = 3, kUnknown = 7;
   constexpr unsigned kBitOfStatusword = 0, kBitOfPosition = 2, kBitOfStopLatched = 7;
   const int owner = shown.words[obey::shown::owner];
   const bool latched = bit_of(shown.wide(kAlarms), kBitOfStopLatched);
@@ -21,6 +22,13 @@ std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Cont
   if (!contract.shown(client, owner, latched))
     return "shown owner " + std::to_string(owner) + (latched ? ", stop-latched" : ", not stop-latched") +
            "; the contract: " + expected;
+  // A9: "axis_state 7 unknown while link_state is not 2 or 3"; 3.2: "statusword and discrete inputs 0..10 read 0".
+  const std::uint16_t link = shown.words[kLink];
+  const bool in_sight = link == kOnline || link == kSuspect;
+  if ((shown.words[obey::shown::axis_state] == kUnknown) == in_sight ||
+      (!in_sight && shown.words[obey::shown::statusword] != 0))
+    return "axis_state " + std::to_string(shown.words[obey::shown::axis_state]) + " and statusword " +
+           std::to_string(shown.words[obey::shown::statusword]) + " are shown at link_state " + std::to_string(link);
   const std::uint32_t valid = shown.wide(kValid);
   const std::int64_t age_ms = shown.words[kAge];
   const std::string old = ", " + std::to_string(age_ms) + " ms old, ";

@@ -101,11 +101,16 @@ TEST_P(GoesOnAtASpeed, AScannedZeroStandsARunThatGoesOn) {
 }
 
 // Nobody knows of a jog any more: what turns in velocity mode is a run.
+/// In which mode it turns no object tells.
+constexpr bool hides_mode(Subject s) {
+  return s == Subject::id286pro || s == Subject::keya_canopen_speed || s == Subject::keya_canopen_position;
+}
+
 TEST_P(GoesOnAtASpeed, ANewSpeedActsOnWhatANewGatewayFindsRunning) {
   ready();
   run_at(kSpeed);
   lose_gateway();
-  if (GetParam() == Subject::id286pro) return;  // in which mode it turns no register tells
+  if (hides_mode(GetParam())) return;
   EXPECT_EQ(plant_->a.row(row::target_velocity, kOtherSpeed), kOk);
   EXPECT_TRUE(plant_->reaches(kOtherSpeed)) << plant_->velocity();
 }
@@ -173,7 +178,7 @@ TEST_P(GoesOnAtASpeed, AButtonsZeroEndsNoRunThatIsKnown) {
   run_at(kSpeed);
   lose_gateway();
   ASSERT_EQ(plant_->a.row(row::target_velocity, kOtherSpeed), kOk);
-  if (GetParam() == Subject::id286pro) return;  // in which mode it turns no register tells
+  if (hides_mode(GetParam())) return;
   ASSERT_TRUE(plant_->reaches(kOtherSpeed));
   EXPECT_EQ(plant_->b.coil(coil::jog_forward, false), kOk);
   plant_->run(300ms);
@@ -189,7 +194,10 @@ TEST_P(GoesOn, StartsAreAcceptedOfWhatShowsEnabled) {
     gateway_too ? lose_gateway() : lose_link();
     ASSERT_TRUE(shows_enabled());
     EXPECT_EQ(plant_->set_endless(plant_->a), kOk);
-    EXPECT_EQ(plant_->b.command(plant_->endless_command()), kOk);
+    // A start would be a speed, or a position, by a mode that a new gateway does not know (chosen_mode_test.cpp).
+    const bool hides = gateway_too && hides_mode(GetParam()) && is_keya(GetParam());
+    EXPECT_EQ(plant_->b.command(plant_->endless_command()), hides ? kFailed : kOk);
+    if (hides) continue;
     EXPECT_TRUE(plant_->turns_within(1s));
   }
 }

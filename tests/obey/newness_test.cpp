@@ -196,6 +196,11 @@ TEST_P(Newness, OfAFirstPairIsToldAsLongAsItIsScanned) {
 class NewTargets : public testing::TestWithParam<Subject> {
  protected:
   NewTargets() { plant_.ready(); }
+  void stops_and_enables() {
+    ASSERT_EQ(plant_.b.command(kQuickStop), kOk);
+    ASSERT_TRUE(plant_.comes_to_stand());
+    ASSERT_EQ(plant_.b.command(kEnable), kOk);
+  }
   Plant plant_{GetParam()};
   Client& a_ = plant_.a;
 };
@@ -264,6 +269,49 @@ TEST(NewAfterALoss, ARelativeMoveIsOnlyWhenZeroWasWrittenSince) {
   EXPECT_LE(std::abs(plant.comes_to_rest_at() - at - kNear), kClose);
 }
 
+// Of two requests that come in one instant the refusal of one made the press of the other forgotten.
+TEST_P(NewTargets, AreNotMovedToAgainAfterAnothersStopWhateverElseWasRefusedInThatInstant) {
+  ASSERT_EQ(a_.row(row::target_position, kFar), kOk);
+  const RequestNumber start = a_.begin(one_coil(coil::start_absolute, true));
+  const RequestNumber refused = a_.begin(one(row::command, kRelative));  // the axis moves already
+  ASSERT_TRUE(plant_.stage.run_until([&] { return a_.answer_of(start) && a_.answer_of(refused); }));
+  ASSERT_EQ(*a_.answer_of(start), kOk);
+  ASSERT_EQ(*a_.answer_of(refused), kNotNow);
+  ASSERT_TRUE(plant_.turns_within(1s));
+  stops_and_enables();
+  const std::int64_t rests_at = plant_.position();
+  for (const Duration later : {0ms, 1500ms}) {
+    plant_.run(later);
+    EXPECT_EQ(a_.coil(coil::start_absolute, true), kNotNow);
+    EXPECT_EQ(a_.result(), kNotNew);
+    EXPECT_LE(std::abs(plant_.comes_to_rest_at() - rests_at), kClose);
+  }
+  EXPECT_EQ(a_.coil(coil::start_absolute, false), kOk);
+  EXPECT_EQ(a_.coil(coil::start_absolute, true), kOk);
+  EXPECT_LE(std::abs(plant_.comes_to_rest_at() - kFar), kClose);
+}
+
+class WordsBesideCommands : public NewTargets {};
+
+// The command of its request was refused, and so the controlword counted as never written.
+TEST_P(WordsBesideCommands, AreNotNewAgainAfterAnothersStopAlthoughTheCommandFailed) {
+  ASSERT_EQ(a_.row(row::mode, 1), kOk);
+  ASSERT_EQ(a_.row(row::target_position, kFar), kOk);
+  const auto words = [](std::int64_t word, std::int64_t command) {
+    return block(row::controlword, row::command,
+                 {{row::controlword, word}, {row::mode, 1}, {row::target_position, kFar}, {row::command, command}});
+  };
+  ASSERT_EQ(a_.write(words(15, 0)), kOk);
+  ASSERT_EQ(a_.write(words(0x1F, kRelative)), kNotNow);
+  ASSERT_TRUE(plant_.turns_within(1s)) << "what was done stays done";
+  stops_and_enables();
+  const std::int64_t rests_at = plant_.position();
+  plant_.run(1500ms);
+  EXPECT_EQ(a_.row(row::controlword, 0x1F), kNotNow);
+  EXPECT_EQ(a_.result(), kNotNew);
+  EXPECT_LE(std::abs(plant_.comes_to_rest_at() - rests_at), kClose);
+}
+
 TEST_P(NewTargets, InABlockBesideAHeldCommandAreToldOnceAndNotMovedTo) {
   Rows rows = plant_.profile_rows();
   ASSERT_EQ(a_.command(0), kOk);
@@ -281,6 +329,7 @@ TEST_P(NewTargets, InABlockBesideAHeldCommandAreToldOnceAndNotMovedTo) {
 
 INSTANTIATE_TEST_SUITE_P(Every, Newness, testing::ValuesIn(kSubjects), named);
 INSTANTIATE_TEST_SUITE_P(Every, NewTargets, testing::ValuesIn(subjects(has_positions)), named);
+INSTANTIATE_TEST_SUITE_P(Every, WordsBesideCommands, testing::ValuesIn(subjects(has_positions)), named);
 
 }  // namespace
 }  // namespace axisgate::test::obey

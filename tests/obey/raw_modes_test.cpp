@@ -50,6 +50,40 @@ TEST_P(RawVelocity, EnabledWithTargetZeroStartsWithTheNextVelocity) {
   EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
 }
 
+constexpr std::int64_t kContinuousMotion = 3;
+
+class ShownRawVelocity : public RawVelocity {};  // a virtual axis runs raw from its enable on, and so from standing
+
+// It showed "stopping" for as long as it ran.
+TEST_P(ShownRawVelocity, IsARunAlsoBehindAHaltThatWasNeverSeenToEnd) {
+  constexpr std::int64_t kFifteen = 0x4F;  // not the one that is remembered
+  ASSERT_EQ(plant_.a.row(row::mode, kVelocityMode), kOk);
+  enable_raw();
+  ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+  ASSERT_TRUE(plant_.reaches(kSpeed));
+  ASSERT_EQ(plant_.a.word(shown::axis_state), kContinuousMotion);
+  ASSERT_EQ(plant_.a.command(kHalt), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, kFifteen), kOk);
+  ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+  EXPECT_EQ(plant_.a.word(shown::axis_state), kContinuousMotion);
+  ASSERT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
+  plant_.run(1s);
+  EXPECT_EQ(plant_.a.word(shown::axis_state), kContinuousMotion);
+  EXPECT_EQ(plant_.a.command(kRelative), kNotNow);
+}
+
+// The drive's sampled velocity lags behind: it showed "standstill", and took a relative move.
+TEST_P(ShownRawVelocity, IsARunBeforeTheSampledVelocitySaysSo) {
+  ASSERT_EQ(plant_.a.row(row::mode, kVelocityMode), kOk);
+  enable_raw();
+  plant_.run(1s);
+  ASSERT_EQ(plant_.a.word(shown::axis_state), kStandstill);
+  ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+  EXPECT_EQ(plant_.a.word(shown::axis_state), kContinuousMotion);
+  EXPECT_EQ(plant_.a.command(kRelative), kNotNow);
+  EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
+}
+
 TEST_P(RawVelocity, ScannedInABlockDoesTheSame) {
   scan(0, 0);
   scan(6, 0);
@@ -132,6 +166,7 @@ TEST_P(RawTorque, ScannedInABlockDoesTheSame) {
   EXPECT_TRUE(plant_.keeps_turning());
 }
 
+INSTANTIATE_TEST_SUITE_P(Every, ShownRawVelocity, testing::ValuesIn(subjects(is_cia402)), named);
 INSTANTIATE_TEST_SUITE_P(Every, RawVelocity, testing::ValuesIn(subjects(has_speeds)), named);
 INSTANTIATE_TEST_SUITE_P(Every, RawTorque, testing::ValuesIn(subjects(has_torque)), named);
 

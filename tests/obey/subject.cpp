@@ -178,24 +178,27 @@ Truth truth(GatewayStage& stage, Subject subject, const MotorPlace& place) {
           drive.state() == Cia402State::operation_enabled, is_fault(drive.state())};
 }
 
-void trip(GatewayStage& stage, Subject subject) {
-  if (is_keya(subject)) {
-    constexpr std::uint16_t kOvercurrent = 0x0040;  // goes with a disabling
-    stage.keya(0).inject_fault(KeyaMotorName::a, kOvercurrent);
-    return stage.keya(0).clear_fault_cause(KeyaMotorName::a, kOvercurrent);
-  }
-  if (subject == Subject::id286pro) {
-    constexpr std::uint16_t kSupplyTooHigh = 14;
-    stage.id286pro(0).inject_fault(kSupplyTooHigh);
-    return stage.id286pro(0).clear_fault_cause();
-  }
-  if (subject == Subject::leadshine) {
-    constexpr std::uint16_t kSupplyTooHigh = 0x3211;
-    stage.leadshine(0).inject_fault(kSupplyTooHigh);
-    return stage.leadshine(0).clear_fault_cause();
-  }
-  constexpr std::uint16_t kBusVoltageTooHigh = 0x0020;
+namespace {
+
+constexpr std::uint16_t kOvercurrent = 0x0040;  // Keya; goes with a disabling
+constexpr std::uint16_t kSupplyTooHigh = 14;
+constexpr std::uint16_t kLeadshineSupplyTooHigh = 0x3211;
+constexpr std::uint16_t kBusVoltageTooHigh = 0x0020;
+
+}  // namespace
+
+void break_down(GatewayStage& stage, Subject subject) {
+  if (is_keya(subject)) return stage.keya(0).inject_fault(KeyaMotorName::a, kOvercurrent);
+  if (subject == Subject::id286pro) return stage.id286pro(0).inject_fault(kSupplyTooHigh);
+  if (subject == Subject::leadshine) return stage.leadshine(0).inject_fault(kLeadshineSupplyTooHigh);
   stage.drive(0).inject_fault(1, kBusVoltageTooHigh);
+}
+
+void trip(GatewayStage& stage, Subject subject) {
+  break_down(stage, subject);
+  if (is_keya(subject)) return stage.keya(0).clear_fault_cause(KeyaMotorName::a, kOvercurrent);
+  if (subject == Subject::id286pro) return stage.id286pro(0).clear_fault_cause();
+  if (subject == Subject::leadshine) return stage.leadshine(0).clear_fault_cause();
   stage.drive(0).clear_fault_cause(1, kBusVoltageTooHigh);
 }
 
@@ -217,6 +220,19 @@ bool lack(GatewayStage& stage, Subject subject, const std::vector<ObjectPlace>& 
   else
     return false;
   return true;
+}
+
+void lock(GatewayStage& stage, Subject subject, bool locked) {
+  if (is_keya(subject)) return stage.keya(0).lock(locked);
+  if (subject == Subject::id286pro) return stage.id286pro(0).set_enable_switch(!locked);
+  if (subject == Subject::leadshine) return stage.leadshine(0).lock(locked);
+  stage.drive(0).lock(locked);
+}
+
+void numb(GatewayStage& stage, Subject subject, bool numb) {
+  if (is_keya(subject)) return stage.keya(0).numb(numb);
+  if (subject == Subject::leadshine) return stage.leadshine(0).numb(numb);
+  stage.drive(0).numb(numb);
 }
 
 std::optional<TargetObject> target_object(Subject subject) {

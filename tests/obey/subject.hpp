@@ -125,6 +125,16 @@ struct ObjectPlace {
 /// on this protocol no drive refuses anything.
 bool lack(GatewayStage& stage, Subject subject, const std::vector<ObjectPlace>& objects);
 
+/// A fault whose cause stays.
+void break_down(GatewayStage& stage, Subject subject);
+
+/// A contact in the way of the torque, wired past the bus: an enable comes to nothing until it closes. Of an iD286pro
+/// the hard-wired enable switch.
+void lock(GatewayStage& stage, Subject subject, bool locked);
+/// The drive acknowledges commands and carries none out; when it comes to, a CiA 402 drive carries out those in effect.
+/// Not of an iD286pro.
+void numb(GatewayStage& stage, Subject subject, bool numb);
+
 /// The drive's own object for a position target, in its own counts, where the mailbox can write it without the motor
 /// moving for it.
 struct TargetObject {

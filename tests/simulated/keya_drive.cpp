@@ -1,6 +1,7 @@
 #include "tests/simulated/keya_drive.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace axisgate::simulated {
 namespace {
@@ -37,7 +38,12 @@ std::array<std::uint8_t, 2> KeyaDrive::control_state() const {
 void KeyaDrive::switch_on(KeyaMotorName motor, std::optional<KeyaMode> mode) {
   const std::size_t n = number(motor);
   words_[n] = static_cast<std::uint16_t>(words_[n] & ~(goes_by_enabling & ~causes_[n]));
-  if (words_[n] != 0) return;  // acknowledged, and it stays disabled
+  if (words_[n] != 0 || numb_) return;  // acknowledged, and it stays disabled
+  if (locked_out_ && !enabled(motor)) {
+    asked_on_[n] = true;
+    asked_mode_[n] = mode;
+    return;
+  }
   const bool was = enabled(motor);
   const KeyaMode before = at(motor).mode();
   at(motor).enable(mode.value_or(was ? before : at(motor).configured_mode()));
@@ -46,7 +52,15 @@ void KeyaDrive::switch_on(KeyaMotorName motor, std::optional<KeyaMode> mode) {
   last_move_[n].reset();
 }
 
+void KeyaDrive::lock(bool locked) {
+  locked_out_ = locked;
+  for (const KeyaMotorName motor : keya_motors)
+    if (!locked && std::exchange(asked_on_[number(motor)], false)) switch_on(motor, asked_mode_[number(motor)]);
+}
+
 void KeyaDrive::switch_off(KeyaMotorName motor, KeyaStop how) {
+  if (numb_) return;
+  asked_on_[number(motor)] = false;
   at(motor).disable(how, stepped_);
   given_[number(motor)] = 0;
 }
@@ -94,7 +108,7 @@ bool KeyaDrive::set_value(KeyaMotorName motor, std::int64_t value, std::optional
 }
 
 void KeyaDrive::take_value(KeyaMotorName motor, std::int64_t value) {
-  if (!enabled(motor)) return;
+  if (!enabled(motor) || numb_) return;
   const std::size_t n = number(motor);
   switch (at(motor).mode()) {
     case KeyaMode::speed:

@@ -62,6 +62,11 @@ class KeyaDrive {
   // manual wants a reset.
   void inject_fault(KeyaMotorName motor, std::uint16_t bits);
   void clear_fault_cause(KeyaMotorName motor, std::uint16_t bits);
+  // A contact in the way of the torque of both motors: an enable is acknowledged, and is carried out when the contact
+  // closes, if no disable came since.
+  void lock(bool locked);
+  // It acknowledges and carries nothing out.
+  void numb(bool numb) { numb_ = numb; }
   KeyaMeasured& measured() { return measured_; }
   KeyaMotor& at(KeyaMotorName motor) { return motors_[static_cast<std::size_t>(motor)]; }
 
@@ -101,6 +106,10 @@ class KeyaDrive {
   std::array<std::uint16_t, 2> causes_{};  // that are still there
   std::array<std::int64_t, 2> given_{};    // speeds or torques as commanded, before mixing
   std::array<std::optional<std::int64_t>, 2> last_move_{};
+  bool locked_out_ = false;
+  bool numb_ = false;
+  std::array<bool, 2> asked_on_{};  // while locked out
+  std::array<std::optional<KeyaMode>, 2> asked_mode_{};
   std::array<std::uint64_t, 2> moves_{};
   std::optional<Time> last_control_;
   std::optional<Time> boot_until_;

@@ -47,6 +47,11 @@ class KincoDrive {
   void set_input(int input, bool high) { inputs_.set_pin(input, high); }
   void jam(bool jammed) { axis_.jam(jammed); }                             // the motor stands while the demand goes on
   void lack(std::set<ObjectKey> objects) { lacks_ = std::move(objects); }  // of another type or firmware: refused
+  // A contact in the way of the torque: an enable is acknowledged, and is carried out when the contact closes, if the
+  // controlword in effect still asks for it.
+  void lock(bool locked);
+  // It acknowledges controlwords and modes and carries none out; when it comes to, it carries out those in effect.
+  void numb(bool numb);
   // As the panel or another port would write it: same effects, not counted. Measured values that nothing computes
   // (voltage, temperature) may be set too.
   Refusal poke(ObjectKey key, std::int64_t value);
@@ -122,6 +127,9 @@ class KincoDrive {
   Cia402State state_ = Cia402State::not_ready_to_switch_on;
   std::optional<Cia402State> pending_;  // entered at standstill
   std::uint16_t controlword_ = 0;
+  bool locked_out_ = false;
+  bool numb_ = false;
+  std::optional<std::uint16_t> unheard_;  // the controlword written while numb
   std::int64_t mode_ = 0;
   Dec torque_command_ = 0;
   Dec current_ = 0;

@@ -85,7 +85,7 @@ std::optional<std::int64_t> KincoDrive::measured(ObjectKey key) const {
   const Dec speed = axis_.actual_speed();
   switch (key.index << 8 | key.sub) {
     case 0x604000:
-      return controlword_;
+      return unheard_.value_or(controlword_);
     case 0x604100:
       return statusword();
     case 0x606100:

@@ -30,6 +30,10 @@ int method_of(std::int64_t method) {
 }  // namespace
 
 void LeadshineDrive::take_controlword(std::uint16_t word, std::uint64_t tag) {
+  if (numb_) {
+    unheard_ = word;
+    return;
+  }
   const auto rising = static_cast<std::uint16_t>(word & ~controlword_);
   const auto falling = static_cast<std::uint16_t>(controlword_ & ~word);
   controlword_ = word;
@@ -47,9 +51,24 @@ void LeadshineDrive::take_controlword(std::uint16_t word, std::uint64_t tag) {
   }
 }
 
+void LeadshineDrive::lock(bool locked) {
+  locked_out_ = locked;
+  const bool waits = state_ == ready_to_switch_on || state_ == switched_on;
+  if (!locked && waits) obey(command_in(controlword_), 0);
+}
+
+void LeadshineDrive::numb(bool numb) {
+  numb_ = numb;
+  if (numb) return;
+  set_mode(object(0x6060));
+  if (unheard_) take_controlword(*unheard_, 0);
+  unheard_.reset();
+}
+
 void LeadshineDrive::obey(Cia402Command command, std::uint64_t tag) {
   const bool enable = command == Cia402Command::enable_operation;
   if (enable && inputs_.active(InputFunction::emergency_stop)) return;
+  if (enable && locked_out_ && state_ != operation_enabled) return;
   if (state_ == operation_enabled && enable) {
     if (pending_) {  // the stop under way is taken back
       pending_.reset();
@@ -167,7 +186,7 @@ void LeadshineDrive::start_homing() {
 }
 
 void LeadshineDrive::set_mode(std::int64_t mode) {
-  if (mode == mode_) return;
+  if (mode == mode_ || numb_) return;
   mode_ = mode;
   if (operating()) start_mode();
 }

@@ -69,6 +69,11 @@ class LeadshineDrive final : public CanDevice {
   void clear_fault_cause() { cause_ = 0; }
   void set_input(int input, bool high) { inputs_.set_pin(input, high); }
   void jam(bool jammed) { axis_.jam(jammed); }  // the motor stands while the demand goes on
+  // A contact in the way of the torque: an enable is acknowledged, and is carried out when the contact closes, if the
+  // controlword in effect still asks for it.
+  void lock(bool locked);
+  // It acknowledges controlwords and modes and carries none out; when it comes to, it carries out those in effect.
+  void numb(bool numb);
 
   // What a world looks at.
   const LeadshineOptions& options() const { return options_; }
@@ -145,6 +150,9 @@ class LeadshineDrive final : public CanDevice {
   Cia402State state_ = Cia402State::not_ready_to_switch_on;
   std::optional<Cia402State> pending_;  // entered at standstill
   std::uint16_t controlword_ = 0;
+  bool locked_out_ = false;
+  bool numb_ = false;
+  std::optional<std::uint16_t> unheard_;  // the controlword written while numb
   std::int64_t mode_ = 0;
   std::int64_t torque_demand_ = 0;  // in millionths of rated torque, on its slope
   Dec last_step_ = 0;               // change of speed in the last millisecond

@@ -83,7 +83,7 @@ std::optional<std::int64_t> LeadshineDrive::measured(ObjectKey key) const {
     case 0x603F00:
       return error_;
     case 0x604000:
-      return controlword_;
+      return unheard_.value_or(controlword_);
     case 0x604100:
       return statusword();
     case 0x606100:

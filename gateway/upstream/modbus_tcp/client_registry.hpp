@@ -77,6 +77,7 @@ struct Client {
   std::map<AxisNumber, ClientAxis> axes;     ///< those it has written to
   std::optional<std::uint16_t> heartbeat{};  ///< gateway register 8; none written yet: the first one is a change
   ObjectBuffers objects;                     ///< function 43/13
+  std::uint64_t writes = 0;                  ///< counts its write requests, refused ones too
 
   /// A group of this client that asks for nothing yet. `role`: of the connection that it asks by.
   [[nodiscard]] Group new_group(Role role) const;

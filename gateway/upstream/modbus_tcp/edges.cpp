@@ -58,14 +58,17 @@ Verdict EdgeMemory::judge(Item& item, std::uint16_t value, const Kind& kind, con
   return Verdict::not_new;
 }
 
-void EdgeMemory::remember(Item& item, std::uint16_t value, Instant now) {
-  if (!item.written || item.value != value) item = {.written = true, .value = value, .since = now, .acted = {}};
-  item.at = now;
+void EdgeMemory::remember(Item& item, std::uint16_t value, const Writing& writing) {
+  if (!item.written || item.value != value)
+    item = {.written = true, .value = value, .since = writing.request, .acted = {}};
+  item.at = writing.now;
+  item.request = writing.request;
+  item.done = false;
 }
 
 Verdict EdgeMemory::conclude(Item& item, std::uint16_t value, Verdict verdict, const Writing& writing) {
   const bool fresh = !item.written || item.value != value;
-  remember(item, value, writing.now);
+  remember(item, value, writing);
   if (fresh || verdict == Verdict::acts) item.targets = writing.targets;
   if (verdict != Verdict::acts) return verdict;
   item.acted = writing.endings == nullptr ? Endings::Point{0} : writing.endings->now();
@@ -108,10 +111,10 @@ Verdict EdgeMemory::command_with_id(Command value, std::uint16_t id, CommandIds&
   return conclude(command_, number, verdict, writing);
 }
 
-bool EdgeMemory::zeros(Instant now) {
+bool EdgeMemory::zeros(const Writing& writing) {
   const bool stops = controlword_.written && controlword_.value != 0;
-  remember(controlword_, 0, now);
-  remember(command_, 0, now);
+  remember(controlword_, 0, writing);
+  remember(command_, 0, writing);
   return stops;
 }
 
@@ -177,34 +180,46 @@ JogAsks EdgeMemory::jog(const JogWrite& write, const Writing& writing) {
     if (side.first()) asks.not_new = true;
   }
   for (const Side& side : sides)
-    if (side.value) remember(side.item, *side.value ? 1 : 0, writing.now);
+    if (side.value) remember(side.item, *side.value ? 1 : 0, writing);
   return asks;
 }
 
 // --- What became of it ---------------------------------------------------------------------------------------------
 
-void EdgeMemory::forget_presses(Instant when) {
-  const auto forget = [when](Item& item) {
-    if (item.at != when) return;
+void EdgeMemory::controlword_done(std::uint64_t request) {
+  if (controlword_.request == request) controlword_.done = true;
+}
+
+void EdgeMemory::command_done(std::uint64_t request, Command command) {
+  if (command_.request == request && command_.value == static_cast<std::uint16_t>(command)) command_.done = true;
+  for (const CoilRow& coil : coil_rows()) {
+    Item& item = coils_.at(coil.offset);
+    if (item.request == request && (item.value != 0 ? coil.on : coil.off) == command) item.done = true;
+  }
+}
+
+void EdgeMemory::forget_presses(std::uint64_t request, bool sent) {
+  const auto forget = [request, sent](Item& item) {
+    if (item.request != request || item.done) return;
     item.at = kLongAgo;
-    item.acted.reset();
+    if (!sent) item.acted.reset();
   };
   forget(controlword_);
   forget(command_);
   for (Item& item : coils_) forget(item);
 }
 
-void EdgeMemory::disown(Instant when) {
+void EdgeMemory::disown(std::uint64_t request) {
   for (const CoilRow& coil : coil_rows()) {
     Item& item = coils_.at(coil.offset);
     // A stop is carried out whoever owns the axis.
-    if (item.is_on() && item.since == when && !axisgate::is_stop(coil.on)) item.disowned = true;
+    if (item.is_on() && item.since == request && !axisgate::is_stop(coil.on)) item.disowned = true;
   }
 }
 
-void EdgeMemory::own(Instant when) {
+void EdgeMemory::own(std::uint64_t request) {
   for (Item& item : coils_)
-    if (item.at == when) item.disowned = false;
+    if (item.request == request) item.disowned = false;
 }
 
 }  // namespace axisgate::modbus_tcp

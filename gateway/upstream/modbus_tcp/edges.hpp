@@ -28,7 +28,8 @@ inline constexpr std::uint16_t kJogReverse = 9;
 struct Writing {
   WriteForm form = WriteForm::single;
   Instant now;
-  Duration rearm;  ///< listener option rearm_ms
+  std::uint64_t request = 0;  ///< its number among the client's, from 1: two may come in one instant
+  Duration rearm;             ///< listener option rearm_ms
   ClientId client = 0;
   const Endings* endings = nullptr;  ///< of the axis; none: nothing has ever ended
   bool enabled = false;              ///< coil 0 reads 1
@@ -84,29 +85,37 @@ class EdgeMemory {
   /// held coil start anew.
   [[nodiscard]] JogAsks jog(const JogWrite& write, const Writing& writing);
   /// A block of nothing but zeros: remembered; true where controlword goes from another value to 0, which is a stop.
-  [[nodiscard]] bool zeros(Instant now);
+  [[nodiscard]] bool zeros(const Writing& writing);
 
   /// Nothing was written to `command`, or to `controlword`, yet.
   [[nodiscard]] bool command_empty() const { return !command_.written; }
   [[nodiscard]] bool controlword_empty() const { return !controlword_.written; }
   /// Register 54 as this client reads it.
   [[nodiscard]] std::uint16_t last_command() const { return command_.value; }
-  /// What acted in the request at `when` was refused and did nothing: the next single write of it is no second press.
-  void forget_presses(Instant when);
-  /// The request at `when` was refused because another client owns the axis. What it wrote stays remembered, so that a
+  // What became of a request, by its number.
+  /// A part of it was carried out: what stood for that has been pressed, however the rest ends.
+  void controlword_done(std::uint64_t request);
+  void command_done(std::uint64_t request, Command command);
+  /// It failed: of what was not carried out the next single write is no second press. `sent`: a part of it reached the
+  /// drive, so it has acted: after another client's stop, a fault or a loss something else must come first all the
+  /// same.
+  void forget_presses(std::uint64_t request, bool sent);
+  /// It was refused because another client owns the axis. What it wrote stays remembered, so that a
   /// level that is written on and on starts nothing on the day on which the axis is free: 0 and then 1 does. But a
   /// level that rose in it was never taken, so its fall in a block asks for nothing: a panel's row of coils must not
   /// stop the owner's motion when a button that was pressed in vain is let go.
-  void disown(Instant when);
-  /// The request at `when` was accepted: levels in it are this client's now, and their fall acts.
-  void own(Instant when);
+  void disown(std::uint64_t request);
+  /// It was accepted: levels in it are this client's now, and their fall acts.
+  void own(std::uint64_t request);
 
  private:
   struct Item {
     bool written = false;  ///< false: the memory is empty
     std::uint16_t value = 0;
     Instant at = kLongAgo;                ///< written last
-    Instant since = kLongAgo;             ///< when it was first written with this value
+    std::uint64_t request = 0;            ///< that wrote it last
+    std::uint64_t since = 0;              ///< the request that first wrote this value
+    bool done = false;                    ///< what `request` asked by it was carried out
     std::optional<Endings::Point> acted;  ///< when it acted last with this value
     std::uint64_t targets = 0;            ///< Writing::targets then
     bool told = false;                    ///< its client was told once that it is not new
@@ -124,7 +133,7 @@ class EdgeMemory {
   [[nodiscard]] static Verdict judge(Item& item, std::uint16_t value, const Kind& kind, const Writing& writing);
   [[nodiscard]] static Verdict judge_single(const Item& item, const Kind& kind, const Writing& writing);
   [[nodiscard]] static Verdict judge_level(const Item& item, const CoilRow& coil, bool value, const Writing& writing);
-  static void remember(Item& item, std::uint16_t value, Instant now);
+  static void remember(Item& item, std::uint16_t value, const Writing& writing);
   static Verdict conclude(Item& item, std::uint16_t value, Verdict verdict, const Writing& writing);
 
   Item controlword_;

@@ -153,7 +153,7 @@ class GroupMaker {
 
   /// A scanner's image before its program runs asks for nothing. Two zeros stop all the same.
   void put_zeros() {
-    if (own_.edges.zeros(onlooker_.now)) {
+    if (own_.edges.zeros(writing_)) {
       group_.controlword = 0;
       group_.single_controlword = false;
     }

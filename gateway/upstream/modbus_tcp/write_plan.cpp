@@ -46,6 +46,7 @@ Writing writing_to(const AxisImage& axis, const Onlooker& onlooker, WriteForm fo
   Writing writing;
   writing.form = form;
   writing.now = onlooker.now;
+  writing.request = onlooker.client.writes;
   writing.rearm = onlooker.settings.rearm;
   writing.client = onlooker.client.id;
   writing.endings = &axis.endings;
@@ -56,8 +57,11 @@ Writing writing_to(const AxisImage& axis, const Onlooker& onlooker, WriteForm fo
 }
 
 Planned plan_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
-  return request.writes_coils() ? plan_coil_write(request, view, onlooker, client)
-                                : plan_register_write(request, view, onlooker, client);
+  ++client.writes;
+  Planned planned = request.writes_coils() ? plan_coil_write(request, view, onlooker, client)
+                                           : plan_register_write(request, view, onlooker, client);
+  if (auto* const plan = std::get_if<WritePlan>(&planned)) plan->request = client.writes;
+  return planned;
 }
 
 bool asks_for_a_stop(const Request& request, const UnitView& view, const ProcessImage& image) {

@@ -31,6 +31,7 @@ void restore(const WriteMemory& memory, Client& client, AxisNumber axis);
 /// One request writes to one axis at most: offsets 90 to 99 of a block, and coils 16 to 99, take no write.
 struct WritePlan {
   AxisNumber axis = 0;          ///< 0: nothing is asked of an axis (gateway register 8)
+  std::uint64_t request = 0;    ///< Writing::request
   std::vector<Group> groups;    ///< one after another; more than one only where several coils act at once
   Errc afterwards = Errc::ok;   ///< how the request ends when all groups are done: starts that its own stop has dropped
   std::optional<Group> object;  ///< the mailbox's request, after the groups; not waited for

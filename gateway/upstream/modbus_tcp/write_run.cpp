@@ -5,10 +5,10 @@
 namespace axisgate::modbus_tcp {
 namespace {
 
-/// The axis is as it was before the press: pressing again is a new press, not the same one twice. After an unknown
-/// outcome the drive may have acted, so there a repetition within rearm_ms stays one press.
+/// Pressing again is a new press, not the same one twice: nothing has come of it. After an unknown outcome the drive
+/// may have acted, so there a repetition within rearm_ms stays one press.
 bool did_nothing(Errc code) {
-  return code != Errc::ok && code != Errc::stopped_by_other && code != Errc::not_reached && code != Errc::not_new &&
+  return code != Errc::ok && code != Errc::stopped_by_other && code != Errc::not_new &&
          command_result(code) != CommandResult::outcome_unknown;
 }
 
@@ -31,7 +31,7 @@ std::uint32_t object_detail(const GroupResult& result) {
 
 WriteRun::WriteRun(CommandPort& commands, const std::shared_ptr<Client>& client, WritePlan plan, Instant now,
                    const ListenerSettings& settings, const Log& log)
-    : commands_(commands), client_(client), plan_(std::move(plan)), log_(log), began_(now) {
+    : commands_(commands), client_(client), plan_(std::move(plan)), log_(log) {
   const auto set_deadlines = [&](Group& group) {
     group.start_by = now + settings.start_deadline;
     group.answer_by = now + settings.reply_deadline;
@@ -77,8 +77,9 @@ std::optional<Outcome> WriteRun::carry_on() {
         [self = shared_from_this(), submission](const GroupResult& result) { self->on_result(submission, result); });
     if (!at_once) return std::nullopt;
     const Outcome outcome = told(at_once->outcome);
-    if (is_wrong(outcome.code)) forget();
-    settle(submission, outcome);
+    // Behind a group that has acted the request was not refused as a whole, and others may have come since it began.
+    if (is_wrong(outcome.code) && next_ == 1) forget();
+    settle(submission, {outcome});
     if (is_wrong(outcome.code)) tell_refused({at_once->outcome.code, row_of(*at_once)}, pending);
     if (outcome.code != Errc::ok) return end(outcome);
   }
@@ -88,7 +89,7 @@ std::optional<Outcome> WriteRun::carry_on() {
   }
   if (plan_.afterwards != Errc::ok) {
     const Outcome dropped{plan_.afterwards, 0};
-    settle(begin(0), dropped);
+    settle(begin(0), {dropped});
     return end(dropped);
   }
   return submit_object();
@@ -102,7 +103,7 @@ Outcome WriteRun::told(const Outcome& outcome) const {
 void WriteRun::on_result(std::uint64_t submission, const GroupResult& result) {
   const ClientAxis* const axis = own();
   const bool newest = axis != nullptr && axis->submission == submission;
-  settle(submission, result.outcome);
+  settle(submission, result);
   if (is_wrong(result.outcome.code)) {
     tell_refused({result.outcome.code, row_of(result)}, newest ? std::nullopt : shown());
   }
@@ -167,12 +168,21 @@ std::uint64_t WriteRun::begin(std::uint16_t command_id) {
   return ++axis->submission;
 }
 
-void WriteRun::settle(std::uint64_t submission, const Outcome& outcome) {
+void WriteRun::note_presses(ClientAxis& axis, const GroupResult& result) const {
+  const Errc code = result.outcome.code;
+  const Group& group = plan_.groups[next_ - 1];
+  if (code == Errc::ok) axis.edges.own(plan_.request);
+  if (code == Errc::not_owner) axis.edges.disown(plan_.request);
+  if (code == Errc::ok || result.controlword_done) axis.edges.controlword_done(plan_.request);
+  if (code == Errc::ok && group.command != Command::none) axis.edges.command_done(plan_.request, group.command);
+  if (did_nothing(code)) axis.edges.forget_presses(plan_.request, result.command_sent);
+}
+
+void WriteRun::settle(std::uint64_t submission, const GroupResult& result) {
+  const Outcome& outcome = result.outcome;
   ClientAxis* const axis = own();
   if (axis == nullptr) return;
-  if (outcome.code == Errc::ok) axis->edges.own(began_);
-  if (outcome.code == Errc::not_owner) axis->edges.disown(began_);
-  if (did_nothing(outcome.code)) axis->edges.forget_presses(began_);
+  note_presses(*axis, result);
   if (submission == kNoSubmission) {
     // It asked for nothing, so there is nothing to tell of but a refusal.
     if (outcome.code == Errc::ok) return;

@@ -46,7 +46,8 @@ class WriteRun : public std::enable_shared_from_this<WriteRun> {
   void tell_refused(const Refused& refused, const std::optional<Shown>& stays);
   [[nodiscard]] Outcome done();
   void tell_not_new();
-  void settle(std::uint64_t submission, const Outcome& outcome);
+  void settle(std::uint64_t submission, const GroupResult& result);
+  void note_presses(ClientAxis& axis, const GroupResult& result) const;
   [[nodiscard]] Outcome submit_object();
   void settle_object(const GroupResult& result);
   [[nodiscard]] Outcome end(const Outcome& outcome);
@@ -56,7 +57,6 @@ class WriteRun : public std::enable_shared_from_this<WriteRun> {
   std::weak_ptr<Client> client_;
   WritePlan plan_;
   const Log& log_;
-  Instant began_;
   std::size_t next_ = 0;
   bool abandoned_ = false;
   OnDone on_done_;

@@ -75,8 +75,11 @@ TEST(DdsStates, OfADriveThatIsGoneSaySoAndThatItIsBack) {
   EXPECT_EQ(rig.state().statusword, 0);
   EXPECT_EQ(rig.state().error_code, 0x8130);
   EXPECT_EQ(rig.state().valid, 0U);
+  constexpr int kUnknown = 7;  // not "disabled"
+  EXPECT_EQ(rig.state().axis_state, kUnknown);
   rig.stage.link(0).plug();
   EXPECT_TRUE(rig.run_until([&] { return rig.state().link_state == 2 && rig.state().valid != 0; }));
+  EXPECT_EQ(rig.state().axis_state, 0);
 }
 
 TEST(DdsStates, OfTheGatewayComeOnceASecondWithItsBuses) {

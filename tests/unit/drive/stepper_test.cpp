@@ -255,7 +255,7 @@ TEST(Stepper, TheEnableSwitchAtTheDriveIsALossOfEnableThatItsReturnDoesNotUndo) 
   ASSERT_TRUE(rig.stage.run_until([&] { return !rig.axis().has(AxisInput::enabled); }, 2s));
   EXPECT_EQ(rig.axis()[Quantity::statusword].value, 0x40);
   EXPECT_EQ(rig.axis().alarms & bit(AxisAlarm::cannot_deenergise), 0U) << "now it holds no torque";
-  EXPECT_EQ(rig.code(rig.command(Command::enable)), Errc::state_unsuitable);
+  EXPECT_EQ(rig.code(rig.command(Command::enable)), Errc::not_reached);
   rig.motor().set_enable_switch(true);
   rig.stage.run(1s);
   EXPECT_FALSE(rig.axis().has(AxisInput::enabled));

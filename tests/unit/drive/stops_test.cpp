@@ -131,7 +131,7 @@ TEST(Stops, AreSentThreeTimesAtMostUntilTheStateShows) {
   rig.stage.run(1s);
   EXPECT_GT(rig.count(kControlword, 0x06), 3U) << "it is still enabled, so the stop is owed on";
   ASSERT_TRUE(place->has_value());
-  EXPECT_EQ((*place)->outcome.code, Errc::timed_out) << "at the client's deadline";
+  EXPECT_EQ((*place)->outcome.code, Errc::not_reached) << "at the client's deadline: all was acknowledged";
 }
 
 TEST(Stops, KeepTheirThreeTriesAtADriveThatWasSilentBefore) {

@@ -87,5 +87,12 @@ TEST(Texts, AreThereForEveryAlarmAndState) {
   for (int i = 0; i <= 6; ++i) EXPECT_NE(text(static_cast<AxisState>(i)), "?");
 }
 
+TEST(AxisImage, IsOfAnUnknownStateUntilItsDriveIsSeen) {
+  const AxisImage axis;
+  EXPECT_EQ(axis.axis_state, AxisState::unknown);
+  EXPECT_EQ(static_cast<int>(AxisState::unknown), 7);
+  EXPECT_EQ(text(AxisState::unknown), "unknown") << "as `axisgate top` shows it";
+}
+
 }  // namespace
 }  // namespace axisgate

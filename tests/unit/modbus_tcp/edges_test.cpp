@@ -262,23 +262,65 @@ TEST(Edges, an_id_that_was_only_remembered_is_not_seen) {
   EXPECT_EQ(ids.seen, 9);
 }
 
+Writing of_request(std::uint64_t request, Writing writing) {
+  writing.request = request;
+  return writing;
+}
+
 TEST(Edges, what_was_refused_and_did_nothing_is_no_press) {
   EdgeMemory memory;
-  EXPECT_EQ(memory.command(move_absolute, single()), kActs);
-  memory.forget_presses(Instant{});
-  EXPECT_EQ(memory.command(move_absolute, single(100ms)), kActs);
-  EXPECT_EQ(memory.command(move_absolute, single(200ms)), kNothing);
-  memory.forget_presses(Instant{} + 200ms);
-  EXPECT_EQ(memory.command(move_absolute, block(300ms)), kNothing) << "a scanner's block is not started by it";
+  EXPECT_EQ(memory.command(move_absolute, of_request(1, single())), kActs);
+  memory.forget_presses(1, false);
+  EXPECT_EQ(memory.command(move_absolute, of_request(2, single(100ms))), kActs);
+  EXPECT_EQ(memory.command(move_absolute, of_request(3, single(200ms))), kNothing);
+  memory.forget_presses(3, false);
+  EXPECT_EQ(memory.command(move_absolute, of_request(4, block(300ms))), kNothing) << "it starts no scanner's block";
+}
+
+TEST(Edges, what_one_request_was_refused_leaves_the_press_of_another_in_the_same_instant) {
+  EdgeMemory memory;
+  EXPECT_EQ(memory.command(move_absolute, of_request(1, single())), kActs);
+  EXPECT_EQ(memory.controlword(0x1F, of_request(2, single())), kActs);
+  memory.forget_presses(2, false);
+  EXPECT_EQ(memory.command(move_absolute, of_request(3, single(100ms))), kNothing);
+  EXPECT_EQ(memory.controlword(0x1F, of_request(4, single(100ms))), kActs);
+}
+
+TEST(Edges, what_a_failed_request_has_done_before_stays_pressed) {
+  EdgeMemory memory;
+  static_cast<void>(memory.controlword(0x0F, of_request(1, block())));
+  static_cast<void>(memory.command(none, of_request(1, block())));
+  EXPECT_EQ(memory.controlword(0x1F, of_request(2, block(10ms))), kActs);
+  EXPECT_EQ(memory.command(home, of_request(2, block(10ms))), kActs);
+  memory.controlword_done(2);
+  memory.forget_presses(2, false);
+  EXPECT_EQ(memory.controlword(0x1F, of_request(3, single(20ms))), kNothing);
+  EXPECT_EQ(memory.command(home, of_request(4, single(20ms))), kActs);
+}
+
+TEST(Edges, what_was_sent_before_it_failed_has_acted_as_far_as_anothers_stop_is_concerned) {
+  Endings endings;
+  const auto writing = [&](std::uint64_t request, Duration at) {
+    Writing out = of_request(request, single(at));
+    out.endings = &endings;
+    return out;
+  };
+  EdgeMemory memory;
+  EXPECT_EQ(memory.command(enable, writing(1, 0ms)), kActs);
+  memory.forget_presses(1, true);
+  EXPECT_EQ(memory.command(enable, writing(2, 10ms)), kActs) << "nobody else has stopped it";
+  memory.forget_presses(2, true);
+  endings.stopped(kOther);
+  EXPECT_EQ(memory.command(enable, writing(3, 20ms)), kNotNew);
 }
 
 TEST(Edges, a_block_of_zeros_stops_where_the_controlword_was_another) {
   EdgeMemory memory;
-  EXPECT_FALSE(memory.zeros(Instant{})) << "on an empty memory it is only remembered";
+  EXPECT_FALSE(memory.zeros(block())) << "on an empty memory it is only remembered";
   EXPECT_FALSE(memory.command_empty());
   EXPECT_EQ(memory.controlword(0x0F, block(10ms)), kActs);
-  EXPECT_TRUE(memory.zeros(Instant{} + 20ms));
-  EXPECT_FALSE(memory.zeros(Instant{} + 30ms));
+  EXPECT_TRUE(memory.zeros(block(20ms)));
+  EXPECT_FALSE(memory.zeros(block(30ms)));
 }
 
 TEST(Edges, the_last_command_is_read_back_though_it_did_not_act) {

@@ -1,0 +1,197 @@
+// A4: the drive has acknowledged everything, and the state asked for does not come: the answer says so, and what might
+// still happen is withdrawn before it. Nothing that was told to have failed happens later.
+#include <gtest/gtest.h>
+
+#include "tests/obey/dds_writer.hpp"
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::obey {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kNotReached = 11, kDisabled = 0;
+constexpr Duration kReplyDeadline = 900ms;
+
+class NotReached : public testing::TestWithParam<Subject> {
+ protected:
+  /// Failed, in time, and said how.
+  void fails(const Answer& answer, Instant asked_at) {
+    EXPECT_EQ(answer, kFailed);
+    EXPECT_LE(plant_.stage.runtime().now() - asked_at, kReplyDeadline);
+    EXPECT_EQ(a_.result(), kNotReached);
+    const bool sent = !plant_.logged("was not reached: nothing was sent");
+    EXPECT_EQ(a_.wide(shown::detail) > 0, sent) << a_.wide(shown::detail);
+    EXPECT_TRUE(plant_.logged("was not reached: "));
+  }
+  void fails(std::int64_t command) {
+    const Instant asked_at = plant_.stage.runtime().now();
+    const Answer answer = a_.command(command);
+    fails(answer, asked_at);
+  }
+  [[nodiscard]] bool enabled() {
+    return plant_.motor().enabled.value_or(false) || a_.word(shown::axis_state) != kDisabled;
+  }
+  Plant plant_{GetParam()};
+  Client& a_ = plant_.a;
+};
+
+TEST_P(NotReached, AnEnableAgainstAHardwareLockNeverComesLate) {
+  plant_.ready_but_disabled();
+  lock(plant_.stage, GetParam(), true);
+  fails(kEnable);
+  EXPECT_TRUE(plant_.logged(", read "));
+  EXPECT_TRUE(plant_.logged(": awaited "));
+  plant_.run(1s);
+  lock(plant_.stage, GetParam(), false);
+  plant_.run(3s);
+  EXPECT_FALSE(enabled());
+  // The cause is gone, and it can be asked for again at once.
+  EXPECT_EQ(a_.command(kEnable), kOk);
+  EXPECT_TRUE(plant_.motor().enabled.value_or(true));
+}
+
+TEST_P(NotReached, AnEnableThatIsPressedAgainIsToldAgain) {
+  plant_.ready_but_disabled();
+  lock(plant_.stage, GetParam(), true);
+  fails(kEnable);
+  fails(kEnable);
+  lock(plant_.stage, GetParam(), false);
+  plant_.run(3s);
+  EXPECT_FALSE(enabled());
+}
+
+TEST_P(NotReached, ADdsWriterIsToldByTheSameNumber) {
+  plant_.ready_but_disabled();
+  lock(plant_.stage, GetParam(), true);
+  DdsWriter writer(plant_.stage, 1);
+  const std::uint64_t request = writer.begin({.function = fc::sample, .sample = {{row::command, kEnable}}});
+  ASSERT_TRUE(plant_.stage.run_until([&] { return writer.result_of(request).has_value(); }));
+  EXPECT_EQ(*writer.result_of(request), kNotReached);
+  lock(plant_.stage, GetParam(), false);
+  plant_.run(3s);
+  EXPECT_FALSE(enabled());
+}
+
+class Withdrawn : public NotReached {};
+
+// The withdrawal itself is lost: it is owed, and sent again as soon as the drive shows torque.
+TEST_P(Withdrawn, AnEnableIsAlsoWhereTheWithdrawalIsLost) {
+  plant_.ready_but_disabled();
+  lock(plant_.stage, GetParam(), true);
+  const RequestNumber enable = a_.begin(one(row::command, kEnable));
+  ASSERT_TRUE(plant_.stage.run_until([&] { return plant_.logged("is withdrawn"); }));
+  plant_.cut_wire();
+  ASSERT_TRUE(plant_.stage.run_until([&] { return a_.answer_of(enable).has_value(); }));
+  EXPECT_EQ(*a_.answer_of(enable), kFailed);
+  plant_.run(200ms);
+  lock(plant_.stage, GetParam(), false);
+  plant_.run(200ms);
+  plant_.mend_wire();
+  plant_.run(10s);
+  EXPECT_FALSE(*plant_.motor().enabled);
+}
+
+// What is lost beside it is no acknowledgement of its own.
+TEST_P(Withdrawn, AnEnableIsAlsoWhereThePollBeforeItIsLost) {
+  for (Duration lost_at = 650ms; lost_at < 800ms; lost_at += 10ms) {
+    SCOPED_TRACE(lost_at / 1ms);
+    Plant plant(GetParam());
+    plant.ready_but_disabled();
+    lock(plant.stage, GetParam(), true);
+    const RequestNumber enable = plant.a.begin(one(row::command, kEnable));
+    plant.run(lost_at);
+    ASSERT_FALSE(plant.a.answer_of(enable).has_value());
+    plant.strike(Strike::lose_request, 2);
+    ASSERT_TRUE(plant.stage.run_until([&] { return plant.a.answer_of(enable).has_value(); }));
+    EXPECT_EQ(*plant.a.answer_of(enable), kFailed);
+    lock(plant.stage, GetParam(), false);
+    plant.run(3s);
+    EXPECT_FALSE(*plant.motor().enabled);
+  }
+}
+
+TEST_P(NotReached, AFaultResetWhoseCauseIsThereSaysSo) {
+  plant_.ready_but_disabled();
+  break_down(plant_.stage, GetParam());
+  plant_.run(500ms);
+  fails(5);
+  EXPECT_TRUE(plant_.motor().faulted);
+}
+
+class Disobeyed : public NotReached {
+ protected:
+  void says_so_and_is_owed_on(std::int64_t stop) {
+    plant_.ready();
+    ASSERT_EQ(plant_.set_endless(a_), kOk);
+    ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
+    ASSERT_TRUE(plant_.keeps_turning());
+    numb(plant_.stage, GetParam(), true);
+    fails(stop);
+    plant_.run(8s);
+    EXPECT_NE(plant_.velocity(), 0);
+    numb(plant_.stage, GetParam(), false);
+    EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+    EXPECT_FALSE(*plant_.motor().enabled);
+  }
+};
+
+TEST_P(Disobeyed, AQuickStopSaysSoAndIsOwedOn) { says_so_and_is_owed_on(kQuickStop); }
+TEST_P(Disobeyed, ADisableSaysSoAndIsOwedOn) { says_so_and_is_owed_on(kDisable); }
+
+class LateStart : public NotReached {};
+
+TEST_P(LateStart, OfAMoveThatWasToldToHaveFailedNeverComes) {
+  plant_.ready();
+  ASSERT_EQ(a_.row(row::target_position, kFar), kOk);
+  numb(plant_.stage, GetParam(), true);
+  fails(kMove);
+  EXPECT_TRUE(plant_.logged("is withdrawn"));
+  plant_.run(1s);
+  numb(plant_.stage, GetParam(), false);
+  plant_.run(3s);
+  EXPECT_EQ(plant_.velocity(), 0);
+  EXPECT_LE(std::abs(plant_.position()), kClose);
+}
+
+class LateMode : public NotReached {};
+
+TEST_P(LateMode, DoesNotBeginAHomingThatWasToldToHaveFailedNeverComes) {
+  plant_.ready();
+  ASSERT_EQ(a_.row(row::homing_method, 18), kOk);
+  numb(plant_.stage, GetParam(), true);
+  fails(kHome);
+  plant_.run(1s);
+  numb(plant_.stage, GetParam(), false);
+  plant_.run(3s);
+  EXPECT_EQ(plant_.velocity(), 0);
+  EXPECT_LE(std::abs(plant_.position()), kClose);
+}
+
+TEST_P(LateMode, DoesNotLetTheMotorFollowASpeedOfBefore) {
+  plant_.ready();
+  ASSERT_EQ(a_.row(row::target_velocity, kSpeed), kOk);
+  numb(plant_.stage, GetParam(), true);
+  const Instant asked_at = plant_.stage.runtime().now();
+  const Answer answer = a_.row(row::mode, kVelocityMode);
+  fails(answer, asked_at);
+  plant_.run(1s);
+  numb(plant_.stage, GetParam(), false);
+  plant_.run(3s);
+  EXPECT_EQ(plant_.velocity(), 0);
+  EXPECT_LE(std::abs(plant_.position()), kClose);
+}
+
+// The others have no mode display, or their sheets print none: the mode that was written is all that can be read back.
+constexpr auto shows_mode = [](Subject s) {
+  return s == Subject::jd_serial || s == Subject::jd_can || s == Subject::leadshine;
+};
+constexpr auto can_be_disabled = [](Subject s) { return s != Subject::id286pro; };
+INSTANTIATE_TEST_SUITE_P(Every, NotReached, testing::ValuesIn(kSubjects), named);
+INSTANTIATE_TEST_SUITE_P(Every, Withdrawn, testing::ValuesIn(subjects(can_be_disabled)), named);
+INSTANTIATE_TEST_SUITE_P(Every, Disobeyed, testing::ValuesIn(subjects(can_be_disabled)), named);
+INSTANTIATE_TEST_SUITE_P(Every, LateStart, testing::ValuesIn(subjects(is_kinco)), named);
+INSTANTIATE_TEST_SUITE_P(Every, LateMode, testing::ValuesIn(subjects(shows_mode)), named);
+
+}  // namespace
+}  // namespace axisgate::test::obey
