@@ -259,7 +259,9 @@ TEST(Keya, ItsFaultsHaveTheManualsRemediesAndDisabledIsNone) {
     EXPECT_EQ(facts.fault.holds(word, 1U << bit), bit >= 1 && bit <= 13);
     if (bit == 0) continue;
     EXPECT_NE(rows[bit].text.find("No. " + std::to_string(row.at("number").get<int>())), std::string::npos);
-    EXPECT_EQ(rows[bit].remedy, row.at("reset"));
+    // "Look at both fault words" is for the gateway to do: it has them.
+    const bool points_elsewhere = row.at("reset").get<std::string>().starts_with("look at both fault words");
+    EXPECT_EQ(rows[bit].remedy == row.at("reset"), !points_elsewhere) << rows[bit].remedy;
     EXPECT_EQ(rows[bit].code == 0x8130, bit >= 14);
   }
   EXPECT_FALSE(facts.enabled.holds(word, 1));

@@ -186,7 +186,7 @@ TEST(TopTable, FitsIntoEightyColumnsWithEveryNumberWhole) {
   axis.registers[10] = 0x8130;
   put32(axis, 12, 0xFFFF);
   put32(axis, 22, 0);
-  put32(axis, 34, 0xFFF);
+  put32(axis, 34, (1U << kAxisAlarmCount) - 1);
   TopReading reading = reading_of({axis});
   reading.server = "a-rather-long-name.of-a-gateway.example.org:1502";
   reading.gateway[6] = 0x1FFF;
