@@ -237,16 +237,23 @@ TEST_F(LibmodbusHalfFrames, are_noise_when_their_length_has_suffered_or_libmodbu
 }
 
 TEST_F(LibmodbusHalfFrames, that_drip_in_are_not_waited_for_to_their_end) {
-  // Never a long pause, and yet far too slow: the whole frame has its time, not each byte of it.
-  ByteRow slow = from_hex("01 03 FA");
-  EXPECT_TRUE(await([&] {
-    answer(pty, slow);
-    slow = {0};
-    return diary.noise > 0;
-  }));
-  EXPECT_LT(diary.noise, 200u);
-  EXPECT_THAT(diary.frames, IsEmpty());
-  expect_that_all_is_well();
+  // Never a long pause, and yet far too slow: the whole frame has its time, not each byte of it. A worker that got no
+  // processor meanwhile finds the frame whole, and has not waited: then it is tried again.
+  constexpr std::size_t kMuch = 200, kTries = 50;
+  std::size_t shortest = SIZE_MAX;
+  for (std::size_t i = 0; i < kTries && shortest >= kMuch; ++i) {
+    diary.noise = 0;
+    ByteRow slow = from_hex("01 03 FA");
+    EXPECT_TRUE(await([&] {
+      answer(pty, slow);
+      slow = {0};
+      return diary.noise > 0;
+    }));
+    shortest = std::min(shortest, diary.noise);
+    EXPECT_THAT(diary.frames, IsEmpty());
+    expect_that_all_is_well();
+  }
+  EXPECT_LT(shortest, kMuch);
 }
 
 TEST_F(LibmodbusHalfFrames, an_answer_after_any_noise_and_a_silence_is_heard) {
