@@ -18,13 +18,16 @@ bool has_controlling_terminal() {
   return true;
 }
 
+bool is_ignored(int signal) {
+  struct sigaction now {};
+  return ::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
+
 }  // namespace
 
 EndSignals::EndSignals(boost::asio::io_context& io, const Log& log, std::function<void(bool at_once)> on_end)
-    : log_(log),
-      on_end_(std::move(on_end)),
-      has_terminal_(has_controlling_terminal()),
-      signals_(io, SIGINT, SIGTERM, SIGHUP) {
+    : log_(log), on_end_(std::move(on_end)), has_terminal_(has_controlling_terminal()), signals_(io, SIGINT, SIGTERM) {
+  if (!is_ignored(SIGHUP)) signals_.add(SIGHUP);
   wait();
 }
 

@@ -1,6 +1,7 @@
 // The signals that end the gateway: SIGTERM and SIGINT; SIGHUP where the process was started from a terminal, which is
 // then gone. Promises that the first one begins the end on purpose, and a second one ends the process at once; that a
-// SIGHUP to a service ends nothing. Never decides what becomes of the drives.
+// SIGHUP to a service ends nothing, and one that whoever started the process has it ignore (nohup) is ignored. Never
+// decides what becomes of the drives.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

@@ -114,7 +114,7 @@ class Told(End):
 
     def test_a_service_is_not_ended_by_sighup(self):
         self.assertEqual(self.end(signal.SIGTERM), 0)
-        self.from_elsewhere(start_new_session=True)
+        self.from_elsewhere("env", "--default-signal=HUP", start_new_session=True)
         self.client = self.connect()
         self.until_online()
         self.gateway.send(signal.SIGHUP)
@@ -122,10 +122,21 @@ class Told(End):
         self.assertEqual(self.axis(1).get("link_state"), 2)
         self.assertEqual(self.end(signal.SIGTERM), 0)
 
+    def test_one_that_was_told_to_outlive_its_terminal_does(self):
+        self.assertEqual(self.end(signal.SIGTERM), 0)
+        terminal, other = os.openpty()
+        self.from_elsewhere("env", "--ignore-signal=HUP", "setsid", "--ctty", stdin=other)  # as nohup does
+        os.close(other)
+        os.close(terminal)
+        self.client = self.connect()
+        self.until_online()
+        self.assertEqual(self.end(signal.SIGTERM), 0)
+        self.assertEqual(self.gateway.found("signal 1:"), [])
+
     def test_a_terminal_that_is_gone_ends_what_was_started_from_it(self):
         self.assertEqual(self.end(signal.SIGTERM), 0)
         terminal, other = os.openpty()
-        self.from_elsewhere("setsid", "--ctty", stdin=other)
+        self.from_elsewhere("env", "--default-signal=HUP", "setsid", "--ctty", stdin=other)
         os.close(other)
         os.close(terminal)
         self.gateway.wait_for("signal 1: ending; the drives keep what they do")
