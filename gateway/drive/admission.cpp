@@ -14,8 +14,7 @@ bool writable(const AxisCore& core, Quantity q) { return (core.model.writable & 
 Errc admit_command(const AxisCore& core, Command command) {
   if (command == Command::none || command == Command::end_halt) return Errc::ok;
   // Every drive can be halted: where it has no halt, quick_stop takes its place.
-  const bool supported = (core.model.supported_commands & (1U << static_cast<unsigned>(command))) != 0;
-  return supported ? Errc::ok : Errc::not_supported;
+  return supports(command, core.model.supported_commands) ? Errc::ok : Errc::not_supported;
 }
 
 // The steps of a command that is nothing but this one write.
