@@ -8,12 +8,12 @@
 #include "gateway/app/profile_folders.hpp"
 #include "gateway/core/words.hpp"
 #include "gateway/image/register_map.hpp"
+#include "gateway/upstream/modbus_tcp/refused_blocks.hpp"
 
 namespace axisgate::app {
 namespace {
 
-/// command_detail of a refused block: this, and the offset of the first row refused (schemas/register-map.md).
-constexpr std::uint32_t kRefusedRow = 0x0A000000, kRefusedRowLast = 0x0A0000FF;
+constexpr std::uint32_t kRefusedRow = modbus_tcp::kDetailRow, kRefusedRowLast = kRefusedRow + 0xFF;
 
 std::string line(std::string_view what, std::string_view text) {
   return text.empty() ? std::string() : fmt::format("  {:<9}{}\n", std::string(what) + ":", text);

@@ -55,6 +55,13 @@ AxisHost::Queued Drive::queue(bus::Order order) {
   return {admission.code, admission.id, admission.joined};
 }
 
+AxisHost::Queued Drive::queue_own(bus::Priority priority) {
+  bus::Order order;
+  order.priority = priority;
+  order.axis = bus::kNoAxis;
+  return queue(std::move(order));
+}
+
 void Drive::event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) {
   events_.add(now(), axis, kind, code, std::move(text));
 }

@@ -75,7 +75,11 @@ class Drive final : public bus::BusDrive, private AxisHost {
   bool order_goes_on_as(bus::OrderId id, const bus::Order& rest) override { return bus_.go_on_as(id, rest); }
   void event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) override;
 
+  /// An order of the drive's own: it neither waits for its axes' orders nor is joined or superseded by one.
+  [[nodiscard]] Queued queue_own(bus::Priority priority);
   [[nodiscard]] bus::Exchange read(ObjectId object) const;
+  /// In the width that the drive answered with last.
+  [[nodiscard]] bus::Exchange write(ObjectId object, std::int64_t number) const;
   [[nodiscard]] bus::Exchange read(const FenceRead& fence) const;
   /// A read that every drive of this type answers.
   [[nodiscard]] bus::Exchange plain_read() const;

@@ -24,13 +24,7 @@ std::optional<bus::Exchange> Drive::next_of_bring_up() {
     if (next->exchange->access == bus::Access::command) started_at_ = now();
     return next->exchange;
   }
-  bus::Exchange exchange = read(next->object);
-  if (next->write) {
-    exchange.access = bus::Access::write;
-    exchange.size = width_[next->object];
-    exchange.raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(next->number));
-  }
-  return exchange;
+  return next->write ? write(next->object, next->number) : read(next->object);
 }
 
 void Drive::begin_bring_up(bool restarted) {
@@ -50,10 +44,7 @@ void Drive::begin_bring_up(bool restarted) {
   plan_.restart(now());
   if (restarted)
     for (auto& axis : axes_) axis->on_bring_up();
-  bus::Order order;
-  order.priority = bus::Priority::setup;
-  order.axis = bus::kNoAxis;
-  const Queued queued = queue(std::move(order));
+  const Queued queued = queue_own(bus::Priority::setup);
   setup_order_ = queued.code == Errc::ok ? queued.id : 0;
   // A full queue empties by its deadlines: try again after a probe's pause.
   if (setup_order_ == 0) {

@@ -1,4 +1,4 @@
-// What names a fault is read next, before anything but stops (design-2 A10).
+// What names a fault is read next, before anything but stops.
 #include <algorithm>
 
 #include "gateway/drive/drive.hpp"
@@ -34,10 +34,7 @@ void Drive::schedule_causes() {
       for (const ObjectId word : axis->core().causes)
         if (!tells_state(word)) plan_.hurry(word, now());
   if (!brought_up() || !cause_to_read() || cause_order_ != 0) return;
-  bus::Order order;
-  order.priority = bus::Priority::cause;
-  order.axis = bus::kNoAxis;
-  const Queued queued = queue(std::move(order));
+  const Queued queued = queue_own(bus::Priority::cause);
   cause_order_ = queued.code == Errc::ok ? queued.id : 0;
 }
 

@@ -13,11 +13,9 @@ void Drive::close(std::function<void()> closed) {
   // A bring-up would arm what is to be disarmed, and start nodes. What it has not read nobody knows: it is left.
   if (setup_order_ != 0) bus_.finish(std::exchange(setup_order_, 0));
   if (brought_up()) {
-    bus::Order order;
-    order.priority = bus::Priority::command;  // polls and what else is slow do not hold up the end
-    order.axis = bus::kNoAxis;
     disarming_.begin(store_);
-    const Queued queued = queue(std::move(order));
+    // Polls and what else is slow do not hold up the end.
+    const Queued queued = queue_own(bus::Priority::command);
     if (queued.code == Errc::ok) closing_order_ = queued.id;
   }
   after_event();
@@ -36,13 +34,7 @@ std::optional<bus::Exchange> Drive::next_of_closing() {
     end_closing();
     return std::nullopt;
   }
-  bus::Exchange exchange = read(next->object);
-  if (next->write) {
-    exchange.access = bus::Access::write;
-    exchange.size = width_[next->object];
-    exchange.raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(next->number));
-  }
-  return exchange;
+  return next->write ? write(next->object, next->number) : read(next->object);
 }
 
 void Drive::carry_on_closing(const bus::ExchangeResult& result, bool trusted) {

@@ -147,11 +147,7 @@ Instant Drive::schedule_keep_alive() {
     return next;
   }
   if (keep_alive_order_ != 0) return kNever;
-  // The drive's own: it neither waits for its axes' orders nor is joined or superseded by one.
-  bus::Order order;
-  order.priority = bus::Priority::command;
-  order.axis = bus::kNoAxis;
-  const Queued queued = queue(std::move(order));
+  const Queued queued = queue_own(bus::Priority::command);
   if (queued.code != Errc::ok) return now() + kPlaceRetry;
   keep_alive_order_ = queued.id;
   return kNever;

@@ -11,6 +11,14 @@ bus::Exchange Drive::read(ObjectId object) const {
   return {model_.node, bus::Access::read, def.address, def.any_width ? std::uint8_t{0} : def.size, 0};
 }
 
+bus::Exchange Drive::write(ObjectId object, std::int64_t number) const {
+  bus::Exchange exchange = read(object);
+  exchange.access = bus::Access::write;
+  exchange.size = width_[object];
+  exchange.raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(number));
+  return exchange;
+}
+
 bus::Exchange Drive::read(const FenceRead& fence) const {
   bus::Exchange exchange = read(fence.object);
   if (fence.registers == 0 || fence.registers == registers_of(exchange)) return exchange;

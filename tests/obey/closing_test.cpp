@@ -13,6 +13,12 @@ constexpr std::int64_t kEnable = 1, kDisable = 2, kQuickStop = 3, kNeverStarted 
 
 class Closing : public testing::TestWithParam<Subject> {
  protected:
+  void start_endless() {
+    plant_.ready();
+    ASSERT_EQ(plant_.set_endless(plant_.a), kOk);
+    ASSERT_EQ(plant_.a.command(plant_.endless_command()), kOk);
+    ASSERT_TRUE(plant_.turns_within(1s));
+  }
   void begin_closing() {
     closed_ = false;
     plant_.stage.gateway().close([this] { closed_ = true; });
@@ -62,10 +68,7 @@ TEST_P(Closing, TheNextGatewayIsMissedAsBefore) {
 
 // "An enabled drive stops as if the gateway had died": it moves on, and whoever minds silence stops.
 TEST_P(Closing, AMotorThatTurnsIsStoppedByItsDriveAlone) {
-  plant_.ready();
-  ASSERT_EQ(plant_.set_endless(plant_.a), kOk);
-  ASSERT_EQ(plant_.a.command(plant_.endless_command()), kOk);
-  ASSERT_TRUE(plant_.turns_within(1s));
+  ASSERT_NO_FATAL_FAILURE(start_endless());
   end();
   EXPECT_NE(plant_.velocity(), 0) << "nobody asked for a stop";
   if (minds_silence(GetParam())) {
@@ -76,10 +79,7 @@ TEST_P(Closing, AMotorThatTurnsIsStoppedByItsDriveAlone) {
 }
 
 TEST_P(Closing, OnlyStopsAreAccepted) {
-  plant_.ready();
-  ASSERT_EQ(plant_.set_endless(plant_.a), kOk);
-  ASSERT_EQ(plant_.a.command(plant_.endless_command()), kOk);
-  ASSERT_TRUE(plant_.turns_within(1s));
+  ASSERT_NO_FATAL_FAILURE(start_endless());
   begin_closing();
   EXPECT_EQ(plant_.a.command(0), kOk) << "it asks for nothing";
   EXPECT_EQ(plant_.a.command(plant_.endless_command()), kNotNow);
@@ -93,10 +93,7 @@ TEST_P(Closing, OnlyStopsAreAccepted) {
 
 // A stop that came first is carried to its end, and then the drive is disabled: no alarm.
 TEST_P(Closing, AStopIsAwaited) {
-  plant_.ready();
-  ASSERT_EQ(plant_.set_endless(plant_.a), kOk);
-  ASSERT_EQ(plant_.a.command(plant_.endless_command()), kOk);
-  ASSERT_TRUE(plant_.turns_within(1s));
+  ASSERT_NO_FATAL_FAILURE(start_endless());
   const auto stop = plant_.a.begin(one(row::command, kDisable));
   end();
   EXPECT_TRUE(plant_.a.answer_of(stop).has_value());
