@@ -201,16 +201,12 @@ Wanted AxisCore::running_target(Quantity quantity) const { return motion.wanted(
 
 // --- Faults --------------------------------------------------------------------------------------------------------
 
-namespace {
-
-bool tells_state(const AxisModel& model, ObjectId id) {
+bool AxisCore::tells_state(ObjectId id) const {
   return std::find(model.state_sources.begin(), model.state_sources.end(), id) != model.state_sources.end();
 }
 
-}  // namespace
-
 bool AxisCore::names_cause(ObjectId id) const {
-  return store[id].known && fault.counts(tells_state(model, id), store[id].exchange);
+  return store[id].known && fault.counts(tells_state(id), store[id].exchange);
 }
 
 void AxisCore::watch_fault() {
@@ -225,7 +221,7 @@ void AxisCore::watch_fault() {
     const ObjectState& word = store[id];
     seen.words.push_back({.object = id,
                           .refused = word.refused,
-                          .tells_state = tells_state(model, id),
+                          .tells_state = tells_state(id),
                           .number = word.number,
                           .exchange = word.exchange});
   }

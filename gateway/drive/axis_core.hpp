@@ -50,6 +50,8 @@ struct AxisCore {
   void watch_fault();
   /// A sample of this object names the cause of the fault that there is now, not of one before.
   [[nodiscard]] bool names_cause(ObjectId id) const;
+  /// The statusword is made from it, or is it.
+  [[nodiscard]] bool tells_state(ObjectId id) const;
   /// The newest number of the quantity in register units; none where there is no good one.
   [[nodiscard]] std::optional<std::int64_t> value(Quantity quantity) const;
   /// The unified number of the mode in force, 0 where it is unknown or the drive's number stands for none.

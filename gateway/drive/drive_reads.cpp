@@ -38,9 +38,7 @@ bus::Exchange Drive::probe_read() const {
 }
 
 bool Drive::tells_state(ObjectId object) const {
-  return std::any_of(model_.axes.begin(), model_.axes.end(), [&](const AxisModel& axis) {
-    return std::find(axis.state_sources.begin(), axis.state_sources.end(), object) != axis.state_sources.end();
-  });
+  return std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->core().tells_state(object); });
 }
 
 // What comes along in the same request at little cost: in bring-up all that is not known yet, in a poll all that is due

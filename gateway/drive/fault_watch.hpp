@@ -1,5 +1,5 @@
-// When a fault of an axis is shown, and what must be read before (design-2 A10: fault bit, error_code and vendor_error
-// in one step). Promises that a fault is shown as soon as all that names its cause was read after it, at the latest
+// When a fault of an axis is shown, and what must be read before (the fault bit, error_code and vendor_error come in
+// one step). Promises that a fault is shown as soon as all that names its cause was read after it, at the latest
 // after kCauseTime, and that nothing read before the fault ever names its cause. Never reads anything, knows no clock
 // but the instants it is given, and holds nothing back from the motion rules.
 #pragma once
