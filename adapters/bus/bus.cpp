@@ -65,7 +65,12 @@ void Bus::end_drive(DriveSlot drive, Errc waiting, Errc started) {
 
 /// A drive that calls us is never called back from inside its call.
 void Bus::soon() {
-  if (!pumping_) timer_->expires_at(now());
+  if (!pumping_) turn_at(now());
+}
+
+void Bus::turn_at(Instant due) {
+  turn_due_ = due;
+  timer_->expires_at(due);
 }
 
 void Bus::pump() {
@@ -76,12 +81,12 @@ void Bus::pump() {
   while (more) more = take_wire_event() || (turns++ < kMaxTurnsPerPump && (take_notice() || take_turn()));
   pumping_ = false;
   if (turns > kMaxTurnsPerPump) {
-    timer_->expires_at(now());
+    turn_at(now());
     return;
   }
   // While the link is down no exchange can go out: what waits for the wire then waits for on_wire_up().
   const Instant arbiter_deadline = up_ ? arbiter_.next_deadline() : kNever;
-  timer_->expires_at(outstanding_ ? std::min(outstanding_->deadline, arbiter_deadline) : arbiter_deadline);
+  turn_at(outstanding_ ? std::min(outstanding_->deadline, arbiter_deadline) : arbiter_deadline);
 }
 
 bool Bus::take_wire_event() {

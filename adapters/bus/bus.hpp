@@ -77,6 +77,8 @@ class Bus final : private WireEvents {
   /// Share of the last whole second in which an exchange was on the wire, in 0.1 %; on CAN, in which any frame was.
   [[nodiscard]] std::uint16_t load_permille() const;
   void set_decode(bool on);
+  /// When it wants its next turn of the loop; long past: the loop does not give it one.
+  [[nodiscard]] Instant turn_due() const { return turn_due_; }
 
  private:
   void on_wire_up() override;
@@ -102,6 +104,7 @@ class Bus final : private WireEvents {
   void link_up();
   void link_down(const std::string& why);
   void soon();
+  void turn_at(Instant due);
   void count_bits();
   [[nodiscard]] std::string log_source() const { return "bus " + settings_.name; }
 
@@ -109,6 +112,7 @@ class Bus final : private WireEvents {
   Arbiter arbiter_;
   Runtime& runtime_;
   const Log& log_;
+  Instant turn_due_ = kNever;
   bool up_ = false;
   bool pumping_ = false;
   std::vector<BusDrive*> drives_;

@@ -11,6 +11,7 @@
 #include "gateway/app/map_command.hpp"
 #include "gateway/app/profile_command.hpp"
 #include "gateway/app/profile_folders.hpp"
+#include "gateway/app/reload_command.hpp"
 #include "gateway/app/run_command.hpp"
 #include "gateway/app/scan_command.hpp"
 #include "gateway/app/top_command.hpp"
@@ -31,6 +32,7 @@ struct Parsed {
   CommissionOptions commission;
   ScanOptions scan;
   ExplainOptions explain;
+  ReloadOptions reload;
   std::string scan_nodes;
   int exit_code = 0;
 };
@@ -197,6 +199,15 @@ void add_scan(CLI::App& app, Parsed& parsed) {
   });
 }
 
+void add_reload(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = app.add_subcommand(
+      "reload",
+      "Have the running gateway read its configuration anew; only buses that change are restarted, and only "
+      "while their axes are disabled");
+  command->add_option("CONFIG", parsed.reload.config, "the file that the gateway was started with")->required();
+  command->callback([&parsed] { parsed.exit_code = run(parsed.reload); });
+}
+
 void add_explain(CLI::App& app, Parsed& parsed) {
   CLI::App* command =
       app.add_subcommand("explain", "Say what a state, alarm, result, exception or fault code means, and what to do");
@@ -236,6 +247,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_commission(app, parsed);
   add_scan(app, parsed);
   add_explain(app, parsed);
+  add_reload(app, parsed);
   if (!knows_command(app, argc, argv)) return kWrongCommandLine;
   try {
     app.parse(argc, argv);

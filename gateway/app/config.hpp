@@ -25,6 +25,7 @@ struct AxisLimits {
   std::optional<std::int64_t> acceleration;                 ///< 0.1 rpm/s
   std::optional<std::int64_t> torque;                       ///< 0.1 % of rated
   std::optional<std::int64_t> quick_stop_deceleration_min;  ///< 0.1 rpm/s
+  friend bool operator==(const AxisLimits&, const AxisLimits&) = default;
 };
 
 struct AxisConfig {
@@ -44,6 +45,7 @@ struct AxisConfig {
   std::string pointer;                       ///< JSON pointer of the entry, for messages
   /// Not in the file: its profile says that a quick stop ends without torque.
   bool stop_without_torque = false;
+  friend bool operator==(const AxisConfig&, const AxisConfig&) = default;
 };
 
 struct DriveConfig {
@@ -53,6 +55,8 @@ struct DriveConfig {
   std::array<std::optional<std::uint32_t>, 4> identity{};  ///< canopen: vendor, product, revision, serial (1018h)
   std::vector<AxisConfig> axes;
   std::string pointer;
+  std::string profile_text{};  ///< what the profile's file says, without spaces: its models are made from it
+  friend bool operator==(const DriveConfig&, const DriveConfig&) = default;
 };
 
 struct BusConfig {
@@ -75,6 +79,7 @@ struct BusConfig {
   bool decode = false;
   std::vector<DriveConfig> drives;
   std::string pointer;
+  friend bool operator==(const BusConfig&, const BusConfig&) = default;
 };
 
 struct Config {

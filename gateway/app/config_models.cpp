@@ -112,6 +112,7 @@ std::optional<drive::DriveModel> load_model(const BusConfig& bus, DriveConfig& c
                                             ConfigFaults& faults) {
   const drive::LoadedProfile* profile = profiles.find(config);
   if (profile == nullptr || faults.within(config.pointer)) return std::nullopt;
+  config.profile_text = profile->text;
   const std::size_t motors = profile->profile.axes.size();
   if (config.axes.size() > motors) {
     faults.add(config.pointer + "/axes",

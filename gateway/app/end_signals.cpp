@@ -25,8 +25,13 @@ bool is_ignored(int signal) {
 
 }  // namespace
 
-EndSignals::EndSignals(boost::asio::io_context& io, const Log& log, std::function<void(bool at_once)> on_end)
-    : log_(log), on_end_(std::move(on_end)), has_terminal_(has_controlling_terminal()), signals_(io, SIGINT, SIGTERM) {
+EndSignals::EndSignals(boost::asio::io_context& io, const Log& log, std::function<void(bool at_once)> on_end,
+                       std::function<void()> on_reload)
+    : log_(log),
+      on_end_(std::move(on_end)),
+      on_reload_(std::move(on_reload)),
+      has_terminal_(has_controlling_terminal()),
+      signals_(io, SIGINT, SIGTERM) {
   if (!is_ignored(SIGHUP)) signals_.add(SIGHUP);
   wait();
 }
@@ -41,9 +46,8 @@ void EndSignals::wait() {
 
 void EndSignals::on_signal(int signal) {
   if (signal == SIGHUP && !has_terminal_) {
-    log_.write(LogLevel::warning, "gateway",
-               "signal 1: the configuration is read at start only; restart the gateway when its axes are disabled");
-    return;
+    log_.write(LogLevel::info, "gateway", "signal 1: the configuration is read anew");
+    return on_reload_();
   }
   if (std::exchange(ending_, true)) {
     log_.write(LogLevel::warning, "gateway", fmt::format("signal {} again: ending at once", signal));

@@ -21,18 +21,24 @@ std::string text_of(const std::string& path) {
 
 }  // namespace
 
-FileWatch::FileWatch(boost::asio::io_context& io, Runtime& runtime, std::vector<std::string> files,
+FileWatch::FileWatch(boost::asio::io_context& io, Runtime& runtime, const std::vector<std::string>& files,
                      std::function<void(const std::string& file)> on_change)
     : io_(io),
       runtime_(runtime),
-      watched_([&] {
-        std::vector<Watched> out;
-        for (std::string& file : files) out.push_back({file, text_of(file)});
-        return out;
-      }()),
+      watched_(read(files)),
       on_change_(std::move(on_change)),
       timer_(runtime.make_timer([this] { look(); })) {
   timer_->expires_at(runtime_.now() + kPeriod);
+}
+
+std::vector<FileWatch::Watched> FileWatch::read(const std::vector<std::string>& files) {
+  std::vector<Watched> out;
+  for (const std::string& file : files) out.push_back({file, text_of(file)});
+  return out;
+}
+
+void FileWatch::take(std::vector<Watched> files) {
+  boost::asio::post(thread_, [this, files = std::move(files)]() mutable { watched_ = std::move(files); });
 }
 
 // The next look waits for the end of this one.

@@ -22,20 +22,24 @@ class FileWatch {
 
   /// `files` as they are now count as what runs. `on_change(file)`: on the loop, when the answer changes: the first
   /// file that differs or is gone; empty: none does any more.
-  FileWatch(boost::asio::io_context& io, Runtime& runtime, std::vector<std::string> files,
+  FileWatch(boost::asio::io_context& io, Runtime& runtime, const std::vector<std::string>& files,
             std::function<void(const std::string& file)> on_change);
+  struct Watched {
+    std::string file;
+    std::string text;
+  };
+  /// The files as they are now. May be called from any thread.
+  [[nodiscard]] static std::vector<Watched> read(const std::vector<std::string>& files);
+  /// From now on these are what runs.
+  void take(std::vector<Watched> files);
 
  private:
   void look();
   void on_looked(const std::string& file);
 
-  struct Watched {
-    std::string file;
-    std::string text;
-  };
   boost::asio::io_context& io_;
   Runtime& runtime_;
-  const std::vector<Watched> watched_;
+  std::vector<Watched> watched_;  ///< the thread's, once it runs
   std::function<void(const std::string&)> on_change_;
   std::string told_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< what is posted to the loop may outlive this

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "gateway/app/adapter_names.hpp"
-
 namespace axisgate::app {
 namespace {
 
@@ -19,42 +17,39 @@ std::string source_of(AxisNumber axis) { return axis == 0 ? std::string("gateway
 
 }  // namespace
 
-Gateway::Gateway(const Config& config, Models models, Runtime& runtime, const Log& log, const MakeWire& make_wire)
+Gateway::Gateway(const Config& config, const Models& models, Runtime& runtime, const Log& log, MakeWire make_wire)
     : runtime_(runtime),
       log_(log),
-      models_(std::move(models)),
+      make_wire_(std::move(make_wire)),
       events_([this](const Event& e) {
         log_.write(level_of(e.kind), source_of(e.axis), e.text);
         image_.changes.mark(0);
       }),
       closing_(runtime.make_timer([this] {
         if (closed_) std::exchange(closed_, nullptr)();
-      })) {
-  image_.buses.resize(config.buses.size());
-  for (std::size_t i = 0; i < config.buses.size(); ++i) add_bus(config.buses[i], i, make_wire);
+      })),
+      let_go_ended_(runtime.make_timer([this] { letting_go_.reset(); })) {
+  for (std::size_t i = 0; i < config.buses.size(); ++i) buses_.push_back(make_bus(config.buses[i], models[i], i));
+  image_.buses.resize(buses_.size());
+  for (std::size_t i = 0; i < buses_.size(); ++i) image_.buses[i].name = buses_[i]->name();
+  find_places();
   image_.refresh = [this] { refresh(); };
 }
 
 Gateway::~Gateway() = default;
 
-void Gateway::add_bus(const BusConfig& config, std::size_t index, const MakeWire& make_wire) {
-  const std::uint32_t bit_rate = adapter::on_can(config.adapter) ? config.bitrate : 0;
-  bus::BusSettings settings{config.name, config.timeout, config.min_gap, config.settle, bit_rate};
-  image_.buses[index].name = config.name;
-  buses_.push_back(std::make_unique<bus::Bus>(std::move(settings), config.drives.size(),
-                                              make_wire(config, models_[index]), runtime_, log_));
-  if (config.decode) buses_.back()->set_decode(true);
-  for (std::size_t d = 0; d < config.drives.size(); ++d) {
-    const drive::DriveModel& model = models_[index][d];
-    std::vector<AxisImage*> images;
-    for (const drive::AxisModel& axis : model.axes)
-      images.push_back(&image_.add_axis(axis.number, axis.name, static_cast<std::uint8_t>(index)));
-    drives_.push_back(std::make_unique<drive::Drive>(model, static_cast<bus::DriveSlot>(d), std::move(images),
-                                                     *buses_.back(), runtime_, events_));
-    bus_of_drive_.push_back(index);
-    for (std::size_t a = 0; a < model.axes.size(); ++a)
-      places_[model.axes[a].number] = {drives_.back().get(), static_cast<bus::AxisSlot>(a)};
-  }
+std::unique_ptr<BusLine> Gateway::make_bus(const BusConfig& config, const std::vector<drive::DriveModel>& models,
+                                           std::size_t place) {
+  return std::make_unique<BusLine>(config, models, place, make_wire_,
+                                   BusLine::Surroundings{runtime_, log_, image_, events_});
+}
+
+void Gateway::find_places() {
+  places_.fill({});
+  for (const auto& bus : buses_)
+    for (const auto& drive : bus->drives())
+      for (std::size_t a = 0; a < drive->axis_count(); ++a)
+        places_[drive->model().axes[a].number] = {drive.get(), static_cast<bus::AxisSlot>(a)};
 }
 
 void Gateway::start() {
@@ -63,14 +58,56 @@ void Gateway::start() {
   for (auto& bus : buses_) bus->start();
 }
 
+// --- Reload ----------------------------------------------------------------------------------------------------------
+
+void Gateway::reload(const ReloadPlan& plan, Config wanted, Models models,
+                     std::function<std::vector<std::string>()> last_word,
+                     std::function<void(std::vector<std::string>)> done) {
+  std::vector<BusLine*> leaving;
+  for (const std::size_t place : plan.leaving_buses) leaving.push_back(buses_[place].get());
+  letting_go_ = std::make_unique<LetGo>(runtime_, leaving, std::move(last_word),
+                                        [this, plan, wanted = std::move(wanted), models = std::move(models),
+                                         done = std::move(done)](std::vector<std::string> why_not) {
+                                          let_go_ended_->expires_at(runtime_.now());
+                                          if (why_not.empty()) replace(plan, wanted, models);
+                                          done(std::move(why_not));
+                                        });
+}
+
+// Those that go first: a device, or an axis number, may be another bus's now.
+void Gateway::replace(const ReloadPlan& plan, const Config& wanted, const Models& models) {
+  std::vector<std::unique_ptr<BusLine>> before = std::exchange(buses_, {});
+  places_.fill({});
+  for (const std::size_t place : plan.leaving_buses) {
+    before[place]->retire();
+    before[place].reset();
+  }
+  image_.buses.assign(wanted.buses.size(), {});
+  for (std::size_t i = 0; i < wanted.buses.size(); ++i) {
+    const bool kept = plan.kept_buses[i].has_value();
+    buses_.push_back(kept ? std::move(before[*plan.kept_buses[i]]) : make_bus(wanted.buses[i], models[i], i));
+    buses_.back()->move_to(i);
+    image_.buses[i].name = wanted.buses[i].name;
+  }
+  find_places();
+  for (std::size_t i = 0; i < buses_.size(); ++i)
+    if (!plan.kept_buses[i]) buses_[i]->start();
+}
+
+// --- The end ---------------------------------------------------------------------------------------------------------
+
 void Gateway::close(std::function<void()> closed) {
   if (stopping_) return;
   stopping_ = true;
+  letting_go_.reset();  // what it has closed is open again, and closed below
   image_.gateway.state = GatewayState::stopping;
   closed_ = std::move(closed);
   closing_->expires_at(runtime_.now() + kClosing);
-  open_drives_ = drives_.size() + 1;  // and this function, so that the last one is told once
-  for (const auto& drive : drives_) drive->close([this] { drive_closed(); });
+  open_drives_ = 1;  // this function, so that the last one is told once
+  for (const auto& bus : buses_) open_drives_ += bus->drives().size();
+  for (const auto& bus : buses_)
+    for (const auto& drive : bus->drives())
+      drive->close(drive::Drive::Closing::gateway_ends, [this] { drive_closed(); });
   drive_closed();
 }
 
@@ -90,7 +127,8 @@ std::optional<GroupResult> Gateway::submit(AxisNumber axis, const Group& group, 
 
 void Gateway::client_gone(ClientId client) {
   if (stopped_) return;  // it ends them all itself
-  for (const auto& drive : drives_) drive->client_gone(client);
+  for (const auto& bus : buses_)
+    for (const auto& drive : bus->drives()) drive->client_gone(client);
 }
 
 bool Gateway::holds(AxisNumber axis, Quantity quantity, std::int64_t value) const {
@@ -112,6 +150,13 @@ const drive::Drive* Gateway::drive_of(AxisNumber axis) const {
   return axis > kMaxAxisNumber ? nullptr : places_[axis].drive;
 }
 
+bool Gateway::all_turn(Duration slack) const {
+  return std::ranges::all_of(buses_, [&](const auto& bus) {
+    const Instant due = bus->bus().turn_due();
+    return due == kNever || runtime_.now() - due <= slack;
+  });
+}
+
 void Gateway::report_loop_delay(Duration delay) {
   if (delay >= kSlowLoop) slow_loop_at_ = runtime_.now();
 }
@@ -119,8 +164,8 @@ void Gateway::report_loop_delay(Duration delay) {
 void Gateway::report_file_changed(const std::string& file) {
   file_changed_ = !file.empty();
   report(EventKind::warning, file_changed_ ? file +
-                                                 " is not what the gateway runs with: check it, and restart the "
-                                                 "gateway when its axes are disabled"
+                                                 " is not what the gateway runs with: check it, and reload it "
+                                                 "(axisgate reload) when the axes of the buses that change are disabled"
                                            : "the files on disk are what the gateway runs with again");
 }
 
@@ -134,41 +179,11 @@ void Gateway::refresh() {
     shown.axes_online = static_cast<std::uint16_t>(shown.axes_online + axis->reachable());
   const auto up = runtime_.now() - started_;
   shown.uptime_s = static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::seconds>(up).count());
-  for (std::size_t i = 0; i < buses_.size(); ++i) refresh_bus(i);
+  for (std::size_t i = 0; i < buses_.size(); ++i) buses_[i]->show(image_.buses[i]);
   shown.alarms = gateway_alarms();
   if (stopping_ || started_ == kLongAgo) return;
   const bool all_online = shown.axes_online == image_.axes().size();
   shown.state = all_online ? GatewayState::running : GatewayState::degraded;
-}
-
-void Gateway::refresh_bus(std::size_t index) {
-  const bus::Bus& bus = *buses_[index];
-  BusImage& shown = image_.buses[index];
-  const bus::Statistics s = bus.statistics();
-  bool suspect = false;
-  Duration slowest{};
-  for (std::size_t d = 0; d < drives_.size(); ++d) {
-    if (bus_of_drive_[d] != index) continue;
-    suspect =
-        suspect || drives_[d]->link_state() == LinkState::suspect || drives_[d]->link_state() == LinkState::offline;
-    for (std::size_t a = 0; a < drives_[d]->axis_count(); ++a)
-      slowest = std::max(slowest, drives_[d]->axis(static_cast<bus::AxisSlot>(a)).cycle());
-  }
-  shown.link = bus.up() ? (suspect ? 2 : 1) : 0;
-  shown.load_permille = bus.load_permille();
-  shown.cycle_ms = static_cast<std::uint16_t>(
-      std::min<std::int64_t>(UINT16_MAX, std::chrono::duration_cast<std::chrono::milliseconds>(slowest).count()));
-  shown.queue_depth = static_cast<std::uint16_t>(bus.queue_depth());
-  shown.requests = s.requests;
-  shown.replies = s.replies;
-  shown.timeouts = s.timeouts;
-  shown.bad_frames = s.bad_frames;
-  shown.late_replies = s.late_replies;
-  shown.dropped_bytes = s.dropped_bytes;
-  shown.refused = s.refused;
-  shown.coalesced = s.coalesced;
-  shown.superseded = s.superseded;
-  shown.reconnects = s.reconnects;
 }
 
 std::uint16_t Gateway::gateway_alarms() const {

@@ -1,14 +1,17 @@
 // The gateway: all buses, drives and axes of a configuration, one image and one command port over them.
-// Promises that it is the same object in the product and in the simulation: what differs (clock, wires) is handed in.
-// Never opens a device or a socket itself, and never enables anything at start.
+// Promises that it is the same object in the product and in the simulation: what differs (clock, wires) is handed in;
+// that a reload touches no bus that stays as it is. Never opens a device or a socket itself, and never enables anything
+// at start.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <vector>
 
-#include "adapters/bus/bus.hpp"
+#include "gateway/app/bus_line.hpp"
 #include "gateway/app/config.hpp"
+#include "gateway/app/let_go.hpp"
+#include "gateway/app/reload_plan.hpp"
 #include "gateway/drive/drive.hpp"
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/events.hpp"
@@ -20,7 +23,6 @@ namespace axisgate::app {
 using Models = std::vector<std::vector<drive::DriveModel>>;
 /// The end on purpose takes at most so long, whatever the buses do.
 inline constexpr Duration kClosing = std::chrono::seconds(3);
-using MakeWire = std::function<std::unique_ptr<bus::Wire>(const BusConfig&, const std::vector<drive::DriveModel>&)>;
 
 /// An event loop turn this late raises the gateway alarm "event loop slow".
 inline constexpr Duration kSlowLoop = std::chrono::milliseconds(50);
@@ -28,7 +30,7 @@ inline constexpr Duration kSlowLoop = std::chrono::milliseconds(50);
 class Gateway final : public CommandPort {
  public:
   /// `config` and `models` were checked together (config_loader).
-  Gateway(const Config& config, Models models, Runtime& runtime, const Log& log, const MakeWire& make_wire);
+  Gateway(const Config& config, const Models& models, Runtime& runtime, const Log& log, MakeWire make_wire);
   ~Gateway() override;
 
   /// Opens the wires. A device that is missing is picked up when it appears.
@@ -38,6 +40,14 @@ class Gateway final : public CommandPort {
   /// to; every other one keeps what it does, and will miss the gateway (SECURITY.md). `closed` is called once, after
   /// kClosing at the latest.
   void close(std::function<void()> closed);
+  /// Goes on with another configuration: buses that `plan` keeps are untouched, the others end, and those of `wanted`
+  /// that are new begin. All of it or nothing: `done` is called once, in a turn of its own, with the reasons why
+  /// nothing was done. `last_word` is asked when the buses are let go, and may still give such reasons.
+  /// One at a time; not while the gateway ends. When the gateway ends meanwhile, nothing is done.
+  void reload(const ReloadPlan& plan, Config wanted, Models models, std::function<std::vector<std::string>()> last_word,
+              std::function<void(std::vector<std::string> why_not)> done);
+  [[nodiscard]] bool reloads() const { return letting_go_ != nullptr; }
+  [[nodiscard]] bool ends() const { return stopping_; }
   /// The last word before everything is taken apart: nothing is sent any more, whoever goes.
   void stop();
 
@@ -50,9 +60,11 @@ class Gateway final : public CommandPort {
 
   [[nodiscard]] ProcessImage& image() { return image_; }
   [[nodiscard]] const EventRing& events() const { return events_; }
-  [[nodiscard]] bus::Bus& bus(std::size_t index) { return *buses_[index]; }
+  [[nodiscard]] bus::Bus& bus(std::size_t index) { return buses_[index]->bus(); }
   [[nodiscard]] std::size_t bus_count() const { return buses_.size(); }
   [[nodiscard]] const drive::Drive* drive_of(AxisNumber axis) const;
+  /// No bus has waited longer than `slack` for its turn of the loop.
+  [[nodiscard]] bool all_turn(Duration slack) const;
   /// The loop was this late once (the shell measures it).
   void report_loop_delay(Duration delay);
   /// The DDS face is configured and its process does not run: gateway alarm "DDS process down".
@@ -68,19 +80,19 @@ class Gateway final : public CommandPort {
     bus::AxisSlot slot = 0;
   };
   void drive_closed();
-  void add_bus(const BusConfig& config, std::size_t index, const MakeWire& make_wire);
+  [[nodiscard]] std::unique_ptr<BusLine> make_bus(const BusConfig& config, const std::vector<drive::DriveModel>& models,
+                                                  std::size_t place);
+  void find_places();
+  void replace(const ReloadPlan& plan, const Config& wanted, const Models& models);
   void refresh();
-  void refresh_bus(std::size_t index);
   [[nodiscard]] std::uint16_t gateway_alarms() const;
 
   Runtime& runtime_;
   const Log& log_;
-  Models models_;  ///< drives refer to them: never changed after construction
+  const MakeWire make_wire_;
   ProcessImage image_;
   EventRing events_;
-  std::vector<std::unique_ptr<bus::Bus>> buses_;
-  std::vector<std::unique_ptr<drive::Drive>> drives_;
-  std::vector<std::size_t> bus_of_drive_;
+  std::vector<std::unique_ptr<BusLine>> buses_;
   std::array<Place, kMaxAxisNumber + 1> places_{};
   Instant started_ = kLongAgo;
   Instant slow_loop_at_ = kLongAgo;
@@ -89,6 +101,8 @@ class Gateway final : public CommandPort {
   std::size_t open_drives_ = 0;
   std::function<void()> closed_{};
   std::unique_ptr<Timer> closing_;
+  std::unique_ptr<LetGo> letting_go_;
+  std::unique_ptr<Timer> let_go_ended_;  ///< takes letting_go_ away in a turn of its own
   bool dds_down_ = false;
   bool file_changed_ = false;
 };

@@ -15,6 +15,7 @@
 
 #include "adapters/asio/asio_runtime.hpp"
 #include "gateway/app/config_loader.hpp"
+#include "gateway/app/control_socket.hpp"
 #include "gateway/app/descriptor_needs.hpp"
 #include "gateway/app/device_wires.hpp"
 #include "gateway/app/end_signals.hpp"
@@ -22,6 +23,8 @@
 #include "gateway/app/file_watch.hpp"
 #include "gateway/app/gateway.hpp"
 #include "gateway/app/loop_watch.hpp"
+#include "gateway/app/reload.hpp"
+#include "gateway/app/service.hpp"
 #include "gateway/app/stderr_log.hpp"
 #include "gateway/upstream/dds_host/dds_server.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
@@ -34,18 +37,29 @@ namespace {
 /// When all drives are done, what their clients are told still has to leave this process.
 constexpr Duration kLastAnswers = std::chrono::milliseconds(50);
 
-/// Names given with --decode; one that no bus has is told, not passed over.
-bool switch_decode_on(Config& config, const std::vector<std::string>& names) {
+/// Names given with --decode; one that no bus has is a mistake of the command line, not passed over.
+std::optional<ConfigFault> switch_decode_on(Config& config, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const auto bus =
         std::find_if(config.buses.begin(), config.buses.end(), [&](const auto& b) { return b.name == name; });
-    if (bus == config.buses.end()) {
-      fmt::print(stderr, "--decode {}: no bus of {} has this name\n", name, config.file);
-      return false;
-    }
+    if (bus == config.buses.end())
+      return ConfigFault{config.file, "/buses", fmt::format("no bus has the name {}, which --decode gives", name)};
     bus->decode = true;
   }
-  return true;
+  return std::nullopt;
+}
+
+/// As the gateway runs with it: what the command line adds is in it.
+LoadResult load(const RunOptions& options) {
+  LoadResult result = load_config(options.config, options.profile_folders);
+  if (auto* loaded = std::get_if<LoadedConfig>(&result))
+    if (auto fault = switch_decode_on(loaded->config, options.decode))
+      return std::vector<ConfigFault>{std::move(*fault)};
+  return result;
+}
+
+std::string status_of(const ProcessImage& image) {
+  return fmt::format("{} axes on {} buses", image.axes().size(), image.buses.size());
 }
 
 int serve(LoadedConfig loaded, const RunOptions& options) {
@@ -56,7 +70,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   std::signal(SIGCHLD, SIG_DFL);  // inherited as ignored, it would hide how axisgate-dds ends
   const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(descriptor_needs(loaded.config));
   modbus_tcp::ClientRegistry clients;
-  Gateway gateway(loaded.config, std::move(loaded.models), runtime, log, device_wires(io, runtime, log));
+  Gateway gateway(loaded.config, loaded.models, runtime, log, device_wires(io, runtime, log));
   modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log);
   std::optional<dds::DdsServer> dds;
   if (loaded.config.dds) {
@@ -73,21 +87,35 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   if (descriptors.limited()) gateway.report(EventKind::warning, modbus_tcp::text(descriptors));
   gateway.start();
   if (dds) dds->start();
-  std::vector<std::string> files = loaded.config.profile_files;
-  files.insert(files.begin(), loaded.config.file);
-  FileWatch file_watch(io, runtime, std::move(files),
+  FileWatch file_watch(io, runtime, files_of(loaded.config),
                        [&](const std::string& file) { gateway.report_file_changed(file); });
   LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
+  Service service(runtime, [&](Duration slack) { return gateway.all_turn(slack); });
+  Reload reload(io, std::move(loaded.config), [&options] { return load(options); },
+                {gateway, server, dds ? &*dds : nullptr, file_watch});
+  const auto begin_reload = [&](const Reload::Done& done) {
+    service.reloading();
+    reload.begin([&, done](const ReloadResult& result) {
+      service.ready(status_of(gateway.image()));
+      done(result);
+    });
+  };
   const auto end = [&] {
     gateway.stop();
     server.stop();
     io.stop();
   };
   const std::unique_ptr<Timer> last_answers = runtime.make_timer(end);
-  EndSignals signals(io, log, [&](bool at_once) {
-    if (at_once) return end();
-    gateway.close([&] { last_answers->expires_at(runtime.now() + kLastAnswers); });
-  });
+  EndSignals signals(
+      io, log,
+      [&](bool at_once) {
+        service.stopping();
+        if (at_once) return end();
+        gateway.close([&] { last_answers->expires_at(runtime.now() + kLastAnswers); });
+      },
+      [&] { begin_reload([](const ReloadResult&) {}); });
+  const ControlSocket control(io, runtime, log, options.config, begin_reload);
+  service.ready(status_of(gateway.image()));
   io.run();
   if (dds) dds->stop();
   return 0;
@@ -96,11 +124,10 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
 }  // namespace
 
 int run(const RunOptions& options) {
-  LoadResult result = load_config(options.config, options.profile_folders);
+  LoadResult result = load(options);
   if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
   auto& loaded = std::get<LoadedConfig>(result);
   for (const std::string& warning : loaded.warnings) fmt::print(stderr, "{}\n", warning);
-  if (!switch_decode_on(loaded.config, options.decode)) return 1;
   return serve(std::move(loaded), options);
 }
 

@@ -79,6 +79,9 @@ class Axis {
   /// The gateway ends: from now on only stops are accepted. What waits ends as never started; what has begun ends after
   /// its exchange; stops, owed ones too, go on to their end.
   void close();
+  /// It does not end after all.
+  void reopen() { closing_ = false; }
+  [[nodiscard]] const AxisImage& image() const { return image_; }
   /// Nothing of it waits for the wire or is on it.
   [[nodiscard]] bool idle() const { return pending_.empty(); }
   /// Bring-up has found the axis enabled: it is open to every operator, until its lease runs out (design 3.5).
@@ -225,7 +228,7 @@ class Axis {
   Jog jog_;
   OwedStop owed_;
   bool owed_told_ = false;              ///< an event has told of it: its end is told as well
-  bool closing_ = false;                ///< the gateway ends
+  bool closing_ = false;                ///< the gateway ends, or lets go of the drive
   Instant withdrawn_until_ = kLongAgo;  ///< an enable was withdrawn: until then one that comes late is taken back
 };
 

@@ -1,4 +1,4 @@
-// An axis when the gateway ends on purpose (design 7).
+// An axis when the gateway ends on purpose, or lets go of its drive (design 7).
 #include "gateway/drive/admission.hpp"
 #include "gateway/drive/axis.hpp"
 

@@ -9,7 +9,6 @@ namespace axisgate::drive {
 
 void Disarming::begin(const ObjectStore& store) {
   entries_.clear();
-  states_.clear();
   cleared_ = 0;
   tries_ = 0;
   for (const ObjectWrite& setup : std::views::reverse(model_.setup)) {
@@ -17,11 +16,24 @@ void Disarming::begin(const ObjectStore& store) {
     const ObjectState& now = store[setup.object];
     if (watches && now.known && !now.refused && now.number == setup.raw && setup.raw != 0) entries_.push_back(setup);
   }
+  if (entries_.empty()) return end(Outcome::nothing_to_do);
+  gather_states();
+  look(Phase::look, store);
+}
+
+void Disarming::begin_look(const ObjectStore& store) {
+  entries_.clear();
+  cleared_ = 0;
+  gather_states();
+  look(Phase::look, store);
+}
+
+void Disarming::gather_states() {
+  outcome_ = Outcome::unknown;  // till it is known
+  states_.clear();
   for (const AxisModel& axis : model_.axes)
     for (const ObjectId id : axis.state_sources)
       if (std::ranges::find(states_, id) == states_.end()) states_.push_back(id);
-  if (entries_.empty()) return end(Outcome::nothing_to_do);
-  look(Phase::look, store);
 }
 
 void Disarming::end(Outcome outcome) {
@@ -56,6 +68,7 @@ void Disarming::next_state(const ObjectStore& store) {
   if (at_ < states_.size()) return;
   if (holds_any_motor(store)) return put_back(Outcome::enabled);
   if (phase_ == Phase::look_again) return end(Outcome::disarmed);
+  if (entries_.empty()) return end(Outcome::disabled);
   phase_ = Phase::clear;
   at_ = 0;
 }
@@ -109,6 +122,8 @@ std::string_view text(Disarming::Outcome outcome) {
       return "it does not watch the gateway";
     case Disarming::Outcome::disarmed:
       return "no motor has torque: it misses the gateway no more";
+    case Disarming::Outcome::disabled:
+      return "no motor has torque";
     case Disarming::Outcome::enabled:
       return "a motor has torque: it will stop as if the gateway had died";
     case Disarming::Outcome::unknown:

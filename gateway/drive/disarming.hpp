@@ -1,4 +1,4 @@
-// What becomes of a drive's watch over the gateway when the gateway ends on purpose (design 7). Pure.
+// What becomes of a drive's watch over the gateway when the gateway ends on purpose, or lets go of it (design 7). Pure.
 // Promises that the entries which make the drive miss the gateway (1016h, 100Ch, 6007h, or what the profile names) are
 // cleared only after a read has shown that no motor of it has torque; that the state is read once more afterwards, and
 // that anything but that puts them back; that a drive of which this is not known is left as it is. Never clears an
@@ -23,15 +23,20 @@ class Disarming {
   enum class Outcome : std::uint8_t {
     nothing_to_do,  ///< no entry makes this drive miss the gateway, or none is as the setup list has it
     disarmed,
-    enabled,  ///< left armed: a motor has torque
-    unknown,  ///< left armed: its state could not be read
-    doubtful  ///< it should be armed, and did not answer when it was put back
+    disabled,  ///< only looked: no motor has torque
+    enabled,   ///< left armed: a motor has torque
+    unknown,   ///< left armed: its state could not be read
+    doubtful   ///< it should be armed, and did not answer when it was put back
   };
 
   explicit Disarming(const DriveModel& model) : model_(model) {}
 
   /// `store`: of a drive that is online. What is read from now on counts.
   void begin(const ObjectStore& store);
+  /// Whether a motor has torque is read, and nothing is written: disabled, enabled or unknown.
+  void begin_look(const ObjectStore& store);
+  /// Nothing can be asked of the drive: its state is unknown.
+  void give_up() { end(Outcome::unknown); }
   struct Next {
     ObjectId object = kNoObject;
     bool write = false;
@@ -48,6 +53,7 @@ class Disarming {
   void end(Outcome outcome);
   void put_back(Outcome outcome);
   void look(Phase phase, const ObjectStore& store);
+  void gather_states();
   void next_state(const ObjectStore& store);
   [[nodiscard]] bool holds_any_motor(const ObjectStore& store) const;
 

@@ -43,10 +43,20 @@ class Drive final : public bus::BusDrive, private AxisHost {
   [[nodiscard]] LinkState link_state() const override { return state_; }
   [[nodiscard]] const ObjectStore& store() const { return store_; }
   void client_gone(ClientId client);
-  /// The gateway ends on purpose: only stops are accepted from now on. Where no motor has torque, the drive is told not
-  /// to miss the gateway; any other one stops as if the gateway had died. `closed` is called once, when nothing of this
-  /// drive is on the wire or waits for it, perhaps from inside; nothing begins after that but stops.
-  void close(std::function<void()> closed);
+  /// Why a drive is closed.
+  enum class Closing : std::uint8_t {
+    gateway_ends,  ///< where no motor has torque, the drive is told not to miss the gateway; any other one stops as if
+                   ///< the gateway had died
+    look,          ///< to be taken away, if no motor has torque: that is read, and nothing is written
+    taken_away     ///< as gateway_ends, while the gateway goes on
+  };
+  /// Only stops are accepted from now on. `closed` is called once, when nothing of this drive is on the wire or waits
+  /// for it, perhaps from inside; nothing begins after that but stops.
+  void close(Closing why, std::function<void()> closed);
+  /// What close() has found.
+  [[nodiscard]] Disarming::Outcome closing_outcome() const { return disarming_.outcome(); }
+  /// It stays after all: commands are accepted again, and what made it miss the gateway is put back.
+  void reopen();
 
   // BusDrive
   [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::OrderId id, bus::Priority priority) override;
@@ -205,7 +215,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   Instant twin_until_ = kLongAgo;                        ///< alarm duplicate_node
   Disarming disarming_;
   bus::OrderId closing_order_ = 0;
-  bool closing_ = false;  ///< the gateway ends
+  std::optional<Closing> closing_{};
   std::function<void()> closed_{};
 };
 

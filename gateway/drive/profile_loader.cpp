@@ -50,6 +50,7 @@ LoadedProfile load_profile(const std::string& path) {
     return out;
   }
   const json& document = std::get<json>(loaded);
+  out.text = document.dump();
   std::vector<SchemaFault> faults = validate(document, profile_schema());
   Reading reading(document, out.profile, faults);
   read_head(reading, path);

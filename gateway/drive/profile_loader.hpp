@@ -26,6 +26,7 @@ struct Fault {
 struct LoadedProfile {
   std::string file;
   Profile profile;
+  std::string text;           ///< the file's JSON without spaces: whether two files say the same
   std::vector<Fault> faults;  ///< empty: the profile is good, and only then may it be resolved
 };
 

@@ -93,7 +93,7 @@ struct LatestResult {
 };
 
 struct AxisImage {
-  // Fixed when the gateway starts.
+  // Fixed while its drive is configured as it is.
   AxisNumber number = 0;
   std::string name;
   std::uint8_t bus = 0;          ///< position of its bus in the configuration

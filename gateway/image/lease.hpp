@@ -59,6 +59,7 @@ struct LeaseRules {
   Duration timeout = std::chrono::milliseconds(2000);
   LeaseAction on_expiry = LeaseAction::quick_stop;
   LeaseRenewal renew = LeaseRenewal::any;
+  friend bool operator==(const LeaseRules&, const LeaseRules&) = default;
 };
 
 /// The lease of one axis as the image shows it.

@@ -7,7 +7,9 @@ namespace axisgate {
 
 AxisImage& ProcessImage::add_axis(AxisNumber number, std::string name, std::uint8_t bus) {
   assert(number >= 1 && number <= kMaxAxisNumber && by_number_[number] == nullptr);
-  auto axis = std::make_unique<AxisImage>();
+  const auto before = removed_.find(number);
+  auto axis = before == removed_.end() ? std::make_unique<AxisImage>() : std::move(before->second);
+  if (before != removed_.end()) removed_.erase(before);
   axis->number = number;
   axis->name = std::move(name);
   axis->bus = bus;
@@ -16,6 +18,21 @@ AxisImage& ProcessImage::add_axis(AxisNumber number, std::string name, std::uint
   const auto place =
       std::find_if(axes_.begin(), axes_.end(), [number](const auto& other) { return other->number > number; });
   return **axes_.insert(place, std::move(axis));
+}
+
+void ProcessImage::remove_axis(AxisNumber number) {
+  const auto place = std::ranges::find(axes_, number, [](const auto& axis) { return axis->number; });
+  if (place == axes_.end()) return;
+  by_number_[number] = nullptr;
+  AxisImage nothing;
+  nothing.number = number;
+  nothing.sequence = (*place)->sequence + 1;
+  nothing.endings = (*place)->endings;
+  nothing.endings.lost();
+  **place = std::move(nothing);
+  removed_.insert_or_assign(number, std::move(*place));
+  axes_.erase(place);
+  changes.mark(number);
 }
 
 AxisImage* ProcessImage::find(AxisNumber number) const {

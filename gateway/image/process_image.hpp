@@ -1,11 +1,13 @@
 // The process image: all axes, buses and the gateway itself, as every face reads them.
-// Promises that pointers to axes stay good for the gateway's life and that axes are found by number in constant time.
+// Promises that pointers to axes stay good for the gateway's life, also to those that were removed, and that axes are
+// found by number in constant time.
 // Never holds anything of a client.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -64,7 +66,10 @@ inline constexpr std::size_t kMaxBuses = 100;  ///< 50000 + 100 * b must stay be
 class ProcessImage {
  public:
   /// Numbers are unique and within 1..499 (the configuration was checked).
+  /// One that there was before begins anew, but for `sequence` and its endings: to every client its link was lost.
   AxisImage& add_axis(AxisNumber number, std::string name, std::uint8_t bus);
+  /// It shows nothing any more, and is not found.
+  void remove_axis(AxisNumber number);
   [[nodiscard]] AxisImage* find(AxisNumber number) const;
   /// In the order of their numbers.
   [[nodiscard]] const std::vector<std::unique_ptr<AxisImage>>& axes() const { return axes_; }
@@ -78,6 +83,7 @@ class ProcessImage {
 
  private:
   std::vector<std::unique_ptr<AxisImage>> axes_;
+  std::map<AxisNumber, std::unique_ptr<AxisImage>> removed_;
   std::array<AxisImage*, kMaxAxisNumber + 1> by_number_{};
 };
 

@@ -12,9 +12,9 @@
 namespace axisgate::dds {
 namespace {
 
-UnitsOfAxes units_of(const DdsSettings& settings) {
+UnitsOfAxes units_of(const std::vector<AxisUnits>& axes) {
   UnitsOfAxes units;
-  for (const AxisUnits& each : settings.units) units.emplace(each.axis, DdsUnits(each));
+  for (const AxisUnits& each : axes) units.emplace(each.axis, DdsUnits(each));
   return units;
 }
 
@@ -24,17 +24,28 @@ struct DdsFace::Impl {
   Impl(DdsSettings with, ProcessImage& of, const EventRing& ring, CommandPort& commands, std::function<void()> on_wake)
       : settings(std::move(with)),
         image(of),
-        units(units_of(settings)),
+        units(units_of(settings.units)),
         wake(std::move(on_wake)),
         clients(settings.role, image, commands),
         requests(settings, units, image, commands, clients, replies, [this] { wake_up(); }),
         events(ring),
         states(settings.min_period, settings.max_period) {
+    add_axes(kLongAgo);
+    image.changes.wake = [this] { wake_up(); };
+  }
+
+  void add_axes(Instant now) {
     for (const auto& axis : image.axes()) {
       units.try_emplace(axis->number);
-      states.add(axis->number, kLongAgo);
+      states.add(axis->number, now);
     }
-    image.changes.wake = [this] { wake_up(); };
+  }
+  [[nodiscard]] StateRecord state_of(AxisNumber axis) {
+    if (const AxisImage* const there = image.find(axis)) return state_record(*there, units.at(axis));
+    states.remove(axis);
+    AxisImage gone;
+    gone.number = axis;
+    return state_record(gone, DdsUnits());
   }
 
   void wake_up() const {
@@ -67,6 +78,13 @@ DdsFace::DdsFace(DdsSettings settings, ProcessImage& image, const EventRing& eve
 
 DdsFace::~DdsFace() {
   impl_->image.changes.wake = [] {};
+}
+
+void DdsFace::take_axes(const std::vector<AxisUnits>& units, Instant now) {
+  impl_->units = units_of(units);
+  impl_->add_axes(now);
+  impl_->states.all_due(now);
+  impl_->wake_up();
 }
 
 void DdsFace::on_link_up(Instant now) {
@@ -105,7 +123,7 @@ std::optional<Record> DdsFace::next(Instant now) {
   it.take_changes(now);
   // Where the reader is so slow that some axis is always due, this one would never come.
   if (it.gateway_due + kGatewayPeriod <= now) return it.gateway_sample(now);
-  if (const auto axis = it.states.next(now)) return state_record(*it.image.find(*axis), it.units.at(*axis));
+  if (const auto axis = it.states.next(now)) return it.state_of(*axis);
   if (it.gateway_due <= now) return it.gateway_sample(now);
   return std::nullopt;
 }

@@ -30,13 +30,16 @@ inline constexpr std::size_t kMaxEventsWaiting = 64;
 
 class DdsFace {
  public:
-  /// Takes image.changes for itself (its wake() calls `wake`, which arms a timer and no more). Axes, units and settings
-  /// stay as they are.
+  /// Takes image.changes for itself (its wake() calls `wake`, which arms a timer and no more). Settings stay as they
+  /// are; axes and units until take_axes().
   DdsFace(DdsSettings settings, ProcessImage& image, const EventRing& events, CommandPort& commands,
           std::function<void()> wake);
   ~DdsFace();
   DdsFace(const DdsFace&) = delete;
   DdsFace& operator=(const DdsFace&) = delete;
+
+  /// The image has other axes now, with these units. Of an axis that is gone one more state is sent: unknown, no value.
+  void take_axes(const std::vector<AxisUnits>& units, Instant now);
 
   /// axisgate-dds is there and knows nothing yet: states of all axes and the newest events follow.
   void on_link_up(Instant now);

@@ -20,6 +20,7 @@ struct AxisUnits {
   AxisNumber axis = 0;
   Rational units_per_rev{10000};
   std::optional<Rational> metres_per_rev{};  ///< "dds_unit": "m"; none: rad
+  friend bool operator==(const AxisUnits&, const AxisUnits&) = default;
 };
 
 struct DdsSettings {
@@ -38,6 +39,7 @@ struct DdsSettings {
   Duration reply_deadline = std::chrono::milliseconds(900);  ///< as reply_deadline_ms of a listener
   std::uint32_t memory_limit_mib = 512;                      ///< of axisgate-dds, which is ended beyond it
   std::vector<AxisUnits> units{};                            ///< one an axis
+  friend bool operator==(const DdsSettings&, const DdsSettings&) = default;
 };
 
 }  // namespace axisgate::dds

@@ -17,6 +17,13 @@ void StateFeed::add(AxisNumber axis, Instant now) {
   place(added, now);
 }
 
+void StateFeed::remove(AxisNumber axis) {
+  const auto found = places_.find(axis);
+  if (found == places_.end()) return;
+  queue_.erase(found->second.turn);
+  places_.erase(found);
+}
+
 void StateFeed::changed(AxisNumber axis, Instant now) {
   const auto found = places_.find(axis);
   if (found == places_.end()) return;

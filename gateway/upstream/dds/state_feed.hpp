@@ -18,6 +18,8 @@ class StateFeed {
 
   /// An axis that there is, due at once.
   void add(AxisNumber axis, Instant now);
+  /// It is gone.
+  void remove(AxisNumber axis);
   /// Something in its state has changed. An axis that was not added: nothing.
   void changed(AxisNumber axis, Instant now);
   /// Whoever reads knows nothing yet.

@@ -43,6 +43,8 @@ class DdsServer {
   DdsServer& operator=(const DdsServer&) = delete;
 
   void start();
+  /// The image has other axes now, with these units.
+  void take_axes(const std::vector<AxisUnits>& units) { face_.take_axes(units, runtime_.now()); }
   /// Ends the process; waits for it, kEndsWithin at most. When the loop has ended: it would stand still meanwhile.
   void stop();
 

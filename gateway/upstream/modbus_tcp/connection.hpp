@@ -33,6 +33,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void stop();
 
   [[nodiscard]] const Peer& peer() const { return peer_; }
+  [[nodiscard]] ClientId client() const { return session_->client(); }
   /// After the end: why the session gave up; empty where the peer left.
   [[nodiscard]] std::string_view why_closed() const { return why_closed_; }
   /// Its place in its listener's table, kept by the listener.

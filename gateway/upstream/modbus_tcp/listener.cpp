@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/v6_only.hpp>
@@ -98,6 +99,17 @@ void Listener::open() {
   if (!error) acceptor_.native_non_blocking(true, error);
   if (!error) port_ = acceptor_.local_endpoint(error).port();
   if (error) throw std::runtime_error(who + error.message() + remedy(error));
+}
+
+void Listener::take_socket(Listener& other) {
+  error_code ignored;
+  other.acceptor_.cancel(ignored);  // its wait ends as cancelled, and stop() follows before that is heard
+  acceptor_ = std::move(other.acceptor_);
+  port_ = other.port_;
+}
+
+bool Listener::serves(ClientId client) const {
+  return std::any_of(open_.begin(), open_.end(), [&](const auto& each) { return each->client() == client; });
 }
 
 void Listener::start() {

@@ -38,12 +38,17 @@ class Listener : public std::enable_shared_from_this<Listener> {
 
   /// Binds and listens; "::" serves IPv4 as well. Throws std::runtime_error that names the listener and what to change.
   void open();
+  /// In place of open(): takes over the socket of a listener on the same address, with the clients that wait on it.
+  /// That one has only its connections then, and can only be stopped.
+  void take_socket(Listener& other);
   void start();
   /// Closes the socket and every connection; nothing of the server is touched after it.
   void stop();
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] const ListenerSettings& settings() const { return settings_; }
+  /// One of its connections is this client's.
+  [[nodiscard]] bool serves(ClientId client) const;
   /// "0.0.0.0:1502" with the port in force.
   [[nodiscard]] std::string name() const;
 

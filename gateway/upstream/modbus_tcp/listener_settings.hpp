@@ -21,6 +21,7 @@ struct AllowEntry {
   std::uint8_t prefix = 128;  ///< bits of `network` that count (96 more than written for IPv4)
   Role role = Role::viewer;
   std::uint8_t rank = 0;
+  friend bool operator==(const AllowEntry&, const AllowEntry&) = default;
 };
 
 struct ListenerSettings {
@@ -42,6 +43,7 @@ struct ListenerSettings {
   Duration idle_timeout = std::chrono::seconds(60);     ///< 0: none
   std::uint32_t max_clients = 1000;
   std::uint32_t max_clients_per_address = 64;  ///< 0: no limit
+  friend bool operator==(const ListenerSettings&, const ListenerSettings&) = default;
 };
 
 }  // namespace axisgate::modbus_tcp

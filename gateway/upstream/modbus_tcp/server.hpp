@@ -1,10 +1,12 @@
 // The Modbus-TCP server: its listeners, opened together and stopped together, on the core thread's io_context.
-// Promises that start() either serves on every configured address or throws and says which one and what to change, and
-// that nothing of it runs after stop(). Never decides what a request means: that is the Session's part.
+// Promises that start() and prepare() either have every configured address or throw and say which one and what to
+// change; that a listener which a reload keeps does not notice it; that nothing of it runs after stop(). Never decides
+// what a request means: that is the Session's part.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,6 +36,18 @@ class Server {
   /// Binds all listeners, then accepts as many clients as `descriptors` leaves room for (take_descriptors()). Throws
   /// std::runtime_error, and has then opened nothing.
   void start(const DescriptorPlan& descriptors);
+  /// The first half of a reload: opens what of `wanted` has no listener on its address yet, and accepts nobody. Throws
+  /// as start() does, and has changed nothing then. `kept`: of each of `wanted`, the place of the listener that goes on
+  /// as it is, with its connections.
+  void prepare(std::span<const ListenerSettings> wanted, std::span<const std::optional<std::size_t>> kept);
+  /// The second half: those of prepare() take the place of the others, whose connections are closed. A listener with
+  /// other settings on the same address keeps its socket.
+  void commit(const DescriptorPlan& descriptors);
+  /// In place of commit(): all is as before.
+  void give_up() { prepared_.clear(); }
+  /// Whether this client has a connection of the listener at this place of the settings.
+  [[nodiscard]] bool serves(std::size_t place, ClientId client) const;
+
   /// Closes listeners and connections. Not from inside a CommandPort call or a result's callback.
   void stop();
 
@@ -44,6 +58,7 @@ class Server {
  private:
   std::unique_ptr<ServerContext> context_;
   std::vector<std::shared_ptr<Listener>> listeners_;
+  std::vector<std::shared_ptr<Listener>> prepared_;  ///< the listeners after a reload that is under way
 };
 
 }  // namespace axisgate::modbus_tcp

@@ -40,6 +40,7 @@ class Session::Impl {
   [[nodiscard]] bool finished() const { return why_ != nullptr && pipeline_.under_way() == 0; }
   [[nodiscard]] const char* why_finished() const { return why_; }
   [[nodiscard]] Instant next_deadline() const;
+  [[nodiscard]] ClientId client() const { return client_->id; }
 
  private:
   [[nodiscard]] bool over() const { return why_ != nullptr || closed_; }
@@ -189,6 +190,7 @@ Bytes Session::output() const { return impl_->output(); }
 void Session::take_output(std::size_t bytes, Instant now) { impl_->take_output(bytes, now); }
 bool Session::wants_input() const { return impl_->wants_input(); }
 bool Session::finished() const { return impl_->finished(); }
+ClientId Session::client() const { return impl_->client(); }
 const char* Session::why_finished() const { return impl_->why_finished(); }
 Instant Session::next_deadline() const { return impl_->next_deadline(); }
 

@@ -61,6 +61,7 @@ class Session {
   [[nodiscard]] bool finished() const;
   [[nodiscard]] const char* why_finished() const;
   [[nodiscard]] Instant next_deadline() const;
+  [[nodiscard]] ClientId client() const;
 
  private:
   class Impl;
