@@ -133,10 +133,30 @@ app::Gateway& GatewayStage::gateway() {
 void GatewayStage::start() {
   if (gateway_) throw std::logic_error("a gateway runs already");
   auto [config, models] = configured(lines_);
+  config_ = std::move(config);
   gateway_ = std::make_unique<app::Gateway>(
-      config, std::move(models), runtime_, log_,
+      config_, models, runtime_, log_,
       [this](const app::BusConfig& bus, const std::vector<drive::DriveModel>& drives) { return wire_on(bus, drives); });
   gateway_->start();
+}
+
+std::shared_ptr<std::optional<GatewayStage::Reasons>> GatewayStage::begin_reload(
+    const std::function<void(app::Config&)>& change, std::function<Reasons()> last_word) {
+  Configured all = configured(lines_);
+  app::Config wanted = config_;
+  change(wanted);
+  app::Models models;
+  for (const app::BusConfig& bus : wanted.buses) {
+    const auto found = std::ranges::find(all.config.buses, bus.name, &app::BusConfig::name);
+    models.push_back(all.models.at(static_cast<std::size_t>(found - all.config.buses.begin())));
+  }
+  auto place = std::make_shared<std::optional<Reasons>>();
+  gateway().reload(app::plan_reload(config_, wanted), wanted, std::move(models), std::move(last_word),
+                   [this, place, wanted](Reasons why_not) {
+                     if (why_not.empty()) config_ = wanted;
+                     *place = std::move(why_not);
+                   });
+  return place;
 }
 
 void GatewayStage::crash(const std::function<void()>& others) {

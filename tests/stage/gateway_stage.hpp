@@ -79,6 +79,11 @@ class GatewayStage {
   void crash(const std::function<void()>& others = [] {});
   /// A new one, with the same configuration, on the same cables.
   void start();
+  /// It goes on with what `change` makes of its configuration; the models follow where a bus is taken out or put back.
+  /// The result appears in the returned place: reasons why not, or none.
+  using Reasons = std::vector<std::string>;
+  std::shared_ptr<std::optional<Reasons>> begin_reload(
+      const std::function<void(app::Config&)>& change, std::function<Reasons()> last_word = [] { return Reasons{}; });
   [[nodiscard]] bool gateway_runs() const { return gateway_ != nullptr; }
   [[nodiscard]] ManualRuntime& runtime() { return runtime_; }
   [[nodiscard]] SimLink& link(std::size_t line) { return *links_.at(line).kinco; }
@@ -138,6 +143,7 @@ class GatewayStage {
                                                    const std::vector<drive::DriveModel>& drives);
   const std::vector<Line> lines_;
   std::vector<LinkOfLine> links_;
+  app::Config config_;  ///< of the gateway that runs
   std::unique_ptr<app::Gateway> gateway_;
 };
 
