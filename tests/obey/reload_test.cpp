@@ -256,6 +256,58 @@ TEST_P(Reload, ALastWordRefusesIt) {
   expect_watched(plant_);
 }
 
+// "A bus whose section did not change is not touched, not one request": the frames of the other bus, and when they were
+// asked, are those of a gateway that nobody has reload; its clients command it on meanwhile.
+TEST(ReloadOfTwoBuses, TheOtherBusSeesNotOneRequestMoreOrLess) {
+  struct Seen {
+    std::vector<std::string> frames;
+    std::vector<std::uint64_t> requests;  ///< after each millisecond
+    std::vector<Errc> results;
+  };
+  enum class What { nothing, changed, removed, refused };
+  const auto see = [](std::vector<GatewayStage::Line> lines, What what) {
+    const std::string other = lines.at(1).name;
+    GatewayStage stage(std::move(lines));
+    EXPECT_TRUE(stage.come_online());
+    EXPECT_EQ(stage.command(1, what == What::refused ? Command::enable : Command::disable).outcome.code, Errc::ok);
+    stage.run(1s);
+    stage.gateway().bus(1).set_decode(true);
+    stage.log().clear();
+    Seen seen;
+    std::shared_ptr<std::optional<GatewayStage::Reasons>> told;
+    for (int ms = 0; ms < 3000; ++ms) {
+      if (ms == 500 && what == What::removed)
+        told = stage.begin_reload([](app::Config& config) { config.buses.erase(config.buses.begin()); });
+      if (ms == 500 && (what == What::changed || what == What::refused)) told = stage.begin_reload(change_timeout);
+      if (ms == 400 || ms == 600)
+        seen.results.push_back(stage.command(2, ms == 400 ? Command::enable : Command::disable).outcome.code);
+      stage.run(1ms);
+      const std::size_t place = what == What::removed && ms >= 1500 ? 0 : 1;
+      if (ms < 500 || ms >= 1500) seen.requests.push_back(stage.gateway().bus(place).statistics().requests);
+    }
+    EXPECT_TRUE(!told || told->value().empty() == (what != What::refused));
+    for (const std::string& line : stage.log())
+      if (line.find(" bus " + other + ": ") != std::string::npos) seen.frames.push_back(line);
+    return seen;
+  };
+  const auto kinds = [] {
+    std::vector<GatewayStage::Line> lines{line_of(simulated::KincoType::jd, 1), line_of(simulated::KincoType::md, 2),
+                                          can_line_of({{}}, 2)};
+    for (std::size_t i = 0; i < lines.size(); ++i) lines[i].name = "line-" + std::to_string(i);
+    return lines;
+  }();
+  for (const std::size_t other : {1U, 2U}) {
+    const Seen alone = see({kinds[0], kinds[other]}, What::nothing);
+    ASSERT_GT(alone.frames.size(), 100U);
+    for (const What what : {What::changed, What::removed, What::refused}) {
+      const Seen with = see({kinds[0], kinds[other]}, what);
+      EXPECT_EQ(with.results, alone.results) << other;
+      EXPECT_EQ(with.requests, alone.requests) << other;
+      EXPECT_EQ(with.frames, alone.frames) << other;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, Reload, testing::ValuesIn(kSubjects), named);
 
 }  // namespace
