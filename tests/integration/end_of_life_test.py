@@ -118,7 +118,7 @@ class Told(End):
         self.client = self.connect()
         self.until_online()
         self.gateway.send(signal.SIGHUP)
-        self.gateway.wait_for("signal 1: the configuration is read at start only")
+        self.gateway.wait_for("was read anew: nothing has changed")
         self.assertEqual(self.axis(1).get("link_state"), 2)
         self.assertEqual(self.end(signal.SIGTERM), 0)
 
