@@ -53,6 +53,12 @@ class DdsRig {
   void link_down();
   void link_up();
 
+  /// A reload has taken this axis away.
+  void take_away(AxisNumber axis) {
+    stage.gateway().image().remove_axis(axis);
+    face_->take_axes({}, now());
+  }
+
   void run(Duration time);
   bool run_until(const std::function<bool()>& done, Duration limit = std::chrono::seconds(20));
 

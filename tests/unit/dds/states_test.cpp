@@ -51,6 +51,19 @@ TEST(DdsStates, SayAtEachMomentWhatTheRegistersSay) {
   EXPECT_NEAR(rig.state().velocity, 5 * kTurn, 0.5);
 }
 
+// A reload takes an axis away: its last sample says that nothing is known, and no other follows.
+TEST(DdsStates, SayOnceThatAnAxisIsGone) {
+  DdsRig rig;
+  ASSERT_TRUE(rig.run_until([&] { return rig.axis().reachable(); }));
+  rig.take_away(kServo);
+  rig.samples.clear();
+  rig.run(3s);
+  std::erase_if(rig.samples, [](const auto& each) { return each.axis != kServo; });
+  ASSERT_EQ(rig.samples.size(), 1U);
+  EXPECT_EQ(rig.samples.front().link_state, 0);
+  EXPECT_EQ(rig.samples.front().valid, 0U);
+}
+
 TEST(DdsStates, ComeAtMostEachShortestAndAtLeastEachLongestPeriod) {
   DdsRigOptions options;
   options.settings.min_period = 30ms;
