@@ -15,6 +15,7 @@
 #include "gateway/app/scan_command.hpp"
 #include "gateway/app/top_command.hpp"
 #include "gateway/app/topics_command.hpp"
+#include "gateway/manual/generate.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -236,6 +237,10 @@ int run_command_line(int argc, const char* const* argv) {
   add_commission(app, parsed);
   add_scan(app, parsed);
   add_explain(app, parsed);
+  if (const auto text = manual::generated(app, argc, argv)) {
+    std::cout << *text;
+    return 0;
+  }
   if (!knows_command(app, argc, argv)) return kWrongCommandLine;
   try {
     app.parse(argc, argv);
