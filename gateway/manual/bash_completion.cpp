@@ -57,11 +57,12 @@ std::string bash_completion(const Command& program) {
       if (!option.value.empty()) values += value_line(way, option);
     lists += command_line(way, *command);
   }
-  const std::string way_lines = ways.empty() ? "" : fmt::format(R"(  for ((i = 1; i < COMP_CWORD; ++i)); do
+  const std::string way_lines = ways.empty() ? ""
+                                             : fmt::format(R"(  for ((i = 1; i < COMP_CWORD; ++i)); do
     case "$way/${{COMP_WORDS[i]}}" in {}) way+=/${{COMP_WORDS[i]}} ;; esac
   done
 )",
-                                                                ways);
+                                                           ways);
   return fmt::format(R"(# bash completion for {0}, made from its command line.
 {1}() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} way='' options='' commands='' files=no i
