@@ -5,43 +5,45 @@
 
 find_program(GZIP gzip REQUIRED)
 
-# A component's file that Debian wants compressed. Installed with the packages alone, as all that follows.
-function(axisgate_package_compressed component source destination)
+# A file of a component that deploy/debian/file.cmake makes when the package is made, at DESTINATION below the prefix: it runs CODE,
+# which puts the file at ${FILE}. Compressed where the name says so. It goes where it belongs at once: nothing is kept in the build
+# folder, so that two makings at a time do not take each other's files.
+function(axisgate_package_file component destination code)
   install(CODE "
     set(GZIP \"${GZIP}\")
-    set(SOURCE \"${source}\")
     set(DESTINATION \"${destination}\")
-    include(\"${CMAKE_SOURCE_DIR}/deploy/debian/compressed.cmake\")" COMPONENT ${component} EXCLUDE_FROM_ALL)
+    set(FOLDER \"${CMAKE_SOURCE_DIR}/deploy/debian\")
+    macro(make_file)
+      ${code}
+    endmacro()
+    include(\"${CMAKE_SOURCE_DIR}/deploy/debian/file.cmake\")" COMPONENT ${component} EXCLUDE_FROM_ALL)
+endfunction()
+
+function(axisgate_package_copy component source destination)
+  axisgate_package_file(${component} ${destination} "file(COPY_FILE \"${source}\" \"\${FILE}\")")
 endfunction()
 
 # The documents that every package has.
 function(axisgate_package_documents component package)
   set(folder share/doc/${package})
-  install(FILES ${CMAKE_SOURCE_DIR}/deploy/debian/copyright DESTINATION ${folder} COMPONENT ${component} EXCLUDE_FROM_ALL)
-  axisgate_package_compressed(${component} ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${folder}/changelog.gz)
+  axisgate_package_copy(${component} ${CMAKE_SOURCE_DIR}/deploy/debian/copyright ${folder}/copyright)
+  axisgate_package_copy(${component} ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${folder}/changelog.gz)
   # The entry of this very package: its version and time are known when it is made.
-  install(CODE "
-    set(PACKAGE ${package})
-    set(VERSION ${PROJECT_VERSION})
-    set(MADE \"${CMAKE_BINARY_DIR}/package/${package}.changelog\")
-    include(\"${CMAKE_SOURCE_DIR}/deploy/debian/changelog.cmake\")" COMPONENT ${component} EXCLUDE_FROM_ALL)
-  axisgate_package_compressed(${component} ${CMAKE_BINARY_DIR}/package/${package}.changelog ${folder}/changelog.Debian.gz)
+  axisgate_package_file(${component} ${folder}/changelog.Debian.gz "
+      set(PACKAGE ${package})
+      set(VERSION ${PROJECT_VERSION})
+      include(\"\${FOLDER}/changelog.cmake\")")
 endfunction()
 
 # A program's manual page and completion: it prints them itself (gateway/manual), so they say what its --help says.
 function(axisgate_package_manual component program)
+  set(man share/man/man1/${program}.1.gz)
+  set(bash share/bash-completion/completions/${program})
+  set(zsh share/zsh/vendor-completions/_${program})
   foreach(form man bash zsh)
-    install(CODE "
-      set(PROGRAM \"$<TARGET_FILE:${program}>\")
-      set(FORM ${form})
-      set(MADE \"${CMAKE_BINARY_DIR}/package/${program}.${form}\")
-      include(\"${CMAKE_SOURCE_DIR}/deploy/debian/generated.cmake\")" COMPONENT ${component} EXCLUDE_FROM_ALL)
+    axisgate_package_file(${component} ${${form}}
+      "execute_process(COMMAND \"$<TARGET_FILE:${program}>\" --generate ${form} OUTPUT_FILE \"\${FILE}\" COMMAND_ERROR_IS_FATAL ANY)")
   endforeach()
-  axisgate_package_compressed(${component} ${CMAKE_BINARY_DIR}/package/${program}.man share/man/man1/${program}.1.gz)
-  install(FILES ${CMAKE_BINARY_DIR}/package/${program}.bash DESTINATION share/bash-completion/completions RENAME ${program}
-          COMPONENT ${component} EXCLUDE_FROM_ALL)
-  install(FILES ${CMAKE_BINARY_DIR}/package/${program}.zsh DESTINATION share/zsh/vendor-completions RENAME _${program}
-          COMPONENT ${component} EXCLUDE_FROM_ALL)
 endfunction()
 
 function(axisgate_package component program)
@@ -51,7 +53,7 @@ function(axisgate_package component program)
 endfunction()
 
 axisgate_package(gateway axisgate)
-axisgate_package_compressed(gateway ${CMAKE_SOURCE_DIR}/deploy/debian/gateway.json.5 share/man/man5/gateway.json.5.gz)
+axisgate_package_copy(gateway ${CMAKE_SOURCE_DIR}/deploy/debian/gateway.json.5 share/man/man5/gateway.json.5.gz)
 set(files ${CMAKE_SOURCE_DIR}/deploy)
 install(FILES ${files}/systemd/axisgate.service DESTINATION /lib/systemd/system COMPONENT gateway EXCLUDE_FROM_ALL)
 install(FILES ${files}/udev/71-axisgate-lines.rules DESTINATION /lib/udev/rules.d COMPONENT gateway EXCLUDE_FROM_ALL)
