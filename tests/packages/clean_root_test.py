@@ -244,6 +244,16 @@ class CleanRootTest(unittest.TestCase):
         until("axis 1 online", self.online)
         until("a topic of the axis", self.topics_show_it)
 
+        # Both in one upgrade: the gateway is replaced when the other program is new as well.
+        log = self.root.path / "var/log/dpkg.log"
+        log.write_text("")
+        both = make("--version", "1000.3")
+        self.root.apt("install", *(self.root.put(both[name]) for name in ("axisgate", "axisgate-dds")))
+        self.assertIsNone(self.unit.failure)
+        text = log.read_text()
+        self.assertLess(text.index(" upgrade axisgate-dds:"), text.index(" configure axisgate:"))
+        self.unit.program.wait_for("axisgate-dds .* runs")
+
     def topics_show_it(self):
         command = self.root.command("axisgate", "topics", "--once", network=self.gateway_side)
         return "lift" in subprocess.run(command, capture_output=True, text=True, check=False).stdout
