@@ -16,6 +16,7 @@
 #include "gateway/app/scan_command.hpp"
 #include "gateway/app/top_command.hpp"
 #include "gateway/app/topics_command.hpp"
+#include "gateway/manual/generate.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -248,6 +249,10 @@ int run_command_line(int argc, const char* const* argv) {
   add_scan(app, parsed);
   add_explain(app, parsed);
   add_reload(app, parsed);
+  if (const auto text = manual::generated(app, argc, argv)) {
+    std::cout << *text;
+    return 0;
+  }
   if (!knows_command(app, argc, argv)) return kWrongCommandLine;
   try {
     app.parse(argc, argv);

@@ -8,12 +8,14 @@ from pathlib import Path
 ARROWS = {
     "gateway/core": set(),
     "gateway/image": {"gateway/core"},
+    # Reads the command lines of all programs, whatever they are for.
+    "gateway/manual": set(),
     "gateway/drive": {"gateway/image", "adapters/bus", "gateway/core"},
     # The DDS face in two processes: what they say to each other, the gateway's half, the half with the DDS library, and whoever
     # starts that one and carries packets between the two.
     "gateway/upstream/dds_link": {"gateway/core"},
     "gateway/upstream/dds": {"gateway/upstream/dds_link", "gateway/image", "gateway/core"},
-    "gateway/upstream/dds_process": {"gateway/upstream/dds_link", "gateway/core"},
+    "gateway/upstream/dds_process": {"gateway/upstream/dds_link", "gateway/manual", "gateway/core"},
     "gateway/upstream/dds_host": {"gateway/upstream/dds", "gateway/upstream/dds_link", "gateway/image", "gateway/core"},
     "gateway/upstream/*": {"gateway/image", "gateway/core"},
     "adapters/bus": {"gateway/core"},
@@ -37,7 +39,7 @@ ONE_PLACE = {
     r"<fastdds|<fastrtps|PubSubTypes": ("gateway/upstream/dds_process/", "deploy/examples/", "tests/dds_peers/"),
     r"<termios\.h>|<sys/inotify\.h>|<linux/serial\.h>": ("adapters/serial/",),
     r"<valijson/": ("gateway/drive/json_schema.cpp",),
-    r"<CLI/": ("gateway/app/command_line.cpp", "gateway/upstream/dds_process/options.cpp"),
+    r"<CLI/": ("gateway/app/command_line.cpp", "gateway/upstream/dds_process/options.cpp", "gateway/manual/command_tree.cpp"),
 }
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.

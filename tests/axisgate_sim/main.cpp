@@ -3,6 +3,7 @@
 #include <iostream>
 #include <optional>
 
+#include "gateway/manual/generate.hpp"
 #include "tests/axisgate_sim/run.hpp"
 
 using namespace axisgate::simulated;
@@ -68,7 +69,8 @@ void describe_options(CLI::App& app, Options& options) {
   app.add_option("--seed", options.seed, "Seed of the faults' chances");
   app.add_option("--fault", options.faults,
                  "NAME@LINE/STATION[=RATE], for example mute@lift/1 or corrupt@table/2=0.01");
-  app.add_option("--control", options.control, "Path of a Unix socket that takes commands while the simulator runs");
+  app.add_option("--control", options.control, "Path of a Unix socket that takes commands while the simulator runs")
+      ->type_name("PATH");
 }
 
 void build(Simulator& simulator, Control& control, const Options& options) {
@@ -102,9 +104,14 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Simulated Kinco JD, MD, iD286pro, Leadshine LD2-CAN and Keya KYDAS4860-2E drives on pseudo-terminals and CAN "
       "interfaces, as their "
-      "makers' manuals describe them."};
+      "makers' manuals describe them.",
+      "axisgate-sim"};
   Options options;
   describe_options(app, options);
+  if (const auto text = axisgate::manual::generated(app, argc, argv)) {
+    std::cout << *text;
+    return 0;
+  }
   CLI11_PARSE(app, argc, argv);
   try {
     const Descriptor end_signals = block_end_signals();

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "gateway/manual/generate.hpp"
 #include "gateway/upstream/dds_link/exit_codes.hpp"
 
 namespace axisgate::dds {
@@ -75,6 +76,10 @@ std::variant<int, ServeOptions, TopicsOptions> parse_command_line(int argc, char
   topics_command->add_flag("--once", topics.once, "print what is there and end; exit code 1: no axis was found");
   topics_command->add_flag("--json", topics.json, "one JSON object a line for each sample");
 
+  if (const auto text = manual::generated(app, argc, argv)) {
+    std::cout << *text;
+    return 0;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,88 @@
+# The Debian packages: what each of them holds, and what CPack says of it. deploy/package makes them.
+#
+# One component is one package: gateway (axisgate), dds (axisgate-dds), simulator (axisgate-sim). A program installs itself where it
+# is declared; what goes with it is here. Another package is another component here and its description in deploy/debian/cpack.cmake.
+
+find_program(GZIP gzip REQUIRED)
+
+# A file of a component that deploy/debian/file.cmake makes when the package is made, at DESTINATION below the prefix: it runs CODE,
+# which puts the file at ${FILE}. Compressed where the name says so. It goes where it belongs at once: nothing is kept in the build
+# folder, so that two makings at a time do not take each other's files.
+function(axisgate_package_file component destination code)
+  install(CODE "
+    set(GZIP \"${GZIP}\")
+    set(DESTINATION \"${destination}\")
+    set(FOLDER \"${CMAKE_SOURCE_DIR}/deploy/debian\")
+    macro(make_file)
+      ${code}
+    endmacro()
+    include(\"${CMAKE_SOURCE_DIR}/deploy/debian/file.cmake\")" COMPONENT ${component} EXCLUDE_FROM_ALL)
+endfunction()
+
+function(axisgate_package_copy component source destination)
+  axisgate_package_file(${component} ${destination} "file(COPY_FILE \"${source}\" \"\${FILE}\")")
+endfunction()
+
+# The documents that every package has.
+function(axisgate_package_documents component package)
+  set(folder share/doc/${package})
+  axisgate_package_copy(${component} ${CMAKE_SOURCE_DIR}/deploy/debian/copyright ${folder}/copyright)
+  axisgate_package_copy(${component} ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${folder}/changelog.gz)
+  # The entry of this very package: its version and time are known when it is made.
+  axisgate_package_file(${component} ${folder}/changelog.Debian.gz "
+      set(PACKAGE ${package})
+      set(VERSION ${PROJECT_VERSION})
+      include(\"\${FOLDER}/changelog.cmake\")")
+endfunction()
+
+# A program's manual page and completion: it prints them itself (gateway/manual), so they say what its --help says.
+function(axisgate_package_manual component program)
+  set(man share/man/man1/${program}.1.gz)
+  set(bash share/bash-completion/completions/${program})
+  set(zsh share/zsh/vendor-completions/_${program})
+  foreach(form man bash zsh)
+    axisgate_package_file(${component} ${${form}}
+      "execute_process(COMMAND \"$<TARGET_FILE:${program}>\" --generate ${form} OUTPUT_FILE \"\${FILE}\" COMMAND_ERROR_IS_FATAL ANY)")
+  endforeach()
+endfunction()
+
+function(axisgate_package component program)
+  axisgate_package_documents(${component} ${program})
+  axisgate_package_manual(${component} ${program})
+  set_property(GLOBAL APPEND PROPERTY AXISGATE_PACKAGES ${component})
+endfunction()
+
+axisgate_package(gateway axisgate)
+axisgate_package_copy(gateway ${CMAKE_SOURCE_DIR}/deploy/debian/gateway.json.5 share/man/man5/gateway.json.5.gz)
+set(files ${CMAKE_SOURCE_DIR}/deploy)
+install(FILES ${files}/systemd/axisgate.service DESTINATION /lib/systemd/system COMPONENT gateway EXCLUDE_FROM_ALL)
+install(FILES ${files}/udev/71-axisgate-lines.rules DESTINATION /lib/udev/rules.d COMPONENT gateway EXCLUDE_FROM_ALL)
+# What a person decides is no more than an example: a package that brought a bus up, or a gateway, could move a motor.
+install(FILES ${files}/example/gateway.json ${files}/udev/70-axisgate.rules ${files}/can/80-can0.network
+        DESTINATION share/doc/axisgate/examples COMPONENT gateway EXCLUDE_FROM_ALL)
+install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/SECURITY.md ${CMAKE_SOURCE_DIR}/docs/installation.md
+              ${CMAKE_SOURCE_DIR}/docs/troubleshooting.md ${CMAKE_SOURCE_DIR}/schemas/register-map.md
+        DESTINATION share/doc/axisgate COMPONENT gateway EXCLUDE_FROM_ALL)
+install(DIRECTORY DESTINATION /etc/axisgate COMPONENT gateway EXCLUDE_FROM_ALL)
+
+if(TARGET axisgate-dds)
+  axisgate_package(dds axisgate-dds)
+  install(FILES ${files}/firewall/axisgate-dds.nft DESTINATION share/doc/axisgate-dds/examples COMPONENT dds EXCLUDE_FROM_ALL)
+  install(DIRECTORY ${files}/examples/dds/ DESTINATION share/doc/axisgate-dds/examples COMPONENT dds EXCLUDE_FROM_ALL)
+endif()
+if(TARGET axisgate-sim)
+  axisgate_package(simulator axisgate-sim)
+endif()
+
+set(CPACK_GENERATOR DEB)
+get_property(CPACK_COMPONENTS_ALL GLOBAL PROPERTY AXISGATE_PACKAGES)
+set(CPACK_PACKAGE_NAME axisgate)
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_SOURCE_DIR}/deploy/debian/cpack.cmake)
+# Files outside /usr as well.
+set(CPACK_SET_DESTDIR ON)
+set(CPACK_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CMAKE_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS ${CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS})
+include(CPack)
