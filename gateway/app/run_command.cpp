@@ -22,6 +22,7 @@
 #include "gateway/app/file_watch.hpp"
 #include "gateway/app/gateway.hpp"
 #include "gateway/app/loop_watch.hpp"
+#include "gateway/app/start_lines.hpp"
 #include "gateway/app/stderr_log.hpp"
 #include "gateway/upstream/dds_host/dds_server.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
@@ -50,6 +51,7 @@ bool switch_decode_on(Config& config, const std::vector<std::string>& names) {
 
 int serve(LoadedConfig loaded, const RunOptions& options) {
   Log log = stderr_log(options.decode.empty() ? options.log_level : std::max(options.log_level, LogLevel::debug));
+  for (const StartLine& line : start_lines(loaded, AXISGATE_VERSION)) log.write(LogLevel::info, line.source, line.text);
   boost::asio::io_context io(1);
   AsioRuntime runtime(io);
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not

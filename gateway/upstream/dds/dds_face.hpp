@@ -31,9 +31,9 @@ inline constexpr std::size_t kMaxEventsWaiting = 64;
 class DdsFace {
  public:
   /// Takes image.changes for itself (its wake() calls `wake`, which arms a timer and no more). Axes, units and settings
-  /// stay as they are.
+  /// stay as they are. `tell`: a line for the log, of a request that is refused before it comes to an axis.
   DdsFace(DdsSettings settings, ProcessImage& image, const EventRing& events, CommandPort& commands,
-          std::function<void()> wake);
+          std::function<void()> wake, std::function<void(const std::string&)> tell = {});
   ~DdsFace();
   DdsFace(const DdsFace&) = delete;
   DdsFace& operator=(const DdsFace&) = delete;
