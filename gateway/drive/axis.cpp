@@ -232,7 +232,10 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<GroupResult>& refus
   const bool drives = std::any_of(group.setpoints.begin(), group.setpoints.end(), [](const Setpoint& sp) {
     return sp.quantity == Quantity::target_velocity || sp.quantity == Quantity::target_torque;
   });
-  if (pending.starts_motion || drives) motion_by_ = group.client;
+  if (pending.starts_motion || drives) {
+    motion_by_ = group.client;
+    motion_by_life_ = group.life;
+  }
   if (!pending.by_mailbox) image_.latest = {CommandResult::pending, 0, group.command_id};
   if (pending.starts_motion) core_.motion.mask_target_reached();
   if (!stop) note_accepted(group);

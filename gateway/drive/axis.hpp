@@ -226,6 +226,7 @@ class Axis {
   Duration cycle_{};
   Instant last_statusword_ = kLongAgo;
   std::optional<ClientId> motion_by_{};  ///< who commanded the motion that runs
+  std::shared_ptr<const ClientLife> motion_by_life_{};
   Ownership ownership_;
   Accepted accepted_;
   std::uint64_t faults_told_ = 0;

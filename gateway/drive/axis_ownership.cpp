@@ -317,7 +317,9 @@ void Axis::on_client_gone(ClientId client) {
   const bool nothing_else_would = core_.is_virtual() && !core_.drive.stops_by_itself;
   if (!nothing_else_would || motion_by_ != client) return;
   if (core_.motion.running() == MotionKind::none && !core_.facts().moving && !motion_pending()) return;
-  host_.event(image_.number, EventKind::command, 0, "the client that commanded the motion is gone: quick stop");
+  host_.event(image_.number, EventKind::command, 0,
+              "the client that commanded the motion is gone: quick stop" +
+                  (motion_by_life_ ? " (" + motion_by_life_->name + ")" : std::string()));
   stop_by_itself(Command::quick_stop, false, [](const GroupResult&) {});
 }
 

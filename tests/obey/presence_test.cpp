@@ -44,7 +44,10 @@ struct Lacking {
 };
 void PrintTo(const Lacking& lacking, std::ostream* out) { *out << name(lacking.subject); }
 
-bool on_can(Subject s) { return s == Subject::jd_can || s == Subject::md_can || s == Subject::leadshine; }
+bool on_can(Subject s) {
+  return s == Subject::jd_can || s == Subject::md_can || s == Subject::leadshine || s == Subject::keya_canopen_speed ||
+         s == Subject::keya_canopen_position;
+}
 bool stage_is_serial(Subject s) { return s == Subject::jd_serial || s == Subject::md_serial; }
 
 simulated::TenByteFrame serial_frame(const std::vector<Byte>& bytes) {
@@ -186,6 +189,8 @@ INSTANTIATE_TEST_SUITE_P(Every, Mismatch,
                                          Lacking{Subject::jd_can, {0x6041}, {0x6063}, {0x6040}},
                                          Lacking{Subject::md_can, {0x6041}, {0x6063}, {0x6040}},
                                          Lacking{Subject::leadshine, {0x6041}, {0x6064}, {0x6040}},
+                                         Lacking{Subject::keya_canopen_speed, {0x2011}, {0x2016}, {0x2012}},
+                                         Lacking{Subject::keya_canopen_position, {0x2011}, {0x2016}, {0x2012}},
                                          Lacking{Subject::id286pro, {108}, {117}, {101}},
                                          Lacking{Subject::id286pro, {109}, {117}, {101}}),
                          [](const auto& tested) { return name(tested.param.subject) + std::to_string(tested.index); });

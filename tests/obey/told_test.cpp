@@ -209,6 +209,41 @@ TEST_P(FaultEnd, SaysHowLongItWasThereAndWhoHasResetIt) {
 INSTANTIATE_TEST_SUITE_P(Every, FaultEnd, testing::Values(Subject::jd_serial, Subject::md_rtu, Subject::leadshine),
                          named);
 
+TEST(ToldAsAsked, AControlwordAModeAndAnObjectInHexAndInWords) {
+  Plant plant(Subject::leadshine);
+  plant.ready();
+  plant.stage.log().clear();
+  ASSERT_TRUE(plant.a.row(row::mode, kVelocityMode).ok());
+  EXPECT_TRUE(plant.logged(": mode 3 (profile velocity)"));
+  ASSERT_TRUE(plant.a.row(row::controlword, 0x010F).ok());
+  EXPECT_TRUE(plant.logged(": controlword 0x010F (enable operation, halt)"));
+  ASSERT_TRUE(plant.a.mailbox_write(0x6083, 0, 4, 20'000));
+  EXPECT_TRUE(plant.logged(": write of object 0x6083:00 = 0x00004E20"));
+  ASSERT_TRUE(plant.a.row(row::controlword, 7).ok());
+  EXPECT_TRUE(plant.logged(": controlword 0x0007 (switch on)"));
+}
+
+TEST(ToldAsAsked, AJogOnceWithItsSpeedHoweverOftenItsButtonIsWritten) {
+  Plant plant(Subject::jd_serial);
+  plant.ready();
+  ASSERT_TRUE(plant.a.row(58, 60'000).ok());
+  ASSERT_TRUE(plant.a.coil(8, false).ok());
+  plant.stage.log().clear();
+  for (int i = 0; i < 20; ++i) {
+    plant.a.coil(8, true);
+    plant.run(100ms);
+  }
+  plant.a.coil(8, false);
+  plant.run(1s);
+  std::size_t jogs = 0, ends = 0;
+  for (const std::string& line : plant.stage.log()) {
+    jogs += line.find(": jog_forward, jog_velocity 60000 (60 rpm)") != line.npos;
+    ends += line.find(": halt") != line.npos;
+  }
+  EXPECT_EQ(jogs, 1U);
+  EXPECT_EQ(ends, 1U) << "its button was let go";
+}
+
 TEST(ToldAtItsTurn, WhatADriveRefusesIsToldWithItsCodeInHexAndInWords) {
   Plant plant(Subject::leadshine);
   plant.ready();
