@@ -13,7 +13,13 @@ LogLevel level_of(EventKind kind) {
   return kind == EventKind::fault || kind == EventKind::warning ? LogLevel::warning : LogLevel::info;
 }
 
-std::string source_of(AxisNumber axis) { return axis == 0 ? std::string("gateway") : "axis " + std::to_string(axis); }
+/// "axis 3 lift"; the name that an axis has without one in the configuration is its number.
+std::string source_of(const ProcessImage& image, AxisNumber number) {
+  if (number == 0) return "gateway";
+  const std::string plain = "axis " + std::to_string(number);
+  const AxisImage* const axis = image.find(number);
+  return axis == nullptr || axis->name.empty() || axis->name == plain ? plain : plain + " " + axis->name;
+}
 
 }  // namespace
 
@@ -22,7 +28,7 @@ Gateway::Gateway(const Config& config, const Models& models, Runtime& runtime, c
       log_(log),
       make_wire_(std::move(make_wire)),
       events_([this](const Event& e) {
-        log_.write(level_of(e.kind), source_of(e.axis), e.text);
+        log_.write(level_of(e.kind), source_of(image_, e.axis), e.text);
         image_.changes.mark(0);
       }),
       closing_(runtime.make_timer([this] {

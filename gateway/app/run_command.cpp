@@ -25,6 +25,7 @@
 #include "gateway/app/loop_watch.hpp"
 #include "gateway/app/reload.hpp"
 #include "gateway/app/service.hpp"
+#include "gateway/app/start_lines.hpp"
 #include "gateway/app/stderr_log.hpp"
 #include "gateway/upstream/dds_host/dds_server.hpp"
 #include "gateway/upstream/modbus_tcp/client_registry.hpp"
@@ -64,6 +65,7 @@ std::string status_of(const ProcessImage& image) {
 
 int serve(LoadedConfig loaded, const RunOptions& options) {
   Log log = stderr_log(options.decode.empty() ? options.log_level : std::max(options.log_level, LogLevel::debug));
+  for (const StartLine& line : start_lines(loaded, AXISGATE_VERSION)) log.write(LogLevel::info, line.source, line.text);
   boost::asio::io_context io(1);
   AsioRuntime runtime(io);
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not

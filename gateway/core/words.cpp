@@ -20,7 +20,32 @@ std::string plain(std::string_view text) {
   return out;
 }
 
+/// ", detail 0x06010002 read only"; of a state that was not reached ", step 3"; empty: there is none.
+std::string detail_text(const Outcome& outcome) {
+  if (outcome.code == Errc::not_reached) return fmt::format(", step {}", outcome.detail);
+  if (outcome.detail == 0) return {};
+  const Word* word = find_word(abort_code, outcome.detail);
+  return fmt::format(", detail 0x{:08X}{}{}", outcome.detail, word == nullptr ? "" : " ",
+                     word == nullptr ? "" : word->name);
+}
+
+std::string result_text(std::uint32_t number) { return fmt::format("result {} {}", number, name_of(result, number)); }
+
 }  // namespace
+
+std::string modbus_text(const Outcome& outcome) {
+  const auto exception_number = static_cast<std::uint32_t>(modbus_exception(outcome.code));
+  const auto result_number = static_cast<std::uint32_t>(command_result(outcome.code));
+  std::string out(text(outcome.code));
+  if (exception_number == 0) return out;
+  out += fmt::format(" (exception 0x{:02X} {}", exception_number, name_of(exception, exception_number));
+  if (result_number != 0) out += ", " + result_text(result_number);
+  return out + detail_text(outcome) + ")";
+}
+
+std::string dds_text(const Outcome& outcome) {
+  return fmt::format("{} ({}{})", text(outcome.code), result_text(dds_result(outcome.code)), detail_text(outcome));
+}
 
 const Word* find_word(WordKind kind, std::uint32_t number) {
   const auto found = std::ranges::find_if(words(), [&](const Word& w) { return w.kind == kind && w.number == number; });

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "gateway/core/error.hpp"
+
 namespace axisgate {
 
 enum class WordKind : std::uint8_t {
@@ -47,6 +49,11 @@ struct Word {
 [[nodiscard]] std::string_view name_of(WordKind kind, std::uint32_t number);
 /// Names of the bits that are set, with ", " between; a bit without a name as "bit 17"; empty: none is set.
 [[nodiscard]] std::string names_of_bits(WordKind kind, std::uint32_t bits);
+/// How a request ended, as its client has seen it: "value outside limits (exception 0x03 illegal data value)", "refused
+/// by the drive (exception 0x04 server device failure, result 3 refused by drive, detail 0x06010002 read only)".
+[[nodiscard]] std::string modbus_text(const Outcome& outcome);
+/// The same for a DDS writer: "value outside limits (result 17 bad value (DDS))".
+[[nodiscard]] std::string dds_text(const Outcome& outcome);
 /// As it is usually written: "7", "0x06010002", "0x3130".
 [[nodiscard]] std::string number_text(const Word& word);
 /// "axis state"

@@ -124,8 +124,11 @@ bool Axis::join_stop(const Group& group, GroupCallback& on_result) {
 void Axis::accept_stop(const Group& group) {
   core_.motion.stop(stop_latches(core_, group), core_.now);
   image_.endings.stopped(group.client);
-  for (Pending& p : pending_)
-    if (!p.stopped_by) p.stopped_by = group.client;
+  for (Pending& p : pending_) {
+    if (p.stopped_by) continue;
+    p.stopped_by = group.client;
+    if (group.life) p.stopped_by_name = group.life->name;
+  }
   end_jog();
   owe(group);
 }
@@ -137,6 +140,7 @@ void Axis::show_latest(const Group& group, const Outcome& outcome) {
 GroupResult Axis::refuse(const Group& group, Errc code) {
   const Outcome outcome = refusal(code);
   if (!group.object && command_result(code) != CommandResult::none) show_latest(group, outcome);
+  tell_refused(group, outcome);
   return {.outcome = outcome, .refused_row = refused_row(core_, group, code)};
 }
 
@@ -228,7 +232,10 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<GroupResult>& refus
   const bool drives = std::any_of(group.setpoints.begin(), group.setpoints.end(), [](const Setpoint& sp) {
     return sp.quantity == Quantity::target_velocity || sp.quantity == Quantity::target_torque;
   });
-  if (pending.starts_motion || drives) motion_by_ = group.client;
+  if (pending.starts_motion || drives) {
+    motion_by_ = group.client;
+    motion_by_life_ = group.life;
+  }
   if (!pending.by_mailbox) image_.latest = {CommandResult::pending, 0, group.command_id};
   if (pending.starts_motion) core_.motion.mask_target_reached();
   if (!stop) note_accepted(group);
@@ -350,10 +357,7 @@ void Axis::on_order_ended(bus::OrderId id, Errc code) {
   Conversation& conversation = *pending->conversation;
   const bool begun = conversation.begun();
   const bool by_other = pending->stopped_by && *pending->stopped_by != conversation.group().client;
-  if (code == Errc::dropped_by_stop && begun && by_other) {
-    code = Errc::stopped_by_other;
-    host_.event(image_.number, EventKind::command, conversation.group().command_id, "stopped by another client");
-  }
+  if (code == Errc::dropped_by_stop && begun && by_other) code = Errc::stopped_by_other;
   // Whether something was sent is what tells the two apart, not whether the bus had granted it a turn.
   if (code == Errc::link_lost && !begun) code = Errc::offline;
   if (code == Errc::offline && begun) code = Errc::link_lost;
@@ -379,6 +383,7 @@ void Axis::complete(bus::OrderId id, const GroupResult& result) {
   }
   if (told.outcome.code != Errc::ok && !pending.conversation->begun()) forget_accepted(pending.conversation->group());
   if (!pending.by_mailbox) show_latest(pending.conversation->group(), told.outcome);
+  tell_ended(pending, told.outcome);
   if (told.outcome.code == Errc::not_reached) {
     tell_not_reached(pending);
     const Command stop = pending.conversation->withdrawn_by();

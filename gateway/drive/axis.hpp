@@ -13,6 +13,7 @@
 #include "gateway/drive/jog.hpp"
 #include "gateway/drive/owed_stop.hpp"
 #include "gateway/drive/ownership.hpp"
+#include "gateway/drive/telling.hpp"
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/events.hpp"
 
@@ -146,6 +147,7 @@ class Axis {
     std::uint64_t ends_jog = 0;               ///< once it has started what it starts, this jog is over
     Errc refusal = Errc::ok;                  ///< of what stood beside the stop; the answer once the stop is done
     std::optional<ClientId> stopped_by{};     ///< whose stop came first after it
+    std::string stopped_by_name{};            ///< for log and events
     /// What the refusal is of.
     std::optional<std::uint16_t> refused_row{};
   };
@@ -205,6 +207,12 @@ class Axis {
   [[nodiscard]] static Instant decide_by(const Group& group, Instant now);
   void tell_not_reached(const Pending& pending);
   void withdraw(const Group& asked, Command stop, const GroupResult& told, std::vector<Waiting> waiting);
+  // Who asked for what, and what became of it (axis_told.cpp).
+  void tell_asked(const Group& asked, const Group& carried_out);
+  void tell_owner(const std::string& what);
+  void tell_refused(const Group& asked, const Outcome& outcome);
+  void tell_ended(const Pending& pending, const Outcome& outcome);
+  void tell_fault(const AxisImage& before);
   void tell_endings();
   void tell_changes(const AxisImage& before);
   [[nodiscard]] Pending* find(bus::OrderId id);
@@ -221,13 +229,20 @@ class Axis {
   Duration cycle_{};
   Instant last_statusword_ = kLongAgo;
   std::optional<ClientId> motion_by_{};  ///< who commanded the motion that runs
+  std::shared_ptr<const ClientLife> motion_by_life_{};
   Ownership ownership_;
   Accepted accepted_;
   std::uint64_t faults_told_ = 0;
   std::uint64_t losses_told_ = 0;
   Jog jog_;
   OwedStop owed_;
-  bool owed_told_ = false;              ///< an event has told of it: its end is told as well
+  bool owed_told_ = false;  ///< an event has told of it: its end is told as well
+  Telling telling_;
+  struct ShownFault {
+    Instant since = kLongAgo;  ///< kLongAgo: there is none
+    std::uint32_t code = 0;
+    std::string reset_by{};  ///< who has asked for a reset of it last; empty: nobody
+  } shown_fault_;
   bool closing_ = false;                ///< the gateway ends, or lets go of the drive
   Instant withdrawn_until_ = kLongAgo;  ///< an enable was withdrawn: until then one that comes late is taken back
 };

@@ -81,10 +81,7 @@ void Axis::tell_changes(const AxisImage& before) {
     host_.event(image_.number, EventKind::link, static_cast<std::uint32_t>(image_.link_state),
                 "link " + std::string(text(before.link_state)) + " -> " + std::string(text(image_.link_state)));
   if (!image_.reachable()) return;
-  if (image_.has(AxisInput::fault) && !before.has(AxisInput::fault)) {
-    const auto code = static_cast<std::uint32_t>(image_[Quantity::error_code].value);
-    host_.event(image_.number, EventKind::fault, code, fault_text(core_));
-  }
+  tell_fault(before);
   if (image_.has(AxisInput::homed) && !before.has(AxisInput::homed))
     host_.event(image_.number, EventKind::homed, 0, "homed");
   const std::uint32_t raised = image_.alarms & ~before.alarms;

@@ -17,6 +17,23 @@ bool is_dds(const ClientLife& client) { return client.strength.has_value(); }
 
 bool is_jog(Command command) { return command == Command::jog_forward || command == Command::jog_reverse; }
 
+std::string named_before(const Ownership::ClientPtr& owner) {
+  return owner ? " (before: " + owner->name + ")" : std::string();
+}
+
+/// Why this lease has run out, and what helps by the rules that it has: what stands in the configuration already is no
+/// advice.
+std::string silence(const ClientLife& owner, const LeaseRules& rules) {
+  if (!owner.connected && !is_dds(owner))
+    return owner.is_address
+               ? " (a host that writes so seldom needs a longer \"timeout_ms\" of the lease, or \"lease\": null)"
+               : " (one-shot tools need \"lease\": null or \"client\": \"address\")";
+  std::string_view missed = owner.is_address ? "has written nothing" : "has asked nothing";
+  if (rules.renew == LeaseRenewal::write) missed = "has written nothing to the axis";
+  if (rules.renew == LeaseRenewal::heartbeat) missed = "has shown no heartbeat";
+  return fmt::format(" (it {} for {} ms)", missed, rules.timeout / std::chrono::milliseconds(1));
+}
+
 std::string in_words(Command stop) { return stop == Command::quick_stop ? "quick stop" : std::string(text(stop)); }
 
 }  // namespace
@@ -37,10 +54,11 @@ Errc Axis::judge_owner(const Group& group) const {
 void Axis::claim(const Group& group) {
   if (group.jog_velocity) image_.jog_velocity = *group.jog_velocity;
   if (!group.claims && !(group.is_write && ownership_.waits_for(group.life, group.all_zero))) return;
+  const auto before = ownership_.owner();
   const Ownership::Taken taken = ownership_.take(group.life, core_.now);
   if (taken == Ownership::Taken::nothing) return;
   if (jog_.client() != group.client) halt_jog("another client has taken the axis");
-  host_.event(image_.number, EventKind::lease, 0, drive::text(taken, *group.life));
+  tell_owner(drive::text(taken, *group.life) + named_before(before));
 }
 
 std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_result) {
@@ -91,12 +109,12 @@ std::optional<GroupResult> Axis::submit(const Group& asked, GroupCallback on_res
     const GroupResult result = nothing_asked(group);
     return holds_in_vain ? GroupResult{{Errc::not_new, 0}} : result;
   }
+  // A stop is accepted in every state, also where it cannot be sent.
   const bool stop = holds_stop(group);
-  const auto owner = ownership_.owner();
-  if (stop && group.life && owner && owner->id != group.client)
-    host_.event(image_.number, EventKind::command, 0,
-                fmt::format("stopped by {}, which does not own the axis", group.life->name));
+  const Group& told = refusal == Errc::ok ? asked : group;
+  if (stop) tell_asked(told, group);
   auto result = carry_out(group, refusal, std::move(on_result));
+  if (!stop && (!result || result->outcome.code == Errc::ok)) tell_asked(told, group);
   if (result && is_jog(asked.command)) jog_ = before;  // what ran before needs its button as before
   if (!jog_.active()) end_jog();
   return result;
@@ -183,9 +201,8 @@ GroupResult Axis::released(const Group& group) {
   halt_jog("its owner has released the axis");
   if (owner) {
     const bool enabled = ownership_.until() != kNever;
-    host_.event(image_.number, EventKind::lease, 0,
-                owner->name + (enabled ? " has released the axis, which is enabled: open to every operator for now"
-                                       : " has released the axis"));
+    tell_owner(owner->name + (enabled ? " has released the axis, which is enabled: open to every operator for now"
+                                      : " has released the axis"));
   }
   show_latest(group, {});
   publish(core_.now);
@@ -221,8 +238,7 @@ std::optional<GroupResult> Axis::taken_over(const Group& group, GroupCallback on
   const auto before = ownership_.owner();
   if (const Ownership::Taken taken = ownership_.take(group.life, core_.now); taken != Ownership::Taken::nothing) {
     halt_jog("another client has taken the axis");
-    host_.event(image_.number, EventKind::lease, 0,
-                drive::text(taken, *group.life) + (before ? " (before: " + before->name + ")" : std::string()));
+    tell_owner(drive::text(taken, *group.life) + named_before(before));
   }
   Group rest = group;
   rest.command = Command::none;
@@ -253,7 +269,9 @@ void Axis::end_expired_lease() {
   if (expired->owner) {
     what = "the lease of " + expired->owner->name + " has run out";
     if (!expired->owner->connected)
-      what += is_dds(*expired->owner) ? " after it had gone" : " after its connection had ended";
+      what += is_dds(*expired->owner)      ? " after it had gone"
+              : expired->owner->is_address ? " after its connections had ended"
+                                           : " after its connection had ended";
   }
   const bool acts = may_be_enabled() || writes_wait;
   if (!acts || action == Command::none) {
@@ -261,9 +279,9 @@ void Axis::end_expired_lease() {
     host_.event(image_.number, EventKind::lease, 0, what + (acts ? ": nothing is done (on_expiry none)" : ""));
     return;
   }
-  if (expired->owner && !expired->owner->connected && !is_dds(*expired->owner))
-    what += " (one-shot tools need \"lease\": null or \"client\": \"address\")";
-  host_.event(image_.number, EventKind::lease, static_cast<std::uint32_t>(action), what + ": " + in_words(action));
+  what += fmt::format(": {}, axis in state \"{}\"", in_words(action), text(image_.axis_state));
+  if (expired->owner) what += silence(*expired->owner, ownership_.rules());
+  host_.event(image_.number, EventKind::lease, static_cast<std::uint32_t>(action), std::move(what));
   stop_by_itself(action, true, [this](const GroupResult& result) { on_lease_action(result); });
 }
 
@@ -290,9 +308,8 @@ void Axis::on_client_gone(ClientId client) {
   core_.link = host_.link_state();
   if (ownership_.rules().on) {
     if (ownership_.is_owner(client))
-      host_.event(image_.number, EventKind::lease, 0,
-                  ownership_.owner()->name + (is_dds(*ownership_.owner()) ? " is gone" : " has closed its connection") +
-                      ": its lease goes on until it runs out");
+      tell_owner(ownership_.owner()->name + (is_dds(*ownership_.owner()) ? " is gone" : " has closed its connection") +
+                 ": its lease goes on until it runs out");
     return;
   }
   // Leases are off: others go on with what they were told. But where neither the drive nor anybody else would ever stop
@@ -300,7 +317,9 @@ void Axis::on_client_gone(ClientId client) {
   const bool nothing_else_would = core_.is_virtual() && !core_.drive.stops_by_itself;
   if (!nothing_else_would || motion_by_ != client) return;
   if (core_.motion.running() == MotionKind::none && !core_.facts().moving && !motion_pending()) return;
-  host_.event(image_.number, EventKind::command, 0, "the client that commanded the motion is gone: quick stop");
+  host_.event(image_.number, EventKind::command, 0,
+              "the client that commanded the motion is gone: quick stop" +
+                  (motion_by_life_ ? " (" + motion_by_life_->name + ")" : std::string()));
   stop_by_itself(Command::quick_stop, false, [](const GroupResult&) {});
 }
 

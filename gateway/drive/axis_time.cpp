@@ -43,6 +43,7 @@ void Axis::on_time(Instant now) {
       due.result.outcome = conversation.outcome_if_late();
       due.callbacks = std::exchange(pending->callbacks, {});
       if (due.result.outcome.code == Errc::not_reached) tell_not_reached(*pending);
+      tell_ended(*pending, due.result.outcome);
       continue;
     }
     conversation.expire();
@@ -75,9 +76,10 @@ Instant Axis::decide_by(const Group& group, Instant now) {
 
 void Axis::tell_not_reached(const Pending& pending) {
   const Group& group = pending.conversation->group();
+  const std::string who = group.life ? group.life->name + ": " : std::string();
   const std::string what = group.command == Command::none ? "a write" : std::string(text(group.command));
   host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(group.command),
-              what + " was not reached: " + pending.conversation->missed());
+              who + what + " was not reached: " + pending.conversation->missed());
 }
 
 // In its client's name: it has ended nothing of its own. Not confirmed, the stop is owed.

@@ -32,6 +32,7 @@ struct ClientLife {
   Instant last_request = kLongAgo;  ///< any request, reads included; of a client that is an address, writes alone
   Instant heartbeat = kLongAgo;     ///< gateway register 8 was written with another value than before
   bool connected = true;            ///< false: its connection has ended, its leases are orphans
+  bool is_address = false;          ///< listener option "client": "address": a host, with all its connections
   /// Of a DDS writer: OWNERSHIP_STRENGTH (DDS 1.4, 2.2.3.10). A stronger one takes an axis from a weaker one.
   std::optional<std::int32_t> strength{};
   /// What its leases last longer: nobody can hear it at present, and that is not its fault.

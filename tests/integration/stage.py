@@ -4,6 +4,7 @@ A story is run as: STORY_test.py AXISGATE AXISGATE_SIM SOURCE_FOLDER [unittest's
 """
 import json
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -77,6 +78,10 @@ class Simulator(Program):
 class Gateway(Program):
     def __init__(self, config, *options):
         super().__init__("axisgate run", [AXISGATE, "run", config, *options])
+
+    def found(self, pattern):
+        """An axis may be asked for without the name that the log gives it: "axis 1: online" finds "axis 1 lift: online"."""
+        return super().found(re.sub(r"\b(axis \d+): ", r"\1(?: [^:]*)?: ", pattern))
 
     def wait_until_it_listens(self):
         self.wait_for("listening on ")

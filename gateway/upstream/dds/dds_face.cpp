@@ -21,13 +21,15 @@ UnitsOfAxes units_of(const std::vector<AxisUnits>& axes) {
 }  // namespace
 
 struct DdsFace::Impl {
-  Impl(DdsSettings with, ProcessImage& of, const EventRing& ring, CommandPort& commands, std::function<void()> on_wake)
+  Impl(DdsSettings with, ProcessImage& of, const EventRing& ring, CommandPort& commands, std::function<void()> on_wake,
+       TellLine tell)
       : settings(std::move(with)),
         image(of),
         units(units_of(settings.units)),
         wake(std::move(on_wake)),
         clients(settings.role, image, commands),
-        requests(settings, units, image, commands, clients, replies, [this] { wake_up(); }),
+        requests(
+            settings, units, image, commands, clients, replies, [this] { wake_up(); }, std::move(tell)),
         events(ring),
         states(settings.min_period, settings.max_period) {
     add_axes(kLongAgo);
@@ -73,8 +75,8 @@ struct DdsFace::Impl {
 };
 
 DdsFace::DdsFace(DdsSettings settings, ProcessImage& image, const EventRing& events, CommandPort& commands,
-                 std::function<void()> wake)
-    : impl_(std::make_unique<Impl>(std::move(settings), image, events, commands, std::move(wake))) {}
+                 std::function<void()> wake, std::function<void(const std::string&)> tell)
+    : impl_(std::make_unique<Impl>(std::move(settings), image, events, commands, std::move(wake), std::move(tell))) {}
 
 DdsFace::~DdsFace() {
   impl_->image.changes.wake = [] {};

@@ -31,9 +31,10 @@ inline constexpr std::size_t kMaxEventsWaiting = 64;
 class DdsFace {
  public:
   /// Takes image.changes for itself (its wake() calls `wake`, which arms a timer and no more). Settings stay as they
-  /// are; axes and units until take_axes().
+  /// are; axes and units until take_axes(). `tell`: a line for the log, of a request that is refused before it comes to
+  /// an axis.
   DdsFace(DdsSettings settings, ProcessImage& image, const EventRing& events, CommandPort& commands,
-          std::function<void()> wake);
+          std::function<void()> wake, std::function<void(const std::string&)> tell = {});
   ~DdsFace();
   DdsFace(const DdsFace&) = delete;
   DdsFace& operator=(const DdsFace&) = delete;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "gateway/core/words.hpp"
 #include "gateway/image/shown.hpp"
 #include "gateway/upstream/dds/dds_face.hpp"
 #include "gateway/upstream/dds/object_groups.hpp"
@@ -35,7 +36,8 @@ struct DdsRequests::Run {
 };
 
 DdsRequests::DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image,
-                         CommandPort& commands, DdsClients& clients, ReplyQueue& replies, std::function<void()> wake)
+                         CommandPort& commands, DdsClients& clients, ReplyQueue& replies, std::function<void()> wake,
+                         TellLine tell)
     : settings_(settings),
       units_(units),
       image_(image),
@@ -43,6 +45,7 @@ DdsRequests::DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, 
       clients_(clients),
       replies_(replies),
       wake_(std::move(wake)),
+      tell_(std::move(tell)),
       memory_(kMaxRequestsKept, kRequestsKept) {}
 
 // --- Taking a request ------------------------------------------------------------------------------------------------
@@ -75,8 +78,12 @@ Group DdsRequests::new_group(std::shared_ptr<const ClientLife> life, Instant now
 }
 
 void DdsRequests::on_command(const CommandRecord& record, Instant now) {
+  const auto refuse = [&](std::uint8_t result) {
+    tell_refused(record.writer, record.axis, text(Command{record.command}), result, now);
+    reply(record, result);
+  };
   const Admitted admitted = admit({record.writer, record.axis, record.request_id}, stops(record), now);
-  if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return reply(record, *result);
+  if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return refuse(*result);
   const auto& life = std::get<std::shared_ptr<const ClientLife>>(admitted);
   const AxisImage* const axis = image_.find(record.axis);
 
@@ -91,7 +98,7 @@ void DdsRequests::on_command(const CommandRecord& record, Instant now) {
   const auto units = units_.find(record.axis);
   PlannedCommand planned =
       plan_command(record, new_group(life, now), axis, units == units_.end() ? kUsual : units->second, held);
-  if (const auto* const refused = std::get_if<Errc>(&planned)) return reply(record, dds_result(*refused));
+  if (const auto* const refused = std::get_if<Errc>(&planned)) return refuse(dds_result(*refused));
   auto& plan = std::get<CommandPlan>(planned);
   if (record.request_id == 0) plan.afterwards = Errc::bad_value;
   press(record, axis, held);
@@ -112,6 +119,7 @@ void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {
     refusal.request_id = record.request_id;
     refusal.writer = record.writer;
     refusal.result = result;
+    if (record.write) tell_refused(record.writer, record.axis, "a write of an object", result, now);
     replies_.add(refusal);
   };
   const Admitted admitted = admit({record.writer, record.axis, record.request_id}, false, now);
@@ -134,6 +142,18 @@ void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {
         [asked = std::move(asked)](DdsRequests& self, const GroupResult& result) {
           self.replies_.add(object_reply(asked, result));
         });
+}
+
+// What the axes themselves refuse is an event of theirs. A request that was seen before has had its line.
+void DdsRequests::tell_refused(const Guid& writer, AxisNumber axis, std::string_view what, std::uint8_t result,
+                               Instant now) {
+  if (!tell_ || result == kAlreadySeen || !refused_lines_.takes(now)) return;
+  const Word* const word = find_word(WordKind::result, result);
+  const DdsClient* const client = clients_.find(writer);
+  tell_((client != nullptr ? client->life->name : client_name(writer, {})) + ": " + std::string(what) + " of axis " +
+        std::to_string(axis) + " is refused: result " + std::to_string(result) +
+        (word == nullptr ? std::string() : " " + std::string(word->name) + ": " + std::string(word->meaning)) +
+        left_out_text(refused_lines_.left_out()));
 }
 
 // --- Carrying it out -------------------------------------------------------------------------------------------------

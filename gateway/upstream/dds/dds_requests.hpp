@@ -6,8 +6,11 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <variant>
 
+#include "gateway/core/line_bucket.hpp"
 #include "gateway/upstream/dds/command_groups.hpp"
 #include "gateway/upstream/dds/dds_clients.hpp"
 #include "gateway/upstream/dds/dds_settings.hpp"
@@ -17,12 +20,13 @@
 namespace axisgate::dds {
 
 using UnitsOfAxes = std::map<AxisNumber, DdsUnits>;
+using TellLine = std::function<void(const std::string&)>;
 
 class DdsRequests {
  public:
-  /// `wake`: a reply has come that nobody waits for in this turn.
+  /// `wake`: a reply has come that nobody waits for in this turn. `tell`: a line for the log, of what is refused here.
   DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image, CommandPort& commands,
-              DdsClients& clients, ReplyQueue& replies, std::function<void()> wake);
+              DdsClients& clients, ReplyQueue& replies, std::function<void()> wake, TellLine tell);
   DdsRequests(const DdsRequests&) = delete;
   DdsRequests& operator=(const DdsRequests&) = delete;
 
@@ -44,6 +48,7 @@ class DdsRequests {
   void end_command(const CommandRecord& record, bool held, const GroupResult& result);
   [[nodiscard]] Outcome of_jog(const CommandRecord& record, bool held, const Outcome& outcome);
   void reply(const CommandRecord& record, std::uint8_t result, std::uint32_t detail = 0);
+  void tell_refused(const Guid& writer, AxisNumber axis, std::string_view what, std::uint8_t result, Instant now);
 
   const DdsSettings& settings_;
   const UnitsOfAxes& units_;
@@ -52,6 +57,8 @@ class DdsRequests {
   DdsClients& clients_;
   ReplyQueue& replies_;
   std::function<void()> wake_;
+  TellLine tell_;
+  LineBucket refused_lines_;
   RequestMemory memory_;
   /// Callbacks hold it weakly: they may come when this is gone.
   std::shared_ptr<DdsRequests> self_{this, [](DdsRequests*) {}};

@@ -27,7 +27,9 @@ DdsServer::DdsServer(boost::asio::io_context& io, Runtime& runtime, const DdsSet
       reports_(std::move(reports)),
       turn_timer_(runtime.make_timer([this] { turn(); })),
       patience_(runtime.make_timer([this] { on_patience_ended(); })),
-      face_(settings, image, events, commands, [this] { turn_timer_->expires_at(runtime_.now()); }) {}
+      face_(
+          settings, image, events, commands, [this] { turn_timer_->expires_at(runtime_.now()); },
+          [this](const std::string& line) { log_.write(LogLevel::info, "dds", line); }) {}
 
 DdsServer::~DdsServer() { stop(); }
 

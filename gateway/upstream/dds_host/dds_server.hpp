@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "gateway/core/clock.hpp"
+#include "gateway/core/line_bucket.hpp"
 #include "gateway/core/log.hpp"
 #include "gateway/upstream/dds/dds_face.hpp"
 #include "gateway/upstream/dds_host/child_process.hpp"
-#include "gateway/upstream/dds_host/line_limit.hpp"
 #include "gateway/upstream/dds_host/restart_plan.hpp"
 #include "gateway/upstream/dds_host/taking_watch.hpp"
 
@@ -81,7 +81,7 @@ class DdsServer {
   std::unique_ptr<Timer> patience_;  ///< the next start, the next look, or until when something is waited for
   DdsFace face_;
   RestartPlan plan_;
-  LineLimit lines_;
+  LineBucket lines_;
   TakingWatch taking_;
   std::unique_ptr<ChildProcess> process_;
   bool ready_ = false;

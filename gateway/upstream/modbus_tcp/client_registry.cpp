@@ -66,6 +66,7 @@ ClientRegistry::Connected ClientRegistry::connect(const Peer& peer, bool shared,
   alive.origin = peer.address;
   alive.name = shared ? text(peer.address) : text(peer);
   alive.connected = true;
+  alive.is_address = shared;
   connected.forgotten = forget_oldest_idle();
   return connected;
 }

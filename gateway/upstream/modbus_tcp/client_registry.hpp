@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "gateway/core/clock.hpp"
+#include "gateway/core/line_bucket.hpp"
 #include "gateway/image/command.hpp"
 #include "gateway/upstream/modbus_tcp/diagnostics.hpp"
 #include "gateway/upstream/modbus_tcp/edges.hpp"
@@ -46,6 +47,14 @@ struct RefusedRow {
   friend bool operator==(const RefusedRow&, const RefusedRow&) = default;
 };
 
+/// A single write, or one to no axis, that was refused because it is wrong.
+struct RefusedWrite {
+  std::uint16_t address = 0;  ///< of 43/13: the object's index
+  bool coils = false;
+  Errc why = Errc::ok;
+  friend bool operator==(const RefusedWrite&, const RefusedWrite&) = default;
+};
+
 /// One client's side of one axis.
 struct ClientAxis {
   /// False until it has used registers 25..28 or 80..89: it sees the axis's latest result till then.
@@ -66,6 +75,7 @@ struct Host {
   std::map<AxisNumber, CommandIds> ids;
   std::size_t connections = 0;
   Instant left_at = kLongAgo;  ///< when the last connection closed
+  LineBucket refused_lines;    ///< of single writes, in the log
 };
 
 struct Client {
@@ -78,6 +88,8 @@ struct Client {
   std::optional<std::uint16_t> heartbeat{};  ///< gateway register 8; none written yet: the first one is a change
   ObjectBuffers objects;                     ///< function 43/13
   std::uint64_t writes = 0;                  ///< counts its write requests, refused ones too
+  std::optional<RefusedWrite> refused{};     ///< in the log last
+  Instant refused_told = kLongAgo;
 
   /// A group of this client that asks for nothing yet. `role`: of the connection that it asks by.
   [[nodiscard]] Group new_group(Role role) const;

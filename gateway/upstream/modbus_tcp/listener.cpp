@@ -14,6 +14,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "gateway/core/line_bucket.hpp"
 #include "gateway/upstream/modbus_tcp/descriptors.hpp"
 
 namespace axisgate::modbus_tcp {
@@ -64,10 +65,6 @@ std::string remedy(const error_code& error) {
 }
 
 bool out_of_resources(int error) { return error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM; }
-
-std::string left_out_text(std::uint64_t left_out) {
-  return left_out == 0 ? std::string() : " (and " + std::to_string(left_out) + " more since the last such line)";
-}
 
 }  // namespace
 

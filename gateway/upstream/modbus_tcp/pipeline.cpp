@@ -4,12 +4,15 @@
 #include <string>
 #include <utility>
 
+#include "gateway/core/words.hpp"
 #include "gateway/upstream/modbus_tcp/device_identification.hpp"
 #include "gateway/upstream/modbus_tcp/reads.hpp"
 #include "gateway/upstream/modbus_tcp/references.hpp"
 
 namespace axisgate::modbus_tcp {
 namespace {
+
+constexpr Byte kExceptionBit = 0x80;  // V1.1b3 section 7
 
 /// What is carried out by the command port, or may be; all else is answered from the image.
 bool is_carried_out(const Request& request) { return request.writes() || request.reference.has_value(); }
@@ -79,7 +82,7 @@ void Pipeline::stage_half(Entry& entry, Instant now) {
   const Request whole = whole_write(*half, other ? other->word : std::uint16_t{0});
   if (!other) {
     if (const Errc wrong = check_row(whole, *entry.view, onlooker(now)); wrong != Errc::ok) {
-      tell_refused(entry, {wrong});
+      tell_refused(entry, {wrong}, now);
       return finish(entry, {wrong, 0});
     }
     half_.keep(*half, now);
@@ -144,7 +147,7 @@ void Pipeline::start(Entry& entry, Instant now) {
   if (entry.request.reference) return start_object(entry, now);
   Planned planned = plan_write(entry.request, *entry.view, onlooker(now), *client_);
   if (const Refused* const refused = std::get_if<Refused>(&planned)) {
-    tell_refused(entry, *refused);
+    tell_refused(entry, *refused, now);
     return finish(entry, {refused->code, 0});
   }
   entry.run = std::make_shared<WriteRun>(context_.commands, client_, std::get<WritePlan>(std::move(planned)), now,
@@ -162,8 +165,10 @@ void Pipeline::start(Entry& entry, Instant now) {
 }
 
 /// The outcome table's "command_result 0": no older result may be taken for this write's.
-void Pipeline::tell_refused(const Entry& entry, const Refused& refused) {
+void Pipeline::tell_refused(const Entry& entry, const Refused& refused, Instant now) {
   const AxisNumber axis = axis_of_write(entry.request, *entry.view, context_.image);
+  if (axis == 0 || !refused.row)
+    log_refused_write(block_write(entry.request, axis), {refused.code}, *client_, now, context_.log);
   if (axis == 0) return;
   ClientAxis& own = client_->at(axis);
   if (refused.row) {
@@ -178,7 +183,11 @@ void Pipeline::tell_refused(const Entry& entry, const Refused& refused) {
 /// "writes": "posted" changes nothing here: the reply is the only place that tells how it ended.
 void Pipeline::start_object(Entry& entry, Instant now) {
   const ReferencePlan plan = plan_reference(entry.request, *entry.view, onlooker(now), *client_);
-  if (plan.refused != Errc::ok) return refuse(entry, modbus_exception(plan.refused));
+  if (plan.refused != Errc::ok) {
+    const GeneralReference& reference = *entry.request.reference;
+    if (reference.write) log_refused_object(reference, {plan.refused}, *client_, now, context_.log);
+    return refuse(entry, modbus_exception(plan.refused));
+  }
   entry.object_axis = plan.axis;
   entry.stage = Stage::at_turn;
   if (!plan.group) return;
@@ -219,9 +228,16 @@ void Pipeline::log_failure(const Request& request, const Outcome& outcome) const
   const auto& reference = request.reference;
   const std::string what = reference ? "object " + hex_text({reference->head.data(), reference->head.size()})
                                      : "write to " + std::to_string(request.write_address);
-  context_.log.write(
-      LogLevel::debug, "modbus",
-      what + " ended: " + std::string(text(outcome.code)) + ", detail " + std::to_string(outcome.detail));
+  context_.log.write(LogLevel::debug, "modbus", client_->life->name + ": " + what + " ended: " + modbus_text(outcome));
+}
+
+void Pipeline::log_exception(const Pdu& reply) const {
+  if (!context_.log.wants(LogLevel::debug)) return;
+  const Byte function = reply[0] & static_cast<Byte>(~kExceptionBit);
+  const auto word = name_of(WordKind::exception, reply[1]);
+  context_.log.write(LogLevel::debug, "modbus",
+                     client_->life->name + ": function 0x" + hex_text({&function, 1}) +
+                         " is answered with exception 0x" + hex_text({&reply[1], 1}) + " " + std::string(word));
 }
 
 /// Once, until something of this client's acts again: a tool in a loop must not fill the log.
@@ -278,7 +294,10 @@ Pdu Pipeline::answer(const Request& request, const UnitView& view, Instant now) 
 
 void Pipeline::send(std::uint16_t transaction, std::uint8_t unit, const Pdu& reply) {
   ++context_.clients.counters.server_messages;
-  if ((reply[0] & 0x80U) != 0) ++context_.clients.counters.exceptions;
+  if ((reply[0] & kExceptionBit) != 0) {
+    ++context_.clients.counters.exceptions;
+    log_exception(reply);
+  }
   emit_(transaction, unit, reply);
 }
 

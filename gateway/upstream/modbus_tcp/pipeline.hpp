@@ -79,7 +79,8 @@ class Pipeline {
   void finish_object(Entry& entry, const GroupResult& result);
   void log_not_new(const Entry& entry);
   void log_failure(const Request& request, const Outcome& outcome) const;
-  void tell_refused(const Entry& entry, const Refused& refused);
+  void log_exception(const Pdu& reply) const;
+  void tell_refused(const Entry& entry, const Refused& refused, Instant now);
   void refuse(Entry& entry, ModbusException exception);
   void flush(Instant now);
   [[nodiscard]] AxisNumber written_axis(const Entry& entry) const;

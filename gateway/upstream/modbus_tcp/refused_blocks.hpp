@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kDetailRow = 0x0A000000;
 /// The request itself was wrong: 0x01, 0x02 and 0x03.
 [[nodiscard]] bool is_wrong(Errc code);
 
-/// Several registers, or coils, in one request; for the log.
+/// Registers, or coils, of one request; for the log.
 struct BlockWrite {
   AxisNumber axis = 0;
   std::uint16_t address = 0;
@@ -34,6 +34,11 @@ bool show_refused(ClientAxis& axis, std::uint16_t row);
 /// Who, what and why: once, until the row or the reason differs or a block of this client to this axis has succeeded.
 void log_refused(const BlockWrite& block, const RefusedRow& refused, Client& client, const Log& log);
 void note_block_done(ClientAxis& axis);
+/// The same of a write that is no block, or for no axis (`write.axis` 0): once a minute while a client repeats it.
+void log_refused_write(const BlockWrite& write, const Outcome& outcome, Client& client, Instant now, const Log& log);
+/// The same of a write by 43/13.
+void log_refused_object(const GeneralReference& reference, const Outcome& outcome, Client& client, Instant now,
+                        const Log& log);
 /// A lone half of this row is dropped: result 6 with the row as detail, as above, and once in the log.
 void tell_dropped_half(AxisNumber axis, std::uint16_t row, const char* why, Client& client, const Log& log);
 /// Both halves of a row have come: the next one that comes alone is told again.

@@ -31,7 +31,7 @@ std::uint32_t object_detail(const GroupResult& result) {
 
 WriteRun::WriteRun(CommandPort& commands, const std::shared_ptr<Client>& client, WritePlan plan, Instant now,
                    const ListenerSettings& settings, const Log& log)
-    : commands_(commands), client_(client), plan_(std::move(plan)), log_(log) {
+    : commands_(commands), client_(client), plan_(std::move(plan)), log_(log), asked_at_(now) {
   const auto set_deadlines = [&](Group& group) {
     group.start_by = now + settings.start_deadline;
     group.answer_by = now + settings.reply_deadline;
@@ -134,7 +134,9 @@ std::optional<WriteRun::Shown> WriteRun::shown_pending() const {
 /// `stays`: what the client's registers tell of all the same, since it was asked later or has not ended yet.
 void WriteRun::tell_refused(const Refused& refused, const std::optional<Shown>& stays) {
   const std::shared_ptr<Client> client = client_.lock();
-  if (plan_.single || !refused.row || client == nullptr) return;
+  if (client == nullptr) return;
+  if (plan_.single) return log_refused_write(plan_.block, {refused.code}, *client, asked_at_, log_);
+  if (!refused.row) return;
   ClientAxis& axis = client->at(plan_.axis);
   if (stays) {
     axis.result = stays->result;

@@ -57,6 +57,7 @@ class WriteRun : public std::enable_shared_from_this<WriteRun> {
   std::weak_ptr<Client> client_;
   WritePlan plan_;
   const Log& log_;
+  Instant asked_at_;
   std::size_t next_ = 0;
   bool abandoned_ = false;
   OnDone on_done_;

@@ -27,8 +27,9 @@ std::vector<GatewayStage::Line> lines(const DdsRigOptions& options) {
 
 DdsRig::DdsRig(DdsRigOptions options) : stage(lines(options)) {
   options.settings.commands = true;
-  face_ = std::make_unique<dds::DdsFace>(options.settings, stage.gateway().image(), stage.gateway().events(),
-                                         stage.gateway(), [this] { woken_ = true; });
+  face_ = std::make_unique<dds::DdsFace>(
+      options.settings, stage.gateway().image(), stage.gateway().events(), stage.gateway(), [this] { woken_ = true; },
+      [this](const std::string& line) { told.push_back(line); });
   link_up();
   if (!run_until([&] {
         return axis(kServo).link_state == LinkState::online && axis(kStepper).link_state == LinkState::online;

@@ -75,6 +75,7 @@ class DdsRig {
   std::vector<dds::StateRecord> samples;  ///< of axis_state, all of them
   std::vector<dds::EventRecord> events;
   std::vector<dds::GatewayRecord> gateway;
+  std::vector<std::string> told;  ///< lines for the log
 
  private:
   void read();

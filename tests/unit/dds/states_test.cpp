@@ -105,5 +105,30 @@ TEST(DdsStates, OfTheGatewayComeOnceASecondWithItsBuses) {
   EXPECT_GT(rig.gateway.back().buses[0].counters[0], rig.gateway.front().buses[0].counters[0]) << "requests";
 }
 
+// A fault, its code and the drive's own word are one sample: nobody has to guess which of the next ones belongs to it.
+TEST(DdsStates, ShowAFaultWithItsCauseInOneSample) {
+  constexpr std::uint16_t kFault = 1U << 3, kSupplyTooHigh = 0x0020, kFollowingError = 0x0200;
+  DdsRig rig;
+  const auto writer = rig.writer(1);
+  for (const std::uint16_t cause : {kSupplyTooHigh, kFollowingError, kSupplyTooHigh}) {
+    rig.samples.clear();
+    rig.stage.drive(0).inject_fault(1, cause);
+    rig.stage.drive(0).clear_fault_cause(1, cause);
+    ASSERT_TRUE(rig.run_until([&] { return (rig.state().statusword & kFault) != 0; }));
+    EXPECT_EQ(rig.state().error_code, cause == kSupplyTooHigh ? 0x3210 : 0x8611);
+    EXPECT_EQ(rig.state().vendor_error, cause);
+    ASSERT_EQ(rig.ask(writer, 5).result, kDone);
+    ASSERT_TRUE(rig.run_until([&] { return rig.state().vendor_error == 0; }));
+    bool faulted = false;
+    for (const dds::StateRecord& sample : rig.samples) {
+      if (sample.axis != kServo || (sample.statusword & kFault) == 0) continue;
+      faulted = true;
+      EXPECT_EQ(sample.error_code, cause == kSupplyTooHigh ? 0x3210 : 0x8611);
+      EXPECT_EQ(sample.vendor_error, cause);
+    }
+    EXPECT_TRUE(faulted);
+  }
+}
+
 }  // namespace
 }  // namespace axisgate::test

@@ -5,7 +5,7 @@
 
 #include <csignal>
 
-#include "gateway/upstream/dds_host/line_limit.hpp"
+#include "gateway/core/line_bucket.hpp"
 #include "gateway/upstream/dds_host/taking_watch.hpp"
 #include "gateway/upstream/dds_link/exit_codes.hpp"
 
@@ -97,23 +97,23 @@ TEST(ProcessEnd, HasWordsOfItsOwnForEachWay) {
   }
 }
 
-TEST(LineLimit, TakesABurstThenAFewAndCountsTheRest) {
-  LineLimit limit;
+TEST(LineBucket, TakesABurstThenAFewAndCountsTheRest) {
+  LineBucket limit;
   int taken = 0;
   for (int i = 0; i < 100; ++i) taken += limit.takes(kStart) ? 1 : 0;
-  EXPECT_EQ(taken, LineLimit::kBurst);
+  EXPECT_EQ(taken, LineBucket::kBurst);
   EXPECT_EQ(limit.left_out(), 80U);
   EXPECT_EQ(limit.left_out(), 0U);
-  EXPECT_TRUE(limit.takes(kStart + LineLimit::kEach));
-  EXPECT_FALSE(limit.takes(kStart + LineLimit::kEach));
+  EXPECT_TRUE(limit.takes(kStart + LineBucket::kEach));
+  EXPECT_FALSE(limit.takes(kStart + LineBucket::kEach));
 }
 
-TEST(LineLimit, NeverSavesUpMoreThanABurst) {
-  LineLimit limit;
+TEST(LineBucket, NeverSavesUpMoreThanABurst) {
+  LineBucket limit;
   static_cast<void>(limit.takes(kStart));
   int taken = 0;
   for (int i = 0; i < 100; ++i) taken += limit.takes(kStart + seconds(3600)) ? 1 : 0;
-  EXPECT_EQ(taken, LineLimit::kBurst);
+  EXPECT_EQ(taken, LineBucket::kBurst);
 }
 
 // Each packet of 100 bytes is 300 to the system.

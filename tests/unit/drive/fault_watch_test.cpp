@@ -105,6 +105,23 @@ TEST_F(FaultWatchTest, AnEmergencyOfNoFaultIsForgotten) {
   EXPECT_EQ(watch_.code(), 0);
 }
 
+TEST_F(FaultWatchTest, AnEmergencyOfOneFaultIsNoCauseOfTheNextHoweverSoonThatComes) {
+  for (auto& word : seen_.words) word.refused = true;
+  see(false);
+  watch_.emergency(0x2310, now_, exchange_);
+  see(true);
+  ASSERT_EQ(watch_.code(), 0x2310);
+  now_ += kCauseTime / 4;
+  see(false);
+  now_ += kCauseTime / 4;
+  see(true);
+  EXPECT_EQ(watch_.code(), 0);
+  EXPECT_TRUE(watch_.withheld()) << "it may still say what this one is";
+  watch_.emergency(0x4210, now_, exchange_);
+  look();
+  EXPECT_EQ(watch_.code(), 0x4210);
+}
+
 TEST_F(FaultWatchTest, AWordBeforeItsStatuswordWaitsForItAndAWarningIsShownThen) {
   see(false);
   read_words(0x5441, 0x400);

@@ -1,17 +1,18 @@
-// How many lines of axisgate-dds the log takes: a burst, then a few a second.
-// Promises that nothing on the network can fill the log through it, and that lines left out are counted.
+// How many lines the log takes of one kind: a burst, then a few a second.
+// Promises that nothing outside can fill the log through it, and that lines left out are counted.
 // Never looks at what a line says.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::dds {
+namespace axisgate {
 
-class LineLimit {
+class LineBucket {
  public:
   static constexpr std::int64_t kBurst = 20;
   static constexpr Duration kEach = std::chrono::milliseconds(500);
@@ -38,4 +39,9 @@ class LineLimit {
   Instant filled_ = kLongAgo;
 };
 
-}  // namespace axisgate::dds
+/// What a line says of those before it that were left out; empty: there were none.
+[[nodiscard]] inline std::string left_out_text(std::uint64_t left_out) {
+  return left_out == 0 ? std::string() : " (and " + std::to_string(left_out) + " more since the last such line)";
+}
+
+}  // namespace axisgate
