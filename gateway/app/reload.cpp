@@ -57,11 +57,13 @@ void Reload::change(LoadedConfig wanted, std::vector<FileWatch::Watched> files) 
     return refuse({fmt::format("{}: {}", wanted.config.file, error.what())});
   }
   for (const std::string& warning : wanted.warnings) with_.gateway.report(EventKind::warning, warning);
+  std::vector<StartLine> start = start_lines(wanted, AXISGATE_VERSION);
   Config config = wanted.config;
   with_.gateway.reload(
       plan, std::move(wanted.config), std::move(wanted.models), [this, plan] { return clients_in_the_way(plan); },
-      [this, plan, config = std::move(config), files = std::move(files)](std::vector<std::string> not_done) mutable {
-        if (not_done.empty()) return commit(plan, std::move(config), std::move(files));
+      [this, plan, config = std::move(config), files = std::move(files),
+       start = std::move(start)](std::vector<std::string> not_done) mutable {
+        if (not_done.empty()) return commit(plan, std::move(config), std::move(files), start);
         with_.server.give_up();
         refuse(std::move(not_done));
       });
@@ -84,7 +86,8 @@ std::vector<std::string> Reload::clients_in_the_way(const ReloadPlan& plan) cons
   return out;
 }
 
-void Reload::commit(const ReloadPlan& plan, Config wanted, std::vector<FileWatch::Watched> files) {
+void Reload::commit(const ReloadPlan& plan, Config wanted, std::vector<FileWatch::Watched> files,
+                    const std::vector<StartLine>& start) {
   with_.server.commit(modbus_tcp::take_descriptors(descriptor_needs(wanted)));
   if (with_.dds != nullptr && wanted.dds) with_.dds->take_axes(wanted.dds->units);
   with_.files.take(std::move(files));
@@ -92,6 +95,8 @@ void Reload::commit(const ReloadPlan& plan, Config wanted, std::vector<FileWatch
   std::vector<std::string> lines = plan.changes;
   if (lines.empty()) lines.emplace_back("nothing has changed");
   with_.gateway.report(EventKind::boot, fmt::format("{} was read anew: {}", running_.file, fmt::join(lines, "; ")));
+  for (const StartLine& line : plan.changes.empty() ? std::vector<StartLine>() : start)
+    with_.log.write(LogLevel::info, line.source, line.text);
   end({true, std::move(lines)});
 }
 

@@ -14,6 +14,7 @@
 #include "gateway/app/config_loader.hpp"
 #include "gateway/app/file_watch.hpp"
 #include "gateway/app/gateway.hpp"
+#include "gateway/app/start_lines.hpp"
 #include "gateway/upstream/dds_host/dds_server.hpp"
 #include "gateway/upstream/modbus_tcp/server.hpp"
 
@@ -33,6 +34,7 @@ class Reload {
     modbus_tcp::Server& server;
     dds::DdsServer* dds;
     FileWatch& files;
+    const Log& log;
   };
   using Done = std::function<void(const ReloadResult&)>;
 
@@ -51,7 +53,8 @@ class Reload {
   void on_loaded(Loaded loaded);
   void change(LoadedConfig wanted, std::vector<FileWatch::Watched> files);
   [[nodiscard]] std::vector<std::string> clients_in_the_way(const ReloadPlan& plan) const;
-  void commit(const ReloadPlan& plan, Config wanted, std::vector<FileWatch::Watched> files);
+  void commit(const ReloadPlan& plan, Config wanted, std::vector<FileWatch::Watched> files,
+              const std::vector<StartLine>& start);
   void refuse(std::vector<std::string> why_not);
   void end(ReloadResult result);
 

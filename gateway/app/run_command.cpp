@@ -94,7 +94,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
   Service service(runtime, [&](Duration slack) { return gateway.all_turn(slack); });
   Reload reload(io, std::move(loaded.config), [&options] { return load(options); },
-                {gateway, server, dds ? &*dds : nullptr, file_watch});
+                {gateway, server, dds ? &*dds : nullptr, file_watch, log});
   const auto begin_reload = [&](const Reload::Done& done) {
     service.reloading();
     reload.begin([&, done](const ReloadResult& result) {

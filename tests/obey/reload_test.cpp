@@ -15,10 +15,10 @@ constexpr Duration kBoth = 2 * app::kLettingGo;
 void change_timeout(app::Config& config) { config.buses.at(0).timeout += 1ms; }
 void take_out(app::Config& config) { config.buses.clear(); }
 
-using Told = std::shared_ptr<std::optional<GatewayStage::Reasons>>;
+using ReloadEnd = std::shared_ptr<std::optional<GatewayStage::Reasons>>;
 
 /// The reasons, where it was refused.
-GatewayStage::Reasons ended(Plant& plant, const Told& told) {
+GatewayStage::Reasons ended(Plant& plant, const ReloadEnd& told) {
   EXPECT_TRUE(plant.stage.run_until([&] { return told->has_value(); }, kBoth + 10ms));
   return told->value_or(GatewayStage::Reasons{"it never ended"});
 }
@@ -114,7 +114,7 @@ TEST_P(Reload, AnEnableAtTheSameTimeIsSeenOrNeverStarts) {
       Plant plant(GetParam(), with_leases());
       plant.ready_but_disabled();
       plant.run(100ms);
-      Told told;
+      ReloadEnd told;
       const auto wait_for = [&](std::uint64_t more) {
         static_cast<void>(plant.stage.run_until(
             [&, until = plant.requests_heard() + more] { return plant.requests_heard() >= until; }, 100ms));
@@ -140,7 +140,7 @@ TEST_P(Reload, AnEnableAtTheSameTimeIsSeenOrNeverStarts) {
 
 TEST_P(Reload, OnlyStopsAreAcceptedMeanwhile) {
   if (!can_be_disabled()) return;
-  const Told told = plant_.stage.begin_reload(change_timeout);
+  const ReloadEnd told = plant_.stage.begin_reload(change_timeout);
   ASSERT_TRUE(plant_.stage.run_until(
       [&, until = plant_.requests_heard() + 1] { return plant_.requests_heard() >= until; }, 100ms));
   if (!told->has_value()) {
@@ -155,7 +155,7 @@ TEST_P(Reload, OnlyStopsAreAcceptedMeanwhile) {
 TEST_P(Reload, WhatIsEnabledMeanwhileStillMissesTheGateway) {
   if (!is_cia402(GetParam()) || !minds_silence(GetParam())) return;
   plant_.ready_but_disabled();
-  const Told told = plant_.stage.begin_reload(change_timeout);
+  const ReloadEnd told = plant_.stage.begin_reload(change_timeout);
   auto& node = plant_.stage.can_node(0);
   constexpr simulated::ObjectKey kControlword{0x6040, 0};
   const auto now = [&] { return plant_.stage.runtime().now().time_since_epoch(); };
@@ -181,7 +181,7 @@ TEST_P(Reload, NoLostExchangeLeavesTheDriveUnwatched) {
       plant.ready_but_disabled();
       plant.run(100ms);
       const std::uint64_t heard = plant.requests_heard();
-      const Told told = plant.stage.begin_reload(change_timeout);
+      const ReloadEnd told = plant.stage.begin_reload(change_timeout);
       static_cast<void>(
           plant.stage.run_until([&] { return told->has_value() || plant.requests_heard() >= heard + which; }, kBoth));
       if (!plant.strike(how)) return;
@@ -198,7 +198,7 @@ TEST_P(Reload, AnEndMeanwhileEndsInTime) {
   for (int ms = 0; ms < 40; ms += 2) {
     Plant plant(GetParam(), with_leases());
     plant.ready_but_disabled();
-    const Told told = plant.stage.begin_reload(change_timeout);
+    const ReloadEnd told = plant.stage.begin_reload(change_timeout);
     plant.run(std::chrono::milliseconds(ms));
     bool closed = false;
     plant.stage.gateway().close([&] { closed = true; });
@@ -241,7 +241,7 @@ TEST_P(Reload, ACyclicScannerEnablesNothingByIt) {
   ASSERT_TRUE(plant_.stage.run_until([this] { return !plant_.motor().enabled.value_or(false); }, 2s));
   plant_.scan(plant_.a, scanned, 500ms);
   ASSERT_FALSE(plant_.motor().enabled.value_or(false));
-  const Told told = plant_.stage.begin_reload(change_timeout);
+  const ReloadEnd told = plant_.stage.begin_reload(change_timeout);
   plant_.scan(plant_.a, scanned, 3s);
   EXPECT_EQ(ended(plant_, told), GatewayStage::Reasons{});
   EXPECT_FALSE(plant_.motor().enabled.value_or(false));
@@ -250,7 +250,7 @@ TEST_P(Reload, ACyclicScannerEnablesNothingByIt) {
 // Reasons that come last, of a listener say, leave all as it was.
 TEST_P(Reload, ALastWordRefusesIt) {
   if (!can_be_disabled()) return;
-  const Told told = plant_.stage.begin_reload(change_timeout, [] { return GatewayStage::Reasons{"no"}; });
+  const ReloadEnd told = plant_.stage.begin_reload(change_timeout, [] { return GatewayStage::Reasons{"no"}; });
   EXPECT_EQ(ended(plant_, told), GatewayStage::Reasons{"no"});
   expect_in_command(plant_);
   expect_watched(plant_);
