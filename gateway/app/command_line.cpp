@@ -2,10 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <map>
 #include <memory>
 
 #include "gateway/app/check_command.hpp"
+#include "gateway/app/command_words.hpp"
 #include "gateway/app/commission_command.hpp"
 #include "gateway/app/explain_command.hpp"
 #include "gateway/app/map_command.hpp"
@@ -53,10 +53,12 @@ void run_with_folders(Parsed& parsed, Options& options) {
 
 void add_run(CLI::App& app, Parsed& parsed) {
   CLI::App* command = add_config_command(app, parsed, "run", "Run the gateway", parsed.run.config);
-  const std::map<std::string, LogLevel> levels{
-      {"error", LogLevel::error}, {"warning", LogLevel::warning}, {"info", LogLevel::info}, {"debug", LogLevel::debug}};
+  const auto number = [](LogLevel level) { return static_cast<int>(level); };
   command->add_option("--log-level", parsed.run.log_level, "error, warning, info or debug")
-      ->transform(CLI::CheckedTransformer(levels).description(""))
+      ->transform(number_of_one({{"error", number(LogLevel::error)},
+                                 {"warning", number(LogLevel::warning)},
+                                 {"info", number(LogLevel::info)},
+                                 {"debug", number(LogLevel::debug)}}))
       ->type_name("LEVEL")
       ->default_str("info");
   command->add_option("--decode", parsed.run.decode, "log every frame of this bus; may be given more than once")
@@ -77,7 +79,7 @@ void add_check(CLI::App& app, Parsed& parsed) {
 void add_map(CLI::App& app, Parsed& parsed) {
   CLI::App* command = add_config_command(app, parsed, "map", "Print every register, coil and input", parsed.map.config);
   command->add_option("--format", parsed.map.format, "table, md, csv, json or st (IEC 61131-3)")
-      ->check(CLI::IsMember({"table", "md", "csv", "json", "st"}).description(""))
+      ->check(one_of({"table", "md", "csv", "json", "st"}))
       ->type_name("FORMAT")
       ->capture_default_str();
   command->footer("Example: axisgate map /etc/axisgate/gateway.json --format csv > registers.csv");
@@ -210,15 +212,6 @@ void add_explain(CLI::App& app, Parsed& parsed) {
   command->callback([&parsed] { run_with_folders(parsed, parsed.explain); });
 }
 
-/// CLI11 says of an unknown word only that a command is missing.
-bool knows_command(const CLI::App& app, int argc, const char* const* argv) {
-  if (argc < 2 || argv[1][0] == '-') return true;
-  const auto commands = app.get_subcommands([&](const CLI::App* command) { return command->get_name() == argv[1]; });
-  if (!commands.empty()) return true;
-  std::cerr << "axisgate: there is no command '" << argv[1] << "'; axisgate --help lists them\n";
-  return false;
-}
-
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
@@ -236,11 +229,17 @@ int run_command_line(int argc, const char* const* argv) {
   add_commission(app, parsed);
   add_scan(app, parsed);
   add_explain(app, parsed);
-  if (!knows_command(app, argc, argv)) return kWrongCommandLine;
+  // CLI11 says of an unknown word only that a command is missing.
+  if (const std::string wrong = wrong_command(app, argc, argv); !wrong.empty()) {
+    std::cerr << wrong << "\n";
+    return kWrongCommandLine;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kWrongCommandLine;
+    const bool asked_for_help = app.exit(error) == 0;
+    if (!asked_for_help) std::cerr << nearest_options(app);
+    return asked_for_help ? 0 : kWrongCommandLine;
   }
   return parsed.exit_code;
 }

@@ -190,9 +190,7 @@ void tell_why(const ScanOptions& options, const Scanner& scan) {
   fmt::print(stderr, "{}\n", scan.why());
   if (scan.was_up()) return;
   if (can::parse_can_device(options.device).lawicel)
-    fmt::print(stderr,
-               "Is the adapter plugged in, and may you open it (group dialout)? ls -l /dev/serial/by-id lists those "
-               "that are there.\n");
+    fmt::print(stderr, "Is the adapter plugged in? ls -l /dev/serial/by-id lists those that are there.\n");
 }
 
 int tell(const ScanOptions& options, const Scanner& scan) {
