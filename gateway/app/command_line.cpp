@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "gateway/app/check_command.hpp"
+#include "gateway/app/command_hand.hpp"
 #include "gateway/app/command_words.hpp"
 #include "gateway/app/commission_command.hpp"
 #include "gateway/app/explain_command.hpp"
@@ -31,6 +32,7 @@ struct Parsed {
   CommissionOptions commission;
   ScanOptions scan;
   ExplainOptions explain;
+  HandCommands hand;
   std::string scan_nodes;
   int exit_code = 0;
 };
@@ -224,6 +226,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_check(app, parsed);
   add_map(app, parsed);
   add_top(app, parsed);
+  add_hand_commands(app, parsed.hand, parsed.exit_code);
   add_topics(app, parsed);
   add_profile(app, parsed);
   add_commission(app, parsed);
