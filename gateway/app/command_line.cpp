@@ -34,6 +34,7 @@ struct Parsed {
   ExplainOptions explain;
   HandCommands hand;
   std::string scan_nodes;
+  std::string scan_stations;
   int exit_code = 0;
 };
 
@@ -164,13 +165,22 @@ void add_commission(CLI::App& app, Parsed& parsed) {
   command->callback([&parsed] { run_with_folders(parsed, parsed.commission); });
 }
 
+std::string station_range_mistake(const std::string& text) {
+  return parse_scan_range(text, kLastRtuStation)
+             ? ""
+             : "'" + text + "' is no station and no range of them: 1 to 247, such as 5 or 1-32";
+}
+
 std::string scan_range_mistake(const std::string& text) {
   return parse_scan_range(text) ? "" : "'" + text + "' is no node-ID and no range of them: 1 to 127, such as 5 or 1-10";
 }
 
 void add_scan(CLI::App& app, Parsed& parsed) {
-  CLI::App* command = app.add_subcommand("scan", "Ask a CANopen bus which nodes are there and what they are");
-  command->add_option("DEVICE", parsed.scan.device, "CAN interface (can0), or slcan:PATH for a serial CAN adapter")
+  CLI::App* command =
+      app.add_subcommand("scan", "Ask a CANopen bus or a serial line which drives are there and what they are");
+  command
+      ->add_option("DEVICE", parsed.scan.device,
+                   "CAN interface (can0), slcan:PATH for a serial CAN adapter, or a serial port (/dev/ttyUSB0)")
       ->required();
   command
       ->add_option("--bitrate", parsed.scan.bitrate,
@@ -187,16 +197,43 @@ void add_scan(CLI::App& app, Parsed& parsed) {
       ->check(CLI::Validator(scan_range_mistake, ""))
       ->type_name("A-B")
       ->default_str("1-127");
+  command
+      ->add_option("--baud", parsed.scan.serial.bauds, "serial port: rates to try, one after the other, as 38400,19200")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(1200, 1000000).description(""))
+      ->type_name("N,...")
+      ->default_str("38400,19200,9600,115200");
+  command->add_option("--stations", parsed.scan_stations, "serial port: stations to ask")
+      ->check(CLI::Validator(station_range_mistake, ""))
+      ->type_name("A-B")
+      ->default_str("1-32");
+  command->add_option("--protocol", parsed.scan.serial.protocols, "serial port: kinco-serial, modbus-rtu, or both")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(one_of({"kinco-serial", "modbus-rtu"}))
+      ->type_name("P,...")
+      ->default_str("kinco-serial,modbus-rtu");
+  command->add_option("--parity", parsed.scan.parity, "serial port: none, even or odd")
+      ->check(one_of({"none", "even", "odd"}))
+      ->type_name("P")
+      ->capture_default_str();
   command->footer(
-      "CANopen alone: drives that speak another protocol, Keya's own on CAN among them, are not found by it.\n"
-      "It reads by SDO, and writes, starts and resets nothing. Exit code 1: nobody answered, or the bus cannot be "
+      "On CAN CANopen alone: drives that speak another protocol, Keya's own on CAN among them, are not found by it.\n"
+      "On a serial port Kinco's own protocol and Modbus RTU; Keya's drives are not asked there: what they answer is no "
+      "reply\nto a station. How long it takes at most is said before. A line that is in use, at another rate than the "
+      "one tried, hears\nnoise: scan one whose motors stand without torque. A port that a gateway has is refused.\n"
+      "It reads (SDO, Kinco's read frame, function 3), and writes, starts and resets nothing. Exit code 1: nobody "
+      "answered, or the bus cannot be "
       "used.\n"
       "A gateway that runs on the same bus is another SDO client: the drives answer both under one number, so stop it\n"
       "first. A serial adapter opened with a wrong bit rate disturbs a bus that is in use.\n"
       "Makers do not print their identity numbers: a profile fits as far as the node has the profile's objects.\n"
-      "Example: axisgate scan can0");
+      "Example: axisgate scan can0; axisgate scan /dev/ttyUSB0 --baud 38400 --stations 1-8");
   command->callback([&parsed] {
     if (const auto range = parse_scan_range(parsed.scan_nodes)) parsed.scan.nodes = *range;
+    if (const auto range = parse_scan_range(parsed.scan_stations, kLastRtuStation))
+      parsed.scan.serial.stations = *range;
     run_with_folders(parsed, parsed.scan);
   });
 }

@@ -22,7 +22,6 @@ namespace {
 
 constexpr Duration kLookPeriod = std::chrono::milliseconds(100);
 constexpr Duration kTurnPeriod = std::chrono::milliseconds(50);
-constexpr std::uint8_t kNoSuchAxis = 0x02, kAxisOffline = 0x0B;
 constexpr std::size_t kRoleAt = 7;
 
 /// As nohup does it: whoever started the process wants it to outlive the terminal.
@@ -153,14 +152,15 @@ void Hand::look() {
 void Hand::seen(Bytes registers_reply, Bytes inputs_reply, std::uint32_t answered) {
   const auto registers = registers_in(registers_reply, kHandRegisters);
   const auto inputs = inputs_in(inputs_reply, kAxisInputCount);
-  const std::uint8_t exception = exception_in(registers_reply);
+  const ModbusException exception = exception_in(registers_reply);
   if (registers && inputs) {
     plan_.on_view(hand_view(*registers, *inputs, listener_), answered, now());
-  } else if (exception == kAxisOffline) {
+  } else if (exception == ModbusException::gateway_target_failed) {
     plan_.on_view({}, answered, now());  // a listener with "offline_reads": "exception"
   } else {
-    plan_.fail(exception == kNoSuchAxis ? fmt::format("this gateway has no axis {}", order_.axis)
-                                        : fmt::format("axis {} cannot be read: exception {}", order_.axis, exception),
+    plan_.fail(exception == ModbusException::illegal_data_address
+                   ? fmt::format("this gateway has no axis {}", order_.axis)
+                   : fmt::format("axis {} cannot be read: {}", order_.axis, exception_text(exception)),
                now());
   }
   show();

@@ -11,33 +11,22 @@
 namespace axisgate::app {
 namespace {
 
-using What = HandWrite::What;
-
-constexpr std::string_view kReached = "reached";
 constexpr std::uint16_t kJogForward = 8, kJogReverse = 9;
-// Modbus application protocol V1.1b3 section 7, as the gateway uses it.
-constexpr std::uint8_t kNotAllowed = 0x01, kNotThere = 0x02, kNotInLimits = 0x03, kNotNow = 0x06, kNothingSent = 0x0A,
-                       kNotKnown = 0x0B;
-
 std::uint16_t after(std::uint16_t id) {
   return id == UINT16_MAX ? std::uint16_t{1} : static_cast<std::uint16_t>(id + 1);
 }
 
 std::string_view row_text(const HandWrite& write) {
   switch (write.what) {
-    case What::target_position:
+    case HandWrite::What::target_position:
       return "target_position";
-    case What::profile_velocity:
+    case HandWrite::What::profile_velocity:
       return "profile_velocity";
-    case What::jog_velocity:
+    case HandWrite::What::jog_velocity:
       return "jog_velocity";
     default:
-      return write.what == What::coil ? "jog" : text(write.command);
+      return write.what == HandWrite::What::coil ? "jog" : text(write.command);
   }
-}
-
-std::string exception_text(std::uint8_t exception) {
-  return fmt::format("exception 0x{:02X} {}", exception, name_of(WordKind::exception, exception));
 }
 
 }  // namespace
@@ -51,7 +40,7 @@ HandPlan::HandPlan(const HandOrder& order, Instant now) : order_(order) {
   // A stop asks nobody, and looks at nothing first.
   if (order_.task != HandTask::stop) return;
   step_ = Step::stop;
-  write({.what = What::stop, .command = Command::quick_stop});
+  write({.what = HandWrite::What::stop, .command = Command::quick_stop});
   stand_by_ = now + kStandLimit;
 }
 
@@ -68,11 +57,12 @@ void HandPlan::write(const HandWrite& write, bool of_step) {
 
 void HandPlan::write_command(Command command) {
   id_ = after(id_);
-  write({.what = What::command, .command = command, .id = id_});
+  write({.what = HandWrite::What::command, .command = command, .id = id_});
 }
 
 void HandPlan::write_button(Button button, bool on) {
-  write({.what = What::coil, .coil = button == Button::reverse ? kJogReverse : kJogForward, .on = on}, false);
+  write({.what = HandWrite::What::coil, .coil = button == Button::reverse ? kJogReverse : kJogForward, .on = on},
+        false);
   ++buttons_waiting_;
 }
 
@@ -83,29 +73,32 @@ void HandPlan::claim(Instant now) {
 
 // Answers.
 
-void HandPlan::on_answer(std::uint8_t exception, Instant now) {
+void HandPlan::on_answer(ModbusException exception, Instant now) {
   if (waiting_.empty() || over()) return;
   const Waiting answer = waiting_.front();
   waiting_.pop_front();
-  if (answer.write.what == What::heartbeat) {
+  if (answer.write.what == HandWrite::What::heartbeat) {
     beat_waits_ = false;
     return;
   }
   ++answered_;
-  if (answer.write.what == What::coil && !answer.of_step) return button_answered(exception, now);
+  if (answer.write.what == HandWrite::What::coil && !answer.of_step) return button_answered(exception, now);
   if (!answer.of_step) return;
-  if (exception != 0 && !ending()) {
+  if (exception != ModbusException::none && !ending()) {
     exception_ = exception;
     // These say that nothing was begun; of the others it is not known.
-    const bool not_begun = exception == kNotAllowed || exception == kNotThere || exception == kNotInLimits ||
-                           exception == kNotNow || exception == kNothingSent;
+    const bool not_begun =
+        exception == ModbusException::illegal_function || exception == ModbusException::illegal_data_address ||
+        exception == ModbusException::illegal_data_value || exception == ModbusException::server_device_busy ||
+        exception == ModbusException::gateway_path_unavailable;
     if (not_begun && step_ == Step::start) may_move_ = false;
     refused_what_ = row_text(answer.write);
     return go(Step::refused);
   }
-  if (exception != 0 && answer.write.what == What::stop) {
+  if (exception != ModbusException::none && answer.write.what == HandWrite::What::stop) {
     code_ = 1;
-    const bool owed = exception == kNothingSent || exception == kNotKnown;
+    const bool owed =
+        exception == ModbusException::gateway_path_unavailable || exception == ModbusException::gateway_target_failed;
     words_ += fmt::format("{}{} was answered with {}: {}stop it by its wired stop if it moves",
                           words_.empty() ? "" : "; ", axisgate::text(answer.write.command), exception_text(exception),
                           owed ? "it is owed, and carried out as soon as the drive is back; " : "");
@@ -117,8 +110,8 @@ void HandPlan::step_done(Instant now) {
   switch (step_) {
     case Step::begin:
       if (!order_.rpm) return after_speed(now);
-      write(
-          {.what = order_.task == HandTask::jog ? What::jog_velocity : What::profile_velocity, .number = *order_.rpm});
+      write({.what = order_.task == HandTask::jog ? HandWrite::What::jog_velocity : HandWrite::What::profile_velocity,
+             .number = *order_.rpm});
       claim(now);
       return go(Step::speed);
     case Step::speed:
@@ -157,25 +150,25 @@ void HandPlan::after_speed(Instant now) {
 
 void HandPlan::after_enable(Instant now) {
   if (order_.task == HandTask::move) {
-    write({.what = What::target_position, .number = order_.turns});
+    write({.what = HandWrite::What::target_position, .number = order_.turns});
     claim(now);
     return go(Step::target);
   }
   if (order_.task == HandTask::jog) {
     // A button acts on 1 once it was 0.
-    write({.what = What::coil, .coil = kJogForward}, false);
+    write({.what = HandWrite::What::coil, .coil = kJogForward}, false);
     ++buttons_waiting_;
-    write({.what = What::coil, .coil = kJogReverse});
+    write({.what = HandWrite::What::coil, .coil = kJogReverse});
     return go(Step::released);
   }
   go(Step::working);
 }
 
-void HandPlan::button_answered(std::uint8_t exception, Instant now) {
+void HandPlan::button_answered(ModbusException exception, Instant now) {
   watched_from_ = now;
   buttons_waiting_ = std::max(0, buttons_waiting_ - 1);
-  if (exception == 0 || ending() || button_ == Button::none) return;
-  if (exception == kNotNow && view_ && !view_->anothers()) {
+  if (exception == ModbusException::none || ending() || button_ == Button::none) return;
+  if (exception == ModbusException::server_device_busy && view_ && !view_->anothers()) {
     // The gateway has ended this jog, or its axis is not ready for one: the next press is another one.
     return let_go();
   }
@@ -195,8 +188,8 @@ void HandPlan::on_view(const HandView& view, std::uint32_t answered, Instant now
     has_lease_ = true;
     lease_ms_ = std::max(lease_ms_, view.lease_remaining_ms);
   }
-  const bool steps_wait =
-      std::any_of(waiting_.begin(), waiting_.end(), [](const Waiting& w) { return w.write.what != What::heartbeat; });
+  const bool steps_wait = std::any_of(waiting_.begin(), waiting_.end(),
+                                      [](const Waiting& w) { return w.write.what != HandWrite::What::heartbeat; });
   if (answered != answered_ || steps_wait) return;  // it may be older than what was answered
   switch (step_) {
     case Step::look:
@@ -244,7 +237,7 @@ void HandPlan::first_look(Instant now) {
                   now);
   owned_before_ = view.mine();
   id_ = after(view.command_id_seen);
-  write({.what = What::command, .command = Command::none, .id = id_});
+  write({.what = HandWrite::What::command, .command = Command::none, .id = id_});
   go(Step::begin);
 }
 
@@ -274,7 +267,8 @@ void HandPlan::watch(Instant now) {
   if (view.motion == MotionState::completed) {
     // At its target it may still be told to turn: velocities are old by a filter's time. No stop is needed for that.
     may_move_ = false;
-    words_ = kReached;
+    words_ = "reached";
+    reached_ = true;
     watched_from_ = now;
     stand_by_ = now + kStandLimit;
     return go(Step::standing);
@@ -299,20 +293,6 @@ void HandPlan::note_position(Instant now) {
 
 bool HandPlan::stands(Instant now) const {
   return view_ && view_->in_sight() && !view_->has(AxisInput::moving) && now - turned_at_ >= kStill;
-}
-
-std::string HandPlan::why_refused() const {
-  const auto result = static_cast<std::uint32_t>(view_->result);
-  std::string out = fmt::format("{}: {} was refused with {}", axis_text(), refused_what_, exception_text(exception_));
-  if (exception_ == kNotAllowed)
-    return out + ": the gateway gives this computer another role than operator (key \"allow\")";
-  if (exception_ == kNotThere) return out + ": this drive does not have it (axisgate map shows what it has)";
-  if (exception_ == kNotInLimits) return out + ": beyond the limits of the axis, its profile or its drive";
-  if (view_->result == CommandResult::none) return out;
-  const Word* word = find_word(WordKind::result, result);
-  out += fmt::format(", result {}", result);
-  if (word != nullptr) out += fmt::format(" {}: {}", word->name, word->meaning);
-  return out;
 }
 
 // Keys.
@@ -362,7 +342,7 @@ void HandPlan::on_time(Instant now) {
   if (over()) return;
   if (button_ != Button::none && now >= last_key_ + kKeyLapse) let_go();
   if (now >= next_beat_ && !beat_waits_ && step_ != Step::release) {
-    write({.what = What::heartbeat, .id = ++beat_}, false);
+    write({.what = HandWrite::What::heartbeat, .id = ++beat_}, false);
     beat_waits_ = true;
     next_beat_ = now + kHeartbeat;
   }
@@ -373,124 +353,6 @@ void HandPlan::on_time(Instant now) {
                         kStandLimit / std::chrono::seconds(1));
   // Torque that is taken from a motor that turns lets it coast.
   if (step_ == Step::standing || step_ == Step::stop) after_disable();
-}
-
-// The end.
-
-void HandPlan::end(std::string_view why, Instant now) {
-  if (ending()) return;
-  const bool held = order_.task == HandTask::enable && step_ == Step::working && stands(now);
-  const std::string_view what = !claimed_         ? " was asked for nothing"
-                                : !held           ? " is stopped"
-                                : torque_is_ours_ ? " is disabled"
-                                                  : " is given back, enabled as it was found";
-  finish(held ? 0 : 1, fmt::format("{}: {}{}", why, axis_text(), what), now);
-}
-
-void HandPlan::end_at_once() {
-  if (over()) return;
-  words_ += (words_.empty() ? "" : "; ") + std::string("ended at once, without waiting for the axis");
-  code_ = 1;
-  go(Step::over);
-}
-
-void HandPlan::lost(std::string_view why) {
-  if (over()) return;
-  code_ = 1;
-  words_ = fmt::format("the gateway is out of reach ({})", why);
-  if (claimed_ && has_lease_)
-    words_ += fmt::format("; it stops {} when its lease runs out, within {} ms", axis_text(), lease_ms_);
-  else if (claimed_)
-    words_ += fmt::format("; {} has no lease: a move goes on to its target, and only a stop ends it", axis_text());
-  else if (order_.task == HandTask::stop && outbox_.empty())
-    words_ += fmt::format("; whether {} was stopped is not known", axis_text());
-  step_ = Step::over;
-}
-
-void HandPlan::refuse_number(Instant now) {
-  waiting_.pop_back();
-  fail(fmt::format("{} does not fit its register, in the units of {}",
-                   step_ == Step::speed ? fmt::format("{} rpm", order_.rpm->to_double())
-                                        : fmt::format("{} turns", order_.turns.to_double()),
-                   axis_text()),
-       now);
-}
-
-void HandPlan::fail(std::string_view why, Instant now) {
-  if (!ending()) return finish(1, std::string(why), now);
-  // A stop has nothing left to do where its axis cannot be seen; any other end has its own limit of time.
-  if (order_.task != HandTask::stop || over()) return;
-  code_ = 1;
-  if (words_.empty()) words_ = why;
-  go(Step::over);
-}
-
-void HandPlan::finish(int code, std::string words, Instant now) {
-  code_ = code;
-  words_ = std::move(words);
-  let_go();
-  // What was asked for before is none of the end's steps.
-  for (Waiting& waiting : waiting_) waiting.of_step = false;
-  stand_by_ = now + kStandLimit;
-  // An enabled axis that turns is stopped whoever made it turn; one that another client owns as well.
-  const bool enabled_and_turns = claimed_ && !stands(now);
-  if (!may_move_ && !enabled_and_turns) return after_stop();
-  write({.what = What::stop, .command = Command::quick_stop});
-  go(Step::stop);
-}
-
-void HandPlan::stood(Instant now) {
-  if (view_->in_sight() && (!stands(now) || now < watched_from_ + kStill)) return;
-  may_move_ = false;
-  if (order_.task == HandTask::stop) {
-    stand_by_ = kNever;
-    const bool known = view_->in_sight();
-    code_ = std::max(code_, known ? 0 : 1);
-    if (words_.empty())
-      words_ = known ? "stopped: " + hand_line(order_.axis, *view_, "")
-                     : fmt::format("{} is out of reach: what it does is not known", axis_text());
-    return go(Step::over);
-  }
-  if (code_ == 0) words_ += ": " + hand_line(order_.axis, *view_, "");
-  after_stop();
-}
-
-void HandPlan::after_stop() {
-  stand_by_ = kNever;
-  if (!torque_is_ours_) return after_disable();
-  torque_is_ours_ = false;
-  write({.what = What::stop, .command = Command::disable});
-  go(Step::disable);
-}
-
-void HandPlan::after_disable() {
-  stand_by_ = kNever;
-  if (!claimed_ || owned_before_ || order_.task == HandTask::stop || (view_ && view_->anothers()))
-    return go(Step::over);
-  write_command(Command::release);
-  go(Step::release);
-}
-
-std::string HandPlan::axis_text() const { return fmt::format("axis {}", order_.axis); }
-
-std::string HandPlan::doing() const {
-  if (step_ == Step::stop || (step_ == Step::standing && words_ != kReached)) return "quick stop";
-  if (step_ == Step::disable) return "disabling";
-  if (step_ < Step::working) return "";
-  if (step_ != Step::working) return "";
-  switch (order_.task) {
-    case HandTask::enable:
-      return "held; Ctrl-C disables it";
-    case HandTask::move:
-      return fmt::format("{} {} turns; Ctrl-C stops", order_.relative ? "by" : "to", order_.turns.to_double());
-    case HandTask::jog:
-      break;
-    case HandTask::stop:
-      return "";
-  }
-  return button_ == Button::none      ? "hold an arrow key; q ends"
-         : button_ == Button::forward ? "jogs forward"
-                                      : "jogs in reverse";
 }
 
 }  // namespace axisgate::app

@@ -43,8 +43,8 @@ class HandPlan {
 
   /// What is written next, in this order; each is answered once, in the same order.
   [[nodiscard]] std::vector<HandWrite> take();
-  /// Of the oldest write not answered yet. `exception` 0: done.
-  void on_answer(std::uint8_t exception, Instant now);
+  /// Of the oldest write not answered yet.
+  void on_answer(ModbusException exception, Instant now);
   /// `answered`: what answered() was when the look was asked for.
   void on_view(const HandView& view, std::uint32_t answered, Instant now);
   void on_keys(const std::vector<HandKey>& keys, Instant now);
@@ -100,7 +100,7 @@ class HandPlan {
   void write_button(Button button, bool on);
   void let_go();
   void step_done(Instant now);
-  void button_answered(std::uint8_t exception, Instant now);
+  void button_answered(ModbusException exception, Instant now);
   void after_speed(Instant now);
   void after_enable(Instant now);
   void first_look(Instant now);
@@ -134,8 +134,9 @@ class HandPlan {
   bool torque_is_ours_ = false;
   bool may_move_ = false;  ///< something was written that moves, and no look has shown it standing since
   bool has_lease_ = false;
+  bool reached_ = false;
   std::uint16_t lease_ms_ = 0;
-  std::uint8_t exception_ = 0;
+  ModbusException exception_ = ModbusException::none;
   std::string refused_what_;
   Button button_ = Button::none;
   int buttons_waiting_ = 0;

@@ -201,6 +201,14 @@ std::optional<std::uint16_t> inputs_in(Bytes reply, std::uint16_t count) {
   return bytes == 2 ? load_le16(reply, 2) : reply[2];
 }
 
-std::uint8_t exception_in(Bytes reply) { return reply.size() == 2 && (reply[0] & kException) != 0 ? reply[1] : 0; }
+ModbusException exception_in(Bytes reply) {
+  const bool is_one = reply.size() == 2 && (reply[0] & kException) != 0;
+  return is_one ? static_cast<ModbusException>(reply[1]) : ModbusException::none;
+}
+
+std::string exception_text(ModbusException exception) {
+  const auto number = static_cast<std::uint8_t>(exception);
+  return fmt::format("exception 0x{:02X} {}", number, name_of(WordKind::exception, number));
+}
 
 }  // namespace axisgate::app

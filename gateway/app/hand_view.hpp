@@ -12,6 +12,7 @@
 
 #include "gateway/app/top_table.hpp"
 #include "gateway/core/bytes.hpp"
+#include "gateway/core/error.hpp"
 #include "gateway/core/rational.hpp"
 #include "gateway/image/axis_image.hpp"
 #include "gateway/image/command.hpp"
@@ -85,7 +86,8 @@ struct HandWrite {
 /// None: it is no such answer.
 [[nodiscard]] std::optional<std::vector<std::uint16_t>> registers_in(Bytes reply, std::uint16_t count);
 [[nodiscard]] std::optional<std::uint16_t> inputs_in(Bytes reply, std::uint16_t count);
-/// The exception of an answer; 0: it is none.
-[[nodiscard]] std::uint8_t exception_in(Bytes reply);
+[[nodiscard]] ModbusException exception_in(Bytes reply);
+/// "exception 0x04 server device failure"
+[[nodiscard]] std::string exception_text(ModbusException exception);
 
 }  // namespace axisgate::app

@@ -69,7 +69,14 @@ TEST_F(Program, WrongCommandLinesEndWithTwoAndNameTheWord) {
       {"map x.json --format xml", "--format"},
       {"scan", "DEVICE"},
       {"scan slcan:", "slcan: must be followed by the path of a serial port"},
-      {"scan /dev/ttyACM0", "a serial CAN adapter is given as slcan:PATH"},
+      {"scan /dev/ttyACM0 --protocol kinco", "'kinco' is none of: kinco-serial, modbus-rtu"},
+      {"scan /dev/ttyACM0 --stations 0-5", "'0-5' is no station and no range of them"},
+      {"move 127.0.0.1:1502 1", "TURNS"},
+      {"move 127.0.0.1:1502 1 12,5", "'12,5' is no number of turns: write 12.5"},
+      {"move 127.0.0.1 1 2", "'127.0.0.1' is no HOST:PORT"},
+      {"jog 127.0.0.1:1502 1 --velocity -5", "'-5' is no speed"},
+      {"jog 127.0.0.1:1502 1", "axisgate jog: needs a terminal"},
+      {"enable 127.0.0.1:1502 500", "AXIS"},
       {"scan can0 --bitrate 5000", "5000 bit/s is no bit rate of CAN"},
       {"scan slcan:/dev/ttyACM0 --bitrate 300000", "serial CAN adapters offer 10000, 20000"},
       {"scan can0 --nodes 0-5", "'0-5' is no node-ID and no range of them"},
@@ -149,7 +156,8 @@ TEST_F(Program, ScanHelpWarnsOfAGatewayOnTheSameBus) {
 }
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
-  for (const char* command : {"", "run ", "check ", "map ", "top ", "profile check ", "commission ", "scan "}) {
+  for (const char* command : {"", "run ", "check ", "map ", "top ", "profile check ", "commission ", "scan ", "enable ",
+                              "move ", "jog ", "stop "}) {
     const Ended ended = run(std::string(command) + "--help");
     EXPECT_EQ(ended.code, 0) << command;
     EXPECT_THAT(ended.out, HasSubstr(std::string("Example: axisgate ") + command)) << command;
