@@ -13,7 +13,7 @@ NOBODY_KNOWS = 65534  # a user without rights, of every system
 
 
 class ScanStory(Story):
-    lines = {"kinco": "jd@3,md@7", "rtu": "rtu:md@2,id286pro@5"}
+    lines = {"kinco": "jd@3,md@4", "rtu": "rtu:md@2,id286pro@3"}
 
     def scan(self, line, *options):
         return self.command_line("scan", self.path(line), *map(str, options))
@@ -31,33 +31,33 @@ class WhoIsThere(ScanStory):
 
     def test_each_drive_is_found_with_its_protocol_and_a_profile(self):
         # Patience for a busy machine: a station is silent for the scan after so long.
-        ended = self.scan("kinco", "--baud", 38400, "--stations", "3-7", "--timeout-ms", 400)
+        ended = self.scan("kinco", "--baud", 38400, "--stations", "3-4", "--timeout-ms", 2500)
         self.assertEqual(ended.returncode, 0, ended.stderr)
-        self.assertEqual(self.rows(ended.stdout), [("kinco-serial", 38400, 3, "kinco-jd"), ("kinco-serial", 38400, 7, "kinco-md")])
-        ended = self.scan("rtu", "--baud", 19200, "--stations", "2-5", "--timeout-ms", 400)
+        self.assertEqual(self.rows(ended.stdout), [("kinco-serial", 38400, 3, "kinco-jd"), ("kinco-serial", 38400, 4, "kinco-md")])
+        ended = self.scan("rtu", "--baud", 19200, "--stations", "2-3", "--timeout-ms", 2500)
         self.assertEqual(ended.returncode, 0, ended.stderr)
-        self.assertEqual(self.rows(ended.stdout), [("modbus-rtu", 19200, 2, "kinco-md"), ("modbus-rtu", 19200, 5, "id286pro")])
+        self.assertEqual(self.rows(ended.stdout), [("modbus-rtu", 19200, 2, "kinco-md"), ("modbus-rtu", 19200, 3, "id286pro")])
 
     def test_nothing_is_written_and_nothing_moves(self):
-        before = {name: self.sim.state(name) for name in ("kinco/3", "kinco/7", "rtu/2", "rtu/5")}
+        before = {name: self.sim.state(name) for name in ("kinco/3", "kinco/4", "rtu/2", "rtu/3")}
         for line in self.lines:
-            self.assertEqual(self.scan(line, "--baud", "19200,38400", "--stations", "1-8", "--timeout-ms", 150).returncode, 0)
+            self.assertEqual(self.scan(line, "--baud", "19200,38400", "--stations", "2-4", "--timeout-ms", 1500).returncode, 0)
         for name, state in before.items():
             self.assertEqual(self.sim.state(name), state)
-        for name in ("kinco/3", "kinco/7", "rtu/2"):
+        for name in ("kinco/3", "kinco/4", "rtu/2"):
             self.assertEqual(self.sim.writes(name), 0)
 
     def test_only_what_was_asked_for_is_asked(self):
-        ended = self.command_line("scan", "--baud", "9600", "--stations", "7", "--protocol", "kinco-serial", "--timeout-ms", "400",
+        ended = self.command_line("scan", "--baud", "9600", "--stations", "4", "--protocol", "kinco-serial", "--timeout-ms", "2500",
                                   self.path("kinco"))
-        self.assertEqual(self.rows(ended.stdout), [("kinco-serial", 9600, 7, "kinco-md")])
-        self.assertIn("1 rate(s), 1 station(s): 1 reads, 1 s at most", ended.stderr)
-        ended = self.scan("kinco", "--baud", 9600, "--stations", 7, "--protocol", "modbus-rtu", "--timeout-ms", 100)
+        self.assertEqual(self.rows(ended.stdout), [("kinco-serial", 9600, 4, "kinco-md")])
+        self.assertIn("1 rate(s), 1 station(s): 1 reads, 3 s at most", ended.stderr)
+        ended = self.scan("kinco", "--baud", 9600, "--stations", 4, "--protocol", "modbus-rtu", "--timeout-ms", 100)
         self.assertEqual(ended.returncode, 1)
         self.assertEqual(ended.stdout, "")
 
     def test_what_it_proposes_is_a_configuration(self):
-        ended = self.scan("rtu", "--baud", 19200, "--stations", "2-5", "--protocol", "modbus-rtu", "--timeout-ms", 400)
+        ended = self.scan("rtu", "--baud", 19200, "--stations", "2-3", "--protocol", "modbus-rtu", "--timeout-ms", 2500)
         bus = ended.stdout.partition("a bus of a configuration")[2].partition("\n")[2]
         bus = bus.replace('"profile": "kinco-md"', '"profile": "kinco-md", "constants": {"peak_current_a": 36}')
         config = self.path("proposed.json")
@@ -69,13 +69,13 @@ class WhoIsThere(ScanStory):
 
     def test_a_station_that_falls_silent_is_told_and_left(self):
         self.sim.ask("reply-delay kinco 20")
-        program = self.keep(Program("axisgate scan", [AXISGATE, "scan", self.path("kinco"), "--stations", "3-7", "--baud", "38400",
-                                                      "--protocol", "kinco-serial", "--timeout-ms", "1000"]))
+        program = self.keep(Program("axisgate scan", [AXISGATE, "scan", self.path("kinco"), "--stations", "3-4", "--baud", "38400",
+                                                      "--protocol", "kinco-serial", "--timeout-ms", "2500"]))
         until("station 3 is read", lambda: int(self.sim.ask("exchanges kinco")) > 10)
         self.sim.ask("mute kinco/3 on")
         self.assertEqual(program.ended(), 0)
         self.assertRegex(program.text(), "station 3: it fell silent while it was asked")
-        self.assertRegex(program.text(), r"\nkinco-serial +38400 +7  kinco-md")
+        self.assertRegex(program.text(), r"\nkinco-serial +38400 +4  kinco-md")
 
 
 class WhatCannotBeUsed(ScanStory):
@@ -109,7 +109,7 @@ class WhatCannotBeUsed(ScanStory):
     def test_ctrl_c_shows_what_was_found_so_far(self):
         self.simulate()
         command = [AXISGATE, "scan", self.path("kinco"), "--stations", "3-120", "--baud", "38400", "--protocol", "kinco-serial",
-                   "--timeout-ms", "2000"]
+                   "--timeout-ms", "2500"]
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             for line in process.stderr:
                 if " 2 found" in line:
@@ -117,7 +117,7 @@ class WhatCannotBeUsed(ScanStory):
             process.send_signal(2)
             out, err = process.communicate(timeout=NEVER)
         self.assertEqual(process.returncode, 1)
-        self.assertEqual([row[2] for row in self.rows(out)], [3, 7])
+        self.assertEqual([row[2] for row in self.rows(out)], [3, 4])
         self.assertIn("ended before all stations were asked", err)
 
     def test_without_the_right_to_open_it_the_group_is_named(self):
