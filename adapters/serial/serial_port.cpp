@@ -16,6 +16,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "adapters/serial/device_rights.hpp"
+
 namespace axisgate::serial {
 
 namespace {
@@ -110,8 +112,10 @@ OpenedPort open_port(const SerialSettings& settings) {
   OpenedPort port;
   port.descriptor = ::open(settings.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (port.descriptor < 0) {
+    const int error = errno;
     // EBUSY: another process has claimed it by TIOCEXCL.
-    port.error = settings.device + ": " + (errno == EBUSY ? "another process is using it" : reason(errno));
+    port.error = settings.device + ": " + (error == EBUSY ? "another process is using it" : reason(error));
+    if (error == EACCES) port.error += rights_remedy_of(settings.device);
     return port;
   }
   if (const std::string error = configure(port.descriptor, settings, port.notes); !error.empty()) {

@@ -2,10 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <map>
 #include <memory>
 
 #include "gateway/app/check_command.hpp"
+#include "gateway/app/command_hand.hpp"
+#include "gateway/app/command_words.hpp"
 #include "gateway/app/commission_command.hpp"
 #include "gateway/app/explain_command.hpp"
 #include "gateway/app/map_command.hpp"
@@ -34,7 +35,9 @@ struct Parsed {
   ScanOptions scan;
   ExplainOptions explain;
   ReloadOptions reload;
+  HandCommands hand;
   std::string scan_nodes;
+  std::string scan_stations;
   int exit_code = 0;
 };
 
@@ -56,10 +59,12 @@ void run_with_folders(Parsed& parsed, Options& options) {
 
 void add_run(CLI::App& app, Parsed& parsed) {
   CLI::App* command = add_config_command(app, parsed, "run", "Run the gateway", parsed.run.config);
-  const std::map<std::string, LogLevel> levels{
-      {"error", LogLevel::error}, {"warning", LogLevel::warning}, {"info", LogLevel::info}, {"debug", LogLevel::debug}};
+  const auto number = [](LogLevel level) { return static_cast<int>(level); };
   command->add_option("--log-level", parsed.run.log_level, "error, warning, info or debug")
-      ->transform(CLI::CheckedTransformer(levels).description(""))
+      ->transform(number_of_one({{"error", number(LogLevel::error)},
+                                 {"warning", number(LogLevel::warning)},
+                                 {"info", number(LogLevel::info)},
+                                 {"debug", number(LogLevel::debug)}}))
       ->type_name("LEVEL")
       ->default_str("info");
   command->add_option("--decode", parsed.run.decode, "log every frame of this bus; may be given more than once")
@@ -80,7 +85,7 @@ void add_check(CLI::App& app, Parsed& parsed) {
 void add_map(CLI::App& app, Parsed& parsed) {
   CLI::App* command = add_config_command(app, parsed, "map", "Print every register, coil and input", parsed.map.config);
   command->add_option("--format", parsed.map.format, "table, md, csv, json or st (IEC 61131-3)")
-      ->check(CLI::IsMember({"table", "md", "csv", "json", "st"}).description(""))
+      ->check(one_of({"table", "md", "csv", "json", "st"}))
       ->type_name("FORMAT")
       ->capture_default_str();
   command->footer("Example: axisgate map /etc/axisgate/gateway.json --format csv > registers.csv");
@@ -163,13 +168,22 @@ void add_commission(CLI::App& app, Parsed& parsed) {
   command->callback([&parsed] { run_with_folders(parsed, parsed.commission); });
 }
 
+std::string station_range_mistake(const std::string& text) {
+  return parse_scan_range(text, kLastRtuStation)
+             ? ""
+             : "'" + text + "' is no station and no range of them: 1 to 247, such as 5 or 1-32";
+}
+
 std::string scan_range_mistake(const std::string& text) {
   return parse_scan_range(text) ? "" : "'" + text + "' is no node-ID and no range of them: 1 to 127, such as 5 or 1-10";
 }
 
 void add_scan(CLI::App& app, Parsed& parsed) {
-  CLI::App* command = app.add_subcommand("scan", "Ask a CANopen bus which nodes are there and what they are");
-  command->add_option("DEVICE", parsed.scan.device, "CAN interface (can0), or slcan:PATH for a serial CAN adapter")
+  CLI::App* command =
+      app.add_subcommand("scan", "Ask a CANopen bus or a serial line which drives are there and what they are");
+  command
+      ->add_option("DEVICE", parsed.scan.device,
+                   "CAN interface (can0), slcan:PATH for a serial CAN adapter, or a serial port (/dev/ttyUSB0)")
       ->required();
   command
       ->add_option("--bitrate", parsed.scan.bitrate,
@@ -186,16 +200,43 @@ void add_scan(CLI::App& app, Parsed& parsed) {
       ->check(CLI::Validator(scan_range_mistake, ""))
       ->type_name("A-B")
       ->default_str("1-127");
+  command
+      ->add_option("--baud", parsed.scan.serial.bauds, "serial port: rates to try, one after the other, as 38400,19200")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(1200, 1000000).description(""))
+      ->type_name("N,...")
+      ->default_str("38400,19200,9600,115200");
+  command->add_option("--stations", parsed.scan_stations, "serial port: stations to ask")
+      ->check(CLI::Validator(station_range_mistake, ""))
+      ->type_name("A-B")
+      ->default_str("1-32");
+  command->add_option("--protocol", parsed.scan.serial.protocols, "serial port: kinco-serial, modbus-rtu, or both")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(one_of({"kinco-serial", "modbus-rtu"}))
+      ->type_name("P,...")
+      ->default_str("kinco-serial,modbus-rtu");
+  command->add_option("--parity", parsed.scan.parity, "serial port: none, even or odd")
+      ->check(one_of({"none", "even", "odd"}))
+      ->type_name("P")
+      ->capture_default_str();
   command->footer(
-      "CANopen alone: drives that speak another protocol, Keya's own on CAN among them, are not found by it.\n"
-      "It reads by SDO, and writes, starts and resets nothing. Exit code 1: nobody answered, or the bus cannot be "
+      "On CAN CANopen alone: drives that speak another protocol, Keya's own on CAN among them, are not found by it.\n"
+      "On a serial port Kinco's own protocol and Modbus RTU; Keya's drives are not asked there: what they answer is no "
+      "reply\nto a station. How long it takes at most is said before. A line that is in use, at another rate than the "
+      "one tried, hears\nnoise: scan one whose motors stand without torque. A port that a gateway has is refused.\n"
+      "It reads (SDO, Kinco's read frame, function 3), and writes, starts and resets nothing. Exit code 1: nobody "
+      "answered, or the bus cannot be "
       "used.\n"
       "A gateway that runs on the same bus is another SDO client: the drives answer both under one number, so stop it\n"
       "first. A serial adapter opened with a wrong bit rate disturbs a bus that is in use.\n"
       "Makers do not print their identity numbers: a profile fits as far as the node has the profile's objects.\n"
-      "Example: axisgate scan can0");
+      "Example: axisgate scan can0; axisgate scan /dev/ttyUSB0 --baud 38400 --stations 1-8");
   command->callback([&parsed] {
     if (const auto range = parse_scan_range(parsed.scan_nodes)) parsed.scan.nodes = *range;
+    if (const auto range = parse_scan_range(parsed.scan_stations, kLastRtuStation))
+      parsed.scan.serial.stations = *range;
     run_with_folders(parsed, parsed.scan);
   });
 }
@@ -222,15 +263,6 @@ void add_explain(CLI::App& app, Parsed& parsed) {
   command->callback([&parsed] { run_with_folders(parsed, parsed.explain); });
 }
 
-/// CLI11 says of an unknown word only that a command is missing.
-bool knows_command(const CLI::App& app, int argc, const char* const* argv) {
-  if (argc < 2 || argv[1][0] == '-') return true;
-  const auto commands = app.get_subcommands([&](const CLI::App* command) { return command->get_name() == argv[1]; });
-  if (!commands.empty()) return true;
-  std::cerr << "axisgate: there is no command '" << argv[1] << "'; axisgate --help lists them\n";
-  return false;
-}
-
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
@@ -243,6 +275,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_check(app, parsed);
   add_map(app, parsed);
   add_top(app, parsed);
+  add_hand_commands(app, parsed.hand, parsed.exit_code);
   add_topics(app, parsed);
   add_profile(app, parsed);
   add_commission(app, parsed);
@@ -253,11 +286,17 @@ int run_command_line(int argc, const char* const* argv) {
     std::cout << *text;
     return 0;
   }
-  if (!knows_command(app, argc, argv)) return kWrongCommandLine;
+  // CLI11 says of an unknown word only that a command is missing.
+  if (const std::string wrong = wrong_command(app, argc, argv); !wrong.empty()) {
+    std::cerr << wrong << "\n";
+    return kWrongCommandLine;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kWrongCommandLine;
+    const bool asked_for_help = app.exit(error) == 0;
+    if (!asked_for_help) std::cerr << nearest_options(app);
+    return asked_for_help ? 0 : kWrongCommandLine;
   }
   return parsed.exit_code;
 }

@@ -1,13 +1,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "gateway/app/config_sections.hpp"
+#include "gateway/core/nearest.hpp"
 #include "gateway/drive/profile_loader.hpp"
 
 namespace axisgate::app {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Largest position a register can show, design 3.1; the other end is its negative.
 constexpr std::int64_t kLargestPosition = 2147483647;
@@ -41,17 +46,35 @@ drive::ResolveInput input_of(const BusConfig& bus, const DriveConfig& config) {
   return input;
 }
 
+bool is_path(const std::string& profile) {
+  return profile.find('/') != std::string::npos || profile.ends_with(".json");
+}
+
+/// The names by which profiles of these folders are called.
+std::vector<std::string> names_in(const std::vector<std::string>& folders) {
+  std::vector<std::string> out;
+  std::error_code error;
+  for (const std::string& folder : folders)
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (entry.path().extension() == ".json") out.push_back(entry.path().stem().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 /// Reads each profile once, however many drives use it.
 class Profiles {
  public:
-  Profiles(const std::vector<std::string>& folders, ConfigFaults& faults) : folders_(folders), faults_(faults) {}
+  /// A path counts from the folder of `config_file`.
+  Profiles(const std::string& config_file, const std::vector<std::string>& folders, ConfigFaults& faults)
+      : base_(fs::path(config_file).parent_path()), folders_(folders), faults_(faults) {}
 
   /// Null where it is missing or wrong; the mistakes are told.
   const drive::LoadedProfile* find(const DriveConfig& config) {
     const std::string pointer = config.pointer + "/profile";
-    const auto file = drive::find_profile(config.profile, folders_);
+    const std::string name = is_path(config.profile) ? (base_ / config.profile).string() : config.profile;
+    const auto file = drive::find_profile(name, folders_);
     if (!file) {
-      faults_.add(pointer, missing(config.profile));
+      faults_.add(pointer, missing(config.profile, name));
       return nullptr;
     }
     auto known = loaded_.find(*file);
@@ -70,15 +93,15 @@ class Profiles {
   }
 
  private:
-  [[nodiscard]] std::string missing(const std::string& profile) const {
-    if (profile.find('/') != std::string::npos || profile.ends_with(".json")) {
-      return fmt::format("there is no file {}: correct the path, which counts from where the program was started",
-                         profile);
-    }
-    return fmt::format("there is no {}.json in {}: correct the name, or name its folder with --profiles", profile,
-                       folders_.empty() ? "any folder" : fmt::format("{}", fmt::join(folders_, ", ")));
+  [[nodiscard]] std::string missing(const std::string& profile, const std::string& path) const {
+    if (is_path(profile))
+      return fmt::format("there is no file {}: a path that does not begin with / counts from this file", path);
+    return fmt::format("there is no {}.json in {}: correct the name, or name its folder with --profiles{}", profile,
+                       folders_.empty() ? "any folder" : fmt::format("{}", fmt::join(folders_, ", ")),
+                       did_you_mean(profile, names_in(folders_)));
   }
 
+  fs::path base_;
   const std::vector<std::string>& folders_;
   ConfigFaults& faults_;
   std::map<std::string, drive::LoadedProfile> loaded_;
@@ -139,7 +162,7 @@ std::optional<drive::DriveModel> load_model(const BusConfig& bus, DriveConfig& c
 std::vector<std::vector<drive::DriveModel>> load_models(Config& config, const std::vector<std::string>& profile_folders,
                                                         ConfigFaults& faults) {
   std::vector<std::vector<drive::DriveModel>> models;
-  Profiles profiles(profile_folders, faults);
+  Profiles profiles(config.file, profile_folders, faults);
   for (BusConfig& bus : config.buses) {
     auto& drives = models.emplace_back();
     if (faults.within(bus.pointer + "/adapter")) continue;  // no protocol to resolve for

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "gateway/app/profile_folders.hpp"
+#include "gateway/core/nearest.hpp"
 #include "gateway/core/words.hpp"
 #include "gateway/image/register_map.hpp"
 #include "gateway/upstream/modbus_tcp/refused_blocks.hpp"
@@ -75,8 +76,11 @@ int run(const ExplainOptions& options) {
   const std::string out = explanation(typed, options.profile_folders);
   fmt::print("{}", out);
   if (!out.empty()) return 0;
-  fmt::print(stderr, "axisgate explain: nothing is called '{}'; axisgate explain, without a word, lists all names\n",
-             typed);
+  std::vector<std::string> names;
+  for (const Word& word : words()) names.emplace_back(word.name);
+  const auto near = nearest(typed, names);
+  fmt::print(stderr, "axisgate explain: nothing is called '{}'{} axisgate explain, without a word, lists all names\n",
+             typed, near ? did_you_mean(typed, names) : ";");
   return 1;
 }
 

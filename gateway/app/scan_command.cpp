@@ -18,6 +18,7 @@
 #include "gateway/app/profile_folders.hpp"
 #include "gateway/app/scan_progress.hpp"
 #include "gateway/app/scan_table.hpp"
+#include "gateway/app/serial_scan.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -190,9 +191,7 @@ void tell_why(const ScanOptions& options, const Scanner& scan) {
   fmt::print(stderr, "{}\n", scan.why());
   if (scan.was_up()) return;
   if (can::parse_can_device(options.device).lawicel)
-    fmt::print(stderr,
-               "Is the adapter plugged in, and may you open it (group dialout)? ls -l /dev/serial/by-id lists those "
-               "that are there.\n");
+    fmt::print(stderr, "Is the adapter plugged in? ls -l /dev/serial/by-id lists those that are there.\n");
 }
 
 int tell(const ScanOptions& options, const Scanner& scan) {
@@ -216,6 +215,9 @@ int tell(const ScanOptions& options, const Scanner& scan) {
 }  // namespace
 
 int run(const ScanOptions& options) {
+  // A CAN interface's name has no '/'.
+  if (!can::parse_can_device(options.device).lawicel && options.device.find('/') != std::string::npos)
+    return run_serial_scan(options);
   if (const std::string mistake = can::can_device_mistake(options.device, options.bitrate); !mistake.empty()) {
     fmt::print(stderr, "axisgate scan: {}\n", mistake);
     return kWrongCommandLine;

@@ -34,21 +34,26 @@ std::string characters(const bus::ExchangeResult& result) {
   return out;
 }
 
-std::optional<std::uint8_t> node_of(std::string_view digits) {
+std::optional<std::uint8_t> node_of(std::string_view digits, std::uint8_t last) {
   std::uint8_t node = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), node);
   const bool whole = error == std::errc() && end == digits.data() + digits.size();
-  return whole && node >= 1 && node <= ScanPlan::kLastNode ? std::optional(node) : std::nullopt;
+  return whole && node >= 1 && node <= last ? std::optional(node) : std::nullopt;
 }
 
 }  // namespace
 
-std::optional<ScanRange> parse_scan_range(std::string_view text) {
+std::optional<ScanRange> parse_scan_range(std::string_view text, std::uint8_t largest) {
   const std::size_t dash = text.find('-');
-  const auto first = node_of(text.substr(0, dash));
-  const auto last = dash == std::string_view::npos ? first : node_of(text.substr(dash + 1));
+  const auto first = node_of(text.substr(0, dash), largest);
+  const auto last = dash == std::string_view::npos ? first : node_of(text.substr(dash + 1), largest);
   if (!first || !last || *first > *last) return std::nullopt;
   return ScanRange{*first, *last};
+}
+
+// has/of compared without a division.
+bool better_fit(const ScanFit& a, const ScanFit& b) {
+  return a.has * b.of != b.has * a.of ? a.has * b.of > b.has * a.of : a.has > b.has;
 }
 
 ScanPlan::ScanPlan(const std::vector<drive::Profile>& profiles, ScanRange range) : range_(range) {
@@ -186,10 +191,7 @@ std::vector<ScanFit> ScanPlan::fits() const {
     }
     if (fit.of > 0 && 2 * fit.has >= fit.of) out.push_back(std::move(fit));
   }
-  // has/of compared without a division; of two that fit alike, the one that more objects speak for.
-  std::stable_sort(out.begin(), out.end(), [](const ScanFit& a, const ScanFit& b) {
-    return a.has * b.of != b.has * a.of ? a.has * b.of > b.has * a.of : a.has > b.has;
-  });
+  std::stable_sort(out.begin(), out.end(), better_fit);
   return out;
 }
 

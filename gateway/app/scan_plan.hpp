@@ -35,6 +35,9 @@ struct FoundNode {
   std::vector<ScanFit> fits;  ///< the best first; those that have less than half are left out
 };
 
+/// Of two that fit alike, the one that more objects speak for.
+[[nodiscard]] bool better_fit(const ScanFit& a, const ScanFit& b);
+
 /// The node-IDs that are asked, both ends included.
 struct ScanRange {
   std::uint8_t first = 1;
@@ -42,8 +45,8 @@ struct ScanRange {
   [[nodiscard]] int count() const { return last - first + 1; }
   friend bool operator==(const ScanRange&, const ScanRange&) = default;
 };
-/// "5" or "1-10", of 1 to 127; no value: neither.
-[[nodiscard]] std::optional<ScanRange> parse_scan_range(std::string_view text);
+/// "5" or "1-10", of 1 to `last`; no value: neither.
+[[nodiscard]] std::optional<ScanRange> parse_scan_range(std::string_view text, std::uint8_t last = 127);
 
 class ScanPlan {
  public:

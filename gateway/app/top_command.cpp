@@ -8,13 +8,12 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <charconv>
 #include <csignal>
 #include <map>
-#include <optional>
 
 #include "gateway/app/config_loader.hpp"
 #include "gateway/app/faults_told.hpp"
+#include "gateway/app/host_port.hpp"
 #include "gateway/app/top_client.hpp"
 #include "gateway/app/top_screen.hpp"
 #include "gateway/app/top_table.hpp"
@@ -30,32 +29,10 @@ constexpr std::chrono::milliseconds kConnectLimit{3000};
 constexpr std::chrono::milliseconds kRetryPeriod{1000};
 constexpr std::uint8_t kTargetFailed = 0x0B;  // a listener with "offline_reads": "exception" says so of a silent axis
 
-struct Place {
-  std::string host;
-  std::uint16_t port = 0;
-};
-
-/// "HOST:PORT" and "[IPV6]:PORT"; names are fine here, a person asks for them.
-std::optional<Place> parse_place(std::string_view text) {
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string_view::npos || colon == 0) return std::nullopt;
-  std::string_view host = text.substr(0, colon);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
-    host = host.substr(1, host.size() - 2);
-  } else if (host.find(':') != std::string_view::npos) {
-    return std::nullopt;
-  }
-  const std::string_view digits = text.substr(colon + 1);
-  Place place{std::string(host), 0};
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), place.port);
-  if (error != std::errc() || end != digits.data() + digits.size() || place.port == 0) return std::nullopt;
-  return place;
-}
-
 class Top {
  public:
   using Names = std::map<AxisNumber, std::string>;
-  Top(boost::asio::io_context& io, const TopOptions& options, Place place, Names names)
+  Top(boost::asio::io_context& io, const TopOptions& options, HostPort place, Names names)
       : options_(options),
         place_(std::move(place)),
         names_(std::move(names)),
@@ -153,7 +130,7 @@ class Top {
   }
 
   TopOptions options_;
-  Place place_;
+  HostPort place_;
   Names names_;
   TopClient client_;
   boost::asio::steady_timer pause_;
@@ -190,10 +167,9 @@ bool show_until_told(Top& top, boost::asio::io_context& io, std::uint32_t second
 }  // namespace
 
 int run(const TopOptions& options) {
-  auto place = parse_place(options.endpoint);
+  auto place = parse_host_port(options.endpoint);
   if (!place) {
-    fmt::print(stderr, "axisgate top: '{}' is no HOST:PORT: write 127.0.0.1:1502, gateway.local:1502 or [::1]:1502\n",
-               options.endpoint);
+    fmt::print(stderr, "axisgate top: {}\n", host_port_mistake(options.endpoint));
     return kWrongCommandLine;
   }
   Top::Names names;

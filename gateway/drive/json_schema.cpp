@@ -10,6 +10,8 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
+#include "gateway/core/nearest.hpp"
+
 namespace axisgate::drive {
 namespace {
 
@@ -78,11 +80,6 @@ std::vector<std::string> texts(const json* values) {
     for (const json& value : *values)
       if (value.is_string()) out.push_back(value);
   return out;
-}
-
-std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
-  const std::optional<std::string> near = nearest(name, known);
-  return near ? "; did you mean \"" + *near + "\"?" : "";
 }
 
 /// A parent only repeats that something below it is wrong: the fault below has its own line.
@@ -177,20 +174,6 @@ class Wording {
   std::vector<SchemaFault>& out_;
 };
 
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
-}
-
 }  // namespace
 
 std::vector<SchemaFault> validate(const json& document, const json& schema) {
@@ -216,20 +199,6 @@ std::vector<SchemaFault> validate(const json& document, const json& schema) {
     for (const auto& [keys, description] : echoes) wording.add(keys, description);
   if (faults.empty()) faults.push_back({"", "does not fit the schema"});
   return faults;
-}
-
-std::optional<std::string> nearest(std::string_view name, const std::vector<std::string>& known) {
-  const std::size_t enough = name.size() <= 3 ? 1 : std::max<std::size_t>(2, name.size() / 3);
-  std::optional<std::string> best;
-  std::size_t least = enough + 1;
-  for (const std::string& candidate : known) {
-    const std::size_t d = distance(name, candidate);
-    if (d < least) {
-      least = d;
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 std::string pointer_to(std::string_view parent, std::string_view key) {

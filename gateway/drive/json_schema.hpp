@@ -38,9 +38,6 @@ inline constexpr std::size_t kMaxJsonString = 4096;
 /// "expects": in words what the text must be (at "patternProperties": what a key must be).
 [[nodiscard]] std::vector<SchemaFault> validate(const nlohmann::json& document, const nlohmann::json& schema);
 
-/// The known name nearest to `name`, where one is near enough to be what was meant.
-[[nodiscard]] std::optional<std::string> nearest(std::string_view name, const std::vector<std::string>& known);
-
 /// One more step of a JSON pointer, escaped.
 [[nodiscard]] std::string pointer_to(std::string_view parent, std::string_view key);
 [[nodiscard]] std::string pointer_to(std::string_view parent, std::size_t index);

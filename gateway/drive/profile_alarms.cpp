@@ -81,7 +81,7 @@ WriteSpec read_write(Reading& reading, const json& node, const std::string& poin
     for (const std::string& protocol : out.on) {
       if (!reading.profile.protocols.contains(protocol))
         reading.fault(pointer_to(pointer, "on"), "protocol \"" + protocol + "\" is not under /protocols" +
-                                                     hint(protocol, keys_in(reading.profile.protocols)));
+                                                     did_you_mean(protocol, keys_in(reading.profile.protocols)));
       else if (!object.places.contains(protocol))
         reading.fault(pointer_to(pointer, "on"), "object \"" + object.name + "\" has no address on " + protocol);
     }

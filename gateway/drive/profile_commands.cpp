@@ -215,12 +215,12 @@ void read_command(Reading& reading, const std::string& key, const json& node) {
   if (!command) {
     std::vector<std::string> known;
     for (const auto& [text, unused] : kCommands) known.emplace_back(text);
-    return reading.fault(out.pointer, "unknown command \"" + name + "\"" + hint(name, known));
+    return reading.fault(out.pointer, "unknown command \"" + name + "\"" + did_you_mean(name, known));
   }
   out.command = *command;
   if (at != std::string::npos && !reading.profile.protocols.contains(out.protocol))
     reading.fault(out.pointer, "protocol \"" + out.protocol + "\" is not under /protocols" +
-                                   hint(out.protocol, keys_in(reading.profile.protocols)));
+                                   did_you_mean(out.protocol, keys_in(reading.profile.protocols)));
   read_options(reading, node, out);
   read_variants(reading, node, out);
   out.steps = StepReader(reading).read(node, out.pointer);

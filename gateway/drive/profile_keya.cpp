@@ -141,7 +141,8 @@ class FrameReader {
     const auto known = out_.frames.find(confirm);
     if (!confirm.empty() && (known == out_.frames.end() || (known->second.kind != FrameSpec::Kind::query &&
                                                             known->second.kind != FrameSpec::Kind::wrong)))
-      reading_.fault(pointer_to(at, "confirm"), "unknown request \"" + confirm + "\"" + hint(confirm, queries()));
+      reading_.fault(pointer_to(at, "confirm"),
+                     "unknown request \"" + confirm + "\"" + did_you_mean(confirm, queries()));
     if (silent && confirm.empty())
       reading_.fault(at, "a request without an answer needs \"confirm\": what else would decide its outcome?");
     const bool control = out_.frames.find(name)->second.kind == FrameSpec::Kind::control;
@@ -179,7 +180,7 @@ class PlaceInFrame {
     if (frame == frames.end()) {
       reading_.fault(pointer_to(pointer_, "request"), "unknown request \"" + out.request + "\": not under /protocols/" +
                                                           std::string(layout_.protocol) +
-                                                          hint(out.request, keys_in(frames)));
+                                                          did_you_mean(out.request, keys_in(frames)));
       return std::nullopt;
     }
     if (member(node, "byte") == nullptr) return refuse("give the \"byte\" of the frame with which the value begins");

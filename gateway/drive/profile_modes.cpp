@@ -28,7 +28,7 @@ void check_mode_constant(Reading& reading, const std::string& name, const std::s
   const auto constant = reading.profile.constants.find(name);
   if (constant == reading.profile.constants.end())
     return reading.fault(pointer, "unknown constant \"" + name + "\": not under /constants" +
-                                      hint(name, keys_in(reading.profile.constants)));
+                                      did_you_mean(name, keys_in(reading.profile.constants)));
   const Constant& found = constant->second;
   const std::string at = pointer_to("/constants", name);
   if (found.from_drive || (!found.standard && !found.required))
@@ -61,7 +61,7 @@ void check_known_protocols(Reading& reading, const std::vector<std::string>& pro
   for (const std::string& protocol : protocols)
     if (!reading.profile.protocols.contains(protocol))
       reading.fault(pointer, "protocol \"" + protocol + "\" is not under /protocols" +
-                                 hint(protocol, keys_in(reading.profile.protocols)));
+                                 did_you_mean(protocol, keys_in(reading.profile.protocols)));
 }
 
 /// Repeated is the set-point of the mode, and no other object: nothing that would start something anew.

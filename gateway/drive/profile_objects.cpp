@@ -115,7 +115,7 @@ void read_object(Reading& reading, const std::string& name, const json& node) {
   out.unit = text_in(node, "unit");
   if (!out.unit.empty() && !reading.profile.units.contains(out.unit))
     reading.fault(pointer_to(out.pointer, "unit"), "unknown unit \"" + out.unit + "\": not under /units" +
-                                                       hint(out.unit, keys_in(reading.profile.units)));
+                                                       did_you_mean(out.unit, keys_in(reading.profile.units)));
   out.alias_of = text_in(node, "alias_of");
   read_range(reading, node, out);
   if (out.trigger && !out.writable)
@@ -125,7 +125,7 @@ void read_object(Reading& reading, const std::string& name, const json& node) {
       const std::string at = pointer_to(pointer_to(out.pointer, "at"), protocol);
       if (!reading.profile.protocols.contains(protocol)) {
         reading.fault(at, "protocol \"" + protocol + "\" is not under /protocols" +
-                              hint(protocol, keys_in(reading.profile.protocols)));
+                              did_you_mean(protocol, keys_in(reading.profile.protocols)));
         continue;
       }
       if (std::optional<Place> found = PlaceReader(reading, out, protocol, at).read(place))

@@ -100,8 +100,8 @@ void read_units(Reading& reading, const json& node, QuantitySpec& out) {
   }
   for (const std::string& name : out.units)
     if (!name.empty() && !reading.profile.units.contains(name))
-      reading.fault(pointer,
-                    "unknown unit \"" + name + "\": not under /units" + hint(name, keys_in(reading.profile.units)));
+      reading.fault(pointer, "unknown unit \"" + name + "\": not under /units" +
+                                 did_you_mean(name, keys_in(reading.profile.units)));
 }
 
 void read_limits(Reading& reading, const json& node, QuantitySpec& out) {

@@ -27,7 +27,7 @@ bool Reading::names_object(const std::string& object, const std::string& pointer
     const bool some =
         std::any_of(known.begin(), known.end(), [&](const std::string& name) { return name.ends_with("." + object); });
     fault(pointer, some ? "there is no object \"" + profile.axes[slot] + "." + object + "\", but one for another axis"
-                        : "unknown object \"" + object + "\": not under /objects" + hint(object, known));
+                        : "unknown object \"" + object + "\": not under /objects" + did_you_mean(object, known));
     return false;
   }
   return true;
@@ -102,10 +102,5 @@ bool waits_for_drive(const Profile& profile, const Unit& unit) {
 }
 
 std::string range_text(const Range& range) { return std::to_string(range.min) + " to " + std::to_string(range.max); }
-
-std::string hint(std::string_view name, const std::vector<std::string>& known) {
-  const std::optional<std::string> near = nearest(name, known);
-  return near ? "; did you mean \"" + *near + "\"?" : "";
-}
 
 }  // namespace axisgate::drive

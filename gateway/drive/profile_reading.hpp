@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gateway/core/nearest.hpp"
 #include "gateway/drive/json_schema.hpp"
 #include "gateway/drive/profile.hpp"
 
@@ -78,8 +79,6 @@ template <class Map>
   for (const auto& [key, value] : map) out.push_back(key);
   return out;
 }
-/// `; did you mean "x"?`, or nothing.
-[[nodiscard]] std::string hint(std::string_view name, const std::vector<std::string>& known);
 
 // The sections, in the order in which they must be read.
 void read_constants(Reading& reading);

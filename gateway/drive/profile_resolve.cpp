@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "gateway/core/nearest.hpp"
 #include "gateway/drive/json_schema.hpp"
 #include "gateway/drive/profile_resolving.hpp"
 

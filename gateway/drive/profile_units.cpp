@@ -52,7 +52,7 @@ std::vector<Factor> factors(Reading& reading, const json& node, std::string_view
       const auto constant = reading.profile.constants.find(name);
       if (constant == reading.profile.constants.end())
         reading.fault(at, "unknown constant \"" + name + "\": not under /constants" +
-                              hint(name, keys_in(reading.profile.constants)));
+                              did_you_mean(name, keys_in(reading.profile.constants)));
       else if (!constant->second.from_drive && (!constant->second.min || constant->second.min->numerator() <= 0))
         reading.fault(at, "constant \"" + name + "\" is a factor: give it a \"range\" above 0");
       out.emplace_back(name);

@@ -30,8 +30,8 @@ std::optional<Amount> Reading::amount(const json& node, const std::string& point
   } else {
     const auto constant = profile.constants.find(number);
     if (constant == profile.constants.end())
-      fault(pointer,
-            "unknown constant \"" + number + "\": not under /constants" + hint(number, keys_in(profile.constants)));
+      fault(pointer, "unknown constant \"" + number + "\": not under /constants" +
+                         did_you_mean(number, keys_in(profile.constants)));
     else if (constant->second.from_drive)
       fault(pointer, "constant \"" + number + "\" is read from the drive: no amount can be told by it beforehand");
     out.number = number;
@@ -103,7 +103,7 @@ void Reading::by_constant(const json& node, std::int64_t mask, const std::string
   const auto constant = profile.constants.find(out.constant);
   if (constant == profile.constants.end())
     return fault(pointer, "unknown constant \"" + out.constant + "\": not under /constants" +
-                              hint(out.constant, keys_in(profile.constants)));
+                              did_you_mean(out.constant, keys_in(profile.constants)));
   if (constant->second.from_drive)
     return fault(pointer, "constant \"" + out.constant + "\" is read from the drive: no condition can wait for it");
   const auto most = constant->second.max ? constant->second.max->scale(out.times) : std::nullopt;

@@ -37,14 +37,15 @@ ONE_PLACE = {
     r"<modbus(/modbus)?\.h>": ("adapters/modbus_rtu/",),
     r"<linux/can": ("adapters/can/", "tests/axisgate_sim/", "tests/unit/can/", "tests/vcan/", "tests/bench/"),
     r"<fastdds|<fastrtps|PubSubTypes": ("gateway/upstream/dds_process/", "deploy/examples/", "tests/dds_peers/"),
-    r"<termios\.h>|<sys/inotify\.h>|<linux/serial\.h>": ("adapters/serial/",),
+    r"<termios\.h>|<sys/inotify\.h>|<linux/serial\.h>": ("adapters/serial/", "adapters/asio/key_mode"),
     r"<valijson/": ("gateway/drive/json_schema.cpp",),
-    r"<CLI/": ("gateway/app/command_line.cpp", "gateway/upstream/dds_process/options.cpp", "gateway/manual/command_tree.cpp"),
+    r"<CLI/": ("gateway/app/command_", "gateway/upstream/dds_process/options.cpp", "gateway/manual/command_tree.cpp"),
 }
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
 DECIDING = ("gateway/core/", "gateway/image/", "gateway/drive/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/", "gateway/upstream/dds_host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_", "adapters/canopen/", "adapters/keya/",
-            "adapters/can/can_", "adapters/can/lawicel", "gateway/app/config_", "gateway/app/bus_budget", "gateway/app/check.")
+            "adapters/can/can_", "adapters/can/lawicel", "gateway/app/config_", "gateway/app/bus_budget", "gateway/app/check.", "gateway/app/hand_keys", "gateway/app/hand_plan", "gateway/app/hand_view",
+            "gateway/app/scan_plan")
 SHELLS = tuple(f"gateway/upstream/modbus_tcp/{shell}" for shell in ("server", "listener", "connection"))
 IMPURE = re.compile(r'#include <(boost/asio|boost/beast|sys/socket|sys/epoll|poll\.h|thread|mutex|condition_variable|atomic|random)'
                     r'|(steady|system|high_resolution)_clock::now|std::chrono::\w*clock::now|\bsleep_for\b|\brand\(')

@@ -22,7 +22,9 @@ TEST_P(ConfigWith, IsToldInExactlyTheExpectedWords) {
   fs::current_path(kFolder / "invalid");
   const test::OwnFolder folder;
   const std::string here = folder.path().string() + "/";
-  fs::create_directory(here + "profiles");  // of this name there is a folder and no file
+  // A profile's path counts from the configuration; of the name "profiles" there is a folder and no file.
+  fs::create_directory_symlink(kFolder / "invalid/profiles", here + "profiles");
+  fs::create_directory_symlink(kFolder.parent_path() / "profiles/valid", here + "valid");
   const LoadResult result = load_config(folder.write("gateway.json", GetParam().file).string(), kProfiles);
   std::string told;
   if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) {

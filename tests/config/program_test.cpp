@@ -58,12 +58,25 @@ TEST_F(Program, CheckEndsWithOneWhereABusIsOverloaded) {
 
 TEST_F(Program, WrongCommandLinesEndWithTwoAndNameTheWord) {
   const std::pair<std::string, std::string> cases[] = {
-      {"chekc x.json", "'chekc'"},
+      {"chekc x.json", "axisgate: there is no command 'chekc'; did you mean \"check\"?"},
+      {"banana", "axisgate: there is no command 'banana'; axisgate --help lists them"},
+      {"profile chekc x.json", "axisgate profile: there is no command 'chekc'; did you mean \"check\"?"},
+      {"top 127.0.0.1:1 --interfal 5", "--interfal: did you mean \"--interval\"?"},
+      {"top 127.0.0.1:1 --interfal=5", "--interfal: did you mean \"--interval\"?"},
+      {"run x.json --log-level waring", "'waring' is none of: error, warning, info, debug; did you mean \"warning\"?"},
+      {"map x.json --format jsno", "'jsno' is none of: table, md, csv, json, st; did you mean \"json\"?"},
       {"check", "CONFIG"},
       {"map x.json --format xml", "--format"},
       {"scan", "DEVICE"},
       {"scan slcan:", "slcan: must be followed by the path of a serial port"},
-      {"scan /dev/ttyACM0", "a serial CAN adapter is given as slcan:PATH"},
+      {"scan /dev/ttyACM0 --protocol kinco", "'kinco' is none of: kinco-serial, modbus-rtu"},
+      {"scan /dev/ttyACM0 --stations 0-5", "'0-5' is no station and no range of them"},
+      {"move 127.0.0.1:1502 1", "TURNS"},
+      {"move 127.0.0.1:1502 1 12,5", "'12,5' is no number of turns: write 12.5"},
+      {"move 127.0.0.1 1 2", "'127.0.0.1' is no HOST:PORT"},
+      {"jog 127.0.0.1:1502 1 --velocity -5", "'-5' is no speed"},
+      {"jog 127.0.0.1:1502 1", "axisgate jog: needs a terminal"},
+      {"enable 127.0.0.1:1502 500", "AXIS"},
       {"scan can0 --bitrate 5000", "5000 bit/s is no bit rate of CAN"},
       {"scan slcan:/dev/ttyACM0 --bitrate 300000", "serial CAN adapters offer 10000, 20000"},
       {"scan can0 --nodes 0-5", "'0-5' is no node-ID and no range of them"},
@@ -78,12 +91,55 @@ TEST_F(Program, WrongCommandLinesEndWithTwoAndNameTheWord) {
   }
 }
 
+TEST_F(Program, ExplainNamesTheNearestWord) {
+  const Ended ended = run("explain stop_lached");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err, HasSubstr("nothing is called 'stop_lached'; did you mean \"stop_latched\"?"));
+  EXPECT_EQ(run("explain bananarama").err,
+            "axisgate explain: nothing is called 'bananarama'; axisgate explain, without a word, lists all names\n");
+}
+
+TEST_F(Program, AProfilesPathCountsFromItsConfigurationWhereverTheProgramIsStarted) {
+  fs::create_directories(folder() / "site/drives");
+  fs::copy(AXISGATE_SOURCE_DIR "/schemas/drives/kinco-jd.json", folder() / "site/drives/kinco-jd.json");
+  std::string config = one_drive("/dev/ttyUSB0", 1, "");
+  config.replace(config.find("kinco-jd"), 8, "drives/kinco-jd.json");
+  write("site/gateway.json", config);
+  const std::string program = AXISGATE_PROGRAM;
+  for (const std::string from : {"site", "site/drives", "."}) {
+    const fs::path file = fs::relative(folder() / "site/gateway.json", folder() / from);
+    const Ended ended = run_command("cd " + (folder() / from).string() + " && " + program + " check " + file.string());
+    EXPECT_EQ(ended.code, 0) << from << ": " << ended.err;
+  }
+  // What lies where the program is started is no profile of that configuration.
+  fs::rename(folder() / "site/drives", folder() / "drives");
+  const Ended ended = run_command("cd " + folder().string() + " && " + program + " check site/gateway.json");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err,
+              HasSubstr("there is no file site/drives/kinco-jd.json: a path that does not begin with / counts "
+                        "from this file"));
+}
+
+TEST_F(Program, AWrongKeyOrValueOfAConfigurationOrAProfileIsNamedWithTheNearestRightOne) {
+  std::string config = one_drive("/dev/ttyUSB0", 1, "");
+  config.replace(config.find("\"device\""), 8, "\"devcie\"");
+  EXPECT_THAT(run("check " + write("key.json", config)).err,
+              HasSubstr("/buses/0/devcie: unknown key \"devcie\"; did you mean \"device\"?"));
+  config = one_drive("/dev/ttyUSB0", 1, "");
+  config.replace(config.find("kinco-serial"), 12, "kinco-seral");
+  EXPECT_THAT(run("check " + write("value.json", config)).err, HasSubstr("did you mean \"kinco-serial\"?"));
+  std::string profile = test::content(AXISGATE_SOURCE_DIR "/schemas/drives/kinco-jd.json");
+  profile.replace(profile.find("\"quantities\""), 12, "\"quantites\"");
+  EXPECT_THAT(run("profile check " + write("profile.json", profile)).err,
+              HasSubstr("/quantites: unknown key \"quantites\"; did you mean \"quantities\"?"));
+}
+
 TEST_F(Program, ScanOfWhatIsNotThereEndsWithTheReason) {
   Ended ended = run("scan slcan:" + (folder() / "no-adapter").string());
   EXPECT_EQ(ended.code, 1);
   EXPECT_EQ(ended.err, (folder() / "no-adapter").string() +
-                           ": No such file or directory\nIs the adapter plugged in, and may you open it (group "
-                           "dialout)? ls -l /dev/serial/by-id lists those that are there.\n");
+                           ": No such file or directory\nIs the adapter plugged in? ls -l /dev/serial/by-id lists "
+                           "those that are there.\n");
   EXPECT_EQ(ended.out, "");
   // With a kernel that has CAN, and with one that has not.
   ended = run("scan nosuchcan9");
@@ -100,7 +156,8 @@ TEST_F(Program, ScanHelpWarnsOfAGatewayOnTheSameBus) {
 }
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
-  for (const char* command : {"", "run ", "check ", "map ", "top ", "profile check ", "commission ", "scan "}) {
+  for (const char* command : {"", "run ", "check ", "map ", "top ", "profile check ", "commission ", "scan ", "enable ",
+                              "move ", "jog ", "stop "}) {
     const Ended ended = run(std::string(command) + "--help");
     EXPECT_EQ(ended.code, 0) << command;
     EXPECT_THAT(ended.out, HasSubstr(std::string("Example: axisgate ") + command)) << command;

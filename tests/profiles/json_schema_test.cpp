@@ -57,11 +57,6 @@ TEST(JsonSchema, ADocumentOfAnotherKindIsAFault) {
   EXPECT_THAT(faults("[1]"), ElementsAre(SchemaFault{"", "must be object, is array"}));
 }
 
-TEST(JsonSchema, NamesFarFromEveryKnownOneSuggestNothing) {
-  EXPECT_EQ(nearest("velocity", {"statusword", "mode"}), std::nullopt);
-  EXPECT_EQ(nearest("velocty", {"statusword", "velocity"}), "velocity");
-}
-
 std::string refusal(std::string_view text) {
   const auto parsed = parse_json(text);
   const auto* fault = std::get_if<SchemaFault>(&parsed);

@@ -57,7 +57,9 @@ std::string remedy(const error_code& error) {
   if (error == boost::asio::error::address_in_use)
     return "; another program has it: stop that one or choose another port";
   if (error == boost::asio::error::access_denied) {
-    return "; ports below 1024 need root or CAP_NET_BIND_SERVICE: choose 1502 or grant it";
+    return "; ports below 1024 need root or CAP_NET_BIND_SERVICE: choose 1502, or grant it (setcap "
+           "cap_net_bind_service=+ep "
+           "PROGRAM; systemd: AmbientCapabilities=CAP_NET_BIND_SERVICE)";
   }
   if (error.value() == EADDRNOTAVAIL) return "; no interface of this machine has this address (0.0.0.0 means all)";
   if (error.value() == EAFNOSUPPORT) return "; this system has no IPv6: write an IPv4 address";
