@@ -65,7 +65,7 @@ class Images(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             ENGINE("export", "--output", f"{folder}/image.tar", container.name)
             with tarfile.open(f"{folder}/image.tar") as archive:
-                files = {entry.name.strip("/"): entry for entry in archive}
+                files = {entry.name.strip("/"): entry for entry in archive if entry.name.strip("./")}
         container.remove()
         return files
 
@@ -106,7 +106,8 @@ class Images(unittest.TestCase):
         for image in self.SHIPPED:
             config = ENGINE.json("image", "inspect", image)[0]["Config"]
             self.assertEqual(config["StopSignal"], "SIGTERM")
-            self.assertEqual(config["Healthcheck"]["Test"][:3], ["CMD", "/usr/bin/axisgate", "top"])
+            health = ENGINE.json("image", "inspect", image)[0]["Healthcheck"]["Test"]
+            self.assertEqual(health[:3], ["CMD", "/usr/bin/axisgate", "top"])
 
     def test_the_shipped_profiles_are_found(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -149,8 +150,8 @@ class Cell(unittest.TestCase):
         lines = ENGINE("volume", "inspect", "--format", "{{.Mountpoint}}", cls.cell.full("lines"))
         cls.control = f"{lines}/control"
         # A set that does not come up fails once, not in each test.
-        until("the gateway answers", lambda: cls.cell.gateway.healthy())
-        until("both drives are there", lambda: cls.cell.simulator.running() and cls.ask_simulator("lines"))
+        until("both axes are online", lambda: "axes online 2 of 2" in ENGINE.done(
+            "exec", cls.cell.gateway.name, "/usr/bin/axisgate", "top", f"127.0.0.1:{PORT}", "--once").stdout)
 
     def setUp(self):
         self.client = self.connect()
