@@ -46,7 +46,7 @@ class Follower(Program):
     def __init__(self, engine, container):
         super().__init__(f"logs of {container}", [*engine.command, "logs", "--follow", "--tail", "1", container])
 
-    def sees(self, what, look, since=0):
+    def sees(self, what, look, since=0, seconds=NEVER):
         """The first JSON line from `since` on for which `look` is true."""
         at = since
 
@@ -60,7 +60,7 @@ class Follower(Program):
                     return told
             return None
 
-        return until(f"{self.name}: {what}", next_one)
+        return until(f"{self.name}: {what}", next_one, seconds)
 
     def now(self):
         return len(self.lines)

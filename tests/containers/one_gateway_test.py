@@ -7,7 +7,7 @@ import unittest
 
 from compose import Container
 from container_stage import ENGINE, SIMULATOR, SOURCE, USER, patient, plain_json
-from processes import Program, until
+from processes import NEVER, Program, until
 
 SEALED = ["--read-only", "--read-only-tmpfs=false", "--cap-drop=all", "--security-opt=no-new-privileges"]
 
@@ -107,10 +107,11 @@ class ManyGateways(unittest.TestCase):
         server.kill()
         server.start()
         self.start_cell(3)
-        self.assert_sees(reader, 3)
+        # Each participant takes the server for alive until its lease of 20 s is over, and then looks for it anew.
+        self.assert_sees(reader, 3, seconds=10 * NEVER)
 
-    def assert_sees(self, reader, *axes):
+    def assert_sees(self, reader, *axes, seconds=NEVER):
         follower = reader.follow()
         self.addCleanup(follower.clean_up)
         for axis in axes:
-            follower.sees(f"axis {axis}", lambda told, axis=axis: told.get("name") == f"lift-{axis}")
+            follower.sees(f"axis {axis}", lambda told, axis=axis: told.get("name") == f"lift-{axis}", seconds=seconds)
