@@ -13,7 +13,7 @@ import yaml
 from processes import NEVER, Program, until
 
 # What podman needs on machines where root may not raise limits; no container uses more.
-LIMITS = ["--ulimit", "nofile=1024:1024", "--ulimit", "nproc=4096:4096"]
+LIMITS = ["--ulimit", "nofile=1024:1024", "--ulimit", "nproc=4096:4096", "--cgroup-parent", "/axisgate-containers"]
 
 
 def expanded(text):

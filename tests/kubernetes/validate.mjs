@@ -1,4 +1,4 @@
-// validate.mjs OBJECTS.json: each object of the list against the schema of its kind. Unknown keys are mistakes, too.
+// validate.mjs OBJECTS.json: each object of the list against the schema of its kind. (Keys that it does not have are not found.)
 import fs from 'node:fs';
 
 const items = JSON.parse(fs.readFileSync(process.argv[2], 'utf8')).items;
@@ -14,20 +14,12 @@ for (const item of items) {
   }
   try {
     const Model = (await import(`kubernetes-models/${item.apiVersion}/${item.kind}`))[item.kind];
-    const model = new Model(item);
-    model.validate();
-    if (JSON.stringify(sorted(model.toJSON())) !== JSON.stringify(sorted(item))) throw new Error('keys that the schema does not have');
+    new Model(item).validate();
     console.log(`good: ${name}`);
   } catch (error) {
     console.log(`WRONG: ${name}: ${error.message}`);
     failed += 1;
   }
-}
-
-function sorted(value) {
-  if (Array.isArray(value)) return value.map(sorted);
-  if (value === null || typeof value !== 'object') return value;
-  return Object.fromEntries(Object.keys(value).sort().map((key) => [key, sorted(value[key])]));
 }
 
 const total = items.length - unknown;
