@@ -111,6 +111,9 @@ void add_top(CLI::App& app, Parsed& parsed) {
       ->type_name("N")
       ->capture_default_str();
   command->add_flag("--plain", parsed.top.plain, "print one table after the other, for pipes and logs");
+  command->add_flag_callback(
+      "--once", [&parsed] { parsed.top.count = 1; },
+      "one table, then the end; exit code 1: the gateway does not answer (for health checks)");
   command->footer(
       "A terminal of 80 columns is enough. Lines in red and yellow ask for attention; NO_COLOR=1 leaves colours out.\n"
       "Example: axisgate top 127.0.0.1:1502");

@@ -186,6 +186,20 @@ class Top(Story):
         until("it is there", lambda: abs(axis.get("position_actual") - target) <= 5)
         axis.command("disable")
 
+    def test_once_tells_a_health_check_whether_the_gateway_answers(self):
+        self.start()
+        endpoint = f"127.0.0.1:{self.ports[0]}"
+        shown = self.command_line("top", endpoint, "--once")
+        self.assertEqual(shown.returncode, 0, shown.stderr)
+        self.assertIn("axes online 2 of 2", shown.stdout)
+        self.sim.ask("unplug lift")
+        self.axis(1).until(link_state=5)
+        self.assertEqual(self.command_line("top", endpoint, "--once").returncode, 0, "a dead drive is not a dead gateway")
+        self.gateway.terminate()
+        silent = self.command_line("top", endpoint, "--once")
+        self.assertEqual((silent.returncode, silent.stdout), (1, ""))
+        self.assertIn(f"cannot read {endpoint}", silent.stderr)
+
     def test_it_shows_what_is_out_of_reach(self):
         self.start([self.listener(offline_reads="exception"), self.listener()])
         self.sim.ask("unplug lift")
