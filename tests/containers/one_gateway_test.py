@@ -31,13 +31,17 @@ class OneGateway(unittest.TestCase):
         del config["dds"], config["buses"][1]
         config["buses"][0]["device"] = "/dev/lift"
         config.update(more)
-        with open(f"{self.folder}/gateway.json", "w", encoding="utf-8") as file:
-            json.dump(config, file)
+        self.write(config)
         container = Container(ENGINE, "one")
         self.addCleanup(container.remove)
         container.create([*SEALED, "--network", "none", "--volume", f"{self.folder}/gateway.json:/etc/axisgate/gateway.json:ro", *options], image, [])
         container.start()
         return container
+
+    def write(self, config):
+        self.config = config
+        with open(f"{self.folder}/gateway.json", "w", encoding="utf-8") as file:
+            json.dump(config, file)
 
     def top(self, container):
         return ENGINE.done("exec", container.name, "/usr/bin/axisgate", "top", "127.0.0.1:1502", "--once").stdout
@@ -50,6 +54,15 @@ class OneGateway(unittest.TestCase):
     def test_a_granted_device_is_used(self):
         container = self.gateway("localhost/axisgate", *self.granted())
         until("its axis is online", lambda: "axes online 1 of 1" in self.top(container))
+
+    def test_a_changed_configuration_is_taken_up_from_inside(self):
+        container = self.gateway("localhost/axisgate", *self.granted())
+        until("its axis is online", lambda: "axes online 1 of 1" in self.top(container))
+        self.config["buses"][0]["drives"][0]["axes"][0]["axis"] = 7
+        self.write(self.config)
+        reload = ("exec", container.name, "/usr/bin/axisgate", "reload", "/etc/axisgate/gateway.json")
+        until("it is taken up", lambda: ": changed" in ENGINE.done(*reload).stdout)
+        until("as axis 7", lambda: "   7  online" in self.top(container))
 
     def test_a_device_that_was_not_granted_is_not_there_and_all_else_works(self):
         container = self.gateway("localhost/axisgate")
