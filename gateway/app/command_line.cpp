@@ -245,11 +245,13 @@ void add_scan(CLI::App& app, Parsed& parsed) {
 }
 
 void add_reload(CLI::App& app, Parsed& parsed) {
-  CLI::App* command = app.add_subcommand(
-      "reload",
-      "Have the running gateway read its configuration anew; only buses that change are restarted, and only "
-      "while their axes are disabled");
+  CLI::App* command = app.add_subcommand("reload", "Have the running gateway read its configuration anew");
   command->add_option("CONFIG", parsed.reload.config, "the file that the gateway was started with")->required();
+  command->footer(
+      "Only buses and listeners that change are restarted, and only while the axes of these buses are online and "
+      "disabled; else\n"
+      "nothing is changed and the reasons are told (exit code 1).\n"
+      "Example: axisgate check /etc/axisgate/gateway.json && axisgate reload /etc/axisgate/gateway.json");
   command->callback([&parsed] { parsed.exit_code = run(parsed.reload); });
 }
 
