@@ -30,7 +30,7 @@ Telling::Request request_of(const Group& group, Errc refused) {
   if (group.set_position_value) out.quantities |= bit(Quantity::position_actual);
   if (group.jog_velocity) out.quantities |= bit(Quantity::velocity_actual);
   constexpr unsigned kSubBits = 8;
-  if (group.object) out.object = (group.object->index << kSubBits | group.object->subindex) + 1U;
+  if (group.object) out.object = (std::uint32_t{group.object->index} << kSubBits | group.object->subindex) + 1U;
   return out;
 }
 
