@@ -6,20 +6,27 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <vector>
+#include <cstdio>
+#include <memory>
 
 namespace axisgate::serial {
 namespace {
 
-constexpr int kMostGroups = 1024;  // of one user; who has more is told to join once more
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-bool belongs(const passwd& user, gid_t group) {
-  std::vector<gid_t> groups(kMostGroups);
-  int count = kMostGroups;
-  if (::getgrouplist(user.pw_name, user.pw_gid, groups.data(), &count) < 0) return false;
-  groups.resize(static_cast<std::size_t>(count));
-  return std::find(groups.begin(), groups.end(), group) != groups.end();
+/// The local file, not the name service: that may ask a network, and this is called on the loop.
+template <class Entry, class Wanted>
+const Entry* entry_of(const File& file, Entry* (*next)(std::FILE*), const Wanted& wanted) {
+  if (!file) return nullptr;
+  while (const Entry* entry = next(file.get()))
+    if (wanted(*entry)) return entry;
+  return nullptr;
+}
+
+bool names(const group& of, const std::string& user) {
+  for (char** member = of.gr_mem; *member != nullptr; ++member)
+    if (user == *member) return true;
+  return false;
 }
 
 }  // namespace
@@ -45,13 +52,19 @@ std::string rights_remedy_of(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return {};
   DeviceRights rights;
-  const group* owner = ::getgrgid(status.st_gid);
-  rights.group = owner == nullptr ? std::to_string(status.st_gid) : owner->gr_name;
+  const uid_t uid = ::geteuid();
+  rights.user = std::to_string(uid);
+  rights.group = std::to_string(status.st_gid);
   constexpr mode_t kReadAndWrite = S_IRGRP | S_IWGRP;
   rights.group_may = (status.st_mode & kReadAndWrite) == kReadAndWrite;
-  const passwd* user = ::getpwuid(::geteuid());
-  rights.user = user == nullptr ? std::to_string(::geteuid()) : user->pw_name;
-  rights.user_in_group = user != nullptr && belongs(*user, status.st_gid);
+  const File users(std::fopen("/etc/passwd", "re"), &std::fclose);
+  const File groups(std::fopen("/etc/group", "re"), &std::fclose);
+  const passwd* user = entry_of(users, &::fgetpwent, [&](const passwd& each) { return each.pw_uid == uid; });
+  const group* owner = entry_of(groups, &::fgetgrent, [&](const group& each) { return each.gr_gid == status.st_gid; });
+  if (user != nullptr) rights.user = user->pw_name;
+  if (owner != nullptr) rights.group = owner->gr_name;
+  const bool first_group = user != nullptr && user->pw_gid == status.st_gid;
+  rights.user_in_group = first_group || (owner != nullptr && names(*owner, rights.user));
   return rights_remedy(rights);
 }
 
