@@ -71,6 +71,7 @@ void Gateway::reload(const ReloadPlan& plan, Config wanted, Models models,
                      std::function<void(std::vector<std::string>)> done) {
   std::vector<BusLine*> leaving;
   for (const std::size_t place : plan.leaving_buses) leaving.push_back(buses_[place].get());
+  let_go_ended_->expires_at(kNever);  // of the reload before
   letting_go_ = std::make_unique<LetGo>(runtime_, leaving, std::move(last_word),
                                         [this, plan, wanted = std::move(wanted), models = std::move(models),
                                          done = std::move(done)](std::vector<std::string> why_not) {
