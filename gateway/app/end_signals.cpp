@@ -18,12 +18,12 @@ bool has_controlling_terminal() {
   return true;
 }
 
-bool is_ignored(int signal) {
-  struct sigaction now {};
-  return ::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
-}
-
 }  // namespace
+
+bool hangups_are_ignored() {
+  struct sigaction now {};
+  return ::sigaction(SIGHUP, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
 
 EndSignals::EndSignals(boost::asio::io_context& io, const Log& log, std::function<void(bool at_once)> on_end,
                        std::function<void()> on_reload)
@@ -32,7 +32,7 @@ EndSignals::EndSignals(boost::asio::io_context& io, const Log& log, std::functio
       on_reload_(std::move(on_reload)),
       has_terminal_(has_controlling_terminal()),
       signals_(io, SIGINT, SIGTERM) {
-  if (!is_ignored(SIGHUP)) signals_.add(SIGHUP);
+  if (!hangups_are_ignored()) signals_.add(SIGHUP);
   wait();
 }
 

@@ -12,6 +12,9 @@
 
 namespace axisgate::app {
 
+/// Whoever started the process wants it to outlive its terminal (nohup).
+[[nodiscard]] bool hangups_are_ignored();
+
 class EndSignals {
  public:
   /// `on_end(at_once)` and `on_reload()` run on the loop.

@@ -13,6 +13,7 @@
 #include "adapters/asio/key_input.hpp"
 #include "adapters/asio/key_mode.hpp"
 #include "gateway/app/command_line.hpp"
+#include "gateway/app/end_signals.hpp"
 #include "gateway/app/hand_client.hpp"
 #include "gateway/app/hand_screen.hpp"
 #include "gateway/upstream/modbus_tcp/device_identification.hpp"
@@ -23,12 +24,6 @@ namespace {
 constexpr Duration kLookPeriod = std::chrono::milliseconds(100);
 constexpr Duration kTurnPeriod = std::chrono::milliseconds(50);
 constexpr std::size_t kRoleAt = 7;
-
-/// As nohup does it: whoever started the process wants it to outlive the terminal.
-bool hangups_are_ignored() {
-  struct sigaction now {};
-  return ::sigaction(SIGHUP, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
-}
 
 /// One command, from its connection to its end.
 class Hand {
