@@ -2,6 +2,7 @@
 #include "gateway/app/service.hpp"
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -43,6 +44,11 @@ class Manager {
   Manager(const Manager&) = delete;
   Manager& operator=(const Manager&) = delete;
 
+  /// Whether there is a message, perhaps a little later.
+  bool has_news() const {
+    pollfd wanted{socket_, POLLIN, 0};
+    return ::poll(&wanted, 1, 10) == 1;
+  }
   /// The next message; waits for it.
   std::string hears() const {
     std::array<char, 512> text{};
@@ -63,12 +69,17 @@ TEST(Service, TheWatchdogIsFedWhileEveryBusHasItsTurn) {
     asked.push_back(slack);
     return all_turn;
   });
+  // One that is still on its way when the next is due takes its place.
   for (int i = 0; i < 3; ++i) {
-    runtime.advance_by(1s);
+    while (!manager.has_news()) runtime.advance_by(1s);
     EXPECT_EQ(manager.hears(), "WATCHDOG=1");
   }
   EXPECT_LE(asked.back(), 2s) << "half of the watchdog's time is left for the end of it";
   all_turn = false;
+  service.reloading();
+  while (manager.hears() == "WATCHDOG=1") {
+  }
+  asked.clear();
   runtime.advance_by(10s);
   EXPECT_GE(asked.size(), 10U);
   service.stopping();
