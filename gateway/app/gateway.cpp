@@ -16,9 +16,8 @@ LogLevel level_of(EventKind kind) {
 /// "axis 3 lift"; the name that an axis has without one in the configuration is its number.
 std::string source_of(const ProcessImage& image, AxisNumber number) {
   if (number == 0) return "gateway";
-  const std::string plain = "axis " + std::to_string(number);
   const AxisImage* const axis = image.find(number);
-  return axis == nullptr || axis->name.empty() || axis->name == plain ? plain : plain + " " + axis->name;
+  return log_source(number, axis == nullptr ? std::string() : axis->name);
 }
 
 }  // namespace

@@ -78,9 +78,9 @@ std::vector<std::string> Reload::clients_in_the_way(const ReloadPlan& plan) cons
     for (const std::size_t place : plan.leaving_listeners) {
       if (!with_.server.serves(place, owner->id)) continue;
       const auto& listener = running_.modbus_tcp[place];
-      out.push_back(fmt::format("listener {}:{} would close the connection of {}, which owns axis {} ({}): {}",
-                                listener.host, listener.port, owner->name, axis->number, axis->name,
-                                text(axis->axis_state)));
+      out.push_back(fmt::format("listener {} would close the connection of {}, which owns axis {} ({}): {}",
+                                modbus_tcp::address_text(listener.host, listener.port), owner->name, axis->number,
+                                axis->name, text(axis->axis_state)));
     }
   }
   return out;

@@ -24,12 +24,7 @@ std::optional<dds::DdsSettings> without_axes(std::optional<dds::DdsSettings> set
 }
 
 std::string name_of(const modbus_tcp::ListenerSettings& listener) {
-  const bool v6 = listener.host.find(':') != std::string::npos;
-  return fmt::format("listener {}:{}", v6 ? "[" + listener.host + "]" : listener.host, listener.port);
-}
-
-bool same_address(const modbus_tcp::ListenerSettings& a, const modbus_tcp::ListenerSettings& b) {
-  return a.host == b.host && a.port == b.port;
+  return "listener " + modbus_tcp::address_text(listener.host, listener.port);
 }
 
 template <class Item, class Same>

@@ -50,12 +50,6 @@ std::string lease_text(const LeaseRules& lease) {
                      action == Command::none ? "nothing" : text(action));
 }
 
-/// As the gateway's own lines have it.
-std::string source_of(const AxisConfig& axis) {
-  const std::string plain = fmt::format("axis {}", axis.number);
-  return axis.name == plain ? plain : plain + " " + axis.name;
-}
-
 std::string axis_text(const BusConfig& bus, const DriveConfig& drive, const AxisConfig& axis,
                       const drive::DriveModel& model) {
   const std::string motor = axis.motor.empty() ? "" : " motor " + axis.motor;
@@ -66,7 +60,7 @@ std::string axis_text(const BusConfig& bus, const DriveConfig& drive, const Axis
 
 std::string listener_text(const modbus_tcp::ListenerSettings& listener) {
   std::string out =
-      fmt::format("listener {}:{}: a client is {}, {}", listener.host, listener.port,
+      fmt::format("listener {}: a client is {}, {}", modbus_tcp::address_text(listener.host, listener.port),
                   listener.client_is_address ? "an address" : "a connection",
                   listener.has_allow ? counted(listener.allow.size(), "entry in `allow`", "entries in `allow`")
                                      : "only this machine may command");
@@ -100,7 +94,7 @@ std::vector<StartLine> start_lines(const LoadedConfig& loaded, std::string_view 
     lines.push_back({"bus " + bus.name, bus_text(bus)});
     for (std::size_t d = 0; d < bus.drives.size(); ++d)
       for (const AxisConfig& axis : bus.drives[d].axes)
-        lines.push_back({source_of(axis), axis_text(bus, bus.drives[d], axis, loaded.models[b][d])});
+        lines.push_back({log_source(axis.number, axis.name), axis_text(bus, bus.drives[d], axis, loaded.models[b][d])});
   }
   for (const modbus_tcp::ListenerSettings& listener : config.modbus_tcp)
     lines.push_back({"modbus", listener_text(listener)});

@@ -20,6 +20,11 @@ std::uint32_t AxisImage::valid_bits() const {
   return bits & supported;
 }
 
+std::string log_source(AxisNumber number, const std::string& name) {
+  const std::string plain = "axis " + std::to_string(number);
+  return name.empty() || name == plain ? plain : plain + " " + name;
+}
+
 bool shows_the_same(const AxisImage& a, const AxisImage& b) {
   if (a.link_state != b.link_state || a.axis_state != b.axis_state || a.motion_state != b.motion_state ||
       a.motion_id != b.motion_id || a.alarms != b.alarms || a.supported != b.supported ||

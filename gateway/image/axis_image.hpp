@@ -133,6 +133,9 @@ struct AxisImage {
   [[nodiscard]] std::uint32_t valid_bits() const;
 };
 
+/// Who speaks in log lines about an axis: "axis 3 lift", or "axis 3" where it has no name of its own.
+[[nodiscard]] std::string log_source(AxisNumber number, const std::string& name);
+
 /// Whether no client could tell the two apart: what `sequence` counts (design 3.2). Ages, times, how long the lease
 /// still runs, `sequence` itself and the latest result do not count.
 [[nodiscard]] bool shows_the_same(const AxisImage& a, const AxisImage& b);

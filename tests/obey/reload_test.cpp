@@ -26,25 +26,24 @@ GatewayStage::Reasons reload(Plant& plant, const std::function<void(app::Config&
   return ended(plant, plant.stage.begin_reload(change));
 }
 
-/// A client can have it turn, and then disable it.
-void expect_in_command(Plant& plant) {
-  ASSERT_TRUE(plant.stage.come_online());
-  ASSERT_EQ(plant.a.command(0), kOk);  // the same number again would be no new command
-  ASSERT_EQ(plant.set_endless(plant.a), kOk);
-  ASSERT_EQ(plant.a.command(kEnable), kOk);
-  ASSERT_EQ(plant.a.command(plant.endless_command()), kOk);
-  EXPECT_TRUE(plant.turns_within(1s));
-  EXPECT_EQ(plant.a.command(kDisable), kOk);
-  EXPECT_TRUE(plant.comes_to_stand());
-}
-/// Whoever minds silence stops when the gateway dies.
-void expect_watched(Plant& plant) {
+void make_it_turn(Plant& plant) {
   ASSERT_TRUE(plant.stage.come_online());
   ASSERT_EQ(plant.a.command(0), kOk);  // the same number again would be no new command
   ASSERT_EQ(plant.set_endless(plant.a), kOk);
   ASSERT_EQ(plant.a.command(kEnable), kOk);
   ASSERT_EQ(plant.a.command(plant.endless_command()), kOk);
   ASSERT_TRUE(plant.turns_within(1s));
+}
+
+/// A client can have it turn, and then disable it.
+void expect_in_command(Plant& plant) {
+  ASSERT_NO_FATAL_FAILURE(make_it_turn(plant));
+  EXPECT_EQ(plant.a.command(kDisable), kOk);
+  EXPECT_TRUE(plant.comes_to_stand());
+}
+/// Whoever minds silence stops when the gateway dies.
+void expect_watched(Plant& plant) {
+  ASSERT_NO_FATAL_FAILURE(make_it_turn(plant));
   plant.crash_gateway();
   if (minds_silence(plant.subject)) {
     EXPECT_TRUE(plant.comes_to_stand(5s));

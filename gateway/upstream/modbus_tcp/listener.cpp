@@ -78,10 +78,7 @@ Listener::Listener(ServerContext& server, const ListenerSettings& settings, std:
       port_(settings.port),
       acceptor_(server.io) {}
 
-std::string Listener::name() const {
-  const bool v6 = settings_.host.find(':') != std::string::npos;
-  return (v6 ? "[" + settings_.host + "]" : settings_.host) + ":" + std::to_string(port_);
-}
+std::string Listener::name() const { return address_text(settings_.host, port_); }
 
 void Listener::open() {
   error_code error;

@@ -46,4 +46,13 @@ struct ListenerSettings {
   friend bool operator==(const ListenerSettings&, const ListenerSettings&) = default;
 };
 
+[[nodiscard]] inline bool same_address(const ListenerSettings& a, const ListenerSettings& b) {
+  return a.host == b.host && a.port == b.port;
+}
+/// "0.0.0.0:1502", "[::1]:1502".
+[[nodiscard]] inline std::string address_text(const std::string& host, std::uint16_t port) {
+  const bool v6 = host.find(':') != std::string::npos;
+  return (v6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
+}
+
 }  // namespace axisgate::modbus_tcp

@@ -17,9 +17,8 @@ bool is_among(const Listeners& listeners, const std::shared_ptr<Listener>& one) 
 
 /// nullptr: none listens there.
 std::shared_ptr<Listener> on_address_of(const ListenerSettings& settings, const Listeners& listeners) {
-  const auto found = std::ranges::find_if(listeners, [&](const auto& each) {
-    return each->settings().host == settings.host && each->settings().port == settings.port;
-  });
+  const auto found =
+      std::ranges::find_if(listeners, [&](const auto& each) { return same_address(each->settings(), settings); });
   return found == listeners.end() ? nullptr : *found;
 }
 
