@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Moves one axis of the demo to and fro, as a PLC program would: enable once, then one move after the other.
 
 It enables the axis at its start only. Whoever stops or disables the axis meanwhile has the last word: the moves go on when

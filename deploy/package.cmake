@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The Debian packages: what each of them holds, and what CPack says of it. deploy/package makes them.
 #
 # One component is one package: gateway (axisgate), dds (axisgate-dds), simulator (axisgate-sim). A program installs itself where it
@@ -60,8 +61,10 @@ install(FILES ${files}/udev/71-axisgate-lines.rules DESTINATION /lib/udev/rules.
 # What a person decides is no more than an example: a package that brought a bus up, or a gateway, could move a motor.
 install(FILES ${files}/example/gateway.json ${files}/udev/70-axisgate.rules ${files}/can/80-can0.network
         DESTINATION share/doc/axisgate/examples COMPONENT gateway EXCLUDE_FROM_ALL)
+install(FILES ${files}/plc/axisgate.st ${files}/plc/axisgate.xml ${files}/plc/example.st
+        DESTINATION share/doc/axisgate/examples/plc COMPONENT gateway EXCLUDE_FROM_ALL)
 install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/SECURITY.md ${CMAKE_SOURCE_DIR}/docs/installation.md
-              ${CMAKE_SOURCE_DIR}/docs/troubleshooting.md ${CMAKE_SOURCE_DIR}/schemas/register-map.md
+              ${CMAKE_SOURCE_DIR}/docs/plc.md ${CMAKE_SOURCE_DIR}/docs/troubleshooting.md ${CMAKE_SOURCE_DIR}/schemas/register-map.md
         DESTINATION share/doc/axisgate COMPONENT gateway EXCLUDE_FROM_ALL)
 install(DIRECTORY DESTINATION /etc/axisgate COMPONENT gateway EXCLUDE_FROM_ALL)
 

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // axisgate: motor drives on fieldbuses as one Modbus-TCP register map.
 #include <cstdio>
 #include <exception>
 
-#include "gateway/app/command_line.hpp"
+#include "gateway/commands/command_line.hpp"
 
 int main(int argc, char** argv) {
   try {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/asio/asio_runtime.hpp"
 
 #include <boost/asio/post.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The clock and the timers of the product: a Runtime over one Boost.Asio io_context and the steady clock.
 // Promises that a timer fires on the context's thread, never before its deadline, and not at all once it is destroyed.
 // Never starts a thread.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/asio/key_input.hpp"
 
 #include <sys/epoll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/asio/key_mode.hpp"
 
 #include <termios.h>

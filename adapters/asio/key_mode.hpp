@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A person's terminal while its keys are buttons: each key comes at once, and is not shown.
 // Promises that the terminal is as it was found once this is gone, and that Ctrl-C is a signal as ever. Never leaves
 // Ctrl-Z and Ctrl-S in force: a program that stands still lets go of no button.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines that a person types, or that come from a pipe or file in their place, taken while the loop runs.
 // Promises that the loop never waits for the person, and that what was typed on a terminal before a line is asked for
 // does not count as it. Never changes the descriptor: O_NONBLOCK would be set for the shell that shares it as well.

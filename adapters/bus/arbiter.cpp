@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/bus/arbiter.hpp"
 
 #include <algorithm>
@@ -8,21 +9,21 @@ namespace axisgate::bus {
 namespace {
 
 /// kNoAxis is an axis of its own here: what concerns the whole drive has one queue.
-bool same_axis(const Order& a, const Order& b) { return a.drive == b.drive && a.axis == b.axis; }
+bool same_axis(const BusJob& a, const BusJob& b) { return a.drive == b.drive && a.axis == b.axis; }
 
-/// Orders of which one may be started at a time.
-bool exclude_each_other(const Order& a, const Order& b) {
+/// Bus jobs of which one may be started at a time.
+bool exclude_each_other(const BusJob& a, const BusJob& b) {
   if (a.priority != b.priority || a.priority == Priority::stop) return false;
   return a.priority == Priority::setup ? a.drive == b.drive : same_axis(a, b);
 }
 
-bool falls_to_stop(const Order& order, bool started, const Order& stop) {
-  if (order.drive != stop.drive || (stop.axis != kNoAxis && order.axis != stop.axis)) return false;
-  if (order.survives_stop) return false;
-  return order.priority == Priority::command || (order.priority == Priority::interactive && !started);
+bool falls_to_stop(const BusJob& job, bool started, const BusJob& stop) {
+  if (job.drive != stop.drive || (stop.axis != kNoAxis && job.axis != stop.axis)) return false;
+  if (job.survives_stop) return false;
+  return job.priority == Priority::command || (job.priority == Priority::interactive && !started);
 }
 
-bool is_plain_read(const Order& order) { return order.read.has_value() && order.writes.empty(); }
+bool is_plain_read(const BusJob& job) { return job.read.has_value() && job.writes.empty(); }
 
 }  // namespace
 
@@ -31,7 +32,7 @@ struct Arbiter::Candidate {
   int rank = 0;
   bool started = false;
   std::uint64_t served = 0;
-  OrderId place = 0;
+  JobId place = 0;
 
   /// The order in which the wire is given away, in four comparisons.
   [[nodiscard]] bool goes_before(const Candidate& other) const {
@@ -44,27 +45,27 @@ struct Arbiter::Candidate {
 
 Arbiter::Arbiter(std::size_t drives) : drives_(drives) {
   assert(drives <= kMaxDrivesPerBus);
-  const std::size_t most = kMaxOrdersPerBus + kMaxStopsPerBus + (kMaxSetupsPerDrive + kMaxCausesPerDrive) * drives;
+  const std::size_t most = kMaxJobsPerBus + kMaxStopsPerBus + (kMaxSetupsPerDrive + kMaxCausesPerDrive) * drives;
   entries_.reserve(most);
   endings_.reserve(most);
 }
 
-Arbiter::Admission Arbiter::submit(const Order& order, Instant now) {
-  assert(order.drive < drives_.size() && order.priority != Priority::poll);
+Arbiter::Submission Arbiter::submit(const BusJob& job, Instant now) {
+  assert(job.drive < drives_.size() && job.priority != Priority::poll);
   expire_starts(now);
-  if (order.priority == Priority::stop) {
-    drop_for_stop(order);
-  } else if (Entry* waiting = joinable(order)) {
+  if (job.priority == Priority::stop) {
+    drop_for_stop(job);
+  } else if (Entry* waiting = joinable(job)) {
     ++statistics_.coalesced;
-    waiting->order.start_by = std::max(waiting->order.start_by, order.start_by);
+    waiting->job.start_by = std::max(waiting->job.start_by, job.start_by);
     return {Errc::ok, waiting->id, true};
   }
-  Entry entry{.id = last_id_ + 1, .place = last_id_ + 1, .order = order};
-  if (const Entry* older = supersedable(order)) {
+  Entry entry{.id = last_id_ + 1, .place = last_id_ + 1, .job = job};
+  if (const Entry* older = supersedable(job)) {
     ++statistics_.superseded;
     entry.place = older->place;
     end_where([id = older->id](const Entry& e) { return e.id == id; }, [](const Entry&) { return Errc::superseded; });
-  } else if (full(order)) {
+  } else if (full(job)) {
     ++statistics_.refused;
     return {Errc::queue_full, 0, false};
   }
@@ -109,11 +110,11 @@ std::optional<Arbiter::Candidate> Arbiter::choose(Instant now) const {
 
 Arbiter::Candidate Arbiter::candidate(const Entry& entry) const {
   static constexpr std::array<int, kPriorityCount> kRanks{0, 1, 3, 4, 5, 6};
-  const auto priority = static_cast<std::size_t>(entry.order.priority);
-  return {.grant = {entry.id, entry.order.drive, entry.order.priority},
+  const auto priority = static_cast<std::size_t>(entry.job.priority);
+  return {.grant = {entry.id, entry.job.drive, entry.job.priority},
           .rank = kRanks[priority],
           .started = entry.started,
-          .served = drives_[entry.order.drive].served[priority],
+          .served = drives_[entry.job.drive].served[priority],
           .place = entry.place};
 }
 
@@ -125,7 +126,7 @@ Arbiter::Candidate Arbiter::poll_candidate(DriveSlot drive) const {
 
 bool Arbiter::blocked(const Entry& entry) const {
   return std::ranges::any_of(entries_,
-                             [&](const Entry& e) { return e.started && exclude_each_other(e.order, entry.order); });
+                             [&](const Entry& e) { return e.started && exclude_each_other(e.job, entry.job); });
 }
 
 void Arbiter::decline() {
@@ -145,19 +146,19 @@ void Arbiter::exchange_over(Instant silent_until) {
   silent_until_ = silent_until;
 }
 
-void Arbiter::wait(OrderId id, Instant until) {
+void Arbiter::wait(JobId id, Instant until) {
   Entry* entry = find(id);
   if (entry != nullptr && entry->started) entry->ready_at = until;
 }
 
-bool Arbiter::go_on_as(OrderId id, const Order& rest) {
+bool Arbiter::go_on_as(JobId id, const BusJob& rest) {
   Entry* entry = find(id);
   if (entry == nullptr || !entry->started || full(rest)) return false;
-  entry->order = rest;
+  entry->job = rest;
   return true;
 }
 
-void Arbiter::finish(OrderId id) {
+void Arbiter::finish(JobId id) {
   std::erase_if(entries_, [id](const Entry& e) { return e.id == id; });
   std::erase_if(endings_, [id](const Ending& e) { return e.id == id; });
 }
@@ -167,53 +168,53 @@ void Arbiter::set_poll_due(DriveSlot drive, Instant due) {
   drives_[drive].poll_due = due;
 }
 
-Arbiter::Entry* Arbiter::joinable(const Order& order) {
-  if (!is_plain_read(order)) return nullptr;
+Arbiter::Entry* Arbiter::joinable(const BusJob& job) {
+  if (!is_plain_read(job)) return nullptr;
   // From the newest back: beyond the first write of the drive, a waiting read could be answered with what was before
   // it.
   for (auto e = entries_.rbegin(); e != entries_.rend(); ++e) {
-    if (e->order.drive != order.drive) continue;
-    if (!is_plain_read(e->order)) return nullptr;
-    const bool as_lasting = e->order.survives_stop || !order.survives_stop;
-    if (!e->started && e->order.axis == order.axis && e->order.read == order.read &&
-        e->order.priority <= order.priority && as_lasting) {
+    if (e->job.drive != job.drive) continue;
+    if (!is_plain_read(e->job)) return nullptr;
+    const bool as_lasting = e->job.survives_stop || !job.survives_stop;
+    if (!e->started && e->job.axis == job.axis && e->job.read == job.read && e->job.priority <= job.priority &&
+        as_lasting) {
       return &*e;
     }
   }
   return nullptr;
 }
 
-const Arbiter::Entry* Arbiter::supersedable(const Order& order) const {
-  if (!order.setpoints_only) return nullptr;
+const Arbiter::Entry* Arbiter::supersedable(const BusJob& job) const {
+  if (!job.setpoints_only) return nullptr;
   // The newest of the axis, whatever it is: anything accepted between forbids it.
-  const auto e = std::find_if(entries_.rbegin(), entries_.rend(),
-                              [&](const Entry& entry) { return same_axis(entry.order, order); });
-  if (e == entries_.rend() || e->started || !e->order.setpoints_only) return nullptr;
-  return e->order.priority == order.priority && e->order.writes == order.writes ? &*e : nullptr;
+  const auto e =
+      std::find_if(entries_.rbegin(), entries_.rend(), [&](const Entry& entry) { return same_axis(entry.job, job); });
+  if (e == entries_.rend() || e->started || !e->job.setpoints_only) return nullptr;
+  return e->job.priority == job.priority && e->job.writes == job.writes ? &*e : nullptr;
 }
 
-bool Arbiter::full(const Order& order) const {
+bool Arbiter::full(const BusJob& job) const {
   const auto count = [&](auto which) {
-    return static_cast<std::size_t>(std::ranges::count_if(entries_, [&](const Entry& e) { return which(e.order); }));
+    return static_cast<std::size_t>(std::ranges::count_if(entries_, [&](const Entry& e) { return which(e.job); }));
   };
-  const auto same_class = [&](const Order& o) { return o.priority == order.priority; };
-  const auto same_class_and_axis = [&](const Order& o) { return same_class(o) && same_axis(o, order); };
-  switch (order.priority) {
+  const auto same_class = [&](const BusJob& o) { return o.priority == job.priority; };
+  const auto same_class_and_axis = [&](const BusJob& o) { return same_class(o) && same_axis(o, job); };
+  switch (job.priority) {
     case Priority::stop:
       return count(same_class) >= kMaxStopsPerBus || count(same_class_and_axis) >= kMaxStopsPerAxis;
     case Priority::setup:
-      return count([&](const Order& o) { return same_class(o) && o.drive == order.drive; }) >= kMaxSetupsPerDrive;
+      return count([&](const BusJob& o) { return same_class(o) && o.drive == job.drive; }) >= kMaxSetupsPerDrive;
     case Priority::cause:
-      return count([&](const Order& o) { return same_class(o) && o.drive == order.drive; }) >= kMaxCausesPerDrive;
+      return count([&](const BusJob& o) { return same_class(o) && o.drive == job.drive; }) >= kMaxCausesPerDrive;
     default:
-      return count([](const Order& o) {
+      return count([](const BusJob& o) {
                return o.priority == Priority::command || o.priority == Priority::interactive;
-             }) >= kMaxOrdersPerBus ||
-             (order.priority == Priority::command && count(same_class_and_axis) >= kMaxOrdersPerAxis);
+             }) >= kMaxJobsPerBus ||
+             (job.priority == Priority::command && count(same_class_and_axis) >= kMaxJobsPerAxis);
   }
 }
 
-Arbiter::Entry* Arbiter::find(OrderId id) {
+Arbiter::Entry* Arbiter::find(JobId id) {
   const auto at = std::ranges::find(entries_, id, &Entry::id);
   return at == entries_.end() ? nullptr : &*at;
 }
@@ -222,23 +223,23 @@ template <typename Which, typename Reason>
 void Arbiter::end_where(Which which, Reason reason) {
   std::erase_if(entries_, [&](const Entry& entry) {
     if (!which(entry)) return false;
-    endings_.push_back({entry.id, entry.order.drive, reason(entry)});
+    endings_.push_back({entry.id, entry.job.drive, reason(entry)});
     return true;
   });
 }
 
-void Arbiter::drop_for_stop(const Order& stop) {
-  end_where([&](const Entry& e) { return falls_to_stop(e.order, e.started, stop); },
+void Arbiter::drop_for_stop(const BusJob& stop) {
+  end_where([&](const Entry& e) { return falls_to_stop(e.job, e.started, stop); },
             [](const Entry&) { return Errc::dropped_by_stop; });
 }
 
 void Arbiter::expire_starts(Instant now) {
-  end_where([now](const Entry& e) { return !e.started && e.order.start_by <= now; },
+  end_where([now](const Entry& e) { return !e.started && e.job.start_by <= now; },
             [](const Entry&) { return Errc::never_started; });
 }
 
 void Arbiter::end_drive(DriveSlot drive, Errc waiting, Errc started) {
-  end_where([drive](const Entry& e) { return e.order.drive == drive; },
+  end_where([drive](const Entry& e) { return e.job.drive == drive; },
             [&](const Entry& e) { return e.started ? started : waiting; });
 }
 
@@ -266,7 +267,7 @@ Instant Arbiter::next_deadline() const {
     if (entry.started) {
       wire_wanted_at(entry.ready_at);
     } else {
-      next = std::min(next, entry.order.start_by);
+      next = std::min(next, entry.job.start_by);
       if (!blocked(entry)) wire_wanted_at(kLongAgo);
     }
   }

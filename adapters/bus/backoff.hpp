@@ -1,6 +1,7 @@
-// How often a mute drive is probed: 0.5 s, doubling until probes take at most 0.5 % of the bus's time, 60 s at most.
-// Promises that a dead drive costs its bus no more than that share in the long run.
-// Never probes by itself: it only says when.
+// SPDX-License-Identifier: Apache-2.0
+// How often an unresponsive drive is probed: 0.5 s, doubling until probes take at most 0.5 % of the bus's time, 60 s at
+// most. Promises that a dead drive costs its bus no more than that share in the long run. Never probes by itself: it
+// only says when.
 #pragma once
 
 #include <algorithm>

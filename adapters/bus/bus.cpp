@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/bus/bus.hpp"
 
 #include <algorithm>
@@ -30,25 +31,25 @@ void Bus::start() {
   wire_->start(*this);
 }
 
-Arbiter::Admission Bus::submit(const Order& order) {
+Arbiter::Submission Bus::submit(const BusJob& job) {
   if (!up_) return {Errc::offline, 0, false};
-  const Arbiter::Admission admission = arbiter_.submit(order, now());
+  const Arbiter::Submission submission = arbiter_.submit(job, now());
   soon();
-  return admission;
+  return submission;
 }
 
-void Bus::wait(OrderId id, Instant until) {
+void Bus::wait(JobId id, Instant until) {
   arbiter_.wait(id, until);
   soon();
 }
 
-bool Bus::go_on_as(OrderId id, const Order& rest) {
+bool Bus::go_on_as(JobId id, const BusJob& rest) {
   const bool there_is_room = arbiter_.go_on_as(id, rest);
   soon();
   return there_is_room;
 }
 
-void Bus::finish(OrderId id) {
+void Bus::finish(JobId id) {
   arbiter_.finish(id);
   soon();
 }
@@ -78,7 +79,7 @@ void Bus::pump() {
   pumping_ = true;
   int turns = 0;
   bool more = true;
-  while (more) more = take_wire_event() || (turns++ < kMaxTurnsPerPump && (take_notice() || take_turn()));
+  while (more) more = take_wire_event() || (turns++ < kMaxTurnsPerPump && (take_unsolicited() || take_turn()));
   pumping_ = false;
   if (turns > kMaxTurnsPerPump) {
     turn_at(now());
@@ -111,22 +112,23 @@ bool Bus::take_wire_event() {
 }
 
 /// A drive that has started anew, or is gone, will answer nothing any more: its exchange ends now, not at its timeout.
-bool Bus::take_notice() {
-  if (heard_notices_.empty()) return false;
+bool Bus::take_unsolicited() {
+  if (heard_unsolicited_.empty()) return false;
   count_bits();
-  const Notice notice = heard_notices_.front();
-  heard_notices_.pop_front();
+  const UnsolicitedEvent unsolicited = heard_unsolicited_.front();
+  heard_unsolicited_.pop_front();
   if (!up_) return true;
   const auto named = std::ranges::find_if(drives_, [&](const BusDrive* drive) {
-    return drive != nullptr && drive->node() != 0 && drive->node() == notice.node;
+    return drive != nullptr && drive->node() != 0 && drive->node() == unsolicited.node;
   });
   if (named == drives_.end()) return true;
-  const bool ends = notice.kind == Notice::Kind::started || notice.kind == Notice::Kind::gone;
+  const bool ends =
+      unsolicited.kind == UnsolicitedEvent::Kind::started || unsolicited.kind == UnsolicitedEvent::Kind::gone;
   if (ends && outstanding_ && drives_[outstanding_->drive] == *named) {
     wire_->abandon();
     end_exchange({.code = Errc::link_lost}, settings_.min_gap);
   }
-  (*named)->on_notice(notice);
+  (*named)->on_unsolicited(unsolicited);
   return true;
 }
 
@@ -139,7 +141,7 @@ bool Bus::take_turn() {
     return true;
   }
   if (const auto ending = arbiter_.take_ending(now())) {
-    drives_[ending->drive]->on_order_ended(ending->id, ending->code);
+    drives_[ending->drive]->on_job_ended(ending->id, ending->code);
     return true;
   }
   if (!up_) return false;
@@ -175,16 +177,16 @@ void Bus::link_up() {
   for (BusDrive* drive : drives_) drive->on_link(true);
 }
 
-/// All in one turn (P7): clients get their answers now, not after a timeout each.
+/// All in one turn: clients get their answers now, not after a timeout each.
 void Bus::link_down(const std::string& why) {
   if (!up_) return;
   up_ = false;  // from here on nothing new is accepted, so what follows is bounded
-  heard_notices_.clear();
+  heard_unsolicited_.clear();
   log_.write(LogLevel::warning, log_source(), "link down: " + why);
   if (outstanding_) end_exchange({.code = Errc::link_lost}, Duration{});
   arbiter_.end_all(Errc::offline, Errc::link_lost);
   while (const auto ending = arbiter_.take_ending(now())) {
-    drives_[ending->drive]->on_order_ended(ending->id, ending->code);
+    drives_[ending->drive]->on_job_ended(ending->id, ending->code);
   }
   for (BusDrive* drive : drives_) drive->on_link(false);
 }
@@ -205,12 +207,12 @@ void Bus::on_reply(const ExchangeResult& result) {
   pump();
 }
 
-void Bus::on_notice(const Notice& notice) {
-  if (heard_notices_.size() >= kMaxNotices) {
-    const auto values = std::ranges::find(heard_notices_, Notice::Kind::values, &Notice::kind);
-    heard_notices_.erase(values == heard_notices_.end() ? heard_notices_.begin() : values);
+void Bus::on_unsolicited(const UnsolicitedEvent& unsolicited) {
+  if (heard_unsolicited_.size() >= kMaxUnsolicited) {
+    const auto values = std::ranges::find(heard_unsolicited_, UnsolicitedEvent::Kind::values, &UnsolicitedEvent::kind);
+    heard_unsolicited_.erase(values == heard_unsolicited_.end() ? heard_unsolicited_.begin() : values);
   }
-  heard_notices_.push_back(notice);
+  heard_unsolicited_.push_back(unsolicited);
   pump();
 }
 

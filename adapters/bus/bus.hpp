@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One bus: the arbiter, the wire and the timer of one physical line, brought together.
 // Promises that every grant becomes one exchange, every exchange gets one result within its timeout, and that a stop
 // goes next as soon as the exchange on the wire has ended. Never decides whose turn it is (arbiter) nor what to send
@@ -23,21 +24,22 @@ class BusDrive {
   BusDrive(const BusDrive&) = delete;
   BusDrive& operator=(const BusDrive&) = delete;
   virtual ~BusDrive() = default;
-  /// The wire is this drive's for one exchange: for order `id`, or (0) for a poll. No value: nothing to send after all.
-  /// A suspect drive may answer with its fence instead of what the order wants; the order then stays.
-  [[nodiscard]] virtual std::optional<Exchange> on_grant(OrderId id, Priority priority) = 0;
+  /// The wire is this drive's for one exchange: for bus job `id`, or (0) for a poll. No value: nothing to send after
+  /// all. A suspect drive may answer with its resynchronisation read instead of what the bus job wants; the bus job
+  /// then stays.
+  [[nodiscard]] virtual std::optional<Exchange> on_grant(JobId id, Priority priority) = 0;
   virtual void on_result(const Exchange& exchange, const ExchangeResult& result) = 0;
-  /// The arbiter has ended this order of the drive: its exchange, if one is on the wire, still gets its on_result().
-  virtual void on_order_ended(OrderId id, Errc code) = 0;
+  /// The arbiter has ended this bus job of the drive: its exchange, if one is on the wire, still gets its on_result().
+  virtual void on_job_ended(JobId id, Errc code) = 0;
   virtual void on_link(bool up) = 0;
-  /// The number by which notices name it; 0: it takes none.
+  /// The number by which unsolicited events name it; 0: it takes none.
   [[nodiscard]] virtual std::uint8_t node() const { return 0; }
   /// What it said unasked. Where it has started anew or is gone, its exchange on the wire has ended before (link_lost).
-  virtual void on_notice(const Notice& /*notice*/) {}
+  virtual void on_unsolicited(const UnsolicitedEvent& /*unsolicited*/) {}
 };
 
-/// Notices that wait while a drive is being called; the oldest process data goes first.
-inline constexpr std::size_t kMaxNotices = 256;
+/// Unsolicited events that wait while a drive is being called; the oldest process data goes first.
+inline constexpr std::size_t kMaxUnsolicited = 256;
 
 struct BusSettings {
   std::string name;
@@ -57,11 +59,11 @@ class Bus final : private WireEvents {
 
   /// Also `offline` while the link is down. Never calls a drive before it has returned: what follows comes with the
   /// next turn of the loop, at once.
-  [[nodiscard]] Arbiter::Admission submit(const Order& order);
-  void wait(OrderId id, Instant until);
-  void finish(OrderId id);
+  [[nodiscard]] Arbiter::Submission submit(const BusJob& job);
+  void wait(JobId id, Instant until);
+  void finish(JobId id);
   /// As Arbiter::go_on_as().
-  [[nodiscard]] bool go_on_as(OrderId id, const Order& rest);
+  [[nodiscard]] bool go_on_as(JobId id, const BusJob& rest);
   void set_poll_due(DriveSlot drive, Instant due);
   void end_drive(DriveSlot drive, Errc waiting, Errc started);
   void map_process_data(std::uint8_t node, std::uint8_t number, const ProcessMap& objects) {
@@ -84,7 +86,7 @@ class Bus final : private WireEvents {
   void on_wire_up() override;
   void on_wire_down(std::string_view why) override;
   void on_reply(const ExchangeResult& result) override;
-  void on_notice(const Notice& notice) override;
+  void on_unsolicited(const UnsolicitedEvent& unsolicited) override;
 
   struct Outstanding {
     Exchange exchange;
@@ -97,7 +99,7 @@ class Bus final : private WireEvents {
 
   void pump();
   bool take_wire_event();
-  bool take_notice();
+  bool take_unsolicited();
   bool take_turn();
   void grant(const Arbiter::Grant& grant);
   void end_exchange(const ExchangeResult& result, Duration silence);
@@ -121,7 +123,7 @@ class Bus final : private WireEvents {
   std::optional<ExchangeResult> heard_reply_;
   std::optional<std::string> heard_down_;
   bool heard_up_ = false;
-  std::deque<Notice> heard_notices_;
+  std::deque<UnsolicitedEvent> heard_unsolicited_;
   Statistics statistics_;  // requests, replies, timeouts
   LoadMeter load_;
   BitMeter bits_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A link that carries bytes: a serial port in the product, a simulated line in tests and simulation.
 // Promises to report up and down in turn, bytes in order, and to reopen by itself until it is destroyed.
 // Never interprets a byte.
@@ -31,7 +32,7 @@ class ByteLink {
   /// Only while up. The bytes are copied; a short write is finished by the link, a failed one is reported as down
   /// later.
   virtual void send(Bytes bytes) = 0;
-  /// Closes and opens anew, for a line that babbles (faults.md row 6). While up: reports down with `why`, then up when
+  /// Closes and opens anew, for a line that babbles. While up: reports down with `why`, then up when
   /// it is open again; either may come from inside this call or later. While down: tries again at once.
   virtual void reopen(std::string_view why) = 0;
 };

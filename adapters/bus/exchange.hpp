@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The exchange: one request frame to one drive and its answer, in words that hold for every protocol.
 // Promises that whatever an adapter sends or hears can be said with these types; a reply is a list of object and raw
 // value. Never knows units, quantities or axes: the drive profile gives those a meaning.
@@ -103,16 +104,16 @@ enum class NmtCommand : std::uint8_t {
 enum class NodeState : std::uint8_t { unknown, stopped, pre_operational, operational };
 
 /// What a drive says without being asked.
-struct Notice {
+struct UnsolicitedEvent {
   enum class Kind : std::uint8_t {
-    started,    ///< it has just started: whatever it held is gone (CANopen boot-up)
-    present,    ///< it is there, in `state`: at its first sign of life, at each change, and at
-                ///< each sign of another state than operational
-    gone,       ///< its heartbeat is overdue, or guarding it was not answered
-    values,     ///< `fields`: process data, as map_process_data() has named it
-    emergency,  ///< CiA 301 EMCY: `code`, `error_register`, `vendor`; `repeats` more like it were left out before
-    twin,       ///< two devices answer to this number
-    babbling,   ///< it floods the bus: `code` is the COB-ID
+    started,         ///< it has just started: whatever it held is gone (CANopen boot-up)
+    present,         ///< it is there, in `state`: at its first sign of life, at each change, and at
+                     ///< each sign of another state than operational
+    gone,            ///< its heartbeat is overdue, or guarding it was not answered
+    values,          ///< `fields`: process data, as map_process_data() has named it
+    emergency,       ///< CiA 301 EMCY: `code`, `error_register`, `vendor`; `repeats` more like it were left out before
+    duplicate_node,  ///< two devices answer to this number
+    babbling,        ///< it floods the bus: `code` is the COB-ID
   };
   Kind kind = Kind::present;
   std::uint8_t node = 0;
@@ -122,7 +123,7 @@ struct Notice {
   std::array<std::uint8_t, 5> vendor{};
   std::uint32_t repeats = 0;
   ReplyFields fields{};
-  friend bool operator==(const Notice&, const Notice&) = default;
+  friend bool operator==(const UnsolicitedEvent&, const UnsolicitedEvent&) = default;
 };
 
 /// What one process data object of a node carries, in its order (CANopen: a TPDO holds 8 bytes).

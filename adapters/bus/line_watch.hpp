@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a serial line can be spoken on: its link, and the noise on it.
 // Promises that a line that babbles is opened anew kReopensInARow times and then reported down until it is quiet, with
 // a look at it each kSecondLook, and that the bus hears of up and down in turn. Never looks into a byte: the wire says

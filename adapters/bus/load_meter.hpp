@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How busy a bus is: the share of the last whole second in which an exchange was on the wire, or, where the wire counts
 // them, the share of its bits that were taken.
 // Promises 0..1000 permille at every instant, of seconds counted from the first call. Never used to decide anything.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The NMT states of CiA 301 as people read them, in the log of frames and in events.
 // Promises one word for each state. Never used to decide anything.
 #pragma once

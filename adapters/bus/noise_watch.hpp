@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tells a line that babbles from one that has a hiccup: bytes without an answer in them, without a pause, for over 100
-// ms (faults.md row 6). Promises that an answer clears it, and so does a pause longer than a USB adapter's latency
+// ms. Promises that an answer clears it, and so does a pause longer than a USB adapter's latency
 // timer (16 ms). Never acts: it only says.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a bus counts about itself, as registers 50000 + 100 * b show it (design 3.1).
 // Promises that counters only grow (modulo 2^32) between two starts of the gateway.
 // Never used to decide anything.
@@ -14,7 +15,7 @@ struct Statistics {
   std::uint32_t bad_frames = 0;     ///< well-summed frames that fit nothing, ill-summed ones, wrong widths
   std::uint32_t late_replies = 0;   ///< well-formed replies to an exchange that was given up
   std::uint32_t dropped_bytes = 0;  ///< bytes skipped while looking for a frame
-  std::uint32_t refused = 0;        ///< orders refused because a queue was full
+  std::uint32_t refused = 0;        ///< bus jobs refused because a queue was full
   std::uint32_t coalesced = 0;      ///< reads that joined an identical waiting one
   std::uint32_t superseded = 0;     ///< setpoints replaced before they were sent
   std::uint32_t reconnects = 0;     ///< times the link came back

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A wire: the link of one bus together with the protocol spoken on it, as the bus sees it. Each adapter makes one.
 // Promises at most one reply per send(), and none after abandon() or a link loss: what comes then is counted as late.
 // Never queues, repeats or orders requests: that is the arbiter's work alone.
@@ -23,7 +24,7 @@ class WireEvents {
   /// The answer to the exchange sent last. Its code is ok, refused_by_drive or bad_reply.
   virtual void on_reply(const ExchangeResult& result) = 0;
   /// Never from inside send() or another call of the wire.
-  virtual void on_notice(const Notice& /*notice*/) {}
+  virtual void on_unsolicited(const UnsolicitedEvent& /*unsolicited*/) {}
 };
 
 class Wire {
@@ -41,8 +42,8 @@ class Wire {
   virtual void abandon() = 0;
   /// From now on process data object `number` (1, 2, ...) of the node carries these; none: what comes of it is dropped.
   virtual void map_process_data(std::uint8_t /*node*/, std::uint8_t /*number*/, const ProcessMap& /*objects*/) {}
-  /// Asks the node for a sign of life, beside the exchanges (CANopen: a node guarding frame); it answers with a notice,
-  /// if it does. False: this protocol has no such thing, only exchanges tell.
+  /// Asks the node for a sign of life, beside the exchanges (CANopen: a node guarding frame); it answers with an
+  /// unsolicited event, if it does. False: this protocol has no such thing, only exchanges tell.
   [[nodiscard]] virtual bool call(std::uint8_t /*node*/) { return false; }
   /// Bits of all frames that it has sent and heard, with stuff bits and the space between frames; none: not counted.
   [[nodiscard]] virtual std::optional<std::uint64_t> bits_carried() const { return std::nullopt; }

@@ -1,4 +1,5 @@
-// How many frames of one identifier come in a second (faults.md row 5).
+// SPDX-License-Identifier: Apache-2.0
+// How many frames of one identifier come in a second.
 // Promises that no more than the limit pass in one second, and that an id over it is told once in kTellAgain.
 // Never looks at a frame or a clock.
 #pragma once

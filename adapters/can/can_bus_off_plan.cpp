@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/can/can_bus_off_plan.hpp"
 
 #include <algorithm>
@@ -37,16 +38,16 @@ void BusOffPlan::on_bus_off(Instant now) {
 void BusOffPlan::judge_acknowledgement(Instant now) {
   const bool missing = last_no_ack_ != kLongAgo && now - last_no_ack_ <= kNoAckQuiet;
   if (!passive_ || !missing) {
-    doubtful_since_ = kNever;
+    no_ack_since_ = kNever;
     queue_full_ = false;
-  } else if (doubtful_since_ == kNever) {
-    doubtful_since_ = now;
+  } else if (no_ack_since_ == kNever) {
+    no_ack_since_ = now;
   }
 }
 
 void BusOffPlan::on_frame() {
   last_no_ack_ = kLongAgo;
-  doubtful_since_ = kNever;
+  no_ack_since_ = kNever;
   queue_full_ = false;
 }
 
@@ -59,8 +60,8 @@ void BusOffPlan::on_restart() {
 BusOffPlan::Health BusOffPlan::health(Instant now) const {
   if (now < given_up_until_) return Health::given_up;
   if (bus_off_) return Health::bus_off;
-  if (doubtful_since_ == kNever || now - last_no_ack_ > kNoAckQuiet) return Health::usable;
-  return queue_full_ || now - doubtful_since_ >= kNoAckPersists ? Health::no_ack : Health::usable;
+  if (no_ack_since_ == kNever || now - last_no_ack_ > kNoAckQuiet) return Health::usable;
+  return queue_full_ || now - no_ack_since_ >= kNoAckPersists ? Health::no_ack : Health::usable;
 }
 
 Instant BusOffPlan::due(Instant now) const {
@@ -69,8 +70,8 @@ Instant BusOffPlan::due(Instant now) const {
     if (at > now) next = std::min(next, at);
   };
   consider(given_up_until_);
-  if (doubtful_since_ != kNever) {
-    consider(doubtful_since_ + kNoAckPersists);
+  if (no_ack_since_ != kNever) {
+    consider(no_ack_since_ + kNoAckPersists);
     consider(last_no_ack_ + kNoAckQuiet + Duration(1));
   }
   return next;

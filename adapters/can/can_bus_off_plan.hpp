@@ -1,4 +1,5 @@
-// Whether a CAN controller can be spoken through: from its error frames and the time (faults.md rows 2 and 4).
+// SPDX-License-Identifier: Apache-2.0
+// Whether a CAN controller can be spoken through: from its error frames and the time.
 // Promises: bus-off counts at once, and until the controller says it was restarted; the sixth bus-off within a minute
 // gives the bus up until a minute has passed without another (or the owner begins with a new plan, since the interface
 // was taken down and up); a missing acknowledgement counts when the controller is error passive by it and its queue is
@@ -29,7 +30,7 @@ class BusOffPlan {
   /// Counts in `trouble`, too.
   void on_errors(const CanErrors& errors, Instant now, CanTrouble& trouble);
   /// The driver takes no more frames.
-  void on_queue_full() { queue_full_ = doubtful_since_ != kNever; }
+  void on_queue_full() { queue_full_ = no_ack_since_ != kNever; }
   /// A frame was received: there is somebody on the bus.
   void on_frame();
   /// The controller runs again, as its own state tells, not an error frame.
@@ -52,7 +53,7 @@ class BusOffPlan {
   bool passive_ = false;
   bool queue_full_ = false;
   Instant last_no_ack_ = kLongAgo;
-  Instant doubtful_since_ = kNever;  ///< error passive, and nobody acknowledges
+  Instant no_ack_since_ = kNever;  ///< error passive, and nobody acknowledges
 
   static constexpr std::array<Instant, kMaxBusOffs> filled_with_long_ago() {
     std::array<Instant, kMaxBusOffs> all{};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The "device" of a CAN bus in a configuration: an interface of SocketCAN, or "slcan:PATH" for a Lawicel adapter.
 // Promises to say in words what is wrong with one, before anything is opened.
 // Never looks whether the device exists.

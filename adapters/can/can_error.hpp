@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error frames of a CAN controller, as Linux hands them over: what happened, in words.
 // Promises to name every class that <linux/can/error.h> has, and to take short or odd data as "nothing more is known".
 // Never judges: whether the link counts as down is BusOffPlan's matter.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A classical CAN data or remote frame (ISO 11898-1), as every CAN link carries it.
 // Promises that an id fits its width and that at most 8 bytes are used.
 // Never an error frame: a link turns those into CanTrouble (can_link.hpp).

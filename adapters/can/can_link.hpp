@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A link that carries CAN frames: SocketCAN, a serial CAN adapter (Lawicel), or a simulated bus in tests.
 // Promises to report up and down in turn, frames in order, and to come back by itself until it is destroyed.
 // Never interprets a frame.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames that wait until the driver or the adapter takes them.
 // Promises at most kMaxUnsentFrames, urgent ones before the others, each kind in order, and to tell when one has waited
 // for too long. Never sends, and never looks at a clock.

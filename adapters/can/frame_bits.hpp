@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many bits a frame takes on the wire (ISO 11898-1): header, data, CRC, the stuff bits that it really has, and the
 // space behind it. Promises the exact number for a frame that was sent once and acknowledged. Never counts what the
 // controller sent again, nor error frames: nobody tells us of those.

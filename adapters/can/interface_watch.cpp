@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/can/interface_watch.hpp"
 
 #include <linux/netlink.h>
@@ -19,10 +20,10 @@
 namespace axisgate::can {
 namespace {
 
-/// Reads in one turn of the loop; more notices wait for the next.
+/// Reads in one turn of the loop; more messages wait for the next.
 constexpr int kMaxReads = 16;
 /// The kernel's own limit for one message of this kind is a page or 8 KiB.
-constexpr std::size_t kMaxNotice = 16384;
+constexpr std::size_t kMaxMessage = 16384;
 
 int open_netlink() {
   const int descriptor = ::socket(AF_NETLINK, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, NETLINK_ROUTE);
@@ -67,7 +68,7 @@ std::string_view name_in(Bytes attributes) {
   return {};
 }
 
-std::optional<InterfaceNotice> notice_of(Bytes message, std::string_view interface) {
+std::optional<InterfaceChange> change_of(Bytes message, std::string_view interface) {
   const auto type = header_of<nlmsghdr>(message).nlmsg_type;
   if (type != RTM_NEWLINK && type != RTM_DELLINK) return std::nullopt;
   const Bytes content = message.subspan(sizeof(nlmsghdr));
@@ -75,18 +76,18 @@ std::optional<InterfaceNotice> notice_of(Bytes message, std::string_view interfa
     return std::nullopt;
   }
   const unsigned flags = header_of<ifinfomsg>(content).ifi_flags;
-  InterfaceNotice notice;
-  notice.known = true;
-  notice.up = type == RTM_NEWLINK && (flags & IFF_UP) != 0;
-  notice.running = notice.up && (flags & IFF_RUNNING) != 0;
-  return notice;
+  InterfaceChange change;
+  change.known = true;
+  change.up = type == RTM_NEWLINK && (flags & IFF_UP) != 0;
+  change.running = change.up && (flags & IFF_RUNNING) != 0;
+  return change;
 }
 
 }  // namespace
 
 InterfaceWatch::InterfaceWatch(boost::asio::io_context& context, std::string interface,
-                               std::function<void(const InterfaceNotice&)> on_notice)
-    : interface_(std::move(interface)), on_notice_(std::move(on_notice)), netlink_(context) {
+                               std::function<void(const InterfaceChange&)> on_change)
+    : interface_(std::move(interface)), on_change_(std::move(on_change)), netlink_(context) {
   const int descriptor = open_netlink();
   if (descriptor < 0) return;  // then only the retries help
   netlink_.assign(descriptor);
@@ -106,20 +107,20 @@ void InterfaceWatch::wait() {
 bool InterfaceWatch::drain() {
   const std::weak_ptr alive(alive_);
   const auto length = [](const nlmsghdr& header) { return std::size_t{header.nlmsg_len}; };
-  std::array<Byte, kMaxNotice> buffer{};
+  std::array<Byte, kMaxMessage> buffer{};
   for (int reads = 0; reads < kMaxReads; ++reads) {
     const ssize_t got = ::recv(netlink_.native_handle(), buffer.data(), buffer.size(), MSG_DONTWAIT);
     if (got < 0 && errno == ENOBUFS) {
-      on_notice_({});
+      on_change_({});
       if (alive.expired()) return false;
       continue;
     }
     if (got <= 0) break;
     Bytes rest = Bytes(buffer).first(static_cast<std::size_t>(got));
     for (Bytes message; !(message = take_item<nlmsghdr>(rest, length)).empty();) {
-      const auto notice = notice_of(message, interface_);
-      if (!notice) continue;
-      on_notice_(*notice);
+      const auto change = change_of(message, interface_);
+      if (!change) continue;
+      on_change_(*change);
       if (alive.expired()) return false;
     }
   }

@@ -1,5 +1,6 @@
-// Tells when a network interface appears, goes, or is taken up or down: rtnetlink's notices.
-// Promises at least one call for each change that the system tells, and one when it says that notices were lost.
+// SPDX-License-Identifier: Apache-2.0
+// Tells when a network interface appears, goes, or is taken up or down: rtnetlink's messages.
+// Promises at least one call for each change that the system tells, and one when it says that messages were lost.
 // Never asks for the state, and never changes it.
 #pragma once
 
@@ -11,17 +12,17 @@
 
 namespace axisgate::can {
 
-struct InterfaceNotice {
-  bool known = false;    ///< false: notices were lost, and the rest means nothing
+struct InterfaceChange {
+  bool known = false;    ///< false: messages were lost, and the rest means nothing
   bool up = false;       ///< by the administrator
   bool running = false;  ///< the driver says that it works: false while bus-off
 };
 
 class InterfaceWatch {
  public:
-  /// `on_notice` runs on the context's thread, not after the watch is destroyed.
+  /// `on_change` runs on the context's thread, not after the watch is destroyed.
   InterfaceWatch(boost::asio::io_context& context, std::string interface,
-                 std::function<void(const InterfaceNotice&)> on_notice);
+                 std::function<void(const InterfaceChange&)> on_change);
   InterfaceWatch(const InterfaceWatch&) = delete;
   InterfaceWatch& operator=(const InterfaceWatch&) = delete;
   ~InterfaceWatch();
@@ -32,7 +33,7 @@ class InterfaceWatch {
   bool drain();
 
   std::string interface_;
-  std::function<void(const InterfaceNotice&)> on_notice_;
+  std::function<void(const InterfaceChange&)> on_change_;
   boost::asio::posix::stream_descriptor netlink_;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
 };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ASCII protocol of Lawicel's CAN adapters (CAN232/CANUSB manual; "slcan" elsewhere), as bytes and lines.
 // Promises that any split of the bytes gives the same lines, that a line is bounded, that what is no line of the
 // protocol is counted and skipped, and that a frame is never made of bytes with noise in between.

@@ -1,4 +1,5 @@
-// The conversation with a Lawicel adapter: close, bit rate, open, then frames, and now and then its status.
+// SPDX-License-Identifier: Apache-2.0
+// The dialogue with a Lawicel adapter: close, bit rate, open, then frames, and now and then its status.
 // Promises to get an adapter going that never answers as well as one that answers everything, one frame after another
 // at the pace of its serial port, and to begin anew a second after the adapter has refused, overflowed or babbled.
 // Never looks at a clock, and never waits for the acknowledgement of a frame.

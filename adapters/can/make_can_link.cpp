@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/can/make_can_link.hpp"
 
 #include <cassert>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the product makes a CAN link: SocketCAN or a Lawicel adapter, by the device of the configuration.
 // Promises a link that picks its device up whenever it appears.
 // Never opens anything before the link is started.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/can/raw_socket.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The system calls on a raw CAN socket: open, receive, transmit; blocking ones none.
 // Promises a descriptor that hears the frames asked for and every error frame, with time stamps and the count of what
 // was dropped, or a text that names the interface and what to do about it. Never decides what an error means.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A CAN link through a Lawicel adapter on a serial port.
 // Promises what CanLink promises: up and down in turn with the reason, frames in order, at most kMaxFramesPerTurn of
 // them in one turn of the loop. Never opens the port itself: the ByteLink does, and keeps it open.

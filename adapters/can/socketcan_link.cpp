@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/can/socketcan_link.hpp"
 
 #include <fmt/format.h>
@@ -34,7 +35,7 @@ void SocketCanLink::start(CanLinkEvents& events, std::vector<CanFilter> filters)
   events_ = &events;
   filters_ = FilterSet(std::move(filters));
   watch_ = std::make_unique<InterfaceWatch>(context_, interface_,
-                                            [this](const InterfaceNotice& notice) { on_notice(notice); });
+                                            [this](const InterfaceChange& change) { on_change(change); });
   reopen_.on_request(runtime_.now());
   arm();
 }
@@ -195,13 +196,13 @@ void SocketCanLink::judge() {
   events_->on_link_up();
 }
 
-void SocketCanLink::on_notice(const InterfaceNotice& notice) {
+void SocketCanLink::on_change(const InterfaceChange& change) {
   if (!socket_.is_open()) {
-    if (!notice.known || notice.up) reopen_.on_path(runtime_.now());
-  } else if (notice.known && notice.up) {
+    if (!change.known || change.up) reopen_.on_path(runtime_.now());
+  } else if (change.known && change.up) {
     // A driver takes its interface's carrier away at bus-off and gives it back at the restart.
-    if (notice.running && !running_) faults_.on_restart();
-    running_ = notice.running;
+    if (change.running && !running_) faults_.on_restart();
+    running_ = change.running;
     const std::weak_ptr alive(opening_);
     judge();
     if (alive.expired()) return;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A CAN link through an interface of Linux (SocketCAN), on Boost.Asio.
 // Promises what CanLink promises, and that an interface that is missing, down, gone or made anew is told once with what
 // to do about it and picked up again: each second, and at once when the system tells of it. Never configures the
@@ -46,7 +47,7 @@ class SocketCanLink final : public CanLink {
   void take(const Received& received);
   void pump();
   void look_at_clog();
-  void on_notice(const InterfaceNotice& notice);
+  void on_change(const InterfaceChange& change);
   void lose(const std::string& why);
   void close();
   /// Tells up or down where that has changed.
@@ -73,7 +74,7 @@ class SocketCanLink final : public CanLink {
   Instant clog_look_at_ = kNever;   ///< when the queue is looked at again
   Instant send_again_at_ = kNever;  ///< the queue was full: when it is tried again
   std::uint32_t dropped_ = 0;       ///< by the system, on this socket
-  bool running_ = true;             ///< as the last notice told
+  bool running_ = true;             ///< as the last message told
   bool told_up_ = false;
   bool ever_up_ = false;
   boost::asio::posix::stream_descriptor socket_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/canopen/canopen_wire.hpp"
 
 #include <fmt/format.h>
@@ -242,9 +243,9 @@ void CanopenWire::on_reply_frame(Node& node, Bytes bytes, Instant now) {
       tell(node, node.unasked.on_stray_reply(false, now));
       return;
     case SdoClient::Heard::What::late:
-    case SdoClient::Heard::What::twin:
+    case SdoClient::Heard::What::second_reply:
       ++statistics_.late_replies;
-      tell(node, node.unasked.on_stray_reply(heard.what == SdoClient::Heard::What::twin, now));
+      tell(node, node.unasked.on_stray_reply(heard.what == SdoClient::Heard::What::second_reply, now));
       return;
     case SdoClient::Heard::What::mine:
       transmit(node.number, heard.step.frames);
@@ -264,7 +265,7 @@ void CanopenWire::on_reply_frame(Node& node, Bytes bytes, Instant now) {
 void CanopenWire::tell(Node& node, const Unasked::News& news) {
   if (news.bad) ++statistics_.bad_frames;
   if (news.guard) transmit(guard_frame(node.number));
-  for (const bus::Notice& notice : news.notices) events_->on_notice(notice);
+  for (const bus::UnsolicitedEvent& unsolicited : news.unsolicited_events) events_->on_unsolicited(unsolicited);
 }
 
 void CanopenWire::on_timer() {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CANopen (CiA 301) on a CAN link, as the bus sees it: SDO requests out, answers back; beside them NMT, heartbeats,
 // guarding, EMCY, process data and SYNC.
 // Promises at most one reply per send(), none after abandon() or a loss of the link, and none but to the request that
@@ -26,11 +27,12 @@ struct CanopenNode {
 };
 
 struct CanopenSettings {
-  std::string name;                                   ///< the bus's, for the log
-  std::uint8_t own_node = 127;                        ///< whose heartbeat ours is
-  Duration own_heartbeat{};                           ///< 0: none is sent
-  Duration sync{};                                    ///< SYNC is sent this often; 0: never
-  Duration timeout = std::chrono::milliseconds(100);  ///< of an SDO exchange: two of them tell a twin's second reply
+  std::string name;             ///< the bus's, for the log
+  std::uint8_t own_node = 127;  ///< whose heartbeat ours is
+  Duration own_heartbeat{};     ///< 0: none is sent
+  Duration sync{};              ///< SYNC is sent this often; 0: never
+  Duration timeout =
+      std::chrono::milliseconds(100);  ///< of an SDO exchange: two of them tell the second reply of a duplicate node-ID
   std::vector<CanopenNode> nodes;
 };
 

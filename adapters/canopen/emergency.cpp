@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/canopen/emergency.hpp"
 
 #include <algorithm>
@@ -5,18 +6,18 @@
 
 namespace axisgate::canopen {
 
-std::optional<bus::Notice> decode_emergency(std::uint8_t node, Bytes bytes) {
+std::optional<bus::UnsolicitedEvent> decode_emergency(std::uint8_t node, Bytes bytes) {
   if (bytes.size() < 2) return std::nullopt;
-  bus::Notice notice{.kind = bus::Notice::Kind::emergency, .node = node};
-  notice.code = load_le16(bytes, 0);
+  bus::UnsolicitedEvent unsolicited{.kind = bus::UnsolicitedEvent::Kind::emergency, .node = node};
+  unsolicited.code = load_le16(bytes, 0);
   if (bytes.size() > 2) {
-    notice.error_register = bytes[2];
-    std::copy(bytes.begin() + 3, bytes.end(), notice.vendor.begin());
+    unsolicited.error_register = bytes[2];
+    std::copy(bytes.begin() + 3, bytes.end(), unsolicited.vendor.begin());
   }
-  return notice;
+  return unsolicited;
 }
 
-std::optional<bus::Notice> EmergencyLimit::pass(bus::Notice emergency, Instant now) {
+std::optional<bus::UnsolicitedEvent> EmergencyLimit::pass(bus::UnsolicitedEvent emergency, Instant now) {
   if (now >= window_end_) {
     told_ = 0;
     window_end_ = now + kWindow;
@@ -34,9 +35,9 @@ std::optional<bus::Notice> EmergencyLimit::pass(bus::Notice emergency, Instant n
   return emergency;
 }
 
-std::optional<bus::Notice> EmergencyLimit::take_held(Instant now) {
+std::optional<bus::UnsolicitedEvent> EmergencyLimit::take_held(Instant now) {
   if (!held_ || now < window_end_) return std::nullopt;
-  bus::Notice last = *std::exchange(held_, std::nullopt);
+  bus::UnsolicitedEvent last = *std::exchange(held_, std::nullopt);
   last.repeats = std::exchange(held_count_, 0) - 1;
   told_ = 1;
   window_end_ = now + kWindow;

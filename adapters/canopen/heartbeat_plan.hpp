@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When our own periodic frames are due: SYNC, and the heartbeat by which the drives watch the gateway (1016h).
 // Promises no drift, and no burst after a stall: what was missed is left out.
 // Never sends, and never looks at a clock.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Network management frames (CiA 301 sections 7.2.8.2 and 7.2.8.3): commands, boot-up, heartbeat, guarding answers.
 // Promises that a command has exactly two bytes (LD2-CAN C10: longer ones in its examples are misprints), and that
 // states a node only passes through are still taken for a sign of life.

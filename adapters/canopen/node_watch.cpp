@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/canopen/node_watch.hpp"
 
 #include <algorithm>
@@ -25,13 +26,13 @@ void NodeWatch::link_down() {
   guard_due_ = kNever;
 }
 
-bus::Notice NodeWatch::notice(bus::Notice::Kind kind) const {
+bus::UnsolicitedEvent NodeWatch::unsolicited(bus::UnsolicitedEvent::Kind kind) const {
   return {.kind = kind, .node = settings_.node, .state = state_};
 }
 
-std::optional<boost::container::static_vector<bus::Notice, 1>> NodeWatch::on_error_control(const ErrorControl& heard,
-                                                                                           Instant now) {
-  boost::container::static_vector<bus::Notice, 1> told;
+std::optional<boost::container::static_vector<bus::UnsolicitedEvent, 1>> NodeWatch::on_error_control(
+    const ErrorControl& heard, Instant now) {
+  boost::container::static_vector<bus::UnsolicitedEvent, 1> told;
   if (heard.boot_up) {
     // What it was told before is gone, its heartbeat period too: the next one heard begins the watch anew.
     forget();
@@ -39,7 +40,7 @@ std::optional<boost::container::static_vector<bus::Notice, 1>> NodeWatch::on_err
     called_ = false;
     state_ = heard.state;
     next_toggle_ = false;
-    told.push_back(notice(bus::Notice::Kind::started));
+    told.push_back(unsolicited(bus::UnsolicitedEvent::Kind::started));
     return told;
   }
   if (guarded()) {
@@ -53,7 +54,8 @@ std::optional<boost::container::static_vector<bus::Notice, 1>> NodeWatch::on_err
   const bool news = !std::exchange(present_, true) || state_ != heard.state;
   state_ = heard.state;
   const bool not_operational = state_ == bus::NodeState::stopped || state_ == bus::NodeState::pre_operational;
-  if (std::exchange(called_, false) || news || not_operational) told.push_back(notice(bus::Notice::Kind::present));
+  if (std::exchange(called_, false) || news || not_operational)
+    told.push_back(unsolicited(bus::UnsolicitedEvent::Kind::present));
   return told;
 }
 

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a node is there and in what state, by its boot-up, heartbeats, or answers to node guarding (CiA 301 section
-// 7.2.8.3.2). Promises one notice for each change, one for each call(), and one for each sign that the node is stopped
-// or pre-operational: whether it should be, only its drive knows, and it may learn that later than the first sign;
-// `gone` once; and that a heartbeat is missed only after one was heard. Never sends: it says when a guarding frame is
-// due. Never looks at a clock.
+// 7.2.8.3.2). Promises one unsolicited event for each change, one for each call(), and one for each sign that the node
+// is stopped or pre-operational: whether it should be, only its drive knows, and it may learn that later than the first
+// sign; `gone` once; and that a heartbeat is missed only after one was heard. Never sends: it says when a guarding
+// frame is due. Never looks at a clock.
 #pragma once
 
 #include <boost/container/static_vector.hpp>
@@ -31,7 +32,7 @@ class NodeWatch {
   void link_up(Instant now);
   void link_down();
   /// No value: an answer whose toggle bit did not change, which tells nothing.
-  [[nodiscard]] std::optional<boost::container::static_vector<bus::Notice, 1>> on_error_control(
+  [[nodiscard]] std::optional<boost::container::static_vector<bus::UnsolicitedEvent, 1>> on_error_control(
       const ErrorControl& heard, Instant now);
   /// Frames under its id are dropped, its own may be among them: it is not missed for what we did not look at.
   void on_flood(Instant now);
@@ -48,7 +49,7 @@ class NodeWatch {
  private:
   [[nodiscard]] bool guarded() const { return settings_.guard_time > Duration::zero(); }
   void expect_heartbeat(Instant now);
-  [[nodiscard]] bus::Notice notice(bus::Notice::Kind kind) const;
+  [[nodiscard]] bus::UnsolicitedEvent unsolicited(bus::UnsolicitedEvent::Kind kind) const;
   void forget();
 
   Settings settings_;

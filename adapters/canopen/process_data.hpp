@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Process data (CiA 301 section 7.2.2): eight bytes, cut into objects by a map that both sides know.
 // Promises values only of a frame that carries the whole map; what it carries beyond is not looked at.
 // Never knows who sent it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/canopen/sdo_client.hpp"
 
 #include <cassert>
@@ -88,8 +89,8 @@ SdoClient::Heard SdoClient::not_mine(Server& server, bool waited_for, Bytes byte
   }
   // One more than was asked for; but where an earlier request was given up, the first one may have been its answer.
   const bool again =
-      server.finished && now - server.finished->at <= twin_window_ && same_request(server.finished->reply, *reply);
-  if (again && server.owed == 0) return {Heard::What::twin};
+      server.finished && now - server.finished->at <= duplicate_window_ && same_request(server.finished->reply, *reply);
+  if (again && server.owed == 0) return {Heard::What::second_reply};
   if (server.owed > 0) --server.owed;
   return {Heard::What::late};
 }

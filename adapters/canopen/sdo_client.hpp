@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 // The SDO client of one bus: one exchange outstanding, and for each node at most one open transfer.
 // Promises that a reply ends only the exchange that asked for it; that a transfer which something else interrupts, or
-// which is given up, is aborted at its server; that a second reply to a finished request is told (faults.md row 9).
+// which is given up, is aborted at its server; that a second reply to a finished request is told.
 // Never sends: it says what to send. Never looks at a clock.
 #pragma once
 
@@ -17,7 +18,7 @@ namespace axisgate::canopen {
 class SdoClient {
  public:
   /// A second reply that comes within two of `timeout` is another device's.
-  explicit SdoClient(Duration timeout) : twin_window_(2 * timeout) {}
+  explicit SdoClient(Duration timeout) : duplicate_window_(2 * timeout) {}
   /// The node's server offers block transfer.
   void offer_block(std::uint8_t node) { servers_.at(node).block = true; }
 
@@ -27,10 +28,10 @@ class SdoClient {
 
   struct Heard {
     enum class What : std::uint8_t {
-      mine,  ///< `step` says how it goes on
-      late,  ///< a reply to nothing that is waited for
-      twin,  ///< a second reply to a request that is finished
-      bad,   ///< no reply
+      mine,          ///< `step` says how it goes on
+      late,          ///< a reply to nothing that is waited for
+      second_reply,  ///< a second reply to a request that is finished
+      bad,           ///< no reply
     };
     What what = What::bad;
     SdoStep step{};
@@ -64,7 +65,7 @@ class SdoClient {
   [[nodiscard]] static bus::ObjectAddress object_of(const Transfer& transfer);
   [[nodiscard]] Heard not_mine(Server& server, bool waited_for, Bytes bytes, Instant now) const;
 
-  Duration twin_window_;
+  Duration duplicate_window_;
   std::array<Server, kLastNode + 1> servers_;
   std::optional<std::uint8_t> outstanding_;
 };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SDO frames (CiA 301 section 7.2.4.3), bytes to fields and back: expedited, segmented and block transfer, aborts.
 // Promises that every request is eight bytes, unused ones 00, and that a reply is taken where it is long enough for
 // what it says, though a drive may send fewer than eight (JD K36).

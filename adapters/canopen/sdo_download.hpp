@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writing one object by SDO download: expedited, segmented, or in blocks of at most kMaxBlockSegments.
 // Promises that an acknowledgement is taken only if command, object, toggle and sequence are those it waits for, and
 // that a server which wants longer blocks gets segments instead.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an SDO transfer wants done next, and how it says that an exchange is over.
 // Promises room for everything one exchange can send at once.
 // Never holds more than one exchange's worth of frames.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reading one object by SDO upload: expedited, segmented, or in blocks of at most kMaxBlockSegments.
 // Promises that a frame is taken only if command, object, toggle and sequence are those it waits for; that content
 // whose CRC or length is wrong is never handed on; that no more than kMaxObjectBytes are kept.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/canopen/unasked.hpp"
 
 #include <algorithm>
@@ -7,28 +8,28 @@
 
 namespace axisgate::canopen {
 
-using NoticeKind = bus::Notice::Kind;
+using UnsolicitedKind = bus::UnsolicitedEvent::Kind;
 
 Unasked::Unasked(const NodeWatch::Settings& settings)
     : node_(settings.node),
       watch_(settings),
-      twins_(settings.heartbeat),
+      duplicates_(settings.heartbeat),
       process_data_{can::BabbleWatch(can::kMaxProcessDataPerSecond), can::BabbleWatch(can::kMaxProcessDataPerSecond),
                     can::BabbleWatch(can::kMaxProcessDataPerSecond), can::BabbleWatch(can::kMaxProcessDataPerSecond)} {}
 
 bool Unasked::News::restarted() const {
-  return std::any_of(notices.begin(), notices.end(),
-                     [](const bus::Notice& n) { return n.kind == NoticeKind::started; });
+  return std::any_of(unsolicited_events.begin(), unsolicited_events.end(),
+                     [](const bus::UnsolicitedEvent& n) { return n.kind == UnsolicitedKind::started; });
 }
 
 void Unasked::link_up(Instant now) {
   watch_.link_up(now);
-  twins_.forget();
+  duplicates_.forget();
 }
 
 void Unasked::link_down() {
   watch_.link_down();
-  twins_.forget();
+  duplicates_.forget();
   emergencies_ = {};
 }
 
@@ -56,9 +57,9 @@ Unasked::News Unasked::on_frame(const CobId& id, Bytes bytes, Instant now) {
   return news;
 }
 
-Unasked::News Unasked::on_stray_reply(bool twin, Instant now) {
+Unasked::News Unasked::on_stray_reply(bool duplicate, Instant now) {
   News news;
-  if (passes(stray_replies_, sdo_reply_id(node_), now, news) && twin) tell_twin(now, news);
+  if (passes(stray_replies_, sdo_reply_id(node_), now, news) && duplicate) tell_duplicate_node(now, news);
   news.bad = false;  // whoever found it stray has counted it
   return news;
 }
@@ -66,7 +67,8 @@ Unasked::News Unasked::on_stray_reply(bool twin, Instant now) {
 bool Unasked::passes(can::BabbleWatch& watch, std::uint32_t id, Instant now, News& news) {
   const can::BabbleWatch::Verdict verdict = watch.on_frame(now);
   if (verdict.tell) {
-    news.notices.push_back({.kind = NoticeKind::babbling, .node = node_, .code = static_cast<std::uint16_t>(id)});
+    news.unsolicited_events.push_back(
+        {.kind = UnsolicitedKind::babbling, .node = node_, .code = static_cast<std::uint16_t>(id)});
   }
   news.bad = !verdict.pass;
   return verdict.pass;
@@ -77,12 +79,12 @@ void Unasked::on_error_control(Bytes bytes, Instant now, News& news) {
   const auto told = heard ? watch_.on_error_control(*heard, now) : std::nullopt;
   news.bad = !told;
   if (!told) return;
-  news.notices.insert(news.notices.end(), told->begin(), told->end());
+  news.unsolicited_events.insert(news.unsolicited_events.end(), told->begin(), told->end());
   if (heard->boot_up) {
     maps_ = {};  // what its process data carry now is not what it was told
-    twins_.on_boot_up(now);
-  } else if (twins_.on_heartbeat(heard->state, now)) {
-    tell_twin(now, news);
+    duplicates_.on_boot_up(now);
+  } else if (duplicates_.on_heartbeat(heard->state, now)) {
+    tell_duplicate_node(now, news);
   }
 }
 
@@ -90,7 +92,7 @@ void Unasked::on_emergency(Bytes bytes, Instant now, News& news) {
   const auto emergency = decode_emergency(node_, bytes);
   news.bad = !emergency;
   if (!emergency) return;
-  if (const auto told = emergencies_.pass(*emergency, now)) news.notices.push_back(*told);
+  if (const auto told = emergencies_.pass(*emergency, now)) news.unsolicited_events.push_back(*told);
 }
 
 void Unasked::on_process_data(std::uint8_t number, Bytes bytes, News& news) {
@@ -98,23 +100,23 @@ void Unasked::on_process_data(std::uint8_t number, Bytes bytes, News& news) {
   if (map.empty()) return;
   const auto fields = decode_process_data(map, bytes);
   news.bad = !fields;
-  if (fields) news.notices.push_back({.kind = NoticeKind::values, .node = node_, .fields = *fields});
+  if (fields) news.unsolicited_events.push_back({.kind = UnsolicitedKind::values, .node = node_, .fields = *fields});
 }
 
-void Unasked::tell_twin(Instant now, News& news) {
-  if (now < tell_twin_at_) return;
-  tell_twin_at_ = now + kTellTwinAgain;
-  news.notices.push_back({.kind = NoticeKind::twin, .node = node_});
+void Unasked::tell_duplicate_node(Instant now, News& news) {
+  if (now < tell_duplicate_node_at_) return;
+  tell_duplicate_node_at_ = now + kTellDuplicateNodeAgain;
+  news.unsolicited_events.push_back({.kind = UnsolicitedKind::duplicate_node, .node = node_});
 }
 
 Unasked::News Unasked::on_deadline(Instant now) {
   News news;
-  if (const auto held = emergencies_.take_held(now)) news.notices.push_back(*held);
+  if (const auto held = emergencies_.take_held(now)) news.unsolicited_events.push_back(*held);
   const NodeWatch::Due due = watch_.on_deadline(now);
   news.guard = due.guard;
   if (due.gone) {
-    twins_.forget();
-    news.notices.push_back({.kind = NoticeKind::gone, .node = node_});
+    duplicates_.forget();
+    news.unsolicited_events.push_back({.kind = UnsolicitedKind::gone, .node = node_});
   }
   return news;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/keya/keya_can_client.hpp"
 
 #include <cassert>
@@ -25,8 +26,8 @@ CanClient::Heard CanClient::take(std::uint8_t node, Bytes bytes, Instant now) {
 // One more than was asked for; but where an earlier request was given up, the first one may have been its answer.
 CanClient::Heard CanClient::not_mine(Drive& drive, const CanMessage& message, Instant now) const {
   const bool again =
-      drive.finished && now - drive.finished->at <= twin_window_ && answers(message, drive.finished->exchange);
-  if (again && drive.owed == 0) return {Heard::What::twin};
+      drive.finished && now - drive.finished->at <= duplicate_window_ && answers(message, drive.finished->exchange);
+  if (again && drive.owed == 0) return {Heard::What::second_reply};
   if (drive.owed > 0) --drive.owed;
   return {Heard::What::late};
 }

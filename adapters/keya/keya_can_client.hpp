@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 // The requests of one Keya CAN bus: one outstanding, and what became of those before.
-// Promises that a reply ends only the exchange that asked for it, and that a second reply to a finished one is told
-// (faults.md row 9). Never sends, and never looks at a clock.
+// Promises that a reply ends only the exchange that asked for it, and that a second reply to a finished one is told.
+// Never sends, and never looks at a clock.
 #pragma once
 
 #include <array>
@@ -13,17 +14,17 @@ namespace axisgate::keya {
 class CanClient {
  public:
   /// A second reply that comes within two of `timeout` is another device's.
-  explicit CanClient(Duration timeout) : twin_window_(2 * timeout) {}
+  explicit CanClient(Duration timeout) : duplicate_window_(2 * timeout) {}
 
   /// Only while nothing is outstanding, and where refusal_of() has no value. To send.
   [[nodiscard]] CanMessage begin(const bus::Exchange& exchange);
 
   struct Heard {
     enum class What : std::uint8_t {
-      mine,  ///< `result` is the answer to what was outstanding
-      late,  ///< a reply to nothing that is waited for
-      twin,  ///< a second reply to a request that is finished
-      bad,   ///< no reply
+      mine,          ///< `result` is the answer to what was outstanding
+      late,          ///< a reply to nothing that is waited for
+      second_reply,  ///< a second reply to a request that is finished
+      bad,           ///< no reply
     };
     What what = What::bad;
     bus::ExchangeResult result{};
@@ -47,7 +48,7 @@ class CanClient {
   };
   [[nodiscard]] Heard not_mine(Drive& drive, const CanMessage& message, Instant now) const;
 
-  Duration twin_window_;
+  Duration duplicate_window_;
   std::array<Drive, 256> drives_;
   std::optional<bus::Exchange> outstanding_;
 };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keya's own CAN frames, bytes to fields and back (KYDAS4860-2E manual, CAN chapter): 29-bit ids, always 8 bytes; the
 // index little-endian, the data big-endian, the opposite of CANopen.
 // Promises decode(encode(m)) == m, and that the filters let through what the named drives send and nothing else.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How an exchange is said in Keya's CAN frames, and which frame answers it.
 // Promises that a reply is matched by all it says: an acknowledgement (index 0x20xx) never answers a read, nor a value
 // a write, although both begin with 0x60. Never looks at anything but its arguments.

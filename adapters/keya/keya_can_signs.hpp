@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one Keya drive shows of itself on CAN without being asked: its heartbeat, and replies that nobody waits for.
-// Promises notices in the order of the frames, within bounds: an id that babbles is thinned and told once in
-// BabbleWatch::kTellAgain, a twin once in kTellTwinAgain. Never says that a drive is gone: timeouts tell that, since
-// nothing is known of how regular its heartbeat is. Never looks at a clock.
+// Promises unsolicited events in the order of the frames, within bounds: an id that babbles is thinned and told once in
+// BabbleWatch::kTellAgain, a duplicate node-ID once in kTellDuplicateNodeAgain. Never says that a drive is gone:
+// timeouts tell that, since nothing is known of how regular its heartbeat is. Never looks at a clock.
 #pragma once
 
 #include <boost/container/static_vector.hpp>
@@ -16,26 +17,26 @@ inline constexpr Duration kHeartbeatSilence = std::chrono::seconds(2);
 
 class CanSigns {
  public:
-  static constexpr Duration kTellTwinAgain = std::chrono::seconds(10);
+  static constexpr Duration kTellDuplicateNodeAgain = std::chrono::seconds(10);
 
   explicit CanSigns(std::uint8_t node) : node_(node) {}
 
   struct News {
-    boost::container::static_vector<bus::Notice, 2> notices;
+    boost::container::static_vector<bus::UnsolicitedEvent, 2> unsolicited_events;
     bool bad = false;  ///< the frame is not what its id says, or one too many
   };
   /// The link is a new one.
   void reset();
   [[nodiscard]] News on_heartbeat(Bytes bytes, Instant now);
-  /// `twin`: it is a second reply.
-  [[nodiscard]] News on_stray_reply(bool twin, Instant now);
+  /// `duplicate`: it is a second reply.
+  [[nodiscard]] News on_stray_reply(bool duplicate, Instant now);
 
  private:
   [[nodiscard]] bool passes(can::BabbleWatch& watch, std::uint32_t id, Instant now, News& news) const;
 
   std::uint8_t node_;
   Instant last_heartbeat_ = kLongAgo;
-  Instant tell_twin_at_ = kLongAgo;
+  Instant tell_duplicate_node_at_ = kLongAgo;
   can::BabbleWatch heartbeats_{can::kMaxSignsPerSecond};
   can::BabbleWatch stray_replies_{can::kMaxUnaskedRepliesPerSecond};
 };

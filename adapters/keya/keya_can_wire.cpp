@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/keya/keya_can_wire.hpp"
 
 #include <fmt/format.h>
@@ -159,10 +160,10 @@ void KeyaCanWire::on_reply_frame(Node& node, const can::CanFrame& frame, Instant
       tell(node.signs.on_stray_reply(false, now));
       return;
     case What::late:
-    case What::twin:
+    case What::second_reply:
       log_frame("<-", frame, "  (late)");
       ++statistics_.late_replies;
-      tell(node.signs.on_stray_reply(heard.what == What::twin, now));
+      tell(node.signs.on_stray_reply(heard.what == What::second_reply, now));
       return;
     case What::mine:
       log_frame("<-", frame);
@@ -175,7 +176,7 @@ void KeyaCanWire::on_reply_frame(Node& node, const can::CanFrame& frame, Instant
 /// Last in whatever calls it: the bus may send from inside.
 void KeyaCanWire::tell(const CanSigns::News& news) {
   if (news.bad) ++statistics_.bad_frames;
-  for (const bus::Notice& notice : news.notices) events_->on_notice(notice);
+  for (const bus::UnsolicitedEvent& unsolicited : news.unsolicited_events) events_->on_unsolicited(unsolicited);
 }
 
 void KeyaCanWire::log_frame(std::string_view direction, const can::CanFrame& frame, std::string_view remark) const {

@@ -1,4 +1,5 @@
-// Keya's own protocol on a CAN link, as the bus sees it: requests out, answers back, heartbeats as notices.
+// SPDX-License-Identifier: Apache-2.0
+// Keya's own protocol on a CAN link, as the bus sees it: requests out, answers back, heartbeats as unsolicited events.
 // Promises at most one reply per send(), none after abandon() or a loss of the link, and none but to the request that
 // asked for it (node, index, sub-index); that what drives say unasked is told in order and within bounds.
 // Never queues or repeats a request, and never judges a value.
@@ -15,9 +16,10 @@
 namespace axisgate::keya {
 
 struct KeyaCanSettings {
-  std::string name;                                   ///< the bus's, for the log
-  std::vector<std::uint8_t> nodes;                    ///< from 1; each once
-  Duration timeout = std::chrono::milliseconds(100);  ///< of an exchange: two of them tell a twin's second reply
+  std::string name;                 ///< the bus's, for the log
+  std::vector<std::uint8_t> nodes;  ///< from 1; each once
+  Duration timeout =
+      std::chrono::milliseconds(100);  ///< of an exchange: two of them tell the second reply of a duplicate node-ID
 };
 
 /// What the wire says of an exchange, beside wire.hpp's rules:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a serial line brings our own frames back (an RS485 adapter that hears itself, a loop in the cable). A query's
 // echo is byte for byte the answer whose data are all 0: "no fault, standing still".
 // Promises that such a frame is called an answer only on a line that is known not to echo, and never for a query that

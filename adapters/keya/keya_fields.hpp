@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The data of a Keya answer, cut into the fields that an exchange asks for; all three protocols carry them big-endian.
 // Promises that no field outside the data is cut, and the fields in the order of the exchange.
 // Never knows a frame: where its data begin is the codecs' question.

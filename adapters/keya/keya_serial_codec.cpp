@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/keya/keya_serial_codec.hpp"
 
 #include <algorithm>

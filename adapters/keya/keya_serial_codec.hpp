@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keya's twelve-byte serial frames, bytes to fields and back (KYDAS4860-2E manual, RS232 and RS485 chapters): a start
 // byte that says what the frame is, on RS485 the drive's number, a code, data, and on RS485 the sum of bytes 0 to 10.
 // Promises decode(encode(f)) == f, and to say honestly "more", "frame" or "bad, skip so many".

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How an exchange is said in Keya's serial frames, and which frame answers it.
 // Promises that a query is matched by all that its answer says: code, and on RS485 the drive's number.
 // Never looks at anything but its arguments.

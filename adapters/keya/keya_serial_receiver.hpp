@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds Keya's serial frames in a stream of bytes, and in them the one answer that is awaited.
 // Promises that a heartbeat, an echo or another's frame is never taken for the answer, nor a frame that began before
 // the request; that noise before the answer gives way byte by byte; that a window of twelve bytes in which the awaited

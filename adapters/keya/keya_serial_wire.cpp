@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/keya/keya_serial_wire.hpp"
 
 #include <fmt/format.h>
@@ -185,7 +186,8 @@ void KeyaSerialWire::tell(const News& news, std::uint32_t dropped) {
   // Last: the bus may send its next request from inside these.
   if (news.answer && watch_.up()) events_->on_reply(*news.answer);
   if (news.present && watch_.up()) {
-    events_->on_notice({.kind = bus::Notice::Kind::present, .node = kRs232Node, .state = bus::NodeState::operational});
+    events_->on_unsolicited(
+        {.kind = bus::UnsolicitedEvent::Kind::present, .node = kRs232Node, .state = bus::NodeState::operational});
   }
 }
 

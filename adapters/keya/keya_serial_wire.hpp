@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keya's serial protocols on a line of bytes, as the bus sees them: queries and control frames out, answers back.
 // Promises at most one reply per send(), none after abandon() or a loss of the link; that a frame cut off by silence
 // does not spoil the next one; that a line that babbles is opened anew three times and then reported down until it is
-// quiet (faults.md row 6). Never queues or repeats a request, and never judges a value.
+// quiet. Never queues or repeats a request, and never judges a value.
 #pragma once
 
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keya's frames in words, for the decode log: "speed of motor A = 5000", "speed: A 501, B -498".
 // Promises one short line for any frame, in the units of the wire.
 // Never decides anything.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinco's ten-byte frame, bytes to fields and back (kinco-jd.md 2.1, kinco-md.md 2.2): station, command, index,
 // sub-index, four data bytes, and a tenth byte that makes the sum of all ten 0 modulo 256. There are no delimiters.
 // Promises decode(encode(f)) == f, and to say honestly "more", "frame" or "bad, skip so many".

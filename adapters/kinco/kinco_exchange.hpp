@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 // How an exchange is said in Kinco frames, and which frame answers it.
-// Promises that a reply is matched by all it says: station, kind of answer, index and sub-index (faults.md section 2,
-// rule 1). Never looks at anything but its arguments.
+// Promises that a reply is matched by all it says: station, kind of answer, index and sub-index.
+// Never looks at anything but its arguments.
 #pragma once
 
 #include "adapters/bus/exchange.hpp"

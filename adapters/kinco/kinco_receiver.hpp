@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds frames in a stream of bytes, and in them the one answer that is awaited.
 // Promises that the awaited answer is found whatever comes before it: a window of ten bytes that is not the answer
 // gives way by one byte only, however good its sum, since noise may add up to 0 across the start of the true frame.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The serial line of one Modbus RTU bus over libmodbus: the RtuLink of the product.
 // Promises a loss told at once with its reason, also while its worker waits for the rest of a frame, a new try each
 // second and at once when the path appears, exclusive use, and that a port whose descriptor libmodbus cannot serve is

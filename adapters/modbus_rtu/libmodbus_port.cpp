@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/modbus_rtu/libmodbus_port.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A serial port spoken to through libmodbus: the one file that knows <modbus/modbus.h>, and of it only the framing of
 // requests and confirmations. Its server half is never used, nor what it would do about an error by itself.
 // Promises to tell whole frames with a right CRC from everything else, to come back within the time that a frame takes,

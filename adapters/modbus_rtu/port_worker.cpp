@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/modbus_rtu/port_worker.hpp"
 
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The thread of one port: libmodbus blocks, so it does that here and not on the core's thread.
 // Promises that what it is told is taken up as soon as no frame is half read, that what it hears is told on the core's
 // thread in order, each frame with the number of the newest frame sent before it, and that it calls nobody once it is

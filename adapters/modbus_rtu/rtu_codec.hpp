@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How an exchange is said in Modbus RTU frames, and which frame answers it (Modbus application protocol V1.1b3, 6.3,
 // 6.6, 6.12 and 7). Promises that a frame is taken for the answer only if all it says fits: unit, function, length, and
 // of a write the echo of what was asked. Never looks at anything but its arguments; the CRC is the link's.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The serial line of one Modbus RTU bus, as the wire sees it: frames out, frames in. CRC, gaps and line timing are the
 // link's; what a frame means is the codec's. The product has one over libmodbus (libmodbus_link), the simulation
 // another. Promises that on_frame() carries a frame whose CRC was right, tagged with the newest transmit() before it

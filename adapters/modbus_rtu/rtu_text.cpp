@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/modbus_rtu/rtu_text.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long Modbus RTU frames and the silences between them take on a serial line.
 // Promises times that follow from the line's speed alone (Modbus over serial line V1.02, 2.5.1.1).
 // Never counts how long a drive thinks before it answers.

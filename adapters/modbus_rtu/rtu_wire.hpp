@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Modbus RTU on a serial line, as the bus sees it: requests out, answers back.
 // Promises at most one reply per send(), none after abandon() or a loss of the link, none for a frame that was heard
 // before its request was sent, and that a line that babbles is opened anew three times and then reported down until it

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/serial/device_rights.hpp"
 
 #include <fmt/format.h>

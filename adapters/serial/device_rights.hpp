@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Why a process may not open a device, and what gives it the right: the group that the device belongs to.
 // Promises words with the names that this system has, so that they can be typed as they stand. Never changes a right,
 // and never asks anybody but the system's own files of users and groups.

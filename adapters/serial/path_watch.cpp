@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/serial/path_watch.hpp"
 
 #include <sys/inotify.h>

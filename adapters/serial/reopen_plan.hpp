@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When to try a missing device again: each second, and at once when its path appears.
 // Promises a try within a second of the last, and that a path that flaps causes no more than one try each 20 ms.
 // Never opens anything, and never looks at a clock.

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 // A serial port that is kept open: the ByteLink of the product, on Boost.Asio.
-// Promises bytes in order, a loss told once with its reason, a new try each second and at once when the path appears
-// (P7), and exclusive use. A device that is missing at the start is a matter for the log, not an error. Never blocks,
+// Promises bytes in order, a loss told once with its reason, a new try each second and at once when the path appears,
+// and exclusive use. A device that is missing at the start is a matter for the log, not an error. Never blocks,
 // never interprets a byte, and never calls its events once destroyed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "adapters/serial/serial_port.hpp"
 
 // termios2 lives in the kernel's header alone, which does not go together with <termios.h>: hence this file without

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens and configures a serial device: one system call after another, blocking ones none.
 // Promises a descriptor that is raw, non-blocking, closed on exec and ours alone, or a text that names the device and
 // the reason. Never touches the settings of a port that another process has.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a configuration says about a serial port.
 // Promises defaults that suit the Kinco drives: 38400 baud, 8 data bits, no parity, 1 stop bit (kinco-jd.md 2.0).
 // Never says what is spoken on the line.

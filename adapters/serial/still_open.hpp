@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a link that opens and closes its device still has the opening for which a handler was made.
 // Promises a true answer in a handler that runs after its link is gone. Never keeps a link alive.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The entry of PACKAGE for this version, as the file FILE. SOURCE_DATE_EPOCH is its time, so that one source gives one package.
 if(DEFINED ENV{AXISGATE_PACKAGE_VERSION})
   set(VERSION $ENV{AXISGATE_PACKAGE_VERSION})

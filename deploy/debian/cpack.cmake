@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What the packages are called, what they say of themselves and what they need. Read by CPack when it makes them.
 include("${CMAKE_CURRENT_LIST_DIR}/maintainer.cmake")
 set(version ${CPACK_PACKAGE_VERSION})

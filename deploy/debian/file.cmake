@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Makes one file of a package: see axisgate_package_file in deploy/package.cmake.
 set(FILE "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/${DESTINATION}")
 get_filename_component(folder "${FILE}" DIRECTORY)

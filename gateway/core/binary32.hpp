@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // IEEE 754 binary32 numbers, as panels write them into two registers, and exact numbers: the way between the two.
 // Promises one rounding each way: to a binary32 the nearest one, ties to even; from one to whole units half away from
 // zero. Never computes in floating point.

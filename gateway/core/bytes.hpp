@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Views of raw bytes and the two byte orders of our wires.
 // Promises that no read or write leaves the span it was given (an assertion stops the process first).
 // Never allocates, but for the text.

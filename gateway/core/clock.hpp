@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gateway's only notion of time: an instant on one steady clock, and the interfaces that read it and wait for it.
 // Promises that deadlines never jump with the wall clock and that a simulation can stand in for the real clock.
 // Never tells the time of day: logs and DDS stamps take that elsewhere.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/core/error.hpp"
 
 #include <array>
@@ -23,7 +24,7 @@ constexpr std::array<Row, kErrcCount> kRows{{
     {Errc::role_forbidden, "role may not do this", illegal_function, CommandResult::none},
     {Errc::state_unsuitable, "axis state unsuitable", server_device_failure, CommandResult::state_unsuitable},
     {Errc::stop_owed, "a stop is owed first", server_device_busy, CommandResult::state_unsuitable},
-    {Errc::busy, "not possible now", server_device_busy, CommandResult::none},
+    {Errc::busy, "not possible now", server_device_busy, CommandResult::state_unsuitable},
     {Errc::queue_full, "queue full", server_device_busy, CommandResult::none},
     {Errc::superseded, "superseded before it was sent", server_device_busy, CommandResult::superseded},
     {Errc::never_started, "not started in time", server_device_busy, CommandResult::never_started},

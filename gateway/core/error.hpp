@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every way a request can end, and the one table that turns it into text, a Modbus exception and a command_result.
-// Promises that each code has exactly one row (a static assertion counts them) and that all faces say the same thing.
+// Promises that each code has exactly one row (a static assertion counts them) and that all servers say the same thing.
 // Never carries the drive's own code: that travels beside it as `Outcome::detail`.
 #pragma once
 

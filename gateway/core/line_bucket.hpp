@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many lines the log takes of one kind: a burst, then a few a second.
 // Promises that nothing outside can fill the log through it, and that lines left out are counted.
 // Never looks at what a line says.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One line an event, to a sink the application chooses: stderr in the product, a vector in tests and simulation.
 // Promises that a line is never longer than kMaxLogLine and that writing one never throws or waits for a disk.
 // Never decides anything: a failing log changes no behaviour.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The known word that a wrong one was probably meant to be: of commands, options, keys, values and names.
 // Promises a word only where it is near enough that no other reading is likely. Pure. Never corrects anything.
 #pragma once

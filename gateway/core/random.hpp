@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gateway's only randomness: a small generator whose sequence is the same on every platform.
 // Promises that equal seeds give equal sequences for ever (it is part of what makes a simulation seed replayable).
 // Never used for secrets.

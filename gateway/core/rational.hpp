@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An exact rational number for unit conversions, held in lowest terms.
 // Promises exact products and one rounding, half away from zero, at the very end; a result that does not fit is no
 // value. Never wraps and never goes through floating point, except to_double() for DDS, which gives the nearest double.

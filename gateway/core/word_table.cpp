@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table behind words.hpp.
 #include <array>
 
@@ -112,6 +113,8 @@ constexpr auto kWords = std::to_array<Word>({
      ""},
     {gateway_alarm, 12, "bus overloaded", "a bus has no time left: values come later than planned",
      "more drives or faster polls than the line can carry", "axisgate check prints the plan of each bus"},
+    {gateway_alarm, 13, "name taken", "another gateway of the DDS domain has our name and one of our axes",
+     "a copied configuration, no \"gateway\" name", "give each gateway a \"gateway\": {\"name\": ...} of its own"},
 
     {result, 0, "none", "no command yet; or a block was refused, and command_detail tells where", "", ""},
     {result, 1, "pending", "it waits for its turn or is under way", "", ""},
@@ -122,7 +125,8 @@ constexpr auto kWords = std::to_array<Word>({
      "a disturbed or cut cable", "read the state, then decide; stops are repeated by the gateway itself"},
     {result, 5, "superseded", "a newer set-point took its place before it was sent", "", ""},
     {result, 6, "never started", "nothing was sent",
-     "the bus was too busy, the gateway ends, or half a value was dropped", "try again"},
+     "the bus was too busy, the gateway ends, half a value was dropped, or a DDS command came too late",
+     "try again; of DDS commands see max_age_ms and the clocks"},
     {result, 7, "not owner", "another client owns the axis", "two programs command one axis",
      "release by the owner, wait until its lease has run out, or take_over with a higher rank"},
     {result, 8, "stopped by another client", "somebody else's stop ended it", "a panel, a second program",
@@ -139,6 +143,10 @@ constexpr auto kWords = std::to_array<Word>({
     {result, 18, "role (DDS)", "the writer's role may not do this", "", "the role of the DDS section"},
     {result, 19, "busy (DDS)", "not now", "", "try again"},
     {result, 20, "no such axis (DDS)", "there is no axis of this number, or it cannot be reached", "", ""},
+    {result, 21, "already seen (DDS)", "this writer has used the request_id in the last 10 s", "",
+     "count request_id on with each request"},
+    {result, 22, "name taken (DDS)", "another gateway of this domain has the same name and axis: nothing is started",
+     "a copied configuration, no \"gateway\" name", "give each gateway a \"gateway\": {\"name\": ...} of its own"},
 
     {exception, 0x01, "illegal function", "this server does not have the function code, or the role may not use it",
      "a viewer that writes; another function code than 1 to 6, 8, 15, 16, 22, 23, 43", "the listener's `allow`"},

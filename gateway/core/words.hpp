@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the numbers that axisgate shows are called, what each means, what usually causes it and what to do.
 // Promises one table: `top`, `topics`, the log, events, the register map's page, `axisgate explain` and
 // docs/troubleshooting.md read it, so that a state has one name everywhere. Numbers of one kind are unique and rising.

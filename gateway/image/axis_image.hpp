@@ -1,4 +1,5 @@
-// The image of one axis: the newest sample of every quantity and the axis's states, as every face shows them.
+// SPDX-License-Identifier: Apache-2.0
+// The image of one axis: the newest sample of every quantity and the axis's states, as every server shows them.
 // Promises that what it shows as valid is valid, and that `sequence` steps once for each change a client could notice.
 // Never waits: a reader takes what is there. One thread writes and reads it, between two turns of the loop.
 #pragma once
@@ -84,7 +85,7 @@ struct Sample {
   Instant at = kLongAgo;   ///< when it was last confirmed
 };
 
-/// The result of the last group of an axis, for registers 25, 26 and 30.
+/// The result of the last write batch of an axis, for registers 25, 26 and 30.
 struct LatestResult {
   CommandResult result = CommandResult::none;
   std::uint32_t detail = 0;
@@ -119,7 +120,7 @@ struct AxisImage {
   std::uint16_t level_coils = 0;
   std::uint32_t jog_velocity = 0;  ///< row 58, 0.001 rpm: the gateway's own
   Lease lease{};
-  Endings endings{};                 ///< what has ended motions: the faces' rules of edges look at it
+  Endings endings{};                 ///< what has ended motions: the servers' rules of edges look at it
   Instant oldest_cyclic = kLongAgo;  ///< when the oldest cyclic value was confirmed
   LatestResult latest;
   std::uint32_t sequence = 0;

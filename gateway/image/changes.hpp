@@ -1,4 +1,5 @@
-// Which axes have changed since a face looked last: so that it need not look at all of them all the time.
+// SPDX-License-Identifier: Apache-2.0
+// Which axes have changed since a server looked last: so that it need not look at all of them all the time.
 // Promises that no change is missed: whoever is woken finds every axis that was marked since it took the marks.
 // Never says what has changed, and never calls anybody but to wake it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/image/command.hpp"
 
 namespace axisgate {
@@ -48,9 +49,9 @@ std::string_view text(Command command) {
   return "?";
 }
 
-bool asks_nothing(const Group& group) {
-  return group.setpoints.empty() && !group.mode && !group.controlword && group.command == Command::none &&
-         !group.set_position_value && !group.jog_velocity && !group.object;
+bool asks_nothing(const WriteBatch& batch) {
+  return batch.setpoints.empty() && !batch.mode && !batch.controlword && batch.command == Command::none &&
+         !batch.set_position_value && !batch.jog_velocity && !batch.object;
 }
 
 std::string_view text(Role role) {

@@ -1,6 +1,7 @@
-// What a client can ask of an axis: the one-shot commands of design 3.4 and the group, all writes of one request
-// together. Promises that both faces, Modbus and DDS, ask in the same words. Never holds raw drive values, but for the
-// object mailbox.
+// SPDX-License-Identifier: Apache-2.0
+// What a client can ask of an axis: the one-shot commands of design 3.4 and the write batch, all writes of one request
+// together. Promises that both servers, Modbus and DDS, ask in the same words. Never holds raw drive values, but for
+// the object mailbox.
 #pragma once
 
 #include <boost/container/static_vector.hpp>
@@ -69,7 +70,7 @@ struct Setpoint {
 };
 
 /// All writes of one request to one axis. Run in this order: setpoints, mode, controlword, command, object.
-struct Group {
+struct WriteBatch {
   ClientId client = 0;
   Role role = Role::viewer;
   /// Who asks; none: the gateway itself, which owns nothing and is refused nothing.
@@ -78,9 +79,10 @@ struct Group {
   /// 1, a mailbox or 43/13 write).
   bool claims = false;
   /// A write of any kind, for an axis that waits for its client: an orphan lease of its own hand is taken over by it,
-  /// whatever it asks. A group that asks for nothing is submitted for this, and for its sign of life, alone.
+  /// whatever it asks. A write batch that asks for nothing is submitted for this, and for its sign of life, alone.
   bool is_write = false;
   bool all_zero = false;  ///< a block of nothing but zeros: it takes over no adopted axis
+  bool renews = true;     ///< false: it was written too long ago to be a sign of life
   bool beats = false;     ///< register 56 was written with another value than before
   /// In register order; quantities but mode and controlword, each at most once.
   boost::container::static_vector<Setpoint, kQuantityCount> setpoints;
@@ -102,9 +104,9 @@ struct Group {
   Instant answer_by = kNever;  ///< begun, not acknowledged by then: timed_out
 };
 
-/// The group asks for nothing to be done: it is submitted for its client's ownership alone, and leaves the client's
-/// result registers as they are.
-[[nodiscard]] bool asks_nothing(const Group& group);
+/// The write batch asks for nothing to be done: it is submitted for its client's ownership alone, and leaves the
+/// client's result registers as they are.
+[[nodiscard]] bool asks_nothing(const WriteBatch& batch);
 
 /// The stop that a lease's action is; none: nothing is done.
 [[nodiscard]] constexpr Command command_of(LeaseAction action) {
@@ -121,7 +123,7 @@ struct Group {
   return Command::none;
 }
 
-struct GroupResult {
+struct BatchResult {
   Outcome outcome;
   std::uint32_t object_data = 0;  ///< of an object read, up to 4 bytes
   std::uint8_t object_size = 0;   ///< bytes of it; 0: `object_bytes`
@@ -129,10 +131,10 @@ struct GroupResult {
   /// Of an object request that the drive refused: the reason as a CiA 301 abort code, whatever the drive speaks
   /// (`outcome.detail` is what it said itself).
   std::uint32_t abort_code = 0;
-  /// Of a group that asks for what is not there or not allowed (not_supported, bad_value): the first row that this is
-  /// of, by its offset in the axis's block of registers.
+  /// Of a write batch that asks for what is not there or not allowed (not_supported, bad_value): the first row that
+  /// this is of, by its offset in the axis's block of registers.
   std::optional<std::uint16_t> refused_row{};
-  bool controlword_done = false;  ///< of a group that failed: its controlword was carried out before
+  bool controlword_done = false;  ///< of a write batch that failed: its controlword was carried out before
   bool command_sent = false;      ///< something was written for its command, or for a controlword that was not done
 };
 

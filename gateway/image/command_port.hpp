@@ -1,6 +1,7 @@
-// The command port: the one way in which a face asks anything of an axis.
-// Promises each submitted group exactly one result: at once, by return value, or later, by the callback, on the core
-// thread. Never blocks and never throws.
+// SPDX-License-Identifier: Apache-2.0
+// The command port: the one way in which a server asks anything of an axis.
+// Promises each submitted write batch exactly one result: at once, by return value, or later, by the callback, on the
+// core thread. Never blocks and never throws.
 #pragma once
 
 #include <functional>
@@ -10,7 +11,7 @@
 
 namespace axisgate {
 
-using GroupCallback = std::function<void(const GroupResult&)>;
+using BatchCallback = std::function<void(const BatchResult&)>;
 
 class CommandPort {
  public:
@@ -20,8 +21,8 @@ class CommandPort {
   virtual ~CommandPort() = default;
   /// With a value: that is the result, and `on_result` is never called. Without: `on_result` is called once, later,
   /// never from inside submit(). An unknown axis number: no_path.
-  [[nodiscard]] virtual std::optional<GroupResult> submit(AxisNumber axis, const Group& group,
-                                                          GroupCallback on_result) = 0;
+  [[nodiscard]] virtual std::optional<BatchResult> submit(AxisNumber axis, const WriteBatch& batch,
+                                                          BatchCallback on_result) = 0;
   /// The client is gone for good: what it has waiting goes on, its callbacks are dropped by their owner.
   virtual void client_gone(ClientId client) = 0;
   /// The drive is known to hold exactly this value (a row that a block write may skip without asking the role).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The chapter on commands of schemas/register-map.md: when a command acts, and four clients cycle by cycle.
 // Promises that its tables of cycles are data, so that a test replays them against the gateway as they stand.
 // Never decides anything: the rules are in upstream/modbus_tcp (edges) and drive (motion).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ring of events and alarms: the newest 1,000, which log, DDS and web read.
 // Promises that nothing waits for a reader and that a reader can tell how many it has missed.
 // Never decides anything.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/image/float_rows.hpp"
 
 #include "gateway/core/binary32.hpp"

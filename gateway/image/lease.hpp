@@ -1,6 +1,7 @@
-// Who owns an axis, and until when (design 3.5), in words that every face and the drive layer share.
+// SPDX-License-Identifier: Apache-2.0
+// Who owns an axis, and until when (design 3.5), in words that every server and the drive layer share.
 // Promises that a lease can be judged at any time from what is in it, without asking anybody.
-// Never decides what becomes of an axis whose lease has run out: gateway/drive/ownership.hpp does.
+// Never decides what becomes of an axis whose lease has run out: gateway/drive/motion/ownership.hpp does.
 #pragma once
 
 #include <algorithm>
@@ -16,13 +17,14 @@ namespace axisgate {
 
 enum class Role : std::uint8_t { none = 0, viewer = 1, operator_ = 2, engineer = 3 };
 
-/// One client of any face: a TCP connection, a host (listener option "client": "address"), a DDS writer. Never reused.
+/// One client of any server: a TCP connection, a host (listener option "client": "address"), a DDS writer. Never
+/// reused.
 using ClientId = std::uint64_t;
 
 /// Where a client comes from: its IP address (IPv4 mapped into IPv6), or a DDS participant's GUID.
 using Origin = std::array<std::uint8_t, 16>;
 
-/// What its face knows of one client, kept up to date as long as anybody asks. The face alone writes it.
+/// What its server knows of one client, kept up to date as long as anybody asks. The server alone writes it.
 struct ClientLife {
   ClientId id = 0;
   Role role = Role::viewer;
@@ -35,6 +37,8 @@ struct ClientLife {
   bool is_address = false;          ///< listener option "client": "address": a host, with all its connections
   /// Of a DDS writer: OWNERSHIP_STRENGTH (DDS 1.4, 2.2.3.10). A stronger one takes an axis from a weaker one.
   std::optional<std::int32_t> strength{};
+  /// Its leases are no longer than this, whatever their rules say: it has asked for a shorter one.
+  std::optional<Duration> lease_limit{};
   /// What its leases last longer: nobody can hear it at present, and that is not its fault.
   Duration grace{};
 };
@@ -73,7 +77,10 @@ struct Lease {
   /// When it runs out as things stand; kNever where nothing does.
   [[nodiscard]] Instant until() const {
     if (!running) return kNever;
-    return last_sign() + rules.timeout + (owner ? owner->grace : Duration{});
+    return last_sign() + timeout() + (owner ? owner->grace : Duration{});
+  }
+  [[nodiscard]] Duration timeout() const {
+    return owner && owner->lease_limit ? std::min(rules.timeout, *owner->lease_limit) : rules.timeout;
   }
   /// The owner's newest sign of life that counts: while the axis is disabled, only what asks for something does, so
   /// that an idle program that scans and a panel share it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The listing of the map as one configuration makes it: what `axisgate map` prints (design 3.1).
 // Promises the rows that the server answers from, sorted by table and address, and needs no running gateway.
 // Never prints an address that a read would refuse.

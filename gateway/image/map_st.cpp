@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The listing as a PLC's source: IEC 61131-3 structured text, constants of all addresses and declarations at %M.
 #include <cctype>
 

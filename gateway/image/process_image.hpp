@@ -1,4 +1,5 @@
-// The process image: all axes, buses and the gateway itself, as every face reads them.
+// SPDX-License-Identifier: Apache-2.0
+// The process image: all axes, buses and the gateway itself, as every server reads them.
 // Promises that pointers to axes stay good for the gateway's life, also to those that were removed, and that axes are
 // found by number in constant time.
 // Never holds anything of a client.
@@ -33,6 +34,7 @@ enum class GatewayAlarm : std::uint8_t {
   event_loop_slow = 10,
   nvm_budget = 11,
   bus_overloaded = 12,
+  name_taken = 13,  ///< another gateway of the DDS domain publishes an axis under our key
 };
 
 /// Registers 50000 + 100 * b; refreshed by the gateway before a request is answered.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The quantities of the unified axis (design 2 and 3.1): their numbers, names, kinds and widths, in one table.
 // Promises that a quantity's number is its bit in `supported` and `valid`, for ever.
 // Never says where a value comes from: that is the drive profile's part.

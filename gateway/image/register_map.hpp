@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 // The register map: the one table of everything a Modbus-TCP client can read or write (design 3.1, map version 1).
 // Promises that server, `axisgate map`, schemas/register-map.md and the tests all see these rows and no others.
-// Never holds a value: where one comes from is named by `Source`, and the faces fetch it.
+// Never holds a value: where one comes from is named by `Source`, and the servers fetch it.
 #pragma once
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/image/register_rows.hpp"
 
 namespace axisgate {
@@ -155,7 +156,8 @@ std::vector<RegisterRow> gateway_register_rows() {
       shows(6, "alarms", u16, Source::gateway_alarms,
             "bit 0 an axis offline, 1 a bus down, 2 drive fault, 3 identity mismatch, 4 no_comm_watchdog, "
             "5 a check failed, 6 adopted_running, 7 DDS process down, 8 configuration not the one on disk, "
-            "9 certificate expires, 10 event loop slow, 11 EEPROM write budget, 12 bus overloaded"),
+            "9 certificate expires, 10 event loop slow, 11 EEPROM write budget, 12 bus overloaded, "
+            "13 name taken"),
       shows(7, "role", u16, Source::role, "of this client: 0 none, 1 viewer, 2 operator, 3 engineer"),
       takes(8, "heartbeat", u16, Source::gateway_heartbeat, kViewer,
             "a changed value renews this client's leases with renew heartbeat"),

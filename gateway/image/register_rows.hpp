@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rows themselves, block by block, as design 3.1 prints them. Promises to be read beside that page, top to bottom.
 // Never used but by register_map.cpp.
 #pragma once

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a client may see of an axis: design 3.2's rules for axes that cannot be reached and for values that are none.
-// Promises that the rules hold whatever the image says, and that every face and `sequence` use the same ones.
+// Promises that the rules hold whatever the image says, and that every server and `sequence` use the same ones.
 // Never changes the image.
 #pragma once
 

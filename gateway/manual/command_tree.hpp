@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program's commands as its command line declares them: names, options, what each is for. It is what its --help, its
 // manual page and its completion are all made from. Promises that nothing shown by --help is left out of it, and that
 // it keeps the order of the declarations. Never parses, and knows nothing of what a command does.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `PROGRAM --generate man|bash|zsh`: what a package ships beside a program, printed by the program itself.
 // Promises the text from the commands that the program really has.
 // Never shows in --help: it is for whoever makes a package.

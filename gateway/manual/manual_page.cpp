@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/manual/manual_page.hpp"
 
 #include <cctype>

@@ -1,36 +1,49 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The rules of ARCHITECTURE.md that no compiler checks. `rules.py RULE` prints each breach as FILE:LINE: text and exits 1."""
 import re
 import sys
 from pathlib import Path
 
-# Whose headers a folder may include, beside its own: upstream -> image <- drive -> bus <- each adapter; all -> core; app wires all.
-ARROWS = {
-    "gateway/core": set(),
-    "gateway/image": {"gateway/core"},
+# The way of a value, wire to socket, and of a command, socket to wire. The first pattern that a folder fits holds: beside its own
+# headers, and those of folders of the same pattern, it may include those that are named here. Which library includes which, its
+# CMakeLists.txt says (DEPENDS).
+LAYERS = [
+    ("gateway/core", ()),
+    ("gateway/image", ("gateway/core",)),
     # Reads the command lines of all programs, whatever they are for.
-    "gateway/manual": set(),
-    "gateway/drive": {"gateway/image", "adapters/bus", "gateway/core"},
-    # The DDS face in two processes: what they say to each other, the gateway's half, the half with the DDS library, and whoever
-    # starts that one and carries packets between the two.
-    "gateway/upstream/dds_link": {"gateway/core"},
-    "gateway/upstream/dds": {"gateway/upstream/dds_link", "gateway/image", "gateway/core"},
-    "gateway/upstream/dds_process": {"gateway/upstream/dds_link", "gateway/manual", "gateway/core"},
-    "gateway/upstream/dds_host": {"gateway/upstream/dds", "gateway/upstream/dds_link", "gateway/image", "gateway/core"},
-    "gateway/upstream/*": {"gateway/image", "gateway/core"},
-    "adapters/bus": {"gateway/core"},
-    "adapters/asio": {"gateway/core"},
+    ("gateway/manual", ()),
+    ("adapters/bus", ("gateway/core",)),
+    ("adapters/asio", ("gateway/core",)),
     # A second link over the same serial ports: it shares how they are opened, locked and found again.
-    "adapters/modbus_rtu": {"adapters/serial", "adapters/bus", "gateway/core"},
+    ("adapters/modbus_rtu", ("adapters/serial", "adapters/bus", "gateway/core")),
     # A Lawicel adapter is a serial port: the CAN links share how those are opened and found again.
-    "adapters/can": {"adapters/serial", "adapters/bus", "gateway/core"},
-    "adapters/canopen": {"adapters/can", "adapters/bus", "gateway/core"},
-    "adapters/keya": {"adapters/can", "adapters/bus", "gateway/core"},
-    "adapters/*": {"adapters/bus", "gateway/core"},
+    ("adapters/can", ("adapters/serial", "adapters/bus", "gateway/core")),
+    ("adapters/canopen", ("adapters/can", "adapters/bus", "gateway/core")),
+    ("adapters/keya", ("adapters/can", "adapters/bus", "gateway/core")),
+    ("adapters/serial", ("adapters/bus", "gateway/core")),
+    ("adapters/kinco", ("adapters/bus", "gateway/core")),
+    ("gateway/model", ("gateway/image", "adapters/bus", "gateway/core")),
+    ("gateway/profile", ("gateway/model", "adapters/bus", "gateway/core")),
+    ("gateway/drive", ("gateway/model", "gateway/image", "adapters/bus", "gateway/core")),
+    ("gateway/upstream/modbus_tcp", ("gateway/image", "gateway/core")),
+    # The DDS topics in two processes: what they say to each other, the gateway's half, the half with the DDS library, and whoever
+    # starts that one and carries packets between the two.
+    ("gateway/upstream/dds_link", ("gateway/core",)),
+    ("gateway/upstream/dds_process", ("gateway/upstream/dds_link", "gateway/manual", "gateway/core")),
+    ("gateway/upstream/dds_host", ("gateway/upstream/dds", "gateway/upstream/dds_link", "gateway/image", "gateway/core")),
+    ("gateway/upstream/dds", ("gateway/upstream/dds_link", "gateway/image", "gateway/core")),
     # The simulated drives come from the makers' sheets: what they share with the gateway could be wrong on both sides.
-    "tests/simulated": set(),
-}
-EVERYTHING = ("gateway/app", "gateway/main.cpp", "tests")
+    ("tests/simulated", ()),
+    # What puts everything together.
+    ("gateway/config", None),
+    ("gateway/check", None),
+    ("gateway/compose", None),
+    ("gateway/process", None),
+    ("gateway/commands", None),
+    ("gateway/main.cpp", None),
+    ("tests", None),
+]
 
 # Headers that only one place may know.
 ONE_PLACE = {
@@ -38,15 +51,16 @@ ONE_PLACE = {
     r"<linux/can": ("adapters/can/", "tests/axisgate_sim/", "tests/unit/can/", "tests/vcan/", "tests/bench/"),
     r"<fastdds|<fastrtps|PubSubTypes": ("gateway/upstream/dds_process/", "deploy/examples/", "tests/dds_peers/"),
     r"<termios\.h>|<sys/inotify\.h>|<linux/serial\.h>": ("adapters/serial/", "adapters/asio/key_mode"),
-    r"<valijson/": ("gateway/drive/json_schema.cpp",),
-    r"<CLI/": ("gateway/app/command_", "gateway/upstream/dds_process/options.cpp", "gateway/manual/command_tree.cpp"),
+    r"<valijson/": ("gateway/profile/json/json_schema.cpp",),
+    r"<CLI/": ("gateway/commands/command_", "gateway/upstream/dds_process/options.cpp", "gateway/manual/command_tree.cpp"),
 }
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
-DECIDING = ("gateway/core/", "gateway/image/", "gateway/drive/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/", "gateway/upstream/dds_host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_", "adapters/canopen/", "adapters/keya/",
-            "adapters/can/can_", "adapters/can/lawicel", "gateway/app/config_", "gateway/app/bus_budget", "gateway/app/check.", "gateway/app/hand_keys", "gateway/app/hand_plan", "gateway/app/hand_view",
-            "gateway/app/scan_plan")
-SHELLS = tuple(f"gateway/upstream/modbus_tcp/{shell}" for shell in ("server", "listener", "connection"))
+DECIDING = ("gateway/core/", "gateway/image/", "gateway/model/", "gateway/profile/", "gateway/drive/", "gateway/config/", "gateway/check/",
+            "gateway/compose/", "gateway/commands/hand/", "gateway/commands/scan/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/",
+            "gateway/upstream/dds_link/", "gateway/upstream/dds_host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_",
+            "adapters/canopen/", "adapters/keya/", "adapters/can/can_", "adapters/can/lawicel")
+SHELLS = ("gateway/upstream/modbus_tcp/server/",)
 IMPURE = re.compile(r'#include <(boost/asio|boost/beast|sys/socket|sys/epoll|poll\.h|thread|mutex|condition_variable|atomic|random)'
                     r'|(steady|system|high_resolution)_clock::now|std::chrono::\w*clock::now|\bsleep_for\b|\brand\(')
 
@@ -71,29 +85,64 @@ def lines(root, name):
     return enumerate((root / name).read_text(encoding="utf-8").splitlines(), 1)
 
 
-def rule_of(name):
-    """The folder that `name` belongs to and what it may include; None where it may include everything."""
-    for pattern, allowed in ARROWS.items():
-        depth = pattern.count("/") + 1
-        folder = "/".join(name.split("/")[:depth])
-        if name.count("/") >= depth and (folder == pattern or (pattern.endswith("*") and folder.startswith(pattern[:-1]))):
+def layer_of(name):
+    """The pattern of LAYERS that `name` belongs to and what it may include; None where it may include everything."""
+    for folder, allowed in LAYERS:
+        if name == folder or name.startswith(f"{folder}/"):
             return folder, allowed
-    if not name.startswith(EVERYTHING):
-        return None, set()
-    return None, None
+    return None, ()
+
+
+def libraries(root):
+    """By folder: the libraries it makes, and those they depend on, as the CMakeLists.txt say."""
+    made, needed = {}, {}
+    for path in sorted(root.glob("gateway/**/CMakeLists.txt")) + sorted(root.glob("adapters/**/CMakeLists.txt")):
+        folder = path.parent.relative_to(root).as_posix()
+        for call in re.finditer(r"axisgate_library\(\s*(\w+)(.*?)\)\n", path.read_text(encoding="utf-8"), re.DOTALL):
+            depends = re.search(r"\bDEPENDS\b([\w\s]*?)(?:\bLIBRARIES\b|$)", call[2])
+            made.setdefault(folder, set()).add(call[1])
+            needed.setdefault(folder, set()).update(depends[1].split() if depends else ())
+    return made, needed
+
+
+def circle(graph):
+    """A way from a folder back to itself, or None."""
+    done, way = set(), []
+
+    def visit(folder):
+        if folder in way:
+            return way[way.index(folder):] + [folder]
+        if folder in done:
+            return None
+        way.append(folder)
+        found = next(filter(None, map(visit, sorted(graph.get(folder, ())))), None)
+        way.pop()
+        done.add(folder)
+        return found
+
+    return next(filter(None, map(visit, sorted(graph))), None)
 
 
 def arrows(root):
+    made, needed = libraries(root)
+    graph = {folder: {other for other in made if other != folder and made[other] & needed[folder]} for folder in made}
+    found = circle(graph)
+    if found:
+        yield f"{found[0]}/CMakeLists.txt:1: a circle of libraries: {' -> '.join(found)}"
     for name in files(root, {".cpp", ".hpp"}):
-        folder, allowed = rule_of(name)
-        if allowed is None:
-            continue
+        folder, allowed = layer_of(name)
+        own = name.rsplit("/", 1)[0]
         for number, line in lines(root, name):
             include = INCLUDE.match(line)
-            if include and folder is None:
-                yield f"{name}:{number}: this folder has no rule in ARROWS: say what it may include"
-            elif include and not include[1].startswith(tuple(f"{a}/" for a in {folder} | allowed)):
+            if not include:
+                continue
+            other = include[1].rsplit("/", 1)[0]
+            if folder is None:
+                yield f"{name}:{number}: this folder has no rule in LAYERS: say what it may include"
+            elif allowed is not None and not include[1].startswith(tuple(f"{a}/" for a in (folder, *allowed))):
                 yield f"{name}:{number}: {folder} may not include {include[1]}"
+            elif own in made and other in made and other != own and other not in graph[own]:
+                yield f"{name}:{number}: {own}/CMakeLists.txt does not name the library of {include[1]} in DEPENDS"
 
 
 def one_place(root):
@@ -118,7 +167,7 @@ def headers(root):
         if name.startswith("tests/"):
             continue
         text = (root / name).read_text(encoding="utf-8")
-        opening = text.split("#pragma once")[0]
+        opening = text.split("#pragma once")[0].removeprefix(f"// {LICENCE}\n")
         if "#pragma once" not in text or not all(line.startswith("//") for line in opening.splitlines()):
             yield f"{name}:1: a header opens with its three sentences, then #pragma once"
         elif len(re.findall(r"[.:](?:\s|$)", opening)) < 3 or "ever" not in opening or "romise" not in opening:
@@ -129,7 +178,7 @@ def headers(root):
 
 def lengths(root):
     for name in files(root, CODE):
-        count = sum(1 for _ in lines(root, name))
+        count = sum(LICENCE not in line for _, line in lines(root, name))
         if count > LONGEST_FILE:
             yield f"{name}:{count}: {count} lines, more than {LONGEST_FILE}: is it one thing?"
 
@@ -145,7 +194,80 @@ def words(root):
             continue  # a binary file of a fuzz corpus
 
 
-RULES = {"arrows": arrows, "one_place": one_place, "deciding": deciding, "headers": headers, "lengths": lengths, "words": words}
+# The field's words (ARCHITECTURE.md, "Words"), and the private ones that once stood in their place. What stands in quotes in C++ is
+# not looked at: a profile's key "fence" and the simulator's commands are contract.
+C_TOKEN = re.compile(r"""(?P<note>//[^\n]*|/\*.*?\*/)|(?P<text>R"([^()\s\\]*)\(.*?\)\3"|"(?:\\.|[^"\\\n])*"|\d[\w'.]*|'(?:\\.|[^'\\\n])+')"""
+                     r"|(?P<name>[A-Za-z_]\w*)", re.S)
+PRIVATE_PROSE = {
+    "resynchronisation read": r"\bfences?\b", "server or session": r"\bfaces?\b", "command sequence": r"\bconversations?\b",
+    "duplicate node-ID": r"\btwins?\b", "invalidated": r"\bdoubt(?:ed|ful)\b", "cached": r"\b(?:counts?|counted|taken) as held\b",
+    "unsolicited event": r"\b(?:an?|the|one|few|no|of) notices?\b",
+}
+PRIVATE_NAMES = {
+    "resync": r"\b(?:\w+_)?fences?_?\b|\b(?:fence)_\w+|\w*Fences?(?![a-z])\w*", "session": r"\bface_?\b|\w*Face(?![a-z])\w*",
+    "command_sequence": r"\w*[cC]onversation\w*", "duplicate": r"\b(?:\w+_)?twins?_?\b|\btwin_\w+|\w*Twin(?![a-z])\w*",
+    "invalidate": r"\bdoubt\w*", "emulated": r"\bbind_made\b|\bkMade", "unsolicited": r"\b(?:on_|take_)?notices?_?\b|\bNotice(?:Kind)?\b",
+}
+# Words that mean something else elsewhere, with the folders where they were private.
+PRIVATE_HERE = {
+    ("gateway/", "adapters/"): {"unresponsive": r"\bmute_?\b"},
+    ("gateway/drive/", "gateway/image/", "gateway/upstream/", "adapters/bus/"): {
+        "write batch": r"\bGroup(?:Result|Callback)?\b|\bgroups?_?\b"},
+    ("adapters/bus/", "gateway/drive/", "tests/unit/bus/"): {
+        "bus job": r"\b[aA]n order\b|\bOrder(?:Id)?\b|\borders (?:per|of a)\b|\bon_order_\w+"},
+}
+# A group of processes.
+PRIVATE_ELSEWHERE = ("gateway/upstream/dds_host/child_process.cpp",)
+
+
+def private(text, rules_of):
+    for instead, pattern in rules_of.items():
+        found = re.search(pattern, text)
+        if found:
+            return f'"{found[0]}" is a private word: {instead}'
+    return None
+
+
+def field_words(root):
+    pages = [path.relative_to(root).as_posix() for path in (*root.glob("*.md"), *root.glob("docs/**/*.md"))]
+    for name in sorted(pages):
+        for number, line in lines(root, name):
+            if breach := private(line.lower(), PRIVATE_PROSE):
+                yield f"{name}:{number}: {breach}"
+    for name in files(root, {".cpp", ".hpp"}):
+        of_folder = [those.items() for folders, those in PRIVATE_HERE.items() if name.startswith(folders) and name not in PRIVATE_ELSEWHERE]
+        here = dict(item for items in of_folder for item in items)
+        text = (root / name).read_text(encoding="utf-8")
+        for token in C_TOKEN.finditer(text):
+            if token.lastgroup == "text" or token["text"] or not (token["note"] or token["name"]):
+                continue
+            known = PRIVATE_PROSE if token["note"] else PRIVATE_NAMES
+            if breach := private(token[0].lower() if token["note"] else token[0], known) or private(token[0], here):
+                yield f"{name}:{text.count(chr(10), 0, token.start()) + 1}: {breach}"
+
+
+LICENCE = "SPDX-License-Identifier: Apache-2.0"
+
+
+def licence(root):
+    """Every source file says its licence in its first line, or in the one behind #!."""
+    for folder in (root, *(root / name for name in SOURCE_FOLDERS + (".ci",))):
+        for path in sorted(folder.rglob("*") if folder != root else folder.glob("CMakeLists.txt")):
+            name = path.relative_to(root).as_posix()
+            if not path.is_file() or "__pycache__" in path.parts or "/eds/" in name:
+                continue
+            begin = path.read_bytes()[:300].decode(errors="replace").splitlines()
+            script = bool(begin) and begin[0].startswith("#!")
+            slashes = name.endswith((".cpp", ".hpp", ".c", ".h", ".cpp.in", ".hpp.in", ".mjs"))
+            if not (script or slashes or path.suffix in {".py", ".cmake", ".sh"} or path.name == "CMakeLists.txt"):
+                continue
+            wanted = f"{'//' if slashes else '#'} {LICENCE}"
+            if begin[script:][:1] != [wanted]:
+                yield f"{name}:{1 + script}: the line before all others, behind #!, is: {wanted}"
+
+
+RULES = {"arrows": arrows, "one_place": one_place, "deciding": deciding, "headers": headers, "lengths": lengths, "words": words,
+         "field_words": field_words, "licence": licence}
 
 if __name__ == "__main__":
     if len(sys.argv) != 2 or sys.argv[1] not in RULES:

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Each rule finds what it forbids, and lets the allowed pass: a rule that never fires guards nothing."""
 import tempfile
 import unittest
@@ -29,14 +30,29 @@ class Rules(unittest.TestCase):
         self.assertEqual([breach.split(": ")[0] for breach in self.breaches(rule)], [place])
 
     def test_an_arrow_against_the_direction_is_found(self):
-        self.write("gateway/image/a.cpp", '#include "gateway/image/a.hpp"\n#include "gateway/drive/model.hpp"\n')
+        self.write("gateway/image/a.cpp", '#include "gateway/image/a.hpp"\n#include "gateway/model/model.hpp"\n')
         self.assert_breach("arrows", "gateway/image/a.cpp:2")
 
     def test_an_arrow_in_the_direction_is_let_pass(self):
         self.write("gateway/upstream/modbus_tcp/a.cpp", '#include "gateway/image/a.hpp"\n#include <vector>\n')
-        self.write("gateway/app/b.cpp", '#include "adapters/serial/port.hpp"\n')
+        self.write("gateway/commands/b.cpp", '#include "adapters/serial/port.hpp"\n')
         self.write("adapters/kinco/c.cpp", '#include "adapters/bus/wire.hpp"\n')
         self.assertEqual(self.breaches("arrows"), [])
+
+    def library(self, folder, name, depends=""):
+        self.write(f"{folder}/CMakeLists.txt", f"axisgate_library({name}\n  SOURCES a.cpp{depends and f' DEPENDS {depends}'}\n  LIBRARIES fmt::fmt)\n")
+
+    def test_a_header_of_a_library_that_is_not_named_is_found(self):
+        self.library("gateway/drive/plan", "axisgate_drive_plan", "axisgate_drive_motion")
+        self.library("gateway/drive/motion", "axisgate_drive_motion")
+        self.library("gateway/drive/axis", "axisgate_drive_axis")
+        self.write("gateway/drive/plan/a.cpp", '#include "gateway/drive/motion/b.hpp"\n#include "gateway/drive/axis/c.hpp"\n')
+        self.assert_breach("arrows", "gateway/drive/plan/a.cpp:2")
+
+    def test_a_circle_of_libraries_is_found(self):
+        self.library("gateway/drive/a", "axisgate_a", "axisgate_b")
+        self.library("gateway/drive/b", "axisgate_b", "axisgate_a")
+        self.assert_breach("arrows", "gateway/drive/a/CMakeLists.txt:1")
 
     def test_one_adapter_must_not_know_another(self):
         self.write("adapters/kinco/a.cpp", '#include "adapters/serial/port.hpp"\n')
@@ -56,12 +72,12 @@ class Rules(unittest.TestCase):
 
     def test_io_in_a_deciding_file_is_found_and_a_shell_is_let_pass(self):
         self.write("adapters/bus/arbiter.cpp", "int x;\n#include <boost/asio/post.hpp>\n")
-        self.write("gateway/upstream/modbus_tcp/server.cpp", "#include <boost/asio/post.hpp>\n")
+        self.write("gateway/upstream/modbus_tcp/server/server.cpp", "#include <boost/asio/post.hpp>\n")
         self.assert_breach("deciding", "adapters/bus/arbiter.cpp:2")
 
     def test_a_clock_in_a_deciding_file_is_found(self):
-        self.write("gateway/drive/motion.cpp", "auto now = std::chrono::steady_clock::now();\n")
-        self.assert_breach("deciding", "gateway/drive/motion.cpp:1")
+        self.write("gateway/drive/motion/motion.cpp", "auto now = std::chrono::steady_clock::now();\n")
+        self.assert_breach("deciding", "gateway/drive/motion/motion.cpp:1")
 
     def test_a_header_without_its_three_sentences_is_found(self):
         self.write("gateway/core/good.hpp", HEADER)
@@ -80,6 +96,34 @@ class Rules(unittest.TestCase):
     def test_a_leftover_is_found(self):
         self.write("gateway/core/a.cpp", "// TO" "DO: later\n")
         self.assert_breach("words", "gateway/core/a.cpp:1")
+
+    def test_a_private_word_in_a_comment_and_in_a_name_is_found(self):
+        self.write("gateway/core/a.cpp", "int x;  // until the fence is answered\n")
+        self.write("gateway/core/b.cpp", "void on_notice();\n")
+        self.write("gateway/drive/c.cpp", "void take(const Group& batch);\n")
+        self.write("adapters/bus/d.hpp", "/// Ends an order.\n")
+        self.assertEqual([breach.split(": ")[0] for breach in self.breaches("field_words")],
+                         ["adapters/bus/d.hpp:1", "gateway/core/a.cpp:1", "gateway/core/b.cpp:1", "gateway/drive/c.cpp:1"])
+
+    def test_a_private_word_on_a_page_is_found(self):
+        self.write("docs/a.md", "A drive.\nLate replies meet a fence.\n")
+        self.assert_breach("field_words", "docs/a.md:2")
+
+    def test_a_profile_s_key_and_words_of_another_meaning_are_let_pass(self):
+        self.write("gateway/drive/a.cpp", 'read("fence"); word_order(in_order, interface, surface, mutex);\n')
+        self.write("adapters/serial/b.cpp", "std::string group;  // in the order of the members of a group\n")
+        self.assertEqual(self.breaches("field_words"), [])
+
+    def test_a_source_without_its_licence_is_found(self):
+        self.write("gateway/core/good.cpp", "// SPDX-" "License-Identifier: Apache-2.0\nint x;\n")
+        self.write("deploy/good", "#!/bin/sh\n# SPDX-" "License-Identifier: Apache-2.0\n")
+        self.write("deploy/any.json", "{}\n")
+        self.assertEqual(self.breaches("licence"), [])
+        self.write("deploy/script", "#!/bin/sh\ntrue\n")
+        self.write("gateway/core/CMakeLists.txt", "add_library(x)\n")
+        self.write("gateway/core/empty.cpp", "")
+        self.assertEqual([breach.split(": ")[0] for breach in self.breaches("licence")],
+                         ["gateway/core/CMakeLists.txt:1", "gateway/core/empty.cpp:1", "deploy/script:2"])
 
 
 if __name__ == "__main__":

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A raw SocketCAN socket of the simulator: the drives' end of a CAN interface.
 // Promises whole frames of 16 bytes and that other programs on the interface see what the drives send.
 // Never waits: a frame that the interface does not take is lost, as on a bus that nobody acknowledges.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The control socket's language: one text line in, one line out, beginning with "ok" or "error".
 // Promises that every error says what would be right, and that `help` lists every command.
 // Never touches a socket.

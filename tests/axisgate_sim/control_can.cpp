@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The control commands of drives on CAN: the node's own, and those of a Leadshine.
 #include "tests/axisgate_sim/control.hpp"
 
@@ -84,7 +85,7 @@ std::optional<std::string> ask_can(Simulator& simulator, PortLine& port, std::si
     need_words(words, 3, "connect|twin LINE/NODE on|off");
     const bool on = on_or_off(words[2]);
     if (command == "connect") bus.connect(position, on);
-    if (command == "twin") simulator.set_twin(port, position, on);
+    if (command == "twin") simulator.set_duplicate(port, position, on);
     return "";
   }
   if (KeyaDrive* keya = bus.keya(position)) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The control commands that are a drive's own: what it holds, its inputs, its faults.
 #include <sstream>
 

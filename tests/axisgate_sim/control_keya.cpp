@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The control commands of a Keya: what both of its motors do, whatever a fieldbus believes of it.
 #include "tests/axisgate_sim/control.hpp"
 

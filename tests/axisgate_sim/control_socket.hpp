@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The control socket: a Unix stream socket that takes text lines and answers each with one.
 // Promises at most `client_limit` clients and `line_limit` bytes per line; what exceeds them is closed.
 // Never understands a line: Control does.

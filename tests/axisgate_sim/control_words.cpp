@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/axisgate_sim/control_words.hpp"
 
 #include <charconv>

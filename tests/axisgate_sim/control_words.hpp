@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The words of a control line: numbers, switches, objects.
 // Promises that what is wrong is refused with what would be right (std::invalid_argument).
 // Never knows a line or a drive.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/axisgate_sim/keya_words.hpp"
 
 #include <algorithm>

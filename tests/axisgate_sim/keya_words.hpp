@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of a Keya in `--line`: any parameter of its manual as NUMBER=VALUE (0020=3: motor A in absolute position
 // mode), and the points the manual leaves open: coast or ramp (on the watchdog's expiry), queries-feed, repeat-ignored
 // (the same relative position again moves nothing), zero-ignored (enable with value 0 is no move to 0), other-kept

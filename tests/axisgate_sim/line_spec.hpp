@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `--line` says: where the pty's link goes or which interface is used, what is spoken there and which drives hang
 // on the line. Promises messages that name the word which is wrong and what would be right. Never opens anything.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // axisgate-sim: simulated drives on pseudo-terminals and CAN interfaces, for demos, tests and benchmarks.
 #include <CLI/CLI.hpp>
 #include <iostream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a simulated line is plugged into on this machine: a pseudo-terminal or a CAN interface.
 // Promises whole reads and writes without waiting.
 // Never interprets what it carries.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A pseudo-terminal with a link to its slave under a name of the user's choice: the simulated serial port.
 // Promises: the link is there exactly as long as the object; a gateway that closes the port is no end of file; what it
 // had claimed (TIOCEXCL) and left unread goes when it closes, as at a real port's last close. Never blocks: bytes that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulator's poll loop: signals, ptys, control socket and the drives' next event, in one thread.
 // Promises to end with 0 on SIGINT and SIGTERM, with every link and socket removed by their owners.
 // Never decides anything about a drive.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/axisgate_sim/simulator.hpp"
 
 #include <algorithm>
@@ -67,13 +68,13 @@ void Simulator::unplug(PortLine& port) {
   port.port.reset();
 }
 
-void Simulator::set_twin(PortLine& port, std::size_t position, bool there) {
+void Simulator::set_duplicate(PortLine& port, std::size_t position, bool there) {
   CanLine& bus = port.can->bus();
-  const auto found = port.twins.find(position);
-  if (found != port.twins.end()) {
+  const auto found = port.duplicates.find(position);
+  if (found != port.duplicates.end()) {
     bus.connect(found->second, there);
   } else if (there) {
-    port.twins[position] = bus.add_twin(position);
+    port.duplicates[position] = bus.add_duplicate(position);
   }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The running simulator: its lines with their ports, and the time that has passed since it began.
 // Promises that a line keeps its drives and their faults while it is unplugged; only the port is gone.
 // Never blocks and never waits: the poll loop does.
@@ -24,8 +25,8 @@ struct PortLine {
   RtuLine* rtu = nullptr;
   CanPortLine* can = nullptr;
   KeyaLine* keya = nullptr;
-  std::map<std::size_t, std::size_t> twins{};  // where the second drive with the number of the first stands
-  std::unique_ptr<Port> port;                  // none while unplugged
+  std::map<std::size_t, std::size_t> duplicates{};  // where the second drive with the number of the first stands
+  std::unique_ptr<Port> port;                       // none while unplugged
 };
 
 struct LineTimings {
@@ -43,7 +44,7 @@ class Simulator {
   void add(const LineSpec& spec, const LineTimings& timings, std::uint64_t seed);
   void plug(PortLine& line);  // prints the ready line
   // A second drive under the number of this one, or none any more.
-  void set_twin(PortLine& line, std::size_t position, bool there);
+  void set_duplicate(PortLine& line, std::size_t position, bool there);
   void unplug(PortLine& line);
   PortLine* find(const std::string& name);
   std::map<std::string, PortLine>& lines() { return lines_; }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The words of `--line`: numbers, places, drives with their station.
 // Promises messages that name the word which is wrong and what would be right (std::invalid_argument).
 // Never knows a kind of line.

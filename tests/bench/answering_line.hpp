@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulated Kinco JD drives of one line, on either protocol, with as little between a request and its answer as
 // possible. Promises the answers of tests/simulated, one for each whole request. Never waits, and never sends.
 #pragma once

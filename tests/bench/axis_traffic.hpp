@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one client makes an axis do: write a parameter, or read an object of the drive through the mailbox.
 // Promises one result per call, whatever the gateway answers.
 // Never enables an axis.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the gateway is measured against: the same exchanges by a loop of write, poll and read, and nothing else; on
 // Modbus RTU by libmodbus's own client. Promises one exchange at a time, from the end of the one before it to the
 // reply's last byte: a parameter is written, the statusword read, and so on.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All benches, and what each of them is told: which gateway, where to put its files, and where its figures go.
 // Promises a folder that exists. Never says how long a bench measures: each bench knows that itself.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Many clients at once, each a thread with a connection of its own that does one thing over and over.
 // Promises to end them all, and to tell the first failure of any.
 // Never shares anything between two clients.

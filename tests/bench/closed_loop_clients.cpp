@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/closed_loop_clients.hpp"
 
 #include <sys/epoll.h>

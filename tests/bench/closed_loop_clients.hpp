@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The clients of the read benchmark: each sends a request, waits for its whole reply, and sends the next.
 // Promises the same work for every server that is measured. Never looks into a reply but at its length.
 #pragma once

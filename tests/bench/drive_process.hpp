@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simulated Kinco JD drives on pseudo-terminals or virtual CAN interfaces, in a process of their own that does as
 // little as possible per exchange. Promises the answers of tests/simulated, each after the same time, and a record of
 // every exchange in the tap. Never outlives the bench, and never echoes, breaks or delays a frame.

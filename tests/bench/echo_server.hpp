@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What our server is measured against: a bare Asio server that knows nothing but two lengths.
 // Promises one read and one write per request, and no other work.
 // Never parses, allocates or times anything per request.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the simulated drives saw and when, and who of them is mute, in memory that the bench shares with their process.
 // Promises that a record is whole before it is counted; times are of the steady clock, which all processes share.
 // Never blocks the drives: the oldest records are overwritten, and a reader that comes too late is told.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gateway program itself, `axisgate run`, in a process of its own, with simulated drives behind it.
 // Promises that every axis is online when it is made, and that it ends with the object.
 // Never listens on anything but loopback.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a gateway's frames ask of motors, read from the bytes of a line: which are control commands, which are stops.
 // Promises the frames of the makers' manuals and nothing of the gateway's own codecs. Never looks at a clock, and never
 // reads what a drive says.

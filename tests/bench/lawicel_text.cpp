@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/lawicel_text.hpp"
 
 namespace axisgate::bench {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CAN frames as a Lawicel adapter's text has them (CANUSB manual 1.0): "t6018" and eight bytes in hex, ended by CR.
 // Promises standard frames alone, with as little work as possible. Never shares code with the gateway's reader.
 #pragma once

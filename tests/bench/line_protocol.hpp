@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the benches' drives speak, and where a Kinco JD keeps the same objects on each protocol.
 // Promises addresses as the drive's manual prints them. Never knows a frame.
 #pragma once

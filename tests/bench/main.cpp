@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // axisgate-bench: the figures of the design's section 8, each as a ratio to a bare loop of the same run.
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A blocking Modbus-TCP client as a plain PLC would be: one request, its reply, the next.
 // Promises that every reply belongs to its request, and to give up after 5 s.
 // Never retries.

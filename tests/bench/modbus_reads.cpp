@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <boost/asio/io_context.hpp>
 #include <span>
 
 #include "adapters/asio/asio_runtime.hpp"
-#include "gateway/upstream/modbus_tcp/client_registry.hpp"
-#include "gateway/upstream/modbus_tcp/descriptors.hpp"
-#include "gateway/upstream/modbus_tcp/server.hpp"
+#include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
+#include "gateway/upstream/modbus_tcp/server/server.hpp"
 #include "tests/bench/benches.hpp"
 #include "tests/bench/closed_loop_clients.hpp"
 #include "tests/bench/echo_server.hpp"

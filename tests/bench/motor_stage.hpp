@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simulated drives of several makers, each on a line of its own that is tapped, and one gateway in front of them all.
 // Promises that every axis is online when it is made. Never enables an axis but by `run`.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a drive costs its neighbour: a dead one on the same line, and one that babbles on another.
 #include <algorithm>
 #include <thread>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Processes of a bench: the programs it measures and the servers it measures them with.
 // Promises that each ends with its object, and with the bench that is killed.
 // Never shares anything with the bench but what its starter hands over.

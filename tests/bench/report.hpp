@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rows of the one table that benches print: a figure of axisgate's, what it is compared with, and their ratio.
 // Promises a row as soon as it is known, on the screen and as a line of JSON, with the load of the machine at that
 // time; and that a figure without samples is an error, so that an empty run never looks like a good one.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // axisgate-sim in a process of its own, with the lines it is told, and its control socket.
 // Promises that every port it was told of is there when it is made, and that it ends with the object.
 // Never understands a line or an answer: those are the simulator's.

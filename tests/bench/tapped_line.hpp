@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A pseudo-terminal between the gateway and a simulated drive: passes every byte on, both ways, and notes when each
 // command of the gateway arrived. Promises times of the steady clock, taken when the bytes are read and before they are
 // passed on. Never holds, changes or answers a byte, and keeps at most kKept commands: more of them are an error.

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each mistake of mistakes.txt causes exactly its words; each file of valid/ and deploy/ is taken.
 #include <gmock/gmock.h>
 
-#include "gateway/app/check.hpp"
+#include "gateway/check/check.hpp"
 #include "tests/profiles/mistakes.hpp"
 
 namespace axisgate::app {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The commands of the real program where DDS is configured: what they say and start, also where axisgate-dds is
 // missing.
 #include "tests/config/program.hpp"
@@ -57,10 +58,10 @@ TEST_F(DdsCommands, RunGoesOnWithoutTheProgramAndSaysSo) {
 TEST_F(DdsCommands, TopicsListensWhereTheConfigurationSaysThatTheGatewaySpeaks) {
   const std::string file = config(R"(, "dds": {"domain": 5, "interfaces": ["eth0"], "peers": ["10.0.0.2"]})");
   EXPECT_EQ(run("/bin/echo", axisgate_ + " topics " + file).out,
-            "topics --domain=5 --interface=eth0 --peer=10.0.0.2\n");
+            "topics --domain=5 --interface=eth0 --peer=10.0.0.2 --gateway=\n");
   EXPECT_EQ(
       run("/bin/echo", axisgate_ + " topics --domain 6 --interface eth1 --interface eth2 " + file + " --json").out,
-      "topics --domain=6 --interface=eth1 --interface=eth2 --peer=10.0.0.2 --json\n");
+      "topics --domain=6 --interface=eth1 --interface=eth2 --peer=10.0.0.2 --gateway= --json\n");
   EXPECT_EQ(run("/bin/echo", axisgate_ + " topics --once").out, "topics --domain=0 --interface=lo --once\n");
 }
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """deploy/demo as a user has it: what it shows is true, what it prints can be typed, and however it ends nothing is left behind.
 
 usage: demo_test.py SOURCE_FOLDER BUILD_FOLDER

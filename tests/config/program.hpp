@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the real program as a shell would, in a folder of the test's own.
 // Promises its exit code and all it said on both outputs.
 // Never waits for a time: only for the program's end.

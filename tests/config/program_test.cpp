@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The real program, given a wrong configuration: exit code 1, each mistake on stderr, and neither port nor device
 // touched.
 #include <sys/inotify.h>
@@ -168,6 +169,11 @@ TEST_F(Program, TheShippedProfilesAreFoundAndRight) {
   const fs::path drives = fs::path(AXISGATE_SOURCE_DIR) / "schemas/drives";
   for (const auto& entry : fs::directory_iterator(drives)) {
     const Ended ended = run("profile check " + entry.path().string());
+    if (test::content(entry.path()).find("\"base_only\": true") != std::string::npos) {
+      EXPECT_EQ(ended.code, 1);
+      EXPECT_THAT(ended.err, HasSubstr("/base_only: is no drive but a base: name or check a profile that extends it"));
+      continue;
+    }
     EXPECT_EQ(ended.code, 0) << ended.err;
     EXPECT_THAT(ended.out, HasSubstr("is valid"));
   }
@@ -189,7 +195,8 @@ TEST_F(Program, ComparesAProfileWithTheMakersEds) {
   const std::string file = write("other.eds", other);
   ended = run("profile check " + profile + " --eds " + file);
   EXPECT_EQ(ended.code, 1);
-  EXPECT_EQ(ended.err, profile + ": /objects/statusword/at/canopen: " + file + " [6041]: the EDS has no such object\n");
+  EXPECT_EQ(ended.err, AXISGATE_SOURCE_DIR "/schemas/drives/cia402.json: /objects/statusword/at/canopen: " + file +
+                           " [6041]: the EDS has no such object\n");
 
   write("other.eds", "no EDS at all\n");
   const std::pair<std::string, std::string> cases[] = {

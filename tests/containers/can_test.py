@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A gateway with the file system of its image, the user of its image and a network of its own, into which a CAN interface is moved.
 
 Containers share the kernel, so this runs in a kernel that has CAN (tests/vcan/in_guest), where podman does not run: namespaces, the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The set of deploy/compose.yaml: moved from outside, killed, restarted and unplugged while an axis moves. Run by tests/containers/run."""
 import json
 import os

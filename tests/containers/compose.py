@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Starts the services of deploy/compose.yaml with podman, each as the file says, and with nothing that it does not say.
 
 podman-compose does not do: Debian's ignores the options of volumes. What this file does not know of a compose file it refuses, so

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests of containers share: podman, the folder of the sources, and configurations that a busy machine does not disturb."""
 import json
 import os

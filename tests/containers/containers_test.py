@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """All tests of containers, in one process. Run by tests/containers/run, in network, mount and process namespaces of their own:
 containers_test.py AXISGATE AXISGATE_SIM SOURCE_FOLDER [unittest's arguments]
 """

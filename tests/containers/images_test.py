@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is in the images, how large they are, and as whom they run. Run by tests/containers/run."""
 import json
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Gateways without the compose set: with a device that is granted by name, without one, without topics, and many that find each other
 by a discovery server. Run by tests/containers/run."""
 import json

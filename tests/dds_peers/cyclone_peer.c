@@ -1,4 +1,6 @@
-// cyclone_peer DOMAIN: a DDS participant of Eclipse Cyclone DDS that does what lines.h says, on loopback alone.
+// SPDX-License-Identifier: Apache-2.0
+// cyclone_peer DOMAIN [as_it_comes]: a DDS participant of Eclipse Cyclone DDS that does what lines.h says, on loopback alone,
+// or as CYCLONEDDS_URI, if it is set, and the library's defaults have it.
 #include <dds/dds.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +9,7 @@
 #include "axisgate.h"
 #include "lines.h"
 #include "members.h"
-#include "sensor_msgs.h"
+#include "ros2_msgs.h"
 
 // Without multicast: lo has no such flag unless somebody sets it. Asked for often, since a gateway's DDS process that is
 // started anew tells only those whom it knows. A long lease of the participant: what is noticed earlier is noticed by what a
@@ -72,6 +74,28 @@ static void put_numbers(const char* name, dds_sequence_double numbers) {
   end_list();
 }
 
+static void put_pairs(const char* name, dds_sequence_diagnostic_msgs_msg_dds__KeyValue_ pairs) {
+  begin_list(name);
+  for (uint32_t i = 0; i < pairs._length; ++i) {
+    const diagnostic_msgs_msg_dds__KeyValue_* s = &pairs._buffer[i];
+    begin_object("");
+    KEY_VALUE_MEMBERS(PUT)
+    end_object();
+  }
+  end_list();
+}
+
+static void put_statuses(const char* name, dds_sequence_diagnostic_msgs_msg_dds__DiagnosticStatus_ statuses) {
+  begin_list(name);
+  for (uint32_t i = 0; i < statuses._length; ++i) {
+    const diagnostic_msgs_msg_dds__DiagnosticStatus_* s = &statuses._buffer[i];
+    begin_object("");
+    DIAGNOSTIC_STATUS_MEMBERS(PUT)
+    end_object();
+  }
+  end_list();
+}
+
 #define SHOW(function, type, members)           \
   static void function(const void* sample) {    \
     const type* s = sample;                     \
@@ -82,6 +106,7 @@ SHOW(show_axis_event, axisgate_AxisEvent, AXIS_EVENT_MEMBERS)
 SHOW(show_gateway_state, axisgate_GatewayState, GATEWAY_STATE_MEMBERS)
 SHOW(show_command_reply, axisgate_CommandReply, COMMAND_REPLY_MEMBERS)
 SHOW(show_object_reply, axisgate_ObjectReply, OBJECT_REPLY_MEMBERS)
+SHOW(show_diagnostics, diagnostic_msgs_msg_dds__DiagnosticArray_, DIAGNOSTIC_ARRAY_MEMBERS)
 SHOW(show_joint_states, sensor_msgs_msg_dds__JointState_, JOINT_STATE_MEMBERS)
 
 // --- Samples from text -----------------------------------------------------------------------------------------------
@@ -93,14 +118,65 @@ static dds_sequence_octet value_bytes(const struct Line* line, const char* membe
   return sequence;
 }
 
+enum { kMaxJoints = 600 };
+
+static std_msgs_msg_dds__Header_ value_header(const struct Line* line, const char* member) {
+  (void)line;
+  (void)member;
+  static char nothing[] = "";
+  const std_msgs_msg_dds__Header_ header = {{0, 0}, nothing};
+  return header;
+}
+
+static dds_sequence_string value_texts(const struct Line* line, const char* member) {
+  static char* words[kMaxJoints];
+  const size_t count = value_list(line, member, words, kMaxJoints);
+  const dds_sequence_string sequence = {(uint32_t)count, (uint32_t)count, words, false};
+  return sequence;
+}
+
+// Three lists of numbers stand in one sample.
+static dds_sequence_double value_numbers(const struct Line* line, const char* member) {
+  static double numbers[3][kMaxJoints];
+  static int turn;
+  double* const to = numbers[turn++ % 3];
+  char* words[kMaxJoints];
+  const size_t count = value_list(line, member, words, kMaxJoints);
+  for (size_t i = 0; i < count; ++i) to[i] = strtod(words[i], NULL);
+  const dds_sequence_double sequence = {(uint32_t)count, (uint32_t)count, to, false};
+  return sequence;
+}
+
 #define TAKE(kind, member) s->member = value_##kind(line, #member);
 #define FILL(function, type, members)                                \
   static void function(const struct Line* line, void* sample) {      \
     type* s = sample;                                                \
     members(TAKE)                                                    \
   }
-FILL(fill_axis_command, axisgate_AxisCommand, AXIS_COMMAND_MEMBERS)
-FILL(fill_object_request, axisgate_ObjectRequest, OBJECT_REQUEST_MEMBERS)
+FILL(fill_command, axisgate_AxisCommand, AXIS_COMMAND_MEMBERS)
+FILL(fill_joint_commands, sensor_msgs_msg_dds__JointState_, JOINT_STATE_MEMBERS)
+FILL(fill_flag, std_msgs_msg_dds__Bool_, BOOL_MEMBERS)
+FILL(fill_signal, std_msgs_msg_dds__Empty_, EMPTY_MEMBERS)
+FILL(fill_request, axisgate_ObjectRequest, OBJECT_REQUEST_MEMBERS)
+FILL(fill_counters, axisgate_Heartbeat, HEARTBEAT_MEMBERS)
+
+static void fill_axis_command(const struct Line* line, void* sample) {
+  axisgate_AxisCommand* s = sample;
+  fill_command(line, s);
+  snprintf(s->gateway, sizeof s->gateway, "%s", value_of(line, "gateway"));
+}
+
+static void fill_object_request(const struct Line* line, void* sample) {
+  axisgate_ObjectRequest* s = sample;
+  fill_request(line, s);
+  snprintf(s->gateway, sizeof s->gateway, "%s", value_of(line, "gateway"));
+}
+
+static void fill_heartbeat(const struct Line* line, void* sample) {
+  axisgate_Heartbeat* s = sample;
+  fill_counters(line, s);
+  value_hex(line, "client", s->client, sizeof s->client);
+}
 
 // --- Topics ----------------------------------------------------------------------------------------------------------
 
@@ -114,26 +190,53 @@ struct Topic {
   dds_entity_t writer;
 };
 
-static struct Topic topics[] = {
+enum { kMaxTopics = 64 };
+
+/// Those that a line names by KIND:NAME stand behind those that are named here.
+static struct Topic topics[kMaxTopics] = {
     {"axis_state", "axisgate/axis_state", &axisgate_AxisState_desc, show_axis_state, NULL, 0, 0},
     {"axis_event", "axisgate/axis_event", &axisgate_AxisEvent_desc, show_axis_event, NULL, 0, 0},
     {"gateway_state", "axisgate/gateway_state", &axisgate_GatewayState_desc, show_gateway_state, NULL, 0, 0},
     {"command_reply", "axisgate/command_reply", &axisgate_CommandReply_desc, show_command_reply, NULL, 0, 0},
     {"object_reply", "axisgate/object_reply", &axisgate_ObjectReply_desc, show_object_reply, NULL, 0, 0},
     {"joint_states", "rt/joint_states", &sensor_msgs_msg_dds__JointState__desc, show_joint_states, NULL, 0, 0},
+    {"joint_commands", "rt/joint_commands", &sensor_msgs_msg_dds__JointState__desc, NULL, fill_joint_commands, 0, 0},
+    {"diagnostics", "rt/diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, show_diagnostics, NULL, 0, 0},
+    {"flag", "", &std_msgs_msg_dds__Bool__desc, NULL, fill_flag, 0, 0},
+    {"signal", "", &std_msgs_msg_dds__Empty__desc, NULL, fill_signal, 0, 0},
+    {"heartbeat", "axisgate/heartbeat", &axisgate_Heartbeat_desc, NULL, fill_heartbeat, 0, 0},
     {"axis_command", "axisgate/axis_command", &axisgate_AxisCommand_desc, NULL, fill_axis_command, 0, 0},
     {"object_request", "axisgate/object_request", &axisgate_ObjectRequest_desc, NULL, fill_object_request, 0, 0},
 };
 
+static struct Topic* find_topic(const char* name) {
+  for (size_t i = 0; i < kMaxTopics && topics[i].word != NULL; ++i)
+    if (strcmp(topics[i].word, name) == 0) return &topics[i];
+  return NULL;
+}
+
+static struct Topic* add_topic(const char* name) {
+  static char kind[kMaxLine];
+  const char* on_the_wire = topic_name(name, kind, sizeof kind);
+  const struct Topic* like = find_topic(kind);
+  size_t end = 0;
+  while (end < kMaxTopics && topics[end].word != NULL) ++end;
+  if (like == NULL || on_the_wire == NULL || end == kMaxTopics) {
+    fprintf(stderr, "cyclone_peer: no topic '%s'\n", name);
+    exit(1);
+  }
+  topics[end] = *like;
+  topics[end].topic = topics[end].writer = 0;
+  topics[end].word = strdup(name);
+  topics[end].name = strchr(topics[end].word, ':') + 1;
+  return &topics[end];
+}
+
 static struct Topic* topic_of(const char* name) {
-  for (size_t i = 0; i < sizeof topics / sizeof topics[0]; ++i)
-    if (strcmp(topics[i].word, name) == 0) {
-      if (topics[i].topic == 0)
-        topics[i].topic = checked(name, dds_create_topic(participant, topics[i].type, topics[i].name, NULL, NULL));
-      return &topics[i];
-    }
-  fprintf(stderr, "cyclone_peer: no topic '%s'\n", name);
-  exit(1);
+  struct Topic* topic = find_topic(name);
+  if (topic == NULL) topic = add_topic(name);
+  if (topic->topic == 0) topic->topic = checked(name, dds_create_topic(participant, topic->type, topic->name, NULL, NULL));
+  return topic;
 }
 
 static const char* state_text(dds_instance_state_t state) {
@@ -204,10 +307,14 @@ static void on_offered_incompatible(dds_entity_t writer, const dds_offered_incom
   tell_count("incompatible", arg, "policy", status.last_policy_id);
 }
 
+static dds_reliability_kind_t reliability_of(const struct Line* line) {
+  return has_word(line, "best_effort") ? DDS_RELIABILITY_BEST_EFFORT : DDS_RELIABILITY_RELIABLE;
+}
+
 static void make_reader(const struct Line* line) {
   struct Topic* topic = topic_of(word(line, 1));
   dds_qos_t* qos = dds_create_qos();
-  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+  dds_qset_reliability(qos, reliability_of(line), DDS_SECS(1));
   dds_qset_history(qos, DDS_HISTORY_KEEP_ALL, 0);
   const bool kept = topic->show == show_axis_state || topic->show == show_axis_event || topic->show == show_gateway_state;
   dds_qset_durability(qos, kept && !has_word(line, "volatile") ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
@@ -228,16 +335,18 @@ static void make_reader(const struct Line* line) {
 static void make_writer(const struct Line* line) {
   struct Topic* topic = topic_of(word(line, 1));
   dds_qos_t* qos = dds_create_qos();
-  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(10));
+  dds_qset_reliability(qos, topic->fill == fill_heartbeat ? DDS_RELIABILITY_BEST_EFFORT : reliability_of(line), DDS_SECS(10));
   dds_qset_history(qos, DDS_HISTORY_KEEP_ALL, 0);
   dds_qset_durability(qos, DDS_DURABILITY_VOLATILE);
   dds_qset_writer_data_lifecycle(qos, false);
-  if (topic->fill == fill_axis_command) {
+  if (topic->fill == fill_axis_command && !has_word(line, "shared")) {
     dds_qset_ownership(qos, DDS_OWNERSHIP_EXCLUSIVE);
     dds_qset_ownership_strength(qos, (int32_t)number_after(line, "strength", 0));
   }
   if (has_word(line, "automatic"))
     dds_qset_liveliness(qos, DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(number_after(line, "automatic", 0)));
+  if (has_word(line, "participant"))
+    dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_PARTICIPANT, DDS_MSECS(number_after(line, "participant", 0)));
   if (has_word(line, "manual"))
     dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_MSECS(number_after(line, "manual", 0)));
   dds_listener_t* listener = dds_create_listener(topic);
@@ -259,6 +368,10 @@ static void write_sample(const struct Line* line) {
   static union {
     axisgate_AxisCommand command;
     axisgate_ObjectRequest request;
+    axisgate_Heartbeat heartbeat;
+    sensor_msgs_msg_dds__JointState_ joints;
+    std_msgs_msg_dds__Bool_ flag;
+    std_msgs_msg_dds__Empty_ nothing;
   } sample;
   topic->fill(line, &sample);
   checked("write", dds_write(topic->writer, &sample));
@@ -271,12 +384,12 @@ static void delete_writer(const struct Line* line) {
 }
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    fputs("usage: cyclone_peer DOMAIN\n", stderr);
+  if (argc != 2 && argc != 3) {
+    fputs("usage: cyclone_peer DOMAIN [as_it_comes]\n", stderr);
     return 2;
   }
   const dds_domainid_t domain = (dds_domainid_t)strtoul(argv[1], NULL, 10);
-  const dds_entity_t whole = checked("domain", dds_create_domain(domain, kDomain));
+  const dds_entity_t whole = argc == 3 ? 0 : checked("domain", dds_create_domain(domain, kDomain));
   participant = checked("participant", dds_create_participant(domain, NULL, NULL));
   begin_line("ready", "");
   end_line();
@@ -295,6 +408,6 @@ int main(int argc, char** argv) {
     else
       fprintf(stderr, "cyclone_peer: what is '%s'?\n", word(&line, 0));
   }
-  checked("end", dds_delete(whole));
+  checked("end", dds_delete(whole != 0 ? whole : participant));
   return 0;
 }

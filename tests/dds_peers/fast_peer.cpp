@@ -1,4 +1,6 @@
-// fast_peer DOMAIN: a DDS participant of eProsima Fast DDS that does what lines.h says, on loopback alone.
+// SPDX-License-Identifier: Apache-2.0
+// fast_peer DOMAIN [as_it_comes]: a DDS participant of eProsima Fast DDS that does what lines.h says, on loopback
+// alone, or with the library's own transports and discovery.
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -20,7 +22,8 @@
 #include <vector>
 
 #include "axisgatePubSubTypes.h"
-#include "sensor_msgsPubSubTypes.h"
+#include "ros2_msgsPubSubTypes.h"
+#include "tests/dds_peers/fast_ros2.hpp"
 #include "tests/dds_peers/lines.h"
 #include "tests/dds_peers/members.h"
 #include "tests/dds_peers/raw_type.hpp"
@@ -30,6 +33,9 @@ using axisgate::dds_peers::RawSample;
 using axisgate::dds_peers::RawType;
 
 namespace {
+
+using ros2_text::fill;
+using ros2_text::show;
 
 // No more instances than a gateway has axes, and no sample is lost that was sent: they are taken as they come.
 constexpr int kMaxInstances = 500;
@@ -70,29 +76,11 @@ void put_buses(const char* name, const std::vector<axisgate::BusState>& buses) {
   }
   end_list();
 }
-void put_header(const char* name, const std_msgs::msg::dds_::Header_& header) {
-  begin_object(name);
-  put_time("stamp", header.stamp());
-  put_text("frame_id", header.frame_id());
-  end_object();
-}
-void put_texts(const char* name, const std::vector<std::string>& texts) {
-  begin_list(name);
-  for (const auto& text : texts) put_text("", text);
-  end_list();
-}
-void put_numbers(const char* name, const std::vector<double>& numbers) {
-  begin_list(name);
-  for (const double number : numbers) put_f64("", number);
-  end_list();
-}
-
 void show(const axisgate::AxisState& sample) { AXIS_STATE_MEMBERS(PUT) }
 void show(const axisgate::AxisEvent& sample) { AXIS_EVENT_MEMBERS(PUT) }
 void show(const axisgate::GatewayState& sample) { GATEWAY_STATE_MEMBERS(PUT) }
 void show(const axisgate::CommandReply& sample) { COMMAND_REPLY_MEMBERS(PUT) }
 void show(const axisgate::ObjectReply& sample) { OBJECT_REPLY_MEMBERS(PUT) }
-void show(const sensor_msgs::msg::dds_::JointState_& sample) { JOINT_STATE_MEMBERS(PUT) }
 void show(const RawSample& sample) { put_bytes("payload", sample.payload); }
 
 // --- Samples from text -----------------------------------------------------------------------------------------------
@@ -105,8 +93,18 @@ std::vector<std::uint8_t> value_bytes(const Line* line, const char* member) {
 
 #define TAKE(kind, member) sample.member(value_##kind(line, #member));
 
-void fill(const Line* line, axisgate::AxisCommand& sample) { AXIS_COMMAND_MEMBERS(TAKE) }
-void fill(const Line* line, axisgate::ObjectRequest& sample) { OBJECT_REQUEST_MEMBERS(TAKE) }
+void fill(const Line* line, axisgate::AxisCommand& sample) {
+  AXIS_COMMAND_MEMBERS(TAKE)
+  sample.gateway(value_of(line, "gateway"));
+}
+void fill(const Line* line, axisgate::ObjectRequest& sample) {
+  OBJECT_REQUEST_MEMBERS(TAKE)
+  sample.gateway(value_of(line, "gateway"));
+}
+void fill(const Line* line, axisgate::Heartbeat& sample) {
+  HEARTBEAT_MEMBERS(TAKE)
+  value_hex(line, "client", sample.client().data(), sample.client().size());
+}
 void fill(const Line* line, RawSample& sample) { sample.payload = value_bytes(line, "payload"); }
 
 // --- Topics ----------------------------------------------------------------------------------------------------------
@@ -174,13 +172,22 @@ const std::map<std::string, TopicKind>& kinds() {
        {"axisgate/object_reply", make_type<axisgate::ObjectReplyPubSubType>, take_all<axisgate::ObjectReply>}},
       {"joint_states",
        {"rt/joint_states", make_type<sensor_msgs::msg::dds_::JointState_PubSubType>, take_all<JointState>}},
+      {"joint_commands",
+       {"rt/joint_commands", make_type<sensor_msgs::msg::dds_::JointState_PubSubType>, {}, write_one<JointState>}},
+      {"diagnostics",
+       {"rt/diagnostics", make_type<diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType>,
+        take_all<diagnostic_msgs::msg::dds_::DiagnosticArray_>}},
+      {"flag", {"", make_type<std_msgs::msg::dds_::Bool_PubSubType>, {}, write_one<std_msgs::msg::dds_::Bool_>}},
+      {"signal", {"", make_type<std_msgs::msg::dds_::Empty_PubSubType>, {}, write_one<std_msgs::msg::dds_::Empty_>}},
       {"axis_command",
        {"axisgate/axis_command", make_type<axisgate::AxisCommandPubSubType>, {}, write_one<axisgate::AxisCommand>}},
       {"object_request",
        {"axisgate/object_request",
         make_type<axisgate::ObjectRequestPubSubType>,
         {},
-        write_one<axisgate::ObjectRequest>}}};
+        write_one<axisgate::ObjectRequest>}},
+      {"heartbeat",
+       {"axisgate/heartbeat", make_type<axisgate::HeartbeatPubSubType>, {}, write_one<axisgate::Heartbeat>}}};
   return all;
 }
 
@@ -237,15 +244,20 @@ Duration_t milliseconds(long count) { return Duration_t(static_cast<long double>
 
 class Peer {
  public:
-  explicit Peer(std::uint32_t domain) {
+  /// `as_it_comes`: with the library's own transports and discovery, as a ROS 2 node has them.
+  Peer(std::uint32_t domain, bool as_it_comes) {
     auto* factory = DomainParticipantFactory::get_instance();
+    // FASTRTPS_DEFAULT_PROFILES_FILE, as rmw_fastrtps_cpp has it read.
+    if (as_it_comes) factory->load_profiles();
     DomainParticipantQos qos = factory->get_default_participant_qos();
     auto loopback = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
     loopback->interfaceWhiteList.emplace_back("127.0.0.1");
     // Long: what is noticed earlier is noticed by what a writer states of itself.
     qos.wire_protocol().builtin.discovery_config.leaseDuration = Duration_t(kParticipantLease, 0);
-    qos.transport().use_builtin_transports = false;
-    qos.transport().user_transports.push_back(loopback);
+    if (!as_it_comes) {
+      qos.transport().use_builtin_transports = false;
+      qos.transport().user_transports.push_back(loopback);
+    }
     participant_ = checked("participant", factory->create_participant(domain, qos));
     publisher_ = checked("publisher", participant_->create_publisher(PUBLISHER_QOS_DEFAULT));
     subscriber_ = checked("subscriber", participant_->create_subscriber(SUBSCRIBER_QOS_DEFAULT));
@@ -260,7 +272,7 @@ class Peer {
   void make_reader(const Line& line) {
     const TopicKind& kind = kind_of(line);
     DataReaderQos qos = DATAREADER_QOS_DEFAULT;
-    qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
+    qos.reliability().kind = has_word(&line, "best_effort") ? BEST_EFFORT_RELIABILITY_QOS : RELIABLE_RELIABILITY_QOS;
     qos.history().kind = KEEP_ALL_HISTORY_QOS;
     qos.resource_limits() = limits();
     const bool kept = kind.kept && !has_word(&line, "volatile");
@@ -279,21 +291,24 @@ class Peer {
   void make_writer(const Line& line) {
     const TopicKind& kind = kind_of(line);
     DataWriterQos qos = DATAWRITER_QOS_DEFAULT;
-    qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
+    qos.reliability().kind = has_word(&line, "best_effort") ? BEST_EFFORT_RELIABILITY_QOS : RELIABLE_RELIABILITY_QOS;
     // Not all: what is acknowledged is not removed from an instance that is full.
     qos.history().kind = KEEP_LAST_HISTORY_QOS;
     qos.history().depth = kMaxSamplesEach;
     qos.resource_limits() = limits();
     qos.durability().kind = VOLATILE_DURABILITY_QOS;
     qos.writer_data_lifecycle().autodispose_unregistered_instances = false;
-    if (std::string(word(&line, 1)) == "axis_command") {
+    if (std::string(word(&line, 1)) == "heartbeat") qos.reliability().kind = BEST_EFFORT_RELIABILITY_QOS;
+    if (std::string(word(&line, 1)) == "axis_command" && !has_word(&line, "shared")) {
       qos.ownership().kind = EXCLUSIVE_OWNERSHIP_QOS;
       qos.ownership_strength().value = static_cast<std::uint32_t>(number_after(&line, "strength", 0));
     }
-    for (const char* how : {"automatic", "manual"}) {
+    for (const char* how : {"automatic", "participant", "manual"}) {
       if (!has_word(&line, how)) continue;
       const long lease = number_after(&line, how, 0);
-      qos.liveliness().kind = *how == 'a' ? AUTOMATIC_LIVELINESS_QOS : MANUAL_BY_TOPIC_LIVELINESS_QOS;
+      qos.liveliness().kind = *how == 'a'   ? AUTOMATIC_LIVELINESS_QOS
+                              : *how == 'p' ? MANUAL_BY_PARTICIPANT_LIVELINESS_QOS
+                                            : MANUAL_BY_TOPIC_LIVELINESS_QOS;
       qos.liveliness().lease_duration = milliseconds(lease);
       qos.liveliness().announcement_period = milliseconds(lease / 3);
     }
@@ -318,7 +333,9 @@ class Peer {
 
  private:
   static const TopicKind& kind_of(const Line& line) {
-    const auto found = kinds().find(word(&line, 1));
+    char kind[kMaxLine];
+    topic_name(word(&line, 1), kind, sizeof kind);
+    const auto found = kinds().find(kind);
     if (found != kinds().end()) return found->second;
     std::fprintf(stderr, "fast_peer: no topic '%s'\n", word(&line, 1));
     std::exit(1);
@@ -331,7 +348,10 @@ class Peer {
       const std::string name = type.get_type_name();
       if (has_word(&line, "raw")) type = TypeSupport(new RawType(name, type->m_isGetKeyDefined));
       type.register_type(participant_);
-      topic = checked("topic", participant_->create_topic(kind.name, name, TOPIC_QOS_DEFAULT));
+      char unused[kMaxLine];
+      const char* const named = topic_name(word(&line, 1), unused, sizeof unused);
+      topic =
+          checked("topic", participant_->create_topic(named != nullptr ? named : kind.name, name, TOPIC_QOS_DEFAULT));
     }
     return topic;
   }
@@ -347,11 +367,11 @@ class Peer {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fputs("usage: fast_peer DOMAIN\n", stderr);
+  if (argc != 2 && argc != 3) {
+    std::fputs("usage: fast_peer DOMAIN [as_it_comes]\n", stderr);
     return 2;
   }
-  Peer peer(static_cast<std::uint32_t>(std::strtoul(argv[1], nullptr, 10)));
+  Peer peer(static_cast<std::uint32_t>(std::strtoul(argv[1], nullptr, 10)), argc == 3);
   begin_line("ready", "");
   end_line();
   const std::map<std::string, void (Peer::*)(const Line&)> verbs{{"reader", &Peer::make_reader},

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lines.h"
 
 #include <math.h>
@@ -63,6 +64,23 @@ size_t value_hex(const struct Line* line, const char* member, uint8_t* bytes, si
     digits += 2;
   }
   return count;
+}
+
+size_t value_list(const struct Line* line, const char* member, char** words, size_t room) {
+  size_t count = 0;
+  char* next = (char*)(uintptr_t)value_of(line, member);  // it points into line->text
+  while (*next != '\0' && count < room) {
+    words[count++] = next;
+    next += strcspn(next, ",");
+    if (*next == ',') *next++ = '\0';
+  }
+  return count;
+}
+
+const char* topic_name(const char* topic, char* kind, size_t room) {
+  const size_t length = strcspn(topic, ":");
+  snprintf(kind, room, "%.*s", (int)length, topic);
+  return topic[length] == ':' ? topic + length + 1 : NULL;
 }
 
 static void name_it(const char* name) {

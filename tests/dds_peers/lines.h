@@ -1,11 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 // The line protocol of the peers: words come in on stdin, one JSON object a line goes out on stdout.
 // Promises that a line is written whole, whichever thread of a DDS library writes it.
 // Never knows a DDS library: both peers share it.
 //
-//   reader TOPIC [volatile] [deadline MS] [automatic MS] [raw]   a reader; every sample and change of its status is told
-//   writer TOPIC [strength N] [automatic|manual MS] [raw]        a writer with that liveliness; its GUID is told
+//   reader TOPIC [volatile] [best_effort] [deadline MS] [automatic MS] [raw]
+//                                 a reader; every sample and change of its status is told
+//   writer TOPIC [strength N|shared] [automatic|participant|manual MS] [best_effort] [raw]
+//                                 a writer with that liveliness; its GUID is told
 //   write TOPIC MEMBER=VALUE...                                  a sample; members that are not named are 0
 //   assert TOPIC, delete TOPIC                                   of the writer: its liveliness, its end
+//   wherever TOPIC is one of several, such as the topics of ROS 2: KIND:NAME, the name as it is on the wire
 //   quit                          leaves the domain in good order, as at the end of stdin
 //
 // MS is the lease; automatic: the library renews it, manual: samples and `assert` do. raw (Fast DDS alone): the sample's
@@ -47,6 +51,11 @@ int16_t value_i16(const struct Line* line, const char* member);
 double value_f64(const struct Line* line, const char* member);
 /// The bytes of a value in hexadecimal digits: how many were put.
 size_t value_hex(const struct Line* line, const char* member, uint8_t* bytes, size_t room);
+
+/// The words between the commas of a value; they stay good as long as the line. How many were put.
+size_t value_list(const struct Line* line, const char* member, char** words, size_t room);
+/// What stands before the colon of a topic's word, into `kind`; the DDS name behind it, or NULL.
+const char* topic_name(const char* topic, char* kind, size_t room);
 
 /// Begins a line about a topic: {"on": "sample", "topic": "axis_state". It is this thread's alone until end_line().
 void begin_line(const char* on, const char* topic);

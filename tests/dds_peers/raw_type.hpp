@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Fast DDS type whose samples are the CDR bytes of another type, as they are on the wire.
 // Promises that what was received is shown whole, encapsulation header included, and that what is given is sent as it
 // is. Never understands a byte of it.

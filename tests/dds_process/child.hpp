@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The real axisgate-dds, started by a test as the gateway starts it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A DDS client in a process of its own, which a test can kill: DOMAIN STRENGTH LEASE_MS. Commands axis 1 each 20 ms.
 #include <chrono>
 #include <cstdlib>
@@ -11,6 +12,7 @@ int main(int argc, char** argv) {
   Peer peer(static_cast<std::uint32_t>(std::atoi(argv[1])));
   auto writer = peer.writer<axisgate::AxisCommand>("axisgate/axis_command",
                                                    {.strength = static_cast<std::uint32_t>(std::atoi(argv[2])),
+                                                    .liveliness = Liveliness::manual_by_topic,
                                                     .lease = std::chrono::milliseconds(std::atoi(argv[3]))});
   axisgate::AxisCommand sample;
   sample.axis(1);

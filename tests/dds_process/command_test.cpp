@@ -1,11 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
 // What DDS clients ask, and who they are, as the gateway is told of it.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <map>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "tests/dds_process/child.hpp"
 #include "tests/dds_process/peer.hpp"
@@ -49,6 +52,8 @@ TEST(Command, ReachesTheGatewayWithAllItsMembersAndItsWriter) {
   auto writer = peer.writer<AxisCommand>(kCommands);
   ASSERT_TRUE(writer->wait_matched());
   AxisCommand sent = command(499, 0xFEDCBA9876543210);
+  sent.gateway_key(0xCAFEBABE);
+  sent.gateway("cell_7");
   sent.command(6);
   sent.mode(-3);
   sent.mask(0x7FF);
@@ -63,22 +68,26 @@ TEST(Command, ReachesTheGatewayWithAllItsMembersAndItsWriter) {
   sent.set_position_value(9.5);
   sent.homing_method(-17);
   ASSERT_TRUE(writer->write(sent));
-  EXPECT_EQ(child.next<CommandRecord>(), (CommandRecord{.writer = writer->guid(),
-                                                        .axis = 499,
-                                                        .request_id = 0xFEDCBA9876543210,
-                                                        .command = 6,
-                                                        .mode = -3,
-                                                        .mask = 0x7FF,
-                                                        .target_position = 1.5,
-                                                        .target_velocity = -2.5,
-                                                        .target_torque = 3.5,
-                                                        .max_torque = 4.5,
-                                                        .profile_velocity = 5.5,
-                                                        .profile_acceleration = 6.5,
-                                                        .profile_deceleration = 7.5,
-                                                        .jog_velocity = 8.5,
-                                                        .set_position_value = 9.5,
-                                                        .homing_method = -17}));
+  std::optional<CommandRecord> got = child.next<CommandRecord>();
+  ASSERT_TRUE(got);
+  EXPECT_NE(std::exchange(got->written, 0), 0);
+  EXPECT_EQ(got, (CommandRecord{.writer = writer->guid(),
+                                .gateway = {0xCAFEBABE, "cell_7"},
+                                .axis = 499,
+                                .request_id = 0xFEDCBA9876543210,
+                                .command = 6,
+                                .mode = -3,
+                                .mask = 0x7FF,
+                                .target_position = 1.5,
+                                .target_velocity = -2.5,
+                                .target_torque = 3.5,
+                                .max_torque = 4.5,
+                                .profile_velocity = 5.5,
+                                .profile_acceleration = 6.5,
+                                .profile_deceleration = 7.5,
+                                .jog_velocity = 8.5,
+                                .set_position_value = 9.5,
+                                .homing_method = -17}));
 }
 
 TEST(Command, ForAxesThatDoNotExistReachesTheGatewayAsWell) {
@@ -144,7 +153,9 @@ TEST(ObjectRequests, AndTheirReplyTravelWithUpTo4096Bytes) {
   sent.value(0xCAFEBABE);
   sent.data(data);
   ASSERT_TRUE(writer->write(sent));
-  const std::optional<ObjectRequestRecord> got = child.next<ObjectRequestRecord>();
+  std::optional<ObjectRequestRecord> got = child.next<ObjectRequestRecord>();
+  ASSERT_TRUE(got);
+  EXPECT_NE(std::exchange(got->written, 0), 0);
   EXPECT_EQ(got, (ObjectRequestRecord{.writer = writer->guid(),
                                       .axis = 4,
                                       .request_id = 11,
@@ -202,18 +213,30 @@ TEST(CommandWriter, AppearsWithItsStrengthAndAddressAndIsGoneWhenItIsDeleted) {
   EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 42, true, "127.0.0.1"}));
 }
 
-TEST(CommandWriter, WithAnEndlessLeaseIsNotInTheBeats) {
+TEST(CommandWriter, IsInTheBeatsOnlyWhereItsLivelinessIsASignOfLife) {
   Child child({"--commands"});
   Peer peer;
+  const std::chrono::seconds lease(20);
   auto endless = peer.writer<AxisCommand>(kCommands);
-  ASSERT_TRUE(next_of(child, endless->guid()));
-  auto finite = peer.writer<AxisCommand>(kCommands, {.lease = std::chrono::seconds(20)});
+  auto automatic = peer.writer<AxisCommand>(kCommands, {.lease = lease});
+  auto participant =
+      peer.writer<AxisCommand>(kCommands, {.liveliness = Liveliness::manual_by_participant, .lease = lease});
+  std::map<Guid, LivelinessKind> told;
+  while (told.size() < 3) {
+    const std::optional<WriterRecord> record = child.next<WriterRecord>();
+    ASSERT_TRUE(record);
+    told[record->writer] = record->liveliness;
+  }
+  EXPECT_EQ(told[endless->guid()], LivelinessKind::endless);
+  EXPECT_EQ(told[automatic->guid()], LivelinessKind::automatic);
+  EXPECT_EQ(told[participant->guid()], LivelinessKind::manual_by_participant);
+  auto counts = peer.writer<AxisCommand>(kCommands, {.liveliness = Liveliness::manual_by_topic, .lease = lease});
   std::optional<BeatRecord> beat;
   do {
     beat = child.next<BeatRecord>();
     ASSERT_TRUE(beat);
-  } while (beat->beats.empty());
-  EXPECT_THAT(beat->beats, testing::ElementsAre(BeatRecord::Beat{finite->guid(), false}));
+  } while (beat->writers.empty());
+  EXPECT_THAT(beat->writers, testing::ElementsAre(counts->guid()));
 }
 
 TEST(CommandWriter, ThatAssertsByTopicIsGoneWhenItStopsAndBackWhenItWritesAgain) {
@@ -222,21 +245,26 @@ TEST(CommandWriter, ThatAssertsByTopicIsGoneWhenItStopsAndBackWhenItWritesAgain)
   auto writer = peer.writer<AxisCommand>(
       kCommands, {.strength = 3, .liveliness = Liveliness::manual_by_topic, .lease = kShortLease});
   const Guid guid = writer->guid();
-  EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 3, false, "127.0.0.1"}));
+  EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 3, false, "127.0.0.1", LivelinessKind::manual_by_topic}));
   ASSERT_TRUE(writer->wait_matched());
-  ASSERT_TRUE(writer->write(command(1, 1)));
-  ASSERT_TRUE(child.next<CommandRecord>());
+  // It is matched by several readers: the one of commands may not be among them yet.
+  std::optional<Record> heard;
+  for (std::uint64_t id = 1; !heard || !std::holds_alternative<CommandRecord>(*heard); ++id) {
+    ASSERT_LT(id, 1000U);
+    ASSERT_TRUE(writer->write(command(1, id)));
+    heard = child.receive(std::chrono::milliseconds(20));
+  }
   const std::optional<BeatRecord> beat = child.next<BeatRecord>();
   ASSERT_TRUE(beat);
-  EXPECT_THAT(beat->beats, testing::ElementsAre(BeatRecord::Beat{guid, true}));
+  EXPECT_THAT(beat->writers, testing::ElementsAre(guid));
 
-  EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 3, true, "127.0.0.1"}));
+  EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 3, true, "127.0.0.1", LivelinessKind::manual_by_topic}));
   const std::optional<BeatRecord> silent = child.next<BeatRecord>();
   ASSERT_TRUE(silent);
-  EXPECT_THAT(silent->beats, testing::IsEmpty());
+  EXPECT_THAT(silent->writers, testing::IsEmpty());
 
   ASSERT_TRUE(writer->write(command(1, 2)));
-  EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 3, false, "127.0.0.1"}));
+  EXPECT_EQ(next_of(child, guid), (WriterRecord{guid, 3, false, "127.0.0.1", LivelinessKind::manual_by_topic}));
 }
 
 /// Another process with a writer, which a test can end as a crash would.
@@ -276,57 +304,96 @@ TEST(CommandWriter, WhoseProcessIsKilledIsGoneWhenItsLeaseIsOver) {
   EXPECT_EQ(there->strength, 8);
   ASSERT_TRUE(child.next<CommandRecord>());
   client.end();
-  EXPECT_EQ(next_of(child, there->writer), (WriterRecord{there->writer, 8, true, "127.0.0.1"}));
+  EXPECT_EQ(next_of(child, there->writer),
+            (WriterRecord{there->writer, 8, true, "127.0.0.1", LivelinessKind::manual_by_topic}));
 }
 
-TEST(Ownership, IsTheStrongerWritersUntilItIsDeleted) {
+/// The next command of this writer.
+std::optional<CommandRecord> command_of(Child& child, const Guid& writer) {
+  while (const std::optional<CommandRecord> record = child.next<CommandRecord>())
+    if (record->writer == writer) return record;
+  return std::nullopt;
+}
+
+TEST(EverySample, IsHeardOfEveryWriterWithItsStrength) {
   Child child({"--commands"});
   Peer peer;
   auto weak = peer.writer<AxisCommand>(kCommands, {.strength = 1});
   auto strong = peer.writer<AxisCommand>(kCommands, {.strength = 9});
-  ASSERT_TRUE(weak->wait_matched() && strong->wait_matched());
-  ASSERT_TRUE(strong->write(command(1, 1)));
-  std::optional<CommandRecord> got = child.next<CommandRecord>();
-  ASSERT_TRUE(got);
-  EXPECT_EQ(got->writer, strong->guid());
-  // The weak one is heard on an axis that the strong one has not commanded, and there only.
-  ASSERT_TRUE(weak->write(command(1, 2)) && weak->write(command(2, 3)));
-  got = child.next<CommandRecord>();
-  ASSERT_TRUE(got);
-  EXPECT_EQ(got->writer, weak->guid());
-  EXPECT_EQ(got->request_id, 3U);
-
-  const Guid guid = strong->guid();
-  strong.reset();
-  const std::optional<WriterRecord> gone = next_of(child, guid);
-  ASSERT_TRUE(gone && gone->gone);
-  ASSERT_TRUE(weak->write(command(1, 4)));
-  got = child.next<CommandRecord>();
-  ASSERT_TRUE(got);
-  EXPECT_EQ(got->request_id, 4U);
+  auto equal = peer.writer<AxisCommand>(kCommands, {.strength = 9});
+  auto shared = peer.writer<AxisCommand>(kCommands, {.exclusive = false});
+  ASSERT_TRUE(weak->wait_matched() && strong->wait_matched() && equal->wait_matched() && shared->wait_matched());
+  for (std::uint64_t id = 1; id <= 3; ++id) {
+    for (const auto& [writer, strength] : {std::pair{&strong, 9}, {&weak, 1}, {&equal, 9}, {&shared, 0}}) {
+      ASSERT_TRUE((*writer)->write(command(1, id)));
+      const std::optional<CommandRecord> got = child.next<CommandRecord>();
+      ASSERT_TRUE(got);
+      EXPECT_EQ(got->writer, (*writer)->guid());
+      EXPECT_EQ(got->request_id, id);
+      EXPECT_EQ(got->strength, strength);
+      EXPECT_NE(got->written, 0);
+    }
+  }
 }
 
-TEST(Ownership, GoesToTheWeakerWriterWhenTheStrongerIsSilentForItsLease) {
+TEST(EverySample, IsHeardBesideAStrongerWriterThatWasKilled) {
   Child child({"--commands"});
   Client client(9, kShortLease);
-  const std::optional<CommandRecord> first = child.next<CommandRecord>();
-  ASSERT_TRUE(first);
+  ASSERT_TRUE(child.next<CommandRecord>());
+  client.end();
   Peer peer;
   auto weak = peer.writer<AxisCommand>(kCommands, {.strength = 1});
-  const std::optional<WriterRecord> there = next_of(child, weak->guid());
-  ASSERT_TRUE(there && weak->wait_matched());
-  client.end();
-  const std::optional<WriterRecord> gone = next_of(child, first->writer);
-  ASSERT_TRUE(gone && gone->gone);
-  // Long before the dead process's participant is given up. Until its reader is there again, its commands are nobody's.
-  std::optional<CommandRecord> got;
-  for (std::uint64_t id = 1; !got; ++id) {
-    ASSERT_LT(id, 1000U);
-    weak->write(command(1, id));
-    const std::optional<Record> record = child.receive(std::chrono::milliseconds(20));
-    if (record && std::holds_alternative<CommandRecord>(*record)) got = std::get<CommandRecord>(*record);
+  ASSERT_TRUE(weak->wait_matched());
+  ASSERT_TRUE(weak->write(command(1, 5)));
+  const std::optional<CommandRecord> got = command_of(child, weak->guid());
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->request_id, 5U);
+}
+
+TEST(EverySample, ThatIsAStopPassesThoseThatWait) {
+  Child child({"--commands"});
+  Peer peer;
+  auto busy = peer.writer<AxisCommand>(kCommands);
+  auto other = peer.writer<AxisCommand>(kCommands);
+  ASSERT_TRUE(busy->wait_matched() && other->wait_matched());
+  // More than the socket takes while nobody reads it.
+  constexpr std::uint64_t kMany = 2000;
+  for (std::uint64_t id = 1; id <= kMany; ++id) ASSERT_TRUE(busy->write(command(1, id)));
+  AxisCommand stop = command(1, 1);
+  stop.command(3);
+  ASSERT_TRUE(other->write(stop));
+  std::uint64_t before = 0;
+  for (std::optional<CommandRecord> got; !got || got->writer != other->guid(); ++before) {
+    got = child.next<CommandRecord>();
+    ASSERT_TRUE(got);
   }
-  EXPECT_EQ(got->writer, weak->guid());
+  EXPECT_LT(before, kMany);
+  for (; before <= kMany; ++before) ASSERT_TRUE(child.next<CommandRecord>()) << "none is lost";
+}
+
+TEST(Heartbeat, ReachesTheGatewayWithItsWriterAndItsTime) {
+  Child child({"--commands"});
+  Peer peer;
+  auto commands = peer.writer<AxisCommand>(kCommands);
+  auto writer = peer.writer<Heartbeat>("axisgate/heartbeat", {.exclusive = false});
+  ASSERT_TRUE(commands->wait_matched() && writer->wait_matched());
+  Heartbeat sent;
+  sent.client(commands->guid());
+  sent.counter(0xFFFFFFFE);
+  sent.lease_ms(300);
+  // Best effort: what is written before the reader knows the writer is lost.
+  std::optional<HeartbeatRecord> got;
+  for (int tries = 0; !got && tries < 1000; ++tries) {
+    ASSERT_TRUE(writer->write(sent));
+    const std::optional<Record> record = child.receive(std::chrono::milliseconds(20));
+    if (record && std::holds_alternative<HeartbeatRecord>(*record)) got = std::get<HeartbeatRecord>(*record);
+  }
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->writer, writer->guid());
+  EXPECT_EQ(got->client, commands->guid());
+  EXPECT_EQ(got->counter, 0xFFFFFFFE);
+  EXPECT_EQ(got->lease_ms, 300U);
+  EXPECT_NE(got->written, 0);
 }
 
 }  // namespace

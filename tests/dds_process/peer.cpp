@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/dds_process/peer.hpp"
 
 #include <axisgatePubSubTypes.h>
-#include <sensor_msgsPubSubTypes.h>
+#include <ros2_msgsPubSubTypes.h>
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <condition_variable>
@@ -48,6 +49,10 @@ struct TypeOf<ObjectReply> {
 template <>
 struct TypeOf<AxisCommand> {
   using Type = AxisCommandPubSubType;
+};
+template <>
+struct TypeOf<Heartbeat> {
+  using Type = HeartbeatPubSubType;
 };
 template <>
 struct TypeOf<ObjectRequest> {
@@ -226,6 +231,7 @@ template std::unique_ptr<Reader<ObjectReply>> Peer::reader(const std::string&, c
 template std::unique_ptr<Reader<sensor_msgs::msg::dds_::JointState_>> Peer::reader(const std::string&,
                                                                                    const ReaderSettings&);
 template std::unique_ptr<Writer<AxisCommand>> Peer::writer(const std::string&, const WriterSettings&);
+template std::unique_ptr<Writer<Heartbeat>> Peer::writer(const std::string&, const WriterSettings&);
 template std::unique_ptr<Writer<ObjectRequest>> Peer::writer(const std::string&, const WriterSettings&);
 
 }  // namespace axisgate::dds::test

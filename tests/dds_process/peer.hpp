@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // A DDS program of somebody else, on the loopback alone: readers and writers of any topic of ours.
 #pragma once
 
 #include <axisgate.h>
-#include <sensor_msgs.h>
+#include <ros2_msgs.h>
 
 #include <chrono>
 #include <cstdint>

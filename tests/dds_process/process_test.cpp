@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How axisgate-dds begins and ends.
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -47,7 +48,7 @@ TEST(Process, LeavesCtrlCOfTheTerminalToTheGateway) {
 
 TEST(Process, EndsAtAPacketThatIsNoRecord) {
   Child child;
-  child.send_bytes({1, 0, 7});
+  child.send_bytes({kLinkVersion, 0, 7});
   EXPECT_THAT(last_line(child), HasSubstr("another length"));
   EXPECT_EQ(child.exit_code(), kExitProtocol);
 }
@@ -77,12 +78,12 @@ TEST(Process, NamesTheInterfaceThatIsNotThereAndThoseThatAre) {
 }
 
 TEST(Process, EndsAtItsMemoryLimit) {
-  Child child({"--commands", "--memory-limit-mib", "16"});
+  Child child({"--commands", "--memory-limit-mib", "32"});
   Peer peer;
   auto writer = peer.writer<ObjectRequest>("axisgate/object_request", {.exclusive = false, .heartbeats = false});
   ASSERT_TRUE(writer->wait_matched());
   // The gateway does not read: what it does not take stays with axisgate-dds, 64 samples an axis.
-  constexpr int kRequests = 2000;
+  constexpr int kRequests = 8000;
   ObjectRequest sample;
   sample.data(std::vector<Byte>(kMaxObjectBytes));
   for (int i = 0; i < kRequests && !child.hung_up(); ++i) {
@@ -159,13 +160,38 @@ TEST(Topics, PrintsJsonForPrograms) {
   child.send(StateRecord{.axis = 12, .name = "turntable", .position = 1.5});
   const auto [code, text] = Child::run({"topics", "--once", "--json", "--domain", std::to_string(test_domain())});
   EXPECT_EQ(code, 0);
-  EXPECT_THAT(text, HasSubstr(R"({"axis":12,"name":"turntable",)"));
+  EXPECT_THAT(text, HasSubstr(R"({"gateway_key":0,"gateway":"","axis":12,"name":"turntable",)"));
 }
 
 TEST(Topics, SaysWhereToLookIfNoAxisIsThere) {
   const auto [code, text] = Child::run({"topics", "--once", "--domain", std::to_string(test_domain())});
   EXPECT_EQ(code, 1);
   EXPECT_THAT(text, HasSubstr("--domain"));
+}
+
+TEST(Namesake, IsToldOnceItsStatesAreHeardAndWhenItIsGone) {
+  Child child({"--gateway-name", "cell_7"});
+  Child other({"--gateway-name", "cell_8"});
+  std::optional<Child> duplicate(std::in_place, std::vector<std::string>{"--gateway-name", "cell_7"});
+  StateRecord state;
+  state.axis = 3;
+  other.send(state);
+  // It may have been sent before anybody listened.
+  std::optional<NamesakeRecord> told;
+  while (!told) {
+    duplicate->send(state);
+    const std::optional<Record> record = child.receive(std::chrono::milliseconds(50));
+    if (record && std::holds_alternative<NamesakeRecord>(*record)) told = std::get<NamesakeRecord>(*record);
+  }
+  EXPECT_EQ(told->axis, 3);
+  EXPECT_EQ(told->where, "127.0.0.1");
+  EXPECT_FALSE(told->gone);
+  const Guid writer = told->writer;
+  duplicate->close_link();
+  told = child.next<NamesakeRecord>();
+  ASSERT_TRUE(told);
+  EXPECT_TRUE(told->gone);
+  EXPECT_EQ(told->writer, writer);
 }
 
 }  // namespace

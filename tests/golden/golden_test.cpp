@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stories told once and kept: the text that a story makes must equal its file. Run with AXISGATE_WRITE_GOLDEN=1 to
 // write the files anew; read the difference before committing it.
 #include <gtest/gtest.h>
@@ -159,7 +160,7 @@ TEST(Golden, AStepperIsStoppedQuicklyAndLatched) {
   compare(story, "id286pro.quick-stop");
 }
 
-TEST(Golden, AStepperIsLateAndTheFenceHasAnotherLength) {
+TEST(Golden, AStepperIsLateAndTheResynchronisationReadHasAnotherLength) {
   Recorder story(simulated::Id286proOptions{}, false);
   story.say("the reply to the next request comes 150 ms late: the fence asks for one register, not for two");
   story.faults().late_by = 150ms;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes down one story from the bus bytes to the Modbus frames: virtual time, what went over the cable, what the image
 // showed, what the client asked and was answered. Promises the same text for the same story, and that polling does not
 // drown it: only class fast is polled, each 100 ms. Never judges: the text is compared with the file of the story.
@@ -8,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "gateway/upstream/modbus_tcp/client_registry.hpp"
-#include "gateway/upstream/modbus_tcp/session.hpp"
+#include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/session/session.hpp"
 #include "tests/stage/gateway_stage.hpp"
 
 namespace axisgate::test {

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bad input: what is no Modbus, what is Modbus and wrong, a wrong configuration, a device that somebody else has."""
 import json
 import random

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Somebody pulls the serial cable of axis 1 and puts it back, in every state; axis 2 hangs on another line."""
 import os
 import signal
@@ -325,7 +326,7 @@ class SocatCable(Cable):
         self.through_the_cable(kill)
 
     def test_bytes_are_lost_but_the_line_stays(self):
-        # Stopped, socat passes nothing on: the drive is mute, the port is still there.
+        # Stopped, socat passes nothing on: the drive is unresponsive, the port is still there.
         self.cable.send(signal.SIGSTOP)
         until("no answer is noticed", lambda: self.lift.get("link_state") not in (ONLINE, SUSPECT))
         self.assertNotEqual(self.lift.get("link_state"), LINK_DOWN)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The serial CAN adapter is pulled from its socket and put back; a gateway starts before it is there; the bus behind it is in trouble."""
 from can_stage import FAR, RPM, CanStory, main
 from modbus import (CONTINUOUS, DISABLED, ERROR_STOP, FAILED, LINK_DOWN, NO_PATH, ONLINE, SETUP, STANDSTILL)

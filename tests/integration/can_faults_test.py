@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One device of a CAN bus floods it, doubles, refuses, is late or lost for words: the others go on, and nothing false is shown."""
 import re
 
@@ -95,7 +96,7 @@ class TwoBuses(CanStory):
         self.assert_one_request_at_a_time("loud", "calm")
 
 
-class Twins(OneOfThree):
+class DuplicateNodes(OneOfThree):
     def test_a_second_drive_with_the_same_number_is_told(self):
         for number in (1, 2, 3):
             with self.subTest(node=number):

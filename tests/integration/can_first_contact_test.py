@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A user's first minutes with CAN: drives of three makes on one bus are there, with good values, and do what they are told."""
 from can_stage import FAR, RPM, TURN, CanStory, main
 from modbus import (ABORTED, ACTIVE, AXIS, COMPLETED, CONTINUOUS, DISABLED, DISCRETE, ONLINE, REFUSED, STANDSTILL)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Heartbeats, both ways: the gateway dies or hangs while motors run, and a drive falls silent."""
 import signal
 

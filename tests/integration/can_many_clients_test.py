@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """32 clients on two drives of one CAN bus: each gets its own right answers, and the bus carries one request at a time."""
 from can_stage import CanStory, main
 from modbus import BUSY, DISABLED, ERROR_STOP, NO_ANSWER, NO_PATH, ONLINE, OUT_OF_SIGHT, REFUSED, SUSPECT, Client, Refused

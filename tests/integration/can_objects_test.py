@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """FC 43/13: any object of any drive, as the maker's own tools would ask for it, by bytes over a plain socket."""
 import socket
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A drive on CAN restarts, or is unplugged from the bus and plugged in: its clients are told, nothing is enabled, it comes back."""
 import time
 

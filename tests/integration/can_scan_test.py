@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`axisgate scan` on a serial CAN adapter: who is there is found, nobody is disturbed, and what cannot be used is named."""
 import re
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Drives that are not as expected: another device under the number, one that will not map its values, one that nobody answers for."""
 from can_stage import RPM, CanStory, main
 from modbus import ABORTED, ALARM_LOCAL_CONTROL, BUSY, DISABLED, ONLINE, REFUSED

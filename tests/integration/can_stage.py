@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Stories on CAN. One story is told twice: with simulated drives behind a serial CAN adapter (Lawicel) on a pty, and, in the folder
 vcan, on virtual CAN interfaces of its own, which need a kernel that has them and the right to make them.
 

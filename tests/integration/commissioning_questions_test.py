@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Somebody commissions a drive: one question for each finding, the bus goes on meanwhile, and only what was agreed to is written."""
 import os
 import subprocess

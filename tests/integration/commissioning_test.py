@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Before the first run: check a configuration and a profile, commission a drive as it left the factory, look at the table."""
 import json
 import shutil
@@ -140,8 +141,8 @@ class AtTheDesk(Story):
         path = self.path("mine.json")
         with open(f"{SOURCE}/schemas/drives/kinco-jd.json", encoding="utf-8") as file:
             profile = json.load(file)
-        profile["objects"]["statusword"]["type"] = "u17"
-        profile["quantities"]["position_actual"]["object"] = "nowhere"
+        profile["objects"].setdefault("statusword", {})["type"] = "u17"
+        profile["quantities"].setdefault("position_actual", {})["object"] = "nowhere"
         with open(path, "w", encoding="utf-8") as file:
             json.dump(profile, file)
         done = self.command_line("profile", "check", path)

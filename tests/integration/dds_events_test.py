@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """axis_event: faults, lost links and leases are told, and who comes late is told the newest sixteen of each axis."""
 from dds_stage import BOOT, FAULT, LEASE, LINK, VENDORS, DdsStory, main
 from lease_stage import NOBODY

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A DDS master that is gone: its process is killed, its writer deleted, or it says nothing any more. Its motor stops."""
 import signal
 import time
@@ -14,7 +15,7 @@ class Masters(DdsStory):
     lines_of = ("serial", "modbus")
     lease = {"timeout_ms": 1500}
     vendors = VENDORS
-    lives_by = ("automatic", 1000)  # the shortest that is worth anything where a library may be late
+    lives_by = ()
 
     def setUp(self):
         super().setUp()
@@ -66,7 +67,6 @@ class Gone(Masters):
     vendors = (FAST,)
 
     def test_their_processes_are_killed(self):
-        self.go_on()
         self.each_goes(lambda master: master.process.kill())
         self.assert_another_may()
 
@@ -116,19 +116,87 @@ class ByHand(Masters):
         self.let_go(self.masters[2], 2)
 
 
-class Doubted(Masters):
-    """Two programs with automatic liveliness: the library hears one and takes it for both, so neither is believed."""
+class ByTheirLibraries(Masters):
+    """AUTOMATIC: a library says so for its program, whatever that one does. It counts for nothing, and is told so."""
 
     lease = {"timeout_ms": 3000}
+    lives_by = ("automatic", 1000)
+    told = "its AUTOMATIC liveliness counts for nothing"
 
-    def test_a_dead_one_is_not_kept_by_one_that_lives(self):
-        self.gateway.wait_for("several programs state an automatic liveliness lease")
-        self.masters[1].process.kill()
-        self.until_it_stands(1)
-        self.watched(1).until_input("stop_latched")
+    def test_it_keeps_no_axis(self):
+        until("the log says so of each", lambda: self.gateway.text().count(self.told) >= len(self.masters))
+        self.each_goes(lambda master: self.assertIsNone(master.process.poll(), "the process itself is well"))
+        self.assertEqual(self.gateway.text().count(self.told), len(self.masters), "once for each writer")
 
-    def test_samples_keep_an_axis_all_the_same(self):
+    def test_a_bystander_takes_no_master_with_it(self):
+        """One with such a lease that never writes once made everybody's leases doubtful."""
+        self.peer_of(FAST).writer("axis_command", "automatic", 1000)
+        self.peer_of(CYCLONE).writer("axis_command", "automatic", 1000)
         self.go_on(lambda number, master: master.do(number, target_velocity=300 * RPM))
+
+
+class ByParticipant(ByTheirLibraries):
+    lives_by = ("participant", 1000)
+    told = "its MANUAL_BY_PARTICIPANT liveliness counts for nothing"
+
+    def test_it_keeps_no_axis(self):
+        super().test_it_keeps_no_axis()
+
+
+class ByHeartbeat(Masters):
+    """axisgate/heartbeat: a counter that changes, from the participant of the writer of commands."""
+
+    lease = {"timeout_ms": 4000}
+
+    def setUp(self):
+        super().setUp()
+        self.counter = 0
+        for master in self.masters.values():
+            master.writer("heartbeat")
+
+    def beat(self, number, master):
+        del number
+        self.counter += 1
+        master.beat(self.counter)
+
+    def test_a_counter_that_changes_keeps_their_axes_and_one_that_stands_does_not(self):
+        self.go_on(self.beat)
+        place = self.events.now()
+
+        def all_stand():
+            for master in self.masters.values():
+                master.beat(self.counter)
+            return all(self.speed(number) == 0 for number in self.masters)
+
+        until("their axes stand", all_stand)
+        self.assert_stopped(place)
+
+    def test_nobody_beats_for_another(self):
+        impostor = self.peer_of(FAST)
+        impostor.writer("heartbeat")
+        clients = [master.guids["axis_command"] for master in self.masters.values()]
+
+        def all_stand():
+            for client in clients:
+                self.counter += 1
+                impostor.beat(self.counter, client=client)
+            return all(self.speed(number) == 0 for number in self.masters)
+
+        until("their axes stand", all_stand)
+
+    def test_who_asks_for_a_shorter_lease_is_stopped_sooner(self):
+        place = self.events.now()
+
+        def all_stand():  # the first of these that arrives counts, and no other
+            for master in self.masters.values():
+                master.beat(1, lease_ms=300)
+            return all(self.speed(number) == 0 for number in self.masters)
+
+        until("their axes stand", all_stand)
+        self.assert_stopped(place)
+        for number in self.masters:
+            told = self.events.sample("axis_event", lambda event: "has run out" in event["text"], since=place, axis=number, kind=LEASE)
+            self.assertIn("for 300 ms", told["text"])
 
 
 class Endless(Masters):

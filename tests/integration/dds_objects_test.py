@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """object_request: any object of any drive, by index and subindex, as axes know them."""
 from dds_stage import BAD_VALUE, DONE, NO_AXIS, NOT_OWNER, REFUSED_BY_DRIVE, SEEN, VENDORS, DdsStory, main
 from lease_stage import ME, NOBODY

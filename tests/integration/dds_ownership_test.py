@@ -1,4 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
 """Who may command an axis when several want to: DDS writers by their strength, and DDS beside Modbus clients."""
+import collections
+import itertools
+import signal
+
 from dds_stage import CYCLONE, DONE, FAST, LEASE, NOT_OWNER, RPM, VENDORS, DdsStory, main
 from lease_stage import ANOTHER, ME, NOBODY
 from modbus import BUSY, Axis
@@ -58,8 +63,7 @@ class Strengths(DdsStory):
     """Two writers of one axis: DDS's exclusive ownership, and the lease that goes with it."""
 
     lines_of = ("serial",)
-    lease = {"timeout_ms": 5000}
-    lives_by = ("manual", 3000)  # the library tells apart whose assertion it hears
+    lease = {"timeout_ms": 20000}
 
     def setUp(self):
         super().setUp()
@@ -68,21 +72,19 @@ class Strengths(DdsStory):
     def stronger_wins(self, weak_vendor, strong_vendor):
         number = 1
         events = self.peer_of(FAST).read("axis_event")
-        weak = self.commander(weak_vendor, "strength", 5, *self.lives_by)
+        weak = self.commander(weak_vendor, "strength", 5)
         self.run_by_dds(weak, number, rpm=200)
         self.until_it_turns_at(number, 200)
-        strong = self.commander(strong_vendor, "strength", 10, *self.lives_by)
+        strong = self.commander(strong_vendor, "strength", 10)
         self.assertGreater(self.speed(number), 0, "that it is there changes nothing")
         place = events.now()
         strong.do(number, "run_velocity", target_velocity=-200 * RPM)
         self.until_it_turns_at(number, -200)
         events.sample("axis_event", since=place, axis=number, kind=LEASE)
-        # What the weaker one writes from now on is dropped by DDS itself, or refused: it is done in no case.
-        unanswered = [weak.ask(number, "run_velocity", target_velocity=300 * RPM) for _ in range(5)]
-        until("still turning back", lambda: strong.do(number, "none", target_velocity=-250 * RPM) == 0)
+        for _ in range(5):
+            self.assert_one_answer(weak, weak.ask(number, "run_velocity", target_velocity=300 * RPM), NOT_OWNER)
+        strong.do(number, "none", target_velocity=-250 * RPM)
         self.until_it_turns_at(number, -250)
-        for request in unanswered:
-            self.assertIn([reply["result"] for reply in weak.answers(request)], ([], [NOT_OWNER]))
         return weak, strong
 
     def both(self, weak_vendor, strong_vendor):
@@ -94,16 +96,8 @@ class Strengths(DdsStory):
         self.weaker_again(weak)
 
     def weaker_again(self, weak):
-        """Once the stronger one is gone for DDS as well."""
-        def accepted():
-            request = weak.ask(1, "enable")
-            try:
-                weak.wait("sample", "command_reply", lambda told: told["data"]["request_id"] == request, seconds=0.5)
-            except AssertionError:
-                return False  # still dropped
-            return weak.answers(request)[0]["result"] == DONE
-
-        until("the weaker one may command again", accepted)
+        """The next that it asks is done."""
+        weak.do(1, "enable")
         weak.do(1, "run_velocity", target_velocity=200 * RPM)
         self.until_it_turns_at(1, 200)
         weak.do(1, "disable")
@@ -125,35 +119,124 @@ class Strengths(DdsStory):
         weak, strong = self.stronger_wins(CYCLONE, FAST)
         strong.process.kill()
         strong.ended()
-        self.until_it_stands(1)
-        self.watched(1).until_input("stop_latched")
+        # It cannot take the axis before the dead one's lease has run out, and is told so each time.
+        results = []
+
+        def free():
+            results.append(weak.answer(weak.ask(1, "enable"))[0])
+            return results[-1] == DONE
+
+        until("the weaker one may command again", free)
+        self.assertEqual(set(results), {NOT_OWNER, DONE})
         self.weaker_again(weak)
 
 
 class Equals(DdsStory):
     lines_of = ("serial",)
-    lease = {"timeout_ms": 5000}
-    lives_by = ("manual", 3000)  # the library tells apart whose assertion it hears
+    lease = {"timeout_ms": 3000}
 
-    def test_while_one_has_the_axis_another_of_its_strength_has_not(self):
+    def setUp(self):
+        super().setUp()
         self.begin()
-        for vendors in (VENDORS, VENDORS[::-1]):
+
+    def pairs(self):
+        """A master and one of its strength, of each vendor before each."""
+        for vendors in itertools.product(VENDORS, VENDORS):
             self.at = vendors
-            self.strength += 1
-            same = ("strength", self.strength, *self.lives_by)
-            one, other = (self.commander(vendor, *same) for vendor in vendors)
-            self.run_by_dds(one, 1)
-            for _ in range(5):
-                other.ask(1, "run_velocity", target_velocity=-300 * RPM)
-            other.answer(other.ask(other.nowhere, "enable"))  # after those
-            replies = other.samples("command_reply", axis=1, writer=other.guids["axis_command"])
-            self.assertLessEqual({reply["result"] for reply in replies}, {NOT_OWNER})
-            self.assertGreater(self.speed(1), 0)
-            Axis(self.watcher, 1).coil("quick_stop")
-            self.until_it_stands(1)
-            one.process.kill()
-            other.process.kill()
+            master, other = (self.commander(vendor, *self.ownership) for vendor in vendors)
+            yield master, other
             self.watched(1).until(owner=NOBODY)
+        self.at = None
+
+    ownership = ("strength", 7)
+
+    def test_one_never_takes_the_axis_from_another_while_its_lease_runs_and_stops_it_at_any_time(self):
+        for master, other in self.pairs():
+            self.prepare_by_dds(master, 1)
+            master.do(1, "enable")
+            for peer, rpm in ((master, 200), (other, -300)):
+                result = peer.answer(peer.ask(1, "run_velocity", target_velocity=rpm * RPM))[0]
+                self.assertEqual(result, DONE if peer is master else NOT_OWNER)
+                self.until_it_turns_at(1, 200)
+            other.do(1, "quick_stop")
+            self.until_it_stands(1)
+            master.do(1, "enable")
+            self.let_go(master, 1)
+            master.leave()
+            other.leave()
+
+    def successor(self, go):
+        """Its master gone, an axis is its successor's when the lease has run out, and its stop is heard before."""
+        for master, other in self.pairs():
+            self.run_by_dds(master, 1)
+            go(master)
+            other.do(1, "quick_stop")
+            results = []
+
+            def free(other=other, results=results):
+                results.append(other.answer(other.ask(1, "enable"))[0])
+                return results[-1] == DONE
+
+            until("its successor may enable", free)
+            self.assertLessEqual(set(results), {NOT_OWNER, DONE})
+            other.do(1, "run_velocity", target_velocity=200 * RPM)
+            self.until_it_turns_at(1, 200)
+            self.let_go(other, 1)
+            other.leave()
+
+    def test_the_successor_of_one_that_left_in_good_order_is_heard(self):
+        self.successor(lambda master: master.leave())
+
+    def test_the_successor_of_a_killed_one_is_heard(self):
+        self.successor(lambda master: master.process.kill())
+
+    def test_the_successor_of_one_that_stands_still_is_heard(self):
+        def stand(master):
+            self.addCleanup(master.send, signal.SIGCONT)
+            master.send(signal.SIGSTOP)
+
+        self.successor(stand)
+
+
+class Shared(Equals):
+    """Plain publishers: ROS 2 knows no others."""
+
+    ownership = ("shared",)
+
+    def test_the_successor_of_a_killed_one_is_heard(self):
+        super().test_the_successor_of_a_killed_one_is_heard()
+
+    def test_a_stronger_one_takes_their_axis(self):
+        for vendor in self.each_vendor():
+            plain = self.commander(vendor, "shared")
+            self.run_by_dds(plain, 1)
+            strong = self.commander(vendor, "strength", 1)
+            strong.do(1, "run_velocity", target_velocity=-200 * RPM)
+            self.until_it_turns_at(1, -200)
+            self.assert_one_answer(plain, plain.ask(1, "run_velocity", target_velocity=200 * RPM), NOT_OWNER)
+            self.let_go(strong, 1)
+
+
+class ManyRequests(DdsStory):
+    """20,000 commands of two writers of each vendor, none without its one reply."""
+
+    lines_of = ("serial",)
+    each = 5000
+    under_way = 50  # a reader of replies keeps 64 of an axis
+
+    def test_each_of_them_has_one_reply(self):
+        self.begin()
+        peers = [self.commander(vendor, *how) for vendor in VENDORS for how in ((), ("strength", 3))]
+        asked = {peer: [] for peer in peers}
+        while len(asked[peers[0]]) < self.each:
+            for peer in peers:
+                asked[peer] += [peer.ask(peer.nowhere, "enable") for _ in range(self.under_way)]
+            for peer in peers:
+                peer.answer(asked[peer][-1])
+        for peer in peers:
+            replies = [told["data"] for told in peer.all("sample", "command_reply") if told["data"]["writer"] == peer.guids["axis_command"]]
+            counts = collections.Counter(reply["request_id"] for reply in replies)
+            self.assertEqual({counts[number] for number in asked[peer]}, {1})
 
 
 if __name__ == "__main__":

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """axisgate-dds dies, stands still or takes too much memory: the gateway and its drives go on, and the topics come back."""
 import os
 import resource

@@ -1,4 +1,5 @@
-"""What the stories of the DDS face need: a machine with a serial and a CANopen drive, a DDS domain of its own, and peers of two
+# SPDX-License-Identifier: Apache-2.0
+"""What the stories of the DDS server need: a machine with a serial and a CANopen drive, a DDS domain of its own, and peers of two
 vendors (tests/dds_peers) that read the topics and command axes.
 """
 import itertools
@@ -9,6 +10,7 @@ import socket
 import subprocess
 import threading
 import time
+import zlib
 
 from lease_stage import Machine
 from processes import NEVER, Program, until
@@ -45,21 +47,23 @@ def reserve_domain():
     raise AssertionError("all domains are taken")
 
 
-# Axes that are not there. Each peer has its own: of an instance that several write, DDS passes on the strongest's samples alone.
+# Axes that are not there. Each peer has its own.
 NOWHERE = itertools.count(1000)
 
 
 class Peer(Program):
     """One DDS participant. What it tells is kept in order; every wait is for something told."""
 
-    def __init__(self, vendor, domain, wrapper=()):
+    def __init__(self, vendor, domain, wrapper=(), *arguments, gateway=""):
         self.vendor = vendor
         self.told = []
         self.news = threading.Condition()
         self.ids = itertools.count(1)
         self.guids = {}
         self.nowhere = next(NOWHERE)
-        super().__init__(f"{vendor}_peer", [*wrapper, os.path.join(PEERS, f"{vendor}_peer"), str(domain)], stdin=subprocess.PIPE)
+        self.gateway = gateway
+        super().__init__(f"{vendor}_peer", [*wrapper, os.path.join(PEERS, f"{vendor}_peer"), str(domain), *arguments],
+                         stdin=subprocess.PIPE)
         self.wait("ready", "")
 
     def _read(self):
@@ -145,6 +149,7 @@ class Peer(Program):
     def write(self, topic, request_id=None, **members):
         """The sample's request id."""
         number = next(self.ids) if request_id is None else request_id
+        members = {"gateway": self.gateway, "gateway_key": zlib.crc32(self.gateway.encode()), **members}
         self.say("write", topic, f"request_id={number}", *(f"{name}={value}" for name, value in members.items()))
         return number
 
@@ -175,6 +180,10 @@ class Peer(Program):
         number = self.write("object_request", axis=axis, index=index, subindex=subindex, **members)
         return self.sample("object_reply", request_id=number, writer=self.guids["object_request"])
 
+    def beat(self, counter, lease_ms=0, client=None):
+        """One sample of heartbeat for its writer of commands."""
+        self.say("write", "heartbeat", f"client={client or self.guids['axis_command']}", f"counter={counter}", f"lease_ms={lease_ms}")
+
     def delete(self, topic="axis_command"):
         self.say("delete", topic)
 
@@ -197,10 +206,10 @@ class DdsStory(Machine):
 
     lines_of = ("serial", "leadshine")
     dds = {}
-    # A machine that is busy with something else must not look like a client that is gone.
-    lease = {"timeout_ms": 10000}
-    automatic = ("automatic", 5000)
-    strength = 0
+    # A machine that is busy with something else must not look like a client that is gone, nor a command like an old one.
+    lease = {"timeout_ms": 60000}
+    max_age_ms = 60000
+    gateway_name = ""
 
     @classmethod
     def setUpClass(cls):
@@ -212,14 +221,19 @@ class DdsStory(Machine):
         super().configure(*arguments, **options)
         with open(self.config, encoding="utf-8") as file:
             config = json.load(file)
-        keys = {"domain": self.domain, "commands": True, "start_deadline_ms": 60000, "reply_deadline_ms": 60000, **self.dds}
+        keys = {"domain": self.domain, "commands": True, "start_deadline_ms": 60000, "reply_deadline_ms": 60000,
+                "max_age_ms": self.max_age_ms, **self.dds}
+        if not keys["commands"]:
+            del keys["start_deadline_ms"], keys["reply_deadline_ms"], keys["max_age_ms"]
+        if self.gateway_name:
+            config["gateway"] = {"name": self.gateway_name}
         config["dds"] = {name: value for name, value in keys.items() if value is not None}
         with open(self.config, "w", encoding="utf-8") as file:
             json.dump(config, file, indent=2)
         return self.config
 
     def peer_of(self, vendor):
-        peer = self.keep(Peer(vendor, self.domain))
+        peer = self.keep(Peer(vendor, self.domain, gateway=self.gateway_name))
         peer.name = f"{vendor}_peer {len(self.programs)}"
         return peer
 
@@ -231,10 +245,8 @@ class DdsStory(Machine):
         self.at = None
 
     def commander(self, vendor, *options):
-        """A peer that may command. Unless a story says otherwise its library keeps its liveliness, and it is stronger than all
-        before it: whoever of them has commanded an axis is its owner for DDS until it is seen to be gone."""
-        self.strength += 1
-        return self.peer_of(vendor).command_with(*(options or ("strength", self.strength, *self.automatic)))
+        """A peer that may command."""
+        return self.peer_of(vendor).command_with(*options)
 
     def dds_process(self):
         """The number of axisgate-dds: the gateway's only child of that name."""

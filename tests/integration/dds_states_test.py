@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """axis_state and gateway_state: what subscribers of both vendors read is what the registers show."""
 import math
 import time

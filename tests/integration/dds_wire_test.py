@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is on the wire, as tshark dissects it: sound RTPS on loopback alone, and ROS 2's names and layout for joint_states.
 
 The story runs in a network of its own, with a second interface that would take the traffic if it left loopback.
@@ -35,7 +36,7 @@ def setUpModule():
 
 
 class Wire(DdsStory):
-    dds = {"ros2": True}
+    dds = {"ros2": True, "shared_memory": False}
 
     def capture(self):
         self.captured = self.path("wire.pcapng")
@@ -96,10 +97,15 @@ class Wire(DdsStory):
         self.assertLessEqual({bytes.fromhex(payload) for payload, in odd}, {b"\0", b"EPRORTPSCLOSE"})
         names = {pair for line in self.dissect("rtps.param.topicName", "rtps.param.topicName", "rtps.param.typeName")
                  for pair in zip(line[0].split(","), line[1].split(","))}
-        wanted = {("axisgate/axis_state", "axisgate::AxisState"), ("axisgate/axis_command", "axisgate::AxisCommand"),
+        wanted = {("axisgate/axis_state", "axisgate::AxisState"), ("axisgate/axis_command", "axisgate::AxisCommand"), ("axisgate/heartbeat", "axisgate::Heartbeat"),
                   ("axisgate/command_reply", "axisgate::CommandReply"), ("axisgate/axis_event", "axisgate::AxisEvent"),
                   ("axisgate/object_request", "axisgate::ObjectRequest"), ("axisgate/object_reply", "axisgate::ObjectReply"),
-                  ("axisgate/gateway_state", "axisgate::GatewayState"), ("rt/joint_states", "sensor_msgs::msg::dds_::JointState_")}
+                  ("axisgate/gateway_state", "axisgate::GatewayState"), ("rt/joint_states", "sensor_msgs::msg::dds_::JointState_"),
+                  ("rt/joint_commands", "sensor_msgs::msg::dds_::JointState_"),
+                  ("rt/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_")}
+        for axis in ("serial", "leadshine"):
+            wanted.add((f"rt/{axis}/enable", "std_msgs::msg::dds_::Bool_"))
+            wanted |= {(f"rt/{axis}/{topic}", "std_msgs::msg::dds_::Empty_") for topic in ("quick_stop", "fault_reset", "home")}
         self.assertEqual(names, wanted)
 
 
@@ -146,7 +152,7 @@ def joint_state(data):
 
 
 class Ros2(DdsStory):
-    dds = {"ros2": True}
+    dds = {"ros2": True, "shared_memory": False}
 
     def test_joint_states_are_what_ros_2_expects(self):
         self.begin()

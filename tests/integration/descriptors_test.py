@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A crowd of clients takes all descriptors there are; a serial port that comes back finds one below 1024 all the same."""
 import os
 import resource

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tells a program that fails from a machine that had no time for it.
 
 Stories start real programs, and much of what they ask is about time: a lease runs out after a second in which its owner was silent, a

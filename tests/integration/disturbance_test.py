@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A test that fails is run again where the machine was to blame, and nowhere else.
 
 Run as: disturbance_test.py AXISGATE AXISGATE_SIM SOURCE_FOLDER [unittest's arguments] (as the stories, of which it needs none)

@@ -1,4 +1,5 @@
-"""One drive of a line is mute, late, noisy, or restarts: the others go on, and no value that is called valid is ever wrong."""
+# SPDX-License-Identifier: Apache-2.0
+"""One drive of a line is unresponsive, late, noisy, or restarts: the others go on, and no value that is called valid is ever wrong."""
 from modbus import (AXIS, COMPLETED, DISABLED, FAILED, NO_ANSWER, NO_PATH, OFFLINE, ONLINE, REFUSED, SETUP, STANDSTILL, SUSPECT,
                     UNKNOWN, Refused)
 from processes import until

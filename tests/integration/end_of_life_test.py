@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a gateway ends, and how the next one finds an axis that runs."""
 import fcntl
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A user's first minutes: both axes are there, every address that `axisgate map` prints is there, in every view."""
 import json
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`axisgate jog`: the motor turns while a key repeats on the terminal, and for nothing else."""
 import os
 import signal

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`axisgate enable`, `move` and `stop`: what they show, how they end, and that the motor stands whatever became of them."""
 import re
 import signal

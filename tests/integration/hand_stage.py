@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the stories of `axisgate enable|move|jog|stop` need: the command on a terminal of its own, and a network that can be cut."""
 import fcntl
 import os

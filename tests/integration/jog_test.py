@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Jog: a motor turns while a button is held, and not a moment longer, whatever becomes of the button's release."""
 import time
 

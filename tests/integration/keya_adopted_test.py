@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A gateway is started while both motors of a Keya are enabled and run: it reads, lets them run, and its open lease is all that a start
 can lead to."""
 from keya_stage import ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, RPM, RS232, RS485, SPEED, KeyaStory, main, on

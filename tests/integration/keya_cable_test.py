@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The cable of a Keya is pulled while both motors run, and put back: the drive stops by itself where it has a watchdog, and whatever it
 did, nothing is enabled or started by the gateway."""
 from keya_stage import CANOPEN, KEYA_CAN, RPM, RS232, RS485, KeyaStory, main, on

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A day with a Keya on each of its interfaces: both motors come online, obey one by one, and are read back."""
 from keya_stage import (ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, LONGER_THAN_A_WATCHDOG, RPM, RS232, RS485, SPEED, TURN,
                         KeyaStory, main, on)

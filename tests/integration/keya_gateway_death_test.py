@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The gateway is killed or hangs while both motors of a Keya run. By RS232, CAN and CANopen the drive stops by itself; by RS485 it goes
 on, as far as its manual says, and the axes had an alarm that told so."""
 import signal

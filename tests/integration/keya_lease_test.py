@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whoever commands a Keya keeps it alive by living: the drive wants to hear something each second, and the gateway speaks only while
 the owner does."""
 import socket

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A Keya restarts while both of its motors run: both axes are told, every motion has ended for good, and nothing is enabled by the
 gateway, however short the restart was."""
 from keya_stage import CANOPEN, KEYA_CAN, MANY_KEEP_ALIVES, RS232, RS485, SPEED, KeyaStory, main, on

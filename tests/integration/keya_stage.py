@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Stories with a Keya KYDAS4860-2E: one drive, motors A and B as axes 1 and 2, on each of its four interfaces in turn. What the motors
 really do is asked from the simulated drive; everything else is seen through Modbus-TCP."""
 import signal

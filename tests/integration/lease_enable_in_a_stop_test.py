@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A master that is back at once: its enable meets a stop that is still under way. What it is told is what it gets."""
 from lease_stage import PANEL_1, Machine, main
 from modbus import BUSY, REFUSED, STANDSTILL, Axis, Refused

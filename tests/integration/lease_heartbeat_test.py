@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A PLC in STOP: its program is dead, and its scanner goes on writing the same block. The lease that wants a heartbeat knows."""
 import time
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """"lease": null: nobody owns the axis, nobody is refused, and nothing runs out."""
 from lease_stage import MACHINES, NOBODY, PANEL_1, PANEL_2, RPM, Machine, main
 from modbus import ACTIVE, NO_ADDRESS, Axis

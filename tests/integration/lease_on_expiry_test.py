@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is done when a lease has run out is the configuration's choice: halt, disable, nothing."""
 from lease_stage import MACHINES, NOBODY, Machine, main
 from modbus import ACTIVE, DISABLED, REFUSED, Axis

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """"client": "address": all connections of one host are one client, so that one-shot tools own what they have begun."""
 from lease_stage import ANOTHER, ME, PANEL_1, PLC, RPM, Machine, main
 from modbus import BUSY, Axis, mbpoll

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A master that is gone: its connection is closed, reset, or open and silent. Its motors stop, on every drive and protocol."""
 import time
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two panels and a PLC on the same axes: who owns them, who may stop them, how they are handed over and taken."""
 from lease_stage import (ANOTHER, ME, NOBODY, NOT_OWNER, PANEL_1, PANEL_2, PLC, RPM, STOPPED_BY_ANOTHER, Machine, main)
 from modbus import ABORTED, ACTIVE, ALARM_STOP_LATCHED, BUSY, COMMANDS, CONTINUOUS, REFUSED, STANDSTILL, Axis

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A PLC that comes back within its lease goes on as if it had never been away; another address gets nothing."""
 from lease_stage import ANOTHER, ME, NOBODY, NOT_OWNER, PANEL_1, Machine, main
 from modbus import ACTIVE, BUSY, Axis, Refused

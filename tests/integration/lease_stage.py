@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the stories of owners and their leases need: a machine with a drive on every protocol, clients that come from an address of
 their own and go away in every way, and the motors' speeds as the drives themselves know them."""
 import socket

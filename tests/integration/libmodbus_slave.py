@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A Modbus RTU slave that nobody here wrote: libmodbus's own server, with the registers that an iD286pro has.
 
 Run as: libmodbus_slave.py DEVICE UNIT. It prints "ready", and each request it was sent.

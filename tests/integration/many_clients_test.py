@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Many clients at once: each gets its own right answers; limits, roles and slow ones hurt nobody else."""
 import socket
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The register map of the contract, written down anew, and two clients that nobody here wrote: pymodbus and mbpoll."""
 import logging
 import re

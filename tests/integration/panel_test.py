@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A panel that counts in turns and rpm and can only write one register at a time (function 6) moves a motor."""
 import re
 import subprocess

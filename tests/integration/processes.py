@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Programs under test: started, watched by what they print, and ended by their own number."""
 import os
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The line at the speed it has in a machine: 38400 baud, a drive that takes 3 ms to answer, three drives in a chain."""
 from modbus import COMPLETED, DISABLED, ONLINE
 from processes import until

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The gateway before a slave that nobody here wrote: libmodbus's own server on the far pty of a socat cable."""
 import os
 import sys

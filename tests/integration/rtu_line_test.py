@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Drives of three makers' types on one Modbus RTU line: each moves, one is in trouble and its neighbours go on, the cable is pulled."""
 import cable_test
 from cable_test import NEVER_SENT, OUTCOME_UNKNOWN, Cable
@@ -61,7 +62,7 @@ class Neighbours(ThreeMakers):
         self.move(self.middle)
 
 
-class MuteKinco(ThreeMakers):
+class UnresponsiveKinco(ThreeMakers):
     """The JD in the middle of two iD286pro and an MD's line."""
 
     lines = {"axes": "rtu:id286pro@1,jd@2,md@3"}

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the gateway does for an iD286pro that no servo needs: it stops the motor when its client leaves, and spares its EEPROM."""
 from modbus import ABORTED, ALARM_ADOPTED, ALARM_STOP_LATCHED, AXIS, CONTINUOUS, encode, mbpoll
 from processes import until

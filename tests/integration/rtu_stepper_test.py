@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A PLC's day with an iD286pro on Modbus RTU: a stepper that is no CiA 402 drive, and reads and obeys like a servo all the same."""
 from modbus import (ABORTED, ACTIVE, ALARM_CANNOT_DEENERGISE, ALARM_STOP_LATCHED, AXIS, BAD_VALUE, COMPLETED, CONTINUOUS, DISABLED,
                     DISCRETE, ERROR_STOP, FAILED, NO_MOTION, REFUSED, STANDSTILL, mbpoll)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`axisgate scan` on a serial port: who is there is found, nothing is written, and a port that cannot be used is named."""
 import os
 import pwd

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The gateway as a service: what a service manager hears of it (sd_notify(3))."""
 import os
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What every story needs: simulated drives on their lines, the real gateway before them, and their logs where it fails.
 
 A story is run as: STORY_test.py AXISGATE AXISGATE_SIM SOURCE_FOLDER [unittest's arguments]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The log alone tells what runs, who has commanded what, and what was refused and why."""
 from modbus import BAD_VALUE, NO_ADDRESS
 from stage import Story, main

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/judged/beginning.hpp"
 
 #include <stdexcept>
@@ -14,6 +15,7 @@ ContractOptions options_of(const obey::Plant& plant, const Program& program) {
   const Subject subject = program.subject;
   ContractOptions options;
   options.by_address = plant.listener.client_is_address;
+  options.staged = plant.listener.staged_halves;
   options.leases = program.leases;
   options.no_halt = obey::is_kinco(subject) && !obey::is_md(subject) && program.flavour != Flavour::speeds;
   options.by_gateway = !obey::is_cia402(subject);
@@ -29,7 +31,7 @@ Beginning begin(obey::Plant& plant, const Program& program) {
   constexpr std::int64_t kSinceReady = 100;
   plant.ready();
   Beginning out{.options = options_of(plant, program)};
-  const auto fitter = plant.connection_from(obey::Plant::kHostOfFitter);
+  const auto fitter = plant.connection_from(obey::Plant::kHostOfFitter, obey::plain(plant.listener));
   Rows rows;
   if (obey::has_speeds(program.subject)) rows[row::jog_velocity] = kJogSpeed;
   if (obey::has_homing(program.subject)) rows[row::homing_method] = kHomeSwitch;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a run begins: the drive enabled, with what programs need, and what the contract is told of it. Promises that
 // nobody owns the axis, and that neither a nor b has written anything. Throws where the gateway refuses it.
 #pragma once

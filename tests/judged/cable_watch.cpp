@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/judged/cable_watch.hpp"
 
 #include <algorithm>
@@ -39,13 +40,14 @@ void CableWatch::gateway_died() {
 void CableWatch::asked(int request, const Write& write) {
   constexpr std::int64_t kLadder = 0xF, kStartBit = 0x10;
   Credit credit{.request = request};
+  const bool stepper = plant_.subject == obey::Subject::id286pro;  // a run's new speed is a command anew
+  if (stepper && half_row(write) == row::target_velocity) ++credit.starts;
   for (std::size_t i = 0; write.coils() && i < write.words.size(); ++i) {
     if (write.words[i] == 0) continue;
     (write.first + i == coil::enable ? credit.enables : credit.starts) += 1;
   }
   for (const auto& [offset, value] : write.coils() ? Rows{} : rows_of(write)) {
     const bool enabling = offset == row::controlword && (value & kLadder) == kLadder;
-    const bool stepper = plant_.subject == obey::Subject::id286pro;  // a run's new speed is a command anew
     if (offset == row::command && value == kEnable) ++credit.enables;
     if (offset == row::command && value >= kMove && value < kRelease) ++credit.starts;
     if (enabling) ++credit.enables;
@@ -151,7 +153,7 @@ void CableWatch::look() {
   if (!plant_.stage.gateway_runs()) return;
   const app::Gateway& gateway = plant_.stage.gateway();
   const std::size_t axes = plant_.stage.gateway().image().axes().size();
-  const std::size_t most = axes * (bus::kMaxOrdersPerAxis + bus::kMaxStopsPerAxis + bus::kMaxSetupsPerDrive);
+  const std::size_t most = axes * (bus::kMaxJobsPerAxis + bus::kMaxStopsPerAxis + bus::kMaxSetupsPerDrive);
   if (plant_.stage.gateway().bus(0).queue_depth() > most) violated_("the queue is over its bound");
   if (gateway.events().events().size() > kMaxEvents) violated_("there are more events than their ring has places");
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What goes over the cable of a judged run, whatever is spoken on it. Watches that at most one request is outstanding;
 // that what is not idempotent is sent once for each time that a client has asked for it; that queues and events keep
 // their bounds; that the drives and motors beside axis 1 are neither started nor enabled. Promises to name the first
@@ -28,7 +29,7 @@ class CableWatch {
   /// `also_tell`: who else wants to know of each frame, before it is delivered.
   CableWatch(obey::Plant& plant, Violated violated, std::function<void(const CableFrame&)> also_tell);
 
-  /// A client's write: what it may start and enable. Until it is answered, or for the longest way of a group.
+  /// A client's write: what it may start and enable. Until it is answered, or for the longest way of a write batch.
   void asked(int request, const model::Write& write);
   void answered(int request);
   void unanswered(int request);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is asked and answered on each kind of cable, read from its frames alone. Promises to know frames by the makers'
 // sheets and CiA 301, and to use no codec of the gateway. Never remembers anything.
 #pragma once

@@ -1,5 +1,7 @@
-// The clients of a run: two of Modbus, one of DDS, and a viewer who passes by. Promises to tell of an answer what the
-// contract knows: exceptions, 0 for none, or those that a DDS result may stand for. Never judges one.
+// SPDX-License-Identifier: Apache-2.0
+// The clients of a run: three of Modbus, one of DDS, and a viewer who passes by, each in the words of its listener.
+// Promises to tell of an answer what the contract knows: exceptions, 0 for none, or those that a result may stand for.
+// Never judges one.
 #pragma once
 
 #include <array>
@@ -15,12 +17,13 @@
 namespace axisgate::test::judged {
 
 /// Of `allow`: command 14 takes an axis from a lower one.
-inline constexpr std::array<std::uint8_t, model::kDds> kRanks{5, 3};
-inline constexpr std::array<const char*, model::kClients> kNames{"a", "b", "dds"};
+inline constexpr std::array<std::uint8_t, model::kDds> kRanks{5, 3, 4};
+inline constexpr std::array<const char*, model::kClients> kNames{"a", "b", "c", "dds"};
 
 class Clients {
  public:
-  explicit Clients(obey::Plant& plant) : plant_(plant), modbus_{&plant.a, &plant.b} {}
+  explicit Clients(obey::Plant& plant)
+      : plant_(plant), c_(plant.connection_from(kHostOfC)), modbus_{&plant.a, &plant.b, c_.get()} {}
 
   /// Each with its rank, before a gateway that runs.
   void connect();
@@ -28,11 +31,17 @@ class Clients {
   [[nodiscard]] bool connected(std::size_t client) const {
     return client == model::kDds ? dds_.has_value() : modbus_[client]->connected();
   }
-  std::uint64_t begin(std::size_t client, const model::Write& write) {
-    return client == model::kDds ? dds_->begin(write) : modbus_[client]->begin(write);
-  }
+  std::uint64_t begin(std::size_t client, const model::Write& write);
   /// None yet, or never. Throws for a DDS result that stands for nothing.
   [[nodiscard]] std::optional<std::set<int>> answer_of(std::size_t client, std::uint64_t request);
+  /// Of a posted write that was answered without an exception: what register 25 says became of it.
+  struct Posted {
+    bool pending = false;
+    std::set<int> stands_for{};  ///< with none, nobody can tell
+  };
+  std::uint64_t ask_for_result(std::size_t client);
+  /// None yet.
+  [[nodiscard]] std::optional<Posted> posted(std::size_t client, std::uint64_t asked);
   /// A new connection; of DDS another writer.
   void replace(std::size_t client, bool silently);
   [[nodiscard]] obey::Client& modbus(std::size_t client) { return *modbus_[client]; }
@@ -40,7 +49,9 @@ class Clients {
   [[nodiscard]] std::optional<std::string> bystand(const Step& step);
 
  private:
+  static constexpr std::uint8_t kHostOfC = 50;
   obey::Plant& plant_;
+  std::unique_ptr<obey::Client> c_;
   std::array<obey::Client*, model::kDds> modbus_;
   std::optional<obey::DdsWriter> dds_;
   std::uint8_t participant_ = 0;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The steps of a run with all that they can be shrunk to. Apart from program.hpp, for what only a failure needs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the motor did in the last seconds, to hold against what is shown of it. Promises to allow for the way of a
 // value from the drive to the reader. Never asks the gateway.
 #pragma once

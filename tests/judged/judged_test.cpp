@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any sequence, every drive: programs drawn from a seed, judged by the reference model; a failing one is shrunk to its
 // shortest form. AXISGATE_JUDGED_SEEDS: how many for each drive; AXISGATE_JUDGED_SEED: this one alone, to repeat it;
 // AXISGATE_JUDGED_TRIES: so often at most a failing one is tried shorter.

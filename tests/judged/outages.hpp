@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a step's fields choose what befalls an exchange with axis 1's drive, and where in an exchange the gateway dies.
 // Promises the same for equal steps. Never judges.
 #pragma once

@@ -1,100 +1,43 @@
-#include "tests/judged/play.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/judged/playing.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "tests/judged/beginning.hpp"
-#include "tests/judged/clients.hpp"
-#include "tests/judged/history.hpp"
 #include "tests/judged/outages.hpp"
-#include "tests/judged/shown.hpp"
-#include "tests/judged/writers.hpp"
 
 namespace axisgate::test::judged {
-namespace {
 
-using namespace std::chrono_literals;
 using namespace model;
-using obey::Answer;
-using obey::Client;
 using obey::Plant;
 using obey::PlantOptions;
 
-constexpr std::int64_t kStepMs = 5;
-constexpr std::int64_t kSilenceMs = 10'000;    // no request is unanswered for so long (3.3: reply_deadline_ms 900)
+namespace {
+
 constexpr std::int64_t kComebackMs = 150'000;  // from the end of the last fault to an axis online (7.3: 60 s and more)
 constexpr std::int64_t kOnlineMs = 1'200;      // so long online: what was late has come
 constexpr std::int64_t kTailMs = 6'000;        // after the last step
 
-class Play {
- public:
-  Play(const Program& program, std::uint64_t seed)
-      : program_(program),
-        neighbour_(seed % 2 == 0),
-        plant_(program.subject, options_of(program, seed)),
-        clients_(plant_) {}
+}  // namespace
 
-  Outcome run();
-
- private:
-  static PlantOptions options_of(const Program& program, std::uint64_t seed) {
-    PlantOptions options;
-    if (program.leases) options.lease = LeaseRules{};
-    options.seed = seed;
-    options.neighbour = seed % 2 == 0;
-    if (seed % 3 == 0) options.open_points = seed;
-    // What a listener may be told, each in some of the runs.
-    options.listener.client_is_address = seed % 4 == 1;
-    options.listener.low_word_first = seed % 3 == 2;
-    options.listener.per_axis_units = seed % 5 == 3;
-    return options;
-  }
-  struct Open {
-    int request = 0;
-    std::size_t client = 0;
-    obey::RequestNumber number = 0;
-    std::int64_t sent_ms = 0;
-    std::size_t line = 0;
-  };
-
-  [[nodiscard]] std::int64_t now_ms() { return elapsed_ms(began_, plant_.stage.runtime().now()); }
-  void begin();
-  void act(const Step& step);
-  void send(std::size_t client, Write write, bool at_once);
-  void outage(const Step& step);
-  void die(const Step& step);
-  void pass(std::int64_t ms);
-  void look();
-  void collect();
-  void never_answered(const Open& open);
-  void watch_trouble();
-  void begin_trouble();
-  void mend();
-  void replace(std::size_t client, bool silently);
-  void read(std::size_t client);
-  void violated(std::string what);
-  [[nodiscard]] bool over() const { return outcome_.violation.has_value(); }
-  [[nodiscard]] std::string stamp();
-  [[nodiscard]] bool online() {
-    return plant_.stage.gateway_runs() && plant_.stage.axis(1).link_state == LinkState::online;
-  }
-
-  Program program_;
-  bool neighbour_;
-  Plant plant_;
-  Clients clients_;
-  std::optional<Writers> writers_;
-  std::optional<Contract> contract_;
-  std::optional<Watches> watches_;
-  Outcome outcome_;
-  Instant began_{};
-  std::vector<Open> open_;
-  History seen_;
-  bool wire_whole_ = true;
-  bool had_outage_ = false;
-  std::int64_t whole_since_ms_ = 0;
-  std::int64_t online_since_ms_ = -1;
-};
+PlantOptions Play::options_of(const Program& program, std::uint64_t seed) {
+  PlantOptions options;
+  if (program.leases) options.lease = LeaseRules{};
+  options.seed = seed;
+  options.neighbour = seed % 2 == 0;
+  if (seed % 3 == 0) options.open_points = seed;
+  // What a listener may be told, each in some of the runs.
+  options.listener.client_is_address = seed % 4 == 1;
+  options.listener.low_word_first = seed % 3 == 2;
+  options.listener.per_axis_units = seed % 5 == 3;
+  options.listener.posted_writes = seed % 7 % 3 == 2;
+  options.listener.staged_halves = seed % 3 == 0;
+  // A half of a float is none of an integer: obey's panels have both.
+  options.listener.float_numbers = seed % 5 == 1 && !options.listener.staged_halves;
+  options.listener.offline_reads_fail = seed % 5 == 2;
+  options.other_bus = seed % 4 == 3;
+  return options;
+}
 
 std::string Play::stamp() {
   const obey::Truth truth = plant_.motor();
@@ -111,7 +54,7 @@ void Play::violated(std::string what) {
 
 void Play::begin() {
   Beginning beginning = judged::begin(plant_, program_);
-  watches_.emplace(plant_, neighbour_, [this](std::string what) { violated(std::move(what)); });
+  watches_.emplace(plant_, neighbour_, other_bus_, [this](std::string what) { violated(std::move(what)); });
   clients_.connect();
   std::ranges::copy(kRanks, beginning.options.ranks.begin());
   writers_.emplace(program_, plant_.profile_rows(), beginning.commands);
@@ -145,48 +88,6 @@ Outcome Play::run() {
   outcome_.story.push_back(*outcome_.violation);
   outcome_.last_second = watches_->cable.last_second();
   return std::move(outcome_);
-}
-
-void Play::send(std::size_t client, Write write, bool at_once) {
-  if (over() || !clients_.connected(client)) return;
-  if (client != kDds) writers_->sent(client, write);
-  watch_trouble();
-  const std::string before = stamp();
-  const int request = contract_->send(client, write);
-  watches_->cable.asked(request, write);
-  ++outcome_.writes;
-  const std::uint64_t number = clients_.begin(client, write);
-  outcome_.story.push_back(before + ": " + kNames.at(client) + " " + text(write) + "  -> " + contract_->predicted());
-  open_.push_back({request, client, number, now_ms(), outcome_.story.size() - 1});
-  collect();
-  while (!at_once && !over() && std::ranges::any_of(open_, [&](const Open& open) { return open.request == request; }))
-    pass(kStepMs);
-}
-
-void Play::collect() {
-  std::erase_if(open_, [this](const Open& open) {
-    if (over()) return false;
-    std::string& line = outcome_.story[open.line];
-    if (const auto answer = clients_.answer_of(open.client, open.number)) {
-      watches_->cable.answered(open.request);
-      line += answer->contains(0) ? "  [ok]" : "  [exception";
-      if (!answer->contains(0)) {
-        for (const int each : *answer) line += " " + std::to_string(each);
-        line += "]";
-      }
-      const std::string expected = contract_->expected();
-      if (!contract_->answered(open.request, *answer)) {
-        line += "  <-- NO READING HAS THIS ANSWER";
-        violated("no reading has this answer; expected: " + expected);
-      } else {
-        line += "\n      then, " + std::to_string(contract_->worlds().size()) + " readings: " + contract_->expected();
-      }
-      return true;
-    }
-    if (!clients_.connected(open.client)) violated("the gateway has closed a connection");
-    if (now_ms() - open.sent_ms > kSilenceMs) violated("a request was never answered: " + line);
-    return false;
-  });
 }
 
 void Play::look() {
@@ -236,34 +137,6 @@ void Play::pass(std::int64_t ms) {
     watch_trouble();
     collect();
   }
-}
-
-void Play::never_answered(const Open& open) {
-  contract_->unanswered(open.request);
-  watches_->cable.unanswered(open.request);
-}
-
-void Play::replace(std::size_t client, bool silently) {
-  if (!clients_.connected(client)) return;
-  for (const Open& open : open_)
-    if (open.client == client) never_answered(open);
-  std::erase_if(open_, [&](const Open& open) { return open.client == client; });
-  contract_->left(client, silently);
-  clients_.replace(client, silently);
-  outcome_.story.push_back(stamp() + ": " + kNames.at(client) + (silently ? " vanishes" : " begins anew"));
-}
-
-// 3.2: what is shown as valid was true at its age.
-void Play::read(std::size_t client) {
-  if (!clients_.connected(client)) return;
-  look();
-  contract_->asked(client);
-  Shown shown{.words = clients_.modbus(client).read(0, Shown::kRegisters),
-              .low_word_first = plant_.listener.low_word_first,
-              .statusword_tells = obey::is_cia402(program_.subject)};
-  look();
-  if (const auto wrong = wrong_in(shown, client, *contract_, seen_))
-    violated(std::string("to ") + kNames.at(client) + " " + *wrong);
 }
 
 // It lives until what it may still send has left it.
@@ -321,9 +194,16 @@ void Play::act(const Step& step) {
   switch (step.deed) {
     case Deed::wait:
       if (step.on && tongue_of(program_.subject) == Tongue::canopen) {
+        constexpr std::uint16_t kDeviceName = 0x1008;  // in several exchanges
         contract_->asked(step.client);
-        clients_.modbus(step.client).ask_for_name();
+        clients_.modbus(step.client).ask_for_object(kDeviceName, 0);
       }
+      break;
+    case Deed::look_up:
+      look_up(step.client);
+      break;
+    case Deed::halves:
+      write_halves(step);
       break;
     case Deed::read:
       read(step.client);
@@ -343,7 +223,7 @@ void Play::act(const Step& step) {
       replace(step.client, step.deed == Deed::vanish);
       break;
     case Deed::cross:
-      for (unsigned i = 0; i < 3; ++i) {
+      for (unsigned i = 0; i < kDds; ++i) {
         Step one{.deed = Deed::command, .number = 0};
         one.client = static_cast<std::uint8_t>((step.client + i) % kDds);
         one.command = static_cast<std::uint8_t>((step.command + i * (1U + step.number % 5U)) % kCommands.size());
@@ -391,8 +271,6 @@ void Play::mend() {
   whole_since_ms_ = now_ms();
   outcome_.story.push_back(stamp() + ": it is mended");
 }
-
-}  // namespace
 
 Outcome play(const Program& program, std::uint64_t seed) { return Play(program, seed).run(); }
 

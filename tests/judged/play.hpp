@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One run: a program before the shipped gateway on its settable clock, judged against the reference model after every
 // 5 ms of it. Promises equal runs for equal programs, and the first violation with all that led to it. Never decides
 // what is right: the model does.

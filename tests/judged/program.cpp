@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/judged/program.hpp"
 
 #include <rapidcheck.h>
 
 #include "tests/judged/drawing.hpp"
+#include "tests/model/contract.hpp"
 
 namespace axisgate::test::judged {
 namespace {
@@ -13,11 +15,12 @@ using Weighted = std::pair<std::size_t, Deed>;
 
 rc::Gen<Deed> deed(Weather weather) {
   const std::initializer_list<Weighted> calm{
-      {2, Deed::wait},   {6, Deed::command},     {6, Deed::command_by_id}, {8, Deed::order},      {6, Deed::image},
-      {1, Deed::zeros},  {4, Deed::target},      {1, Deed::mode_block},    {1, Deed::word_block}, {2, Deed::word},
-      {4, Deed::coil},   {3, Deed::start_coils}, {1, Deed::cross},         {3, Deed::again},      {3, Deed::scan},
-      {3, Deed::button}, {3, Deed::read},        {1, Deed::release},       {1, Deed::reconnect},  {1, Deed::vanish},
-      {1, Deed::object}, {1, Deed::bystander},   {5, Deed::sample},        {1, Deed::new_writer}};
+      {2, Deed::wait},      {6, Deed::command},     {6, Deed::command_by_id}, {8, Deed::order},      {6, Deed::image},
+      {1, Deed::zeros},     {4, Deed::target},      {1, Deed::mode_block},    {1, Deed::word_block}, {2, Deed::word},
+      {4, Deed::coil},      {3, Deed::start_coils}, {1, Deed::cross},         {3, Deed::again},      {3, Deed::scan},
+      {3, Deed::button},    {3, Deed::read},        {1, Deed::release},       {1, Deed::reconnect},  {1, Deed::vanish},
+      {1, Deed::object},    {1, Deed::look_up},     {3, Deed::halves},        {1, Deed::bystander},  {5, Deed::sample},
+      {1, Deed::new_writer}};
   if (weather == Weather::calm) return rc::gen::weightedElement<Deed>(calm);
   const auto rough = rc::gen::weightedElement<Deed>({{4, Deed::cut},
                                                      {4, Deed::unplug},
@@ -35,7 +38,7 @@ rc::Gen<std::uint8_t> below(std::size_t bound) {
 }
 
 rc::Gen<Step> step(Weather weather) {
-  return rc::gen::build<Step>(rc::gen::set(&Step::deed, deed(weather)), rc::gen::set(&Step::client, below(2)),
+  return rc::gen::build<Step>(rc::gen::set(&Step::deed, deed(weather)), rc::gen::set(&Step::client, below(model::kDds)),
                               rc::gen::set(&Step::command, below(kCommands.size())), rc::gen::set(&Step::id, below(5)),
                               rc::gen::set(&Step::position, below(kPositions.size() + 2)),
                               rc::gen::set(&Step::speed, below(kSpeeds.size() + 2)),
@@ -44,11 +47,11 @@ rc::Gen<Step> step(Weather weather) {
                               rc::gen::set(&Step::pause, below(kPauses.size())));
 }
 
-constexpr std::array<const char*, 32> kDeeds{
-    "wait",       "command", "command by id", "order",       "image",      "zeros",   "target",    "mode block",
-    "word block", "word",    "coil",          "start coils", "cross",      "again",   "scan",      "button",
-    "read",       "object",  "bystander",     "sample",      "new writer", "release", "reconnect", "vanish",
-    "cut",        "unplug",  "lose",          "late",        "twice",      "restart", "trip",      "crash"};
+constexpr std::array<const char*, 34> kDeeds{
+    "wait",    "command", "command by id", "order",  "image",      "zeros",   "target",    "mode block", "word block",
+    "word",    "coil",    "start coils",   "cross",  "again",      "scan",    "button",    "read",       "object",
+    "look up", "halves",  "bystander",     "sample", "new writer", "release", "reconnect", "vanish",     "cut",
+    "unplug",  "lose",    "late",          "twice",  "restart",    "trip",    "crash"};
 
 }  // namespace
 
@@ -69,7 +72,7 @@ Program draw(Subject subject, Weather weather, bool leases, std::uint64_t seed) 
 }
 
 std::string text(const Step& step) {
-  return std::string(step.client == 0 ? "a " : "b ") + kDeeds.at(static_cast<std::size_t>(step.deed));
+  return std::string{static_cast<char>('a' + step.client), ' '} + kDeeds.at(static_cast<std::size_t>(step.deed));
 }
 
 }  // namespace axisgate::test::judged

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What clients, cables and drives do in one judged run, as plain data: drawn from a seed, shrunk and printed. Promises
 // that a step means the same whatever stands before it is taken out: values, ids and words are told relative to what
 // the same client wrote last. Never knows what a step will lead to.
@@ -31,12 +32,14 @@ enum class Deed : std::uint8_t {
   word,           ///< controlword alone
   coil,           ///< one coil
   start_coils,    ///< coils 4 to 7 in one request
-  cross,          ///< three commands of both clients, none of which waits for an answer
+  cross,          ///< a command of each client, none of which waits for an answer
   again,          ///< what this client wrote last, once more
   scan,           ///< the same each 50 ms
   button,         ///< a jog button is pressed and held, written each 200 ms, and released or forgotten
   read,           ///< registers 0 to 38
-  object,         ///< the mailbox writes the drive's own position target
+  object,         ///< the mailbox, or 43/13, writes the drive's own position target
+  look_up,        ///< 43/13 reads an object of the drive
+  halves,         ///< one target by two writes of function 6
   bystander,      ///< a viewer writes
   sample,         ///< of a DDS writer
   new_writer,     ///< it is deleted, and another one begins

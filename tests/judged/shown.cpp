@@ -1,4 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/judged/shown.hpp"
+
+#include <bit>
+#include <cmath>
 
 #include "tests/obey/client.hpp"
 
@@ -10,6 +14,13 @@ using namespace model;
 bool bit_of(std::uint32_t word, unsigned bit) { return (word >> bit & 1U) != 0; }
 
 }  // namespace
+
+std::int64_t Shown::position() const {
+  constexpr double kUnitsPerTurn = 10'000;
+  const std::uint32_t whole = wide(obey::shown::position);
+  return float_numbers ? std::llround(kUnitsPerTurn * static_cast<double>(std::bit_cast<float>(whole)))
+                       : static_cast<std::int32_t>(whole);
+}
 
 std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Contract& contract,
                                     const History& history) {
@@ -32,9 +43,8 @@ std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Cont
   const std::uint32_t valid = shown.wide(kValid);
   const std::int64_t age_ms = shown.words[kAge];
   const std::string old = ", " + std::to_string(age_ms) + " ms old, ";
-  const auto position = static_cast<std::int32_t>(shown.wide(obey::shown::position));
-  if (bit_of(valid, kBitOfPosition) && !history.was_at(position, age_ms))
-    return "position " + std::to_string(position) + " is shown as valid" + old + "and the motor was elsewhere";
+  if (bit_of(valid, kBitOfPosition) && !history.was_at(shown.position(), age_ms))
+    return "position " + std::to_string(shown.position()) + " is shown as valid" + old + "and the motor was elsewhere";
   if (!bit_of(valid, kBitOfStatusword) || !shown.statusword_tells) return {};
   constexpr std::uint16_t kStateBits = 0x6F, kOperationEnabled = 0x27;
   const bool enabled = (shown.words[obey::shown::statusword] & kStateBits) == kOperationEnabled;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a client is shown of the axis, held against the contract and against what the motor did (3.2). Promises the
 // first thing that is wrong, in words. Never asks the gateway.
 #pragma once
@@ -17,8 +18,11 @@ struct Shown {
   static constexpr std::uint16_t kRegisters = 39;
   std::vector<std::uint16_t> words{};
   bool low_word_first = false;
+  bool float_numbers = false;
   bool statusword_tells = true;  ///< whether it is enabled; a virtual axis tells what it was told
 
+  /// In 1/10000 turn. Only where it is valid.
+  [[nodiscard]] std::int64_t position() const;
   [[nodiscard]] std::uint32_t wide(std::size_t at) const {
     const std::size_t low = low_word_first ? 0 : 1;
     return std::uint32_t{words[at + 1 - low]} << 16 | words[at + low];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/judged/stored_watch.hpp"
 
 #include <algorithm>
@@ -48,10 +49,46 @@ bool can_says(const simulated::CanExchange& exchange, const drive::ObjectDef& ob
   return value && object.number(*value) == number;
 }
 
+/// Whether such an answer gave the object this number: index and sub-index with what motor A and B have each, or a
+/// query's code. What is written to a Keya is a trigger.
+bool keya_says(Tongue tongue, Bytes request, Bytes sent, const drive::ObjectDef& object, std::int64_t number) {
+  const auto holds = [&](Bytes data) {
+    const std::size_t from = object.address.byte;
+    return from + object.size <= data.size() &&
+           object.number(simulated::big_endian(data.subspan(from, object.size))) == number;
+  };
+  if (tongue == Tongue::keya_can) {
+    constexpr std::size_t kId = 4, kHead = 4, kRecorded = kId + can::kMaxFrameBytes;
+    if (request.size() != kRecorded || sent.size() != kRecorded ||
+        !std::ranges::equal(request.subspan(kId + 1, 3), sent.subspan(kId + 1, 3)))
+      return false;
+    const bool from_it =
+        load_le(sent, 0, kId) - simulated::keya_can::reply == load_le(request, 0, kId) - simulated::keya_can::command;
+    return from_it && load_le16(request, kId + 1) == object.address.index && request[kId + 3] == object.address.sub &&
+           holds(sent.subspan(kId + kHead));
+  }
+  constexpr std::uint16_t kQueryIndex = 0x2100;
+  const bool rs485 = tongue == Tongue::keya_rs485;
+  const std::size_t head = rs485 ? 3 : 2;
+  if (request[0] != simulated::keya_start::query || kQueryIndex + request[head - 1] != object.address.index)
+    return false;
+  for (std::size_t at = 0; at + simulated::keya_frame_length <= sent.size(); ++at) {
+    simulated::KeyaFrame window{};
+    std::ranges::copy(sent.subspan(at, window.size()), window.begin());
+    const bool same = std::ranges::equal(Bytes(window).first(head), request.first(head));
+    const std::size_t end = window.size() - (rs485 ? 1 : 0);
+    if (same && (!rs485 || window.back() == simulated::keya_sum(window)) &&
+        holds(Bytes(window).subspan(head, end - head)))
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void StoredWatch::begin() {
   for (const auto& axis : plant_.stage.gateway().image().axes()) {
+    if (axis->number == obey::kAxisOfOtherBus) continue;
     const drive::Drive* drive = plant_.stage.gateway().drive_of(axis->number);
     if (drives_.empty() || drives_.back().drive != drive) {
       drives_.push_back({.drive = drive, .seen = std::vector<Entry>(drive->model().objects.size())});
@@ -68,7 +105,9 @@ void StoredWatch::begin() {
 
 void StoredWatch::on_frame(const CableFrame& frame) {
   constexpr std::uint32_t kNodeBits = 0x7F;
-  if (frame.to_drive || tongue_of(plant_.subject) != Tongue::canopen || frame.can->remote) return;
+  const Tongue tongue = tongue_of(plant_.subject);
+  if (frame.to_drive || !on_can(tongue) || frame.can->remote) return;
+  if (tongue == Tongue::keya_can) return take_heartbeat(*frame.can);
   for (std::size_t d = 0; d < drives_.size(); ++d) {
     Watched& watched = drives_[d];
     const std::uint8_t node = watched.drive->model().node;
@@ -78,6 +117,18 @@ void StoredWatch::on_frame(const CableFrame& frame) {
     for (std::size_t tpdo = 0; tpdo < watched.maps.size(); ++tpdo)
       if (frame.can->id == cob::first_tpdo + tpdo * cob::next_pdo + node) take_process_data(d, tpdo, *frame.can);
   }
+}
+
+// KYDAS4860-2E 3.5: the electrical angles of both motors, the faults of motor A, two bytes of state.
+void StoredWatch::take_heartbeat(const can::CanFrame& frame) {
+  constexpr std::uint16_t kIndex = 0x7000;  // as the profiles number it
+  constexpr std::array<std::pair<std::uint8_t, std::size_t>, 5> kFields{{{0, 2}, {2, 2}, {4, 2}, {6, 1}, {7, 1}}};
+  for (Watched& watched : drives_)
+    for (const auto& [at, width] : kFields)
+      if (frame.id == simulated::keya_can::heartbeat + watched.drive->model().node && frame.size == can::kMaxFrameBytes)
+        watched.received.push_back({plant_.stage.runtime().now(),
+                                    {kIndex, 0, at},
+                                    simulated::big_endian(Bytes(frame.data).subspan(at, width))});
 }
 
 void StoredWatch::take_process_data(std::size_t position, std::size_t tpdo, const can::CanFrame& frame) {
@@ -99,7 +150,8 @@ void StoredWatch::take_process_data(std::size_t position, std::size_t tpdo, cons
   for (const std::uint32_t mapped : map) {
     const std::size_t width = (mapped & 0xFF) / 8;
     if (at + width > frame.size) return;
-    watched.received.push_back({now, static_cast<std::uint16_t>(mapped >> 16), static_cast<std::uint8_t>(mapped >> 8),
+    watched.received.push_back({now,
+                                {static_cast<std::uint16_t>(mapped >> 16), static_cast<std::uint8_t>(mapped >> 8)},
                                 load_le(frame.data, at, width)});
     at += width;
   }
@@ -130,12 +182,10 @@ void StoredWatch::take_as_seen(Watched& watched) {
 }
 
 void StoredWatch::check_values(Watched& watched) {
-  const Tongue tongue = tongue_of(plant_.subject);
-  if (tongue != Tongue::kinco && tongue != Tongue::canopen) return;
   for (std::size_t id = 0; id < watched.seen.size(); ++id) {
     const drive::ObjectState& state = watched.drive->store()[static_cast<drive::ObjectId>(id)];
     const Entry now_seen{state.exchange, state.sent_at};
-    if (!state.known || state.made || watched.seen[id] == now_seen) continue;
+    if (!state.known || state.emulated || watched.seen[id] == now_seen) continue;
     watched.seen[id] = now_seen;
     if (state.sent_at == axisgate::kLongAgo) continue;  // nothing confirms it any more, and it is shown to nobody
     const drive::ObjectDef& object = watched.drive->model().object(static_cast<drive::ObjectId>(id));
@@ -147,20 +197,22 @@ void StoredWatch::check_values(Watched& watched) {
 // One exchange at a time is on the line: the first request for it that the drive heard after it was sent is the one.
 bool StoredWatch::was_sent(Watched& watched, const drive::ObjectDef& object, const drive::ObjectState& state) {
   const bool by_process_data = std::ranges::any_of(watched.received, [&](const Value& value) {
-    return value.at == state.sent_at && value.index == object.address.index && value.sub == object.address.sub &&
-           object.number(value.raw) == state.number;
+    return value.at == state.sent_at && value.place == object.address && object.number(value.raw) == state.number;
   });
   if (by_process_data) return true;
   return plant_.stage.at_link(0, [&](auto& link) {
     bool found = false;
-    if constexpr (std::is_same_v<decltype(link), SimLink&> || std::is_same_v<decltype(link), CanLinkSim&>) {
+    const Tongue tongue = tongue_of(plant_.subject);
+    if constexpr (!std::is_same_v<decltype(link), RtuLinkSim&>) {
       const auto& journal = link.line().journal().entries();
       for (auto entry = journal.rbegin(); entry != journal.rend() && !found; ++entry) {
         if (entry->received < link.time_of(state.sent_at)) break;
         if (entry->station != watched.drive->model().node) continue;
         if constexpr (std::is_same_v<decltype(link), SimLink&>)
           found = kinco_says(*entry, object, state.number);
-        else
+        else if (tongue != Tongue::canopen)
+          found = keya_says(tongue, entry->request, entry->sent, object, state.number);
+        else if constexpr (std::is_same_v<decltype(link), CanLinkSim&>)
           found = can_says(*entry, object, state.number);
       }
     }
@@ -174,15 +226,15 @@ bool StoredWatch::keeps_its_word(const drive::DriveModel& model) {
   return plant_.stage.at_link(0, [&](auto& link) {
     return std::ranges::none_of(link.line().journal().entries(), [&](const auto& exchange) {
       return exchange.station == model.node &&
-             exchange.reply_ready - exchange.received > model.timeout + model.fence.worst_reply;
+             exchange.reply_ready - exchange.received > model.timeout + model.resync.worst_reply;
     });
   });
 }
 
 // A value may also be confirmed by reads alone, where the node does not take the event timer.
 Duration StoredWatch::period(const drive::Drive& drive, drive::ObjectId object) const {
-  const drive::CanopenFacts& facts = drive.model().canopen;
-  for (const drive::TpdoFacts& tpdo : facts.tpdos) {
+  const drive::CanopenProperties& facts = drive.model().canopen;
+  for (const drive::TpdoProperties& tpdo : facts.tpdos) {
     if (std::ranges::find(tpdo.map, object) == tpdo.map.end()) continue;
     const Duration event = std::chrono::milliseconds(tpdo.event_ms.value_or(std::uint16_t{0}));
     return std::min(drive.store().period(object), std::max(event, facts.confirm));

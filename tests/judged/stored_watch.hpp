@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the gateway holds of each drive on the line, against what that drive has sent. Watches that a stored value is
-// what the drive sent in answer to the very request that asked (Kinco's own protocol, Modbus RTU, CANopen); that
-// nothing is valid that is stale, of before a restart, or of a drive that is not there. Promises to name the first
-// violation. Never changes anything it looks at.
+// what the drive sent in answer to the very request that asked, or unasked; that nothing is valid that is stale, of
+// before a restart, or of a drive that is not there. Promises to name the first violation. Never changes anything it
+// looks at.
 #pragma once
 
 #include <array>
@@ -30,11 +31,10 @@ class StoredWatch {
 
  private:
   using Entry = std::pair<std::uint64_t, Instant>;
-  /// One value of a process data frame.
+  /// One value of a process data frame, or of a Keya's heartbeat.
   struct Value {
     Instant at;
-    std::uint16_t index;
-    std::uint8_t sub;
+    bus::ObjectAddress place;
     std::uint32_t raw;
   };
   struct Watched {
@@ -43,12 +43,13 @@ class StoredWatch {
     std::vector<Entry> seen{};  ///< exchange and time of each object when it was last looked at
     std::unique_ptr<RtuTruth> truth{};
     std::array<std::vector<std::uint32_t>, 4> maps{};  ///< the newest mapping of each TPDO, as the node holds it
-    std::vector<Value> received{};                     ///< process data since the last look
+    std::vector<Value> received{};                     ///< unasked, since the last look
     Instant started_at = axisgate::kLongAgo;
     Instant heard_at = axisgate::kLongAgo;
   };
   void begin();
   static void take_as_seen(Watched& watched);
+  void take_heartbeat(const can::CanFrame& frame);
   void take_process_data(std::size_t position, std::size_t tpdo, const can::CanFrame& frame);
   void check_values(Watched& watched);
   void check_axis(Watched& watched, const drive::AxisModel& axis);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is watched beside the contract in every judged run: the cable, what the gateway holds of the drives, and the
 // drives and motors beside axis 1. Promises the first violation to whoever made it. Never changes anything.
 #pragma once
@@ -10,10 +11,10 @@ namespace axisgate::test::judged {
 
 class Watches {
  public:
-  Watches(obey::Plant& plant, bool neighbour, const std::function<void(std::string)>& violated)
+  Watches(obey::Plant& plant, bool neighbour, bool other_bus, const std::function<void(std::string)>& violated)
       : cable(plant, violated, [this](const CableFrame& frame) { stored_.on_frame(frame); }),
         stored_(plant, violated),
-        neighbours_(plant, neighbour, violated) {}
+        neighbours_(plant, neighbour, other_bus, violated) {}
   Watches(const Watches&) = delete;
   Watches& operator=(const Watches&) = delete;
 

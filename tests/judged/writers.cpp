@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/judged/writers.hpp"
 
 namespace axisgate::test::judged {
@@ -107,8 +108,10 @@ Write Writers::write_of(const Step& step) {
                     {81, target->index},
                     {82, target->subindex},
                     {83, 4},
-                    {84, kPositions[step.position % kPositions.size()]}});
+                    {84, kPositions[step.position % kPositions.size()]}},
+                   step.on ? fc::general_reference : fc::write_registers);
     }
+    case Deed::halves:
     case Deed::target: {
       if (step.number % 6 == 5 && (commands_ >> kSetPosition & 1U) != 0)
         return one(row::set_position_value, kPositions[step.position % kPositions.size()]);

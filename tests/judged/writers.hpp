@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What each client writes next: a step of a program, resolved by what the same client wrote before. Promises equal
 // writes for equal programs, whatever was answered. Never knows what a write will do.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ten cells as deploy/kubernetes/render prints them: what the objects promise, and their command lines, started.
 
 render_test.py AXISGATE AXISGATE_SIM SOURCE_FOLDER [unittest's arguments]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // validate.mjs OBJECTS.json: each object of the list against the schema of its kind. (Keys that it does not have are not found.)
 import fs from 'node:fs';
 

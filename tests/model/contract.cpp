@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/model/contract.hpp"
 
 #include <algorithm>
@@ -9,18 +10,19 @@
 namespace axisgate::test::model {
 namespace {
 
-const std::set<int> kTrouble{3, 4, 6, 10, 11};  // 3.3, the table: not started, nothing was sent, outcome unknown
+// 3.3, the table: not started, nothing was sent, outcome unknown; 3.1, 43/13: an extended exception.
+const std::set<int> kTrouble{3, 4, 6, 10, 11, 0xFF};
 
-void doubt(Item& item) {
+void make_uncertain(Item& item) {
   item.unsure = true;
   item.acted = item.spoilt = false;
   item.refused = true;
 }
 
-void doubt(ClientMemory& client) {
-  doubt(client.command);
-  doubt(client.controlword);
-  for (Item& coil : client.coils) doubt(coil);
+void make_uncertain(ClientMemory& client) {
+  make_uncertain(client.command);
+  make_uncertain(client.controlword);
+  for (Item& coil : client.coils) make_uncertain(coil);
 }
 
 /// Too many readings of what was remembered: from now on of each thing that acts by edges both are allowed until it is
@@ -30,7 +32,7 @@ void blur(World& world, const World& first) {
     ClientMemory& client = world.clients[c];
     client.rows = first.clients[c].rows;
     client.rows_unsure = true;
-    doubt(client);
+    make_uncertain(client);
     const auto any = [](Item& item) { item.ended = item.changed = true; };
     any(client.command);
     any(client.controlword);
@@ -45,7 +47,8 @@ void add_times(World& world, const World& other) {
   world.lease_ends_by_ms = std::max(world.lease_ends_by_ms, other.lease_ends_by_ms);
   world.lease_unsure = world.lease_unsure || other.lease_unsure;
   world.broken = world.broken || other.broken;
-  for (const auto at : {&World::started_ms, &World::changed_ms, &World::enable_asked_ms, &World::off_asked_ms})
+  for (const auto at : {&World::started_ms, &World::changed_ms, &World::enable_asked_ms, &World::off_asked_ms,
+                        &World::taken_back_by_ms})
     world.*at = std::max(world.*at, other.*at);
   for (const Motion& motion : other.earlier)
     if (std::ranges::find(world.earlier, motion) == world.earlier.end()) world.earlier.push_back(motion);
@@ -54,7 +57,7 @@ void add_times(World& world, const World& other) {
 World without_times(World world) {
   const std::int64_t none = 0;
   for (const auto at : {&World::started_ms, &World::changed_ms, &World::enable_asked_ms, &World::off_asked_ms,
-                        &World::lease_ends_ms, &World::lease_ends_by_ms, &World::stopped_at})
+                        &World::taken_back_by_ms, &World::lease_ends_ms, &World::lease_ends_by_ms, &World::stopped_at})
     world.*at = none;
   world.lease_unsure = world.broken = false;
   world.earlier.clear();
@@ -137,9 +140,7 @@ int Contract::send(std::size_t client, const Write& write) {
       take_over(next, client);
       Judge judge(options_, next, readings, seen, client);
       Pending pending;
-      pending.verdict = write.function == fc::sample ? judge.sample(write)
-                        : write.coils()              ? judge.coils(write)
-                                                     : judge.registers(write);
+      pending.verdict = judge.write(write);
       pending.verdict.stop = judge.stopped();
       pending.verdict.takes_over = judge.takes_over();
       pending.verdict.any_answer = pending.verdict.any_answer || judge.unclear();
@@ -152,9 +153,10 @@ int Contract::send(std::size_t client, const Write& write) {
       said.insert(std::exchange(pending.verdict.says, {}));
       const Rows rows = write.coils() ? Rows{} : rows_of(write);
       pending.more = rows.size() > 1;
-      pending.setpoints = !rows.empty() && !pending.verdict.acts;
+      const bool sets = !rows.empty() || half_row(write);
+      pending.setpoints = sets && !pending.verdict.acts;
       pending.enables = next.enable_asked_ms != world.enable_asked_ms;
-      overtake(next, pending, !rows.empty());
+      overtake(next, pending, sets);
       next.pending[number] = pending;
       changed(next, world.motion());
       if ((world.enabled && !next.enabled) || (next.latched && !world.latched)) next.off_asked_ms = sight_.now_ms;
@@ -166,7 +168,7 @@ int Contract::send(std::size_t client, const Write& write) {
       World none = world;
       none.clients = next.clients;
       if (none.owner == next.owner) none.lease_ends_by_ms = std::max(none.lease_ends_by_ms, next.lease_ends_by_ms);
-      overtake(none, pending, !rows.empty());
+      overtake(none, pending, sets);
       pending.void_ = true;
       pending.enables = false;
       none.pending[number] = pending;
@@ -246,11 +248,16 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
       next.changed_ms = sight_.now_ms;
     }
     // Whether it is remembered is not said.
-    if (!expected || (!done && pending.verdict.any_answer)) doubt(next.clients[asked.client]);
+    if (!expected || (!done && pending.verdict.any_answer)) make_uncertain(next.clients[asked.client]);
     if (done && pending.verdict.takes_over) {
       next.owner = asked.client;
       next.lease_until(sight_.now_ms + options_.lease_ms);
     }
+    // An enable of which nobody knows: whether it is taken back once it shows is not said (D152).
+    constexpr int kUnknownOutcome = 0x0B;
+    constexpr std::int64_t kTakenBackMs = 6000;
+    if (lost && pending.enables && exceptions.contains(kUnknownOutcome))
+      next.taken_back_by_ms = sight_.now_ms + kTakenBackMs;
     // An enable that was broken off between its steps.
     if (!done && pending.enables && next.enabled && sight_.enabled == false) {
       World off = next;
@@ -265,6 +272,13 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
   worlds_ = std::move(fitting);
   keep_different();
   return true;
+}
+
+bool Contract::surely_acts(int request) const {
+  return std::ranges::all_of(worlds_, [&](const World& world) {
+    const auto pending = world.pending.find(request);
+    return pending != world.pending.end() && pending->second.verdict.acts;
+  });
 }
 
 void Contract::unanswered(int request) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the contract says of one axis and any sequence of writes, gaps and deaths: a small, slow, obvious reference. It
 // knows plain numbers, and each rule stands beside its sentence. Where a sentence can be read in two ways, or nobody
 // can know (an acknowledgement was lost), both are allowed: the reference keeps a world for each, and what is answered
@@ -17,7 +18,7 @@
 
 namespace axisgate::test::model {
 
-inline constexpr std::size_t kClients = 3, kDds = 2;  ///< two of Modbus, one of DDS
+inline constexpr std::size_t kClients = 4, kDds = 3;  ///< three of Modbus, one of DDS
 inline constexpr std::size_t kGhost = 100;
 inline constexpr std::int64_t kNever = INT64_MAX / 4, kLongAgo = INT64_MIN / 4;
 
@@ -53,6 +54,16 @@ struct Item {
   bool operator==(const Item&) const = default;
 };
 
+/// One half of a row of 32 bits that waits for the other one (A13).
+struct Half {
+  std::uint16_t row = 0;
+  bool second = false;  ///< it is the register behind
+  std::uint16_t word = 0;
+  std::int64_t at_ms = 0;
+  bool unsure = false;  ///< it was written in trouble
+  bool operator==(const Half&) const = default;
+};
+
 struct ClientMemory {
   Item command, controlword;
   std::array<Item, 10> coils{};
@@ -60,6 +71,7 @@ struct ClientMemory {
   Rows rows{};                             ///< as written last, whatever became of it
   std::set<std::uint16_t> refused_rows{};  ///< of these it was refused; whether that counts is not said
   bool rows_unsure = false;                ///< or otherwise
+  std::optional<Half> half{};
   bool operator==(const ClientMemory&) const = default;
 };
 
@@ -127,7 +139,8 @@ struct World {
   std::int64_t jog_ends_ms = kNever;
   std::int64_t enable_asked_ms = kLongAgo;
   std::int64_t off_asked_ms = kLongAgo;
-  bool broken = false;  ///< trouble since the motion began: it may have ended anywhere
+  std::int64_t taken_back_by_ms = kLongAgo;  ///< until then an enable that was answered 0x0B may be taken back
+  bool broken = false;                       ///< trouble since the motion began: it may have ended anywhere
   // What the motor may still do from before, until it has settled.
   std::vector<Motion> earlier{};
   std::int64_t changed_ms = 0;
@@ -150,6 +163,7 @@ struct ContractOptions {
   bool no_halt = false;            ///< of a move: the profile stops it by what may latch the axis
   bool by_gateway = false;         ///< the CiA 402 machine is the gateway's
   bool by_address = false;         ///< "client": "address"
+  bool staged = false;             ///< "halves": "staged"
   std::array<int, kClients> ranks{};
   std::int64_t settles_ms = 1200;  ///< so long after an answer the motor does what was asked, ramps included
 };
@@ -163,6 +177,8 @@ class Contract {
   /// What was answered: an exception, 0 for none, or those that a DDS reply may stand for. False: no reading of the
   /// contract has this answer.
   bool answered(int request, const std::set<int>& exceptions);
+  /// A command or controlword of this request acts, in each reading.
+  [[nodiscard]] bool surely_acts(int request) const;
   /// It will never be answered: its connection is gone.
   void unanswered(int request);
   /// Any other request of this client.

@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/model/judge.hpp"
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace axisgate::test::model {
 namespace {
@@ -206,6 +208,33 @@ bool Judge::all_zero(const Write& write, const Rows& rows, Verdict& verdict) {
   return true;
 }
 
+Verdict Judge::write(const Write& write) {
+  if (write.function == fc::sample) return sample(write);
+  const std::optional<Half> before = std::exchange(me().half, std::nullopt);  // A13: "no other write between"
+  if (write.coils()) return coils(write);
+  const auto row = half_row(write);
+  if (!row) return registers(write);
+  return half({*row, write.first != *row, write.words[0], seen_.now_ms, seen_.troubled}, before);
+}
+
+// A13: "either half of a 32-bit row first, then the other, same connection, no other write between; a lone half is
+// dropped after 1 s; ... a half that comes later than that is a new first half."
+Verdict Judge::half(const Half& newest, const std::optional<Half>& before) {
+  constexpr std::int64_t kKeptMs = 1000, kUnsureMs = 20;
+  if (!options_.staged) return {"half of a 32-bit value", {2}};  // 3.3, table of outcomes
+  if (before && before->row == newest.row && before->second != newest.second) {
+    const std::int64_t age_ms = newest.at_ms - before->at_ms;
+    const bool unsure = before->unsure || std::abs(age_ms - kKeptMs) <= kUnsureMs;
+    if (unsure ? readings_.other() : age_ms < kKeptMs) {
+      Write whole{fc::write_registers, newest.row, {before->word, newest.word}};
+      if (before->second) std::swap(whole.words[0], whole.words[1]);
+      return registers(whole);
+    }
+  }
+  me().half = newest;
+  return {"a first half", {0}};
+}
+
 Verdict Judge::registers(const Write& write) {
   Rows rows = rows_of(write);
   const bool single = write.function != fc::read_write && rows.size() == 1;  // A1: "A single write is ..."
@@ -217,7 +246,7 @@ Verdict Judge::registers(const Write& write) {
   }
   Verdict verdict;
   if (rows.contains(row::object_request)) {
-    object(verdict);
+    object(write.function, verdict);
     return verdict;
   }
   if (!single && all_zero(write, rows, verdict)) return verdict;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One write in one reading of the contract. Promises to change the world that it was given and nothing else.
 #pragma once
 
@@ -40,9 +41,9 @@ class Judge {
   Judge(const ContractOptions& options, World& world, Readings& readings, const Seen& seen, std::size_t client)
       : options_(options), world_(world), readings_(readings), seen_(seen), client_(client) {}
 
-  Verdict registers(const Write& write);
-  Verdict coils(const Write& write);
-  Verdict sample(const Write& write);
+  /// Any write of a client of Modbus or DDS.
+  Verdict write(const Write& write);
+
   /// One that acts was in it.
   [[nodiscard]] bool stopped() const { return stopped_; }
   /// The axis is its client's as soon as it is answered.
@@ -53,6 +54,10 @@ class Judge {
  private:
   enum class Edge : std::uint8_t { absent, nothing, remembered, not_new, acts };
 
+  Verdict registers(const Write& write);
+  Verdict coils(const Write& write);
+  Verdict sample(const Write& write);
+  Verdict half(const Half& newest, const std::optional<Half>& before);
   [[nodiscard]] ClientMemory& me() { return world_.clients[client_]; }
   Edge edge(Item& item, std::int64_t value, bool single, bool stop);
   Edge new_or_not(Item& item, std::int64_t value, bool single, bool stop);
@@ -80,7 +85,7 @@ class Judge {
   [[nodiscard]] bool may_have_no_halt() const;
   void take_over(Verdict& verdict);
   void set_position(Verdict& verdict);
-  void object(Verdict& verdict);
+  void object(int function, Verdict& verdict);
 
   const ContractOptions& options_;
   World& world_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What commands and controlwords do, and what they are answered with (3.4).
 #include <algorithm>
 #include <cstdlib>
@@ -232,10 +233,13 @@ void Judge::set_position(Verdict& verdict) {
 
 // 3.1, the mailbox: "writing 80 returns at once". The drive's own object of a target is that target (a way in like any
 // other); what its counts come to is not judged here.
-void Judge::object(Verdict& verdict) {
+void Judge::object(int function, Verdict& verdict) {
   if (refuse_foreign(verdict)) return;
   if (options_.leases) claim();
   verdict = {"object request", {0, 4, 6}};
+  // 3.1, 43/13: "Refused ...: abort", an extended exception. It "is the same path".
+  constexpr int kExtended = 0xFF;
+  if (function == fc::general_reference) verdict.answers = {0, 6, 11, kExtended};
   world_.accepted.erase(row::target_position);
   for (ClientMemory& client : world_.clients) client.command.changed = client.command.unsure = true;
   if (world_.motor != Motor::stands) world_.motor = Motor::unknown;

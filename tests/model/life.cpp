@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Leases, jog buttons, deaths and losses: what ends without being asked.
 #include <algorithm>
 #include <utility>
@@ -56,7 +57,7 @@ void Contract::expire(World& world) const {
   world.owner.reset();
   world.orphan = false;
   world.lease_until(kNever);
-  world.latch_unsure = trouble_;
+  world.latch_unsure = trouble_ || (world.latch_unsure && !world.enabled);
   if (!world.enabled) return;
   world.motor = Motor::stands;
   world.jog = 0;
@@ -117,6 +118,7 @@ void Contract::left(std::size_t client, bool silently) {
     }
   }
   for (World& world : worlds_) {
+    world.clients[client].half.reset();  // A13: "same connection"
     if (options_.by_address && client != kDds) {
       world.orphan = world.orphan || (world.owner == client && !silently);
       continue;  // A1: "until 60 s after its last connection"
@@ -186,6 +188,14 @@ void Contract::drive_tripped() {
 void Contract::gateway_died() {
   trouble_begins();
   for (std::size_t client = 0; client < kClients; ++client) left(client, false);
+  // What it still owed dies with it.
+  std::vector<World> owed;
+  for (const World& world : worlds_) {
+    if (world.enabled || sight_.enabled != true) continue;
+    owed.push_back(world);
+    owed.back().enabled = true;
+  }
+  worlds_.insert(worlds_.end(), owed.begin(), owed.end());
   for (World& world : worlds_) {
     world.clients = {};
     world.owner.reset();

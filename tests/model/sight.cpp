@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a world's motor may do what is seen.
 #include <algorithm>
 #include <cstdlib>
@@ -45,7 +46,7 @@ bool Contract::enabling_fits(World& world, const Sight& sight) const {
   if (!*sight.enabled && *was_enabled_ && world.enabled && !world.latched) {
     const bool enabling = std::ranges::any_of(world.pending, [](const auto& p) { return p.second.enables; });
     if (sight.now_ms - world.off_asked_ms <= options_.settles_ms && (!trouble_ || enabling)) return true;
-    if (!trouble_ && !world.broken && !world.faulted) return false;
+    if (!trouble_ && !world.broken && !world.faulted && sight.now_ms > world.taken_back_by_ms) return false;
     const Motion before = world.motion();
     world.enabled = false;
     world.motor = Motor::stands;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/model/write.hpp"
 
 #include <algorithm>
@@ -19,6 +20,14 @@ bool in(const List& list, std::uint16_t offset) {
 }  // namespace
 
 bool is_wide(std::uint16_t offset) { return in(kWide, offset); }
+
+std::optional<std::uint16_t> half_row(const Write& write) {
+  if (write.function != fc::write_register) return {};
+  if (is_wide(write.first)) return write.first;
+  const auto before = static_cast<std::uint16_t>(write.first - 1);
+  if (is_wide(before)) return before;
+  return {};
+}
 
 Write one(std::uint16_t offset, std::int64_t value, int function) {
   const bool wide = is_wide(offset);
@@ -48,6 +57,7 @@ Write coil_block(std::uint16_t first, std::vector<std::uint16_t> values) {
 
 Rows rows_of(const Write& write) {
   if (write.function == fc::sample) return write.sample;
+  if (half_row(write)) return {};
   Rows rows;
   for (std::size_t i = 0; i < write.words.size(); ++i) {
     const auto offset = static_cast<std::uint16_t>(write.first + i);
@@ -73,6 +83,7 @@ std::string text(const Write& write) {
       out += " coil" + std::to_string(write.first + i) + "=" + std::to_string(write.words[i]);
     return out;
   }
+  if (half_row(write)) return out + " half " + std::to_string(write.first) + "=" + std::to_string(write.words[0]);
   out += " " + std::to_string(write.first) + ".." + std::to_string(write.first + write.words.size() - 1);
   for (const auto& [offset, value] : rows_of(write))
     if (value != 0 || write.words.size() <= 2) out += " " + std::to_string(offset) + "=" + std::to_string(value);

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // A write as a PLC's programmer thinks of it: a function code, where it begins, what it carries. Promises that a row of
 // 32 bits is written whole, high word first, on axis 1. Never knows a gateway.
 #pragma once
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +37,8 @@ inline constexpr std::uint16_t enable = 0, fault_reset = 1, quick_stop = 2, halt
 
 namespace fc {
 inline constexpr int sample = 0,  // no function code: a DDS sample
-    write_coil = 5, write_register = 6, write_coils = 15, write_registers = 16, mask_write = 22, read_write = 23;
+    write_coil = 5, write_register = 6, write_coils = 15, write_registers = 16, mask_write = 22, read_write = 23,
+                     general_reference = 43;  // 43/13, told as the mailbox's rows 80 to 85
 }  // namespace fc
 
 struct Write {
@@ -47,6 +50,8 @@ struct Write {
 };
 
 [[nodiscard]] bool is_wide(std::uint16_t offset);
+/// One half of a row of 32 bits, by function 6: that row's offset. No value: it is none.
+[[nodiscard]] std::optional<std::uint16_t> half_row(const Write& write);
 /// One row alone. Function 0: 6 where the row has 16 bits, else 16.
 [[nodiscard]] Write one(std::uint16_t offset, std::int64_t value, int function = 0);
 /// Registers `first` to `last`; rows that are not named are 0.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Put before the first line of a source that holds mutants (tests/mutation/run), never part of a build that ships.

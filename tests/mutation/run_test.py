@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """The tool that puts faults into the gateway: what it makes of a table and of a source."""
 import importlib.machinery
 import importlib.util

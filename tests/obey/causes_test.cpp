@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Design-2 A10: a fault is shown together with its cause, and told once, on every drive and protocol.
 #include <gtest/gtest.h>
 

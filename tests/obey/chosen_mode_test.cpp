@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Keya on CANopen does not tell which mode a client has chosen: a gateway that is new must write nothing that moves,
 // or a speed would be a position, and a position a speed (keya-kydas4860-2e, 6.2 and 8.1).
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What asks, and what claims (A7): an idle PLC that scans and a panel share an axis.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/obey/client.hpp"
 
 #include <deque>
@@ -20,8 +21,28 @@ void add16(std::vector<std::uint8_t>& out, std::uint32_t value) {
   out.push_back(static_cast<std::uint8_t>(value));
 }
 
-// Modbus application protocol V1.1b3, 6.5, 6.6, 6.11, 6.12, 6.16, 6.17.
+constexpr std::uint8_t kReference = fc::general_reference, kCanopen = 0x0D;  // 43/13
+constexpr std::size_t kReferenceHead = 12;
+
+// V1.1b3 annex B: one object of axis 1 from its first byte on; count 0: all that a read finds.
+std::vector<std::uint8_t> reference_of(bool write, std::uint16_t index, std::uint16_t sub, std::uint16_t count) {
+  std::vector<std::uint8_t> pdu{kReference, kCanopen, static_cast<std::uint8_t>(write ? 1 : 0), 0, 1};
+  add16(pdu, index);
+  pdu.push_back(static_cast<std::uint8_t>(sub));
+  add16(pdu, 0);
+  add16(pdu, count);
+  return pdu;
+}
+
+// Modbus application protocol V1.1b3, 6.5, 6.6, 6.11, 6.12, 6.16, 6.17, 6.20.
 std::vector<std::uint8_t> pdu_of(const Write& write, std::uint16_t base) {
+  if (write.function == fc::general_reference) {
+    const std::vector<std::uint16_t>& mailbox = write.words;
+    std::vector<std::uint8_t> pdu = reference_of(true, mailbox.at(1), mailbox.at(2), mailbox.at(3));
+    const std::uint32_t data = std::uint32_t{mailbox.at(4)} << 16 | mailbox.at(5);
+    for (unsigned i = 0; i < mailbox.at(3); ++i) pdu.push_back(static_cast<std::uint8_t>(data >> (8 * i)));
+    return pdu;
+  }
   std::vector<std::uint8_t> pdu{static_cast<std::uint8_t>(write.function)};
   const std::uint32_t address = std::uint32_t{base} + write.first;
   const auto count = static_cast<std::uint32_t>(write.words.size());
@@ -60,7 +81,8 @@ std::vector<std::uint8_t> pdu_of(const Write& write, std::uint16_t base) {
 
 /// "word_order": "low-first": the halves of each whole row of 32 bits the other way round.
 Write low_word_first(Write write) {
-  for (std::size_t i = 0; !write.coils() && i + 1 < write.words.size(); ++i)
+  if (write.coils() || write.function == fc::general_reference) return write;
+  for (std::size_t i = 0; i + 1 < write.words.size(); ++i)
     if (is_wide(static_cast<std::uint16_t>(write.first + i))) std::swap(write.words[i], write.words[i + 1]), ++i;
   return write;
 }
@@ -193,6 +215,8 @@ void Client::Connection::take_answer(const std::vector<std::uint8_t>& adu) {
     throw std::runtime_error("an answer with another function code");
   else if (asked.function == 3)
     for (std::size_t i = kMbap + 2; i + 1 < adu.size(); i += 2) answer.words.push_back(load_be16(adu, i));
+  else if (asked.function == kReference)
+    answer.words.assign(adu.begin() + kMbap + kReferenceHead, adu.end());
   on_answer_(asked.number, std::move(answer));
 }
 
@@ -236,7 +260,9 @@ void Client::connect() {
   });
 }
 
-void Client::ask_for_name() { begin({0x2B, 0x0D, 0x00, 0x00, 0x01, 0x10, 0x08, 0x00, 0x00, 0x00, 0x00, 0x00}); }
+RequestNumber Client::ask_for_object(std::uint16_t index, std::uint8_t subindex) {
+  return begin(reference_of(false, index, subindex, 0));
+}
 
 void Client::disconnect() {
   if (connection_) connection_->close();
@@ -277,8 +303,6 @@ std::optional<Answer> Client::answer_of(RequestNumber number) const {
   return found->second;
 }
 
-Answer Client::ask(const std::vector<std::uint8_t>& pdu) { return awaited(begin(pdu)); }
-
 Answer Client::awaited(RequestNumber number) {
   const Instant end = runtime_.now() + kLongestAnswer;
   while (!answers_.contains(number)) {
@@ -291,11 +315,15 @@ Answer Client::awaited(RequestNumber number) {
 
 Answer Client::write(const Write& write) { return awaited(begin(write)); }
 
-std::vector<std::uint16_t> Client::read(std::uint16_t first, std::uint16_t count) {
+RequestNumber Client::begin_read(std::uint16_t first, std::uint16_t count) {
   std::vector<std::uint8_t> pdu{3};
   add16(pdu, std::uint32_t{base()} + first);
   add16(pdu, count);
-  Answer answer = ask(pdu);
+  return begin(pdu);
+}
+
+std::vector<std::uint16_t> Client::read(std::uint16_t first, std::uint16_t count) {
+  Answer answer = answer_to_read(first, count);
   if (!answer.ok() || answer.words.size() != count) throw std::runtime_error("a read failed");
   return answer.words;
 }

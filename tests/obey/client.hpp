@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Modbus-TCP client of these tests: one connection from one address to the shipped session, bytes in memory, manual
 // time. Promises to return when the answer is there, or to tell it later; a request whose connection or gateway died
 // has none for ever. Never looks into the gateway.
@@ -8,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "gateway/upstream/modbus_tcp/session.hpp"
+#include "gateway/upstream/modbus_tcp/session/session.hpp"
 #include "tests/model/write.hpp"
 #include "tests/unit/support/manual_runtime.hpp"
 
@@ -17,8 +18,8 @@ namespace axisgate::test::obey {
 using namespace model;  // what a client writes
 
 struct Answer {
-  std::uint8_t exception = 0;  ///< 0: none
-  std::vector<std::uint16_t> words{};
+  std::uint8_t exception = 0;          ///< 0: none
+  std::vector<std::uint16_t> words{};  ///< of 43/13 the object's bytes
   [[nodiscard]] bool ok() const { return exception == 0; }
   friend bool operator==(const Answer& answer, std::uint8_t exception) { return answer.exception == exception; }
 };
@@ -79,15 +80,18 @@ class Client {
   Answer coil(std::uint16_t number, bool on) { return write(one_coil(number, on)); }
   /// Registers of the axis, function 3.
   std::vector<std::uint16_t> read(std::uint16_t first, std::uint16_t count);
+  /// The same; an exception is an answer too.
+  Answer answer_to_read(std::uint16_t first, std::uint16_t count) { return awaited(begin_read(first, count)); }
   std::uint16_t word(std::uint16_t offset) { return read(offset, 1).front(); }
   std::int32_t wide(std::uint16_t offset);
   std::int64_t result() { return word(shown::result); }
   /// Any object of the drive, by registers 80 to 86; when it is done. False: it failed.
   bool mailbox_write(std::uint16_t index, std::uint16_t subindex, std::uint16_t size, std::int64_t data);
 
-  /// By 43/13, the manufacturer's device name (1008h): in several exchanges, which whatever is more urgent may break
-  /// off. Returns at once.
-  void ask_for_name();
+  /// The same. Returns at once.
+  RequestNumber begin_read(std::uint16_t first, std::uint16_t count);
+  /// By 43/13, the whole of any object. Returns at once.
+  RequestNumber ask_for_object(std::uint16_t index, std::uint8_t subindex);
 
   /// As `allow` would make it; of the next connection.
   void be(Role role, std::uint8_t rank = 0) {
@@ -109,7 +113,6 @@ class Client {
   class Connection;
   void lose_connections();
   RequestNumber begin(const std::vector<std::uint8_t>& pdu);
-  Answer ask(const std::vector<std::uint8_t>& pdu);
   Answer awaited(RequestNumber number);
   [[nodiscard]] const modbus_tcp::ListenerSettings& settings() const;
   [[nodiscard]] std::uint16_t base() const;

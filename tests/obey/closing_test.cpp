@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The end on purpose (SIGTERM): what clients are told, what the motor does, and whether an idle drive has an alarm
 // then.
 #include <gtest/gtest.h>
@@ -119,8 +120,8 @@ TEST_P(Closing, AnEnableThatWaitsNeverStarts) {
   EXPECT_FALSE(faulted_within(10s));
 }
 
-// The cable is out, the drive mute, a reply lost: it ends in time all the same, and the drive still misses the gateway
-// or is disabled.
+// The cable is out, the drive unresponsive, a reply lost: it ends in time all the same, and the drive still misses the
+// gateway or is disabled.
 TEST_P(Closing, EndsInTimeWhateverTheWireDoes) {
   for (const int fault : {0, 1, 2}) {
     Plant plant(GetParam(), with_leases());
@@ -161,7 +162,7 @@ TEST_P(Closing, WhatIsEnabledMeanwhileStillMissesTheGateway) {
 }
 
 // Each exchange of the end lost, one after the other.
-TEST_P(Closing, NoLostExchangeLeavesAnIdleDriveInDoubtOrAnEnabledOneUnwatched) {
+TEST_P(Closing, NoLostExchangeLeavesAnIdleDriveUncertainOrAnEnabledOneUnwatched) {
   if (!is_cia402(GetParam()) || !minds_silence(GetParam())) return;
   for (const bool enabled : {false, true}) {
     for (const Strike how : {Strike::lose_request, Strike::lose_reply, Strike::late_reply}) {

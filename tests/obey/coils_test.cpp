@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coils (A1, A3): a level that moves the axis acts only after this client wrote 0 to it; a single 0 always acts.
 #include <gtest/gtest.h>
 

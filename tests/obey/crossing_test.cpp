@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests that cross, and commands beside a controlword or a jog: what comes last decides, whatever still waits, is on
 // its way or has just been left.
 #include <gtest/gtest.h>

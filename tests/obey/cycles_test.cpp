@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tables of cycles of schemas/register-map.md, played as they stand on each drive that has their commands.
 #include "gateway/image/commands_page.hpp"
 

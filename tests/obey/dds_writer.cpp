@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/obey/dds_writer.hpp"
 
 #include <numbers>
 #include <stdexcept>
 
-#include "gateway/upstream/dds/command_groups.hpp"
+#include "gateway/upstream/dds/command_batches.hpp"
 #include "tests/unit/dds/samples.hpp"
 
 namespace axisgate::test::obey {
@@ -26,9 +27,9 @@ dds::DdsSettings settings() {
 DdsWriter::DdsWriter(GatewayStage& stage, std::uint8_t participant)
     : stage_(stage),
       participant_(participant),
-      face_(settings(), stage.gateway().image(), stage.gateway().events(), stage.gateway(), [] {}) {
-  face_.on_link_up(stage_.runtime().now());
-  face_.on_record(writer_there(guid(participant_)), stage_.runtime().now());
+      session_(settings(), stage.gateway().image(), stage.gateway().events(), stage.gateway(), [] {}) {
+  session_.on_link_up(stage_.runtime().now());
+  session_.on_record(writer_there(guid(participant_)), stage_.runtime().now());
   read();
 }
 
@@ -45,7 +46,7 @@ std::uint64_t DdsWriter::begin(const Write& sample) {
     record.mask |= dds::kHasTargetVelocity;
     record.target_velocity = of(row::target_velocity) * kVelocityUnit;
   }
-  face_.on_record(record, stage_.runtime().now());
+  session_.on_record(record, stage_.runtime().now());
   read();
   return last_;
 }
@@ -58,13 +59,13 @@ std::optional<std::uint8_t> DdsWriter::result_of(std::uint64_t request) {
 }
 
 void DdsWriter::replace() {
-  face_.on_record(writer_gone(guid(participant_)), stage_.runtime().now());
-  face_.on_record(writer_there(guid(++participant_)), stage_.runtime().now());
+  session_.on_record(writer_gone(guid(participant_)), stage_.runtime().now());
+  session_.on_record(writer_there(guid(++participant_)), stage_.runtime().now());
   read();
 }
 
 void DdsWriter::read() {
-  while (const auto record = face_.next(stage_.runtime().now()))
+  while (const auto record = session_.next(stage_.runtime().now()))
     if (const auto* const reply = std::get_if<dds::ReplyRecord>(&*record))
       if (!results_.emplace(reply->request_id, reply->result).second)
         throw std::runtime_error("a request got more than one reply");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A DDS client of these tests: one writer of axis_command as axisgate-dds tells of it, records in memory, before the
 // shipped DDS server of one gateway. Promises that a second reply to one request is an error. Never looks into the
 // gateway.
@@ -6,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "gateway/upstream/dds/dds_face.hpp"
+#include "gateway/upstream/dds/dds_session.hpp"
 #include "tests/model/write.hpp"
 #include "tests/stage/gateway_stage.hpp"
 
@@ -28,7 +29,7 @@ class DdsWriter {
   void read();
   GatewayStage& stage_;
   std::uint8_t participant_;
-  dds::DdsFace face_;
+  dds::DdsSession session_;
   std::uint64_t last_ = 0;
   std::map<std::uint64_t, std::uint8_t> results_;
 };

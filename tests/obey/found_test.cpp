@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the judge (tests/judged) has found in the gateway: the shortest sequence of each, on every drive that can do it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What goes on in the drive while nobody can see it: found running after a loss, an axis takes what its owner asks.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Signs of life and who takes over (A8).
 #include <gtest/gtest.h>
 
@@ -81,12 +82,13 @@ TEST_P(Life, OfAnAddressIsNotShownByReads) {
 }
 
 TEST_P(Life, OfAnAddressIsNotShownByObjectsThatAreRead) {
+  constexpr std::uint16_t kDeviceName = 0x1008;
   Plant plant(GetParam(), with_leases(true));
   plant.ready();
   start(plant, plant.a);
   for (int i = 0; i < 5; ++i) {
     plant.run(500ms);
-    plant.a.ask_for_name();
+    plant.a.ask_for_object(kDeviceName, 0);
   }
   stops_by_its_lease(plant);
 }

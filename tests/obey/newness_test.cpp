@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is new (A1) and what says that it is not (A3): commands, their ids, and the set-points beside them.
 #include <gtest/gtest.h>
 

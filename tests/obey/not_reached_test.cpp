@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A4: the drive has acknowledged everything, and the state asked for does not come: the answer says so, and what might
 // still happen is withdrawn before it. Nothing that was told to have failed happens later.
 #include <gtest/gtest.h>
@@ -182,6 +183,182 @@ TEST_P(LateMode, DoesNotLetTheMotorFollowASpeedOfBefore) {
   EXPECT_LE(std::abs(plant_.position()), kClose);
 }
 
+// --- What no state tells, the motor does ---------------------------------------------------------------------------
+
+class Ignored : public NotReached {
+ protected:
+  void runs() {
+    plant_.ready();
+    ASSERT_EQ(plant_.set_endless(a_), kOk);
+    ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
+    ASSERT_TRUE(plant_.keeps_turning());
+  }
+  /// Told 11, and owed on until the drive obeys.
+  void says_so_and_is_owed_on(const Write& stop) {
+    const Instant asked_at = plant_.stage.runtime().now();
+    const Answer answer = a_.write(stop);
+    fails(answer, asked_at);
+    EXPECT_EQ(a_.word(shown::axis_state), kStopping);
+    plant_.run(8s);
+    EXPECT_NE(plant_.velocity(), 0);
+    EXPECT_TRUE(plant_.logged("a stop is owed: halt"));
+    numb(plant_.stage, GetParam(), false);
+    // A Keya in position mode turns past the target that it is given, and comes back.
+    EXPECT_TRUE(plant_.comes_to_stand(10s)) << plant_.velocity();
+    // Until a stop is seen nothing but a 0 keeps its watchdog fed.
+    const bool is_fed = !minds_silence(GetParam()) || has_speeds(GetParam());
+    EXPECT_TRUE(!is_fed || plant_.motor().enabled.value_or(true)) << "a halt leaves the torque on";
+  }
+  static constexpr std::int64_t kStopping = 5;
+};
+
+TEST_P(Ignored, AHaltSaysSoAndIsOwedOn) {
+  runs();
+  numb(plant_.stage, GetParam(), true);
+  says_so_and_is_owed_on(one(row::command, kHalt));
+}
+
+TEST_P(Ignored, AHaltByItsCoilSaysSoAndIsOwedOn) {
+  runs();
+  numb(plant_.stage, GetParam(), true);
+  says_so_and_is_owed_on(one_coil(coil::halt, true));
+}
+
+// What was sampled before it began to move tells nothing of the halt.
+TEST_P(Ignored, AHaltOfWhatHasJustBegunSaysSo) {
+  plant_.ready();
+  ASSERT_EQ(plant_.set_endless(a_), kOk);
+  ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
+  numb(plant_.stage, GetParam(), true);
+  fails(kHalt);
+  EXPECT_NE(plant_.velocity(), 0);
+}
+
+class IgnoredRun : public Ignored {};
+
+TEST_P(IgnoredRun, ItsHaltIsTakenBackByALaterStart) {
+  runs();
+  numb(plant_.stage, GetParam(), true);
+  fails(kHalt);
+  // While the halt is being sent the start is refused: it would wait for longer than a start may.
+  const auto starts = [&] { return plant_.set_endless(a_) == kOk && a_.command(kRun) == kOk; };
+  bool started = starts();
+  for (int tries = 0; tries < 100 && !started; ++tries) {
+    plant_.run(50ms);
+    started = starts();
+  }
+  ASSERT_TRUE(started);
+  plant_.run(1s);
+  numb(plant_.stage, GetParam(), false);
+  plant_.run(5s);
+  EXPECT_TRUE(plant_.keeps_turning());
+}
+
+class IgnoredDisable : public Ignored {};
+
+// The gate is the gateway's: that the motor obeys, only the motor shows.
+TEST_P(IgnoredDisable, OfADriveThatKeepsItsTorqueSaysSoAndIsOwedOn) {
+  runs();
+  numb(plant_.stage, GetParam(), true);
+  fails(kDisable);
+  plant_.run(8s);
+  EXPECT_NE(plant_.velocity(), 0);
+  numb(plant_.stage, GetParam(), false);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+  EXPECT_EQ(a_.word(shown::axis_state), kDisabled);
+}
+
+class LongRamp : public Ignored {};
+
+TEST_P(LongRamp, AHaltIsDoneAsSoonAsTheMotorSlowsDown) {
+  // 150 rpm in 20 s; of an iD286pro, which counts in 60 rpm/s, 1500 rpm in 5 s.
+  const bool stepper = GetParam() == Subject::id286pro;
+  const std::int64_t ramp = stepper ? 3000 : 75, speed = stepper ? 10 * kSpeed : kSpeed;
+  plant_.ready();
+  ASSERT_EQ(a_.row(row::profile_deceleration, ramp), kOk);
+  ASSERT_EQ(a_.row(row::target_velocity, speed), kOk);
+  ASSERT_EQ(a_.command(kRun), kOk);
+  ASSERT_TRUE(plant_.reaches(speed));
+  plant_.run(1s);
+  EXPECT_EQ(a_.command(kHalt), kOk);
+  EXPECT_NE(plant_.velocity(), 0);
+  EXPECT_EQ(a_.word(shown::axis_state), kStopping);
+  EXPECT_TRUE(plant_.comes_to_stand(30s));
+  plant_.run(1s);
+  EXPECT_EQ(a_.word(shown::axis_state), kStandstill);
+  EXPECT_FALSE(plant_.logged("was not reached"));
+  EXPECT_FALSE(plant_.logged("a stop is owed"));
+}
+
+class IgnoredHoming : public NotReached {
+ protected:
+  static constexpr std::int64_t kHere = 35, kIndex = 33, kOrigin = 19, kNegativeLimit = 17;
+  static constexpr std::int64_t kHomingMode = 6, kNone = 0, kAborted = 3;  // motion_state
+  [[nodiscard]] bool stepper() const { return GetParam() == Subject::id286pro; }
+  /// In mode 6 already: what is not carried out is the start alone.
+  void is_ready_to_home(std::int64_t method) {
+    plant_.ready();
+    ASSERT_EQ(a_.row(row::homing_method, method), kOk);
+    ASSERT_EQ(a_.row(row::mode, kHomingMode), kOk);
+    plant_.run(200ms);
+  }
+  void never_homes() {
+    numb(plant_.stage, GetParam(), true);
+    fails(kHome);
+    EXPECT_TRUE(plant_.logged("is withdrawn: halt"));
+    EXPECT_NE(a_.word(shown::axis_state), kHoming);
+    plant_.run(1s);
+    numb(plant_.stage, GetParam(), false);
+    plant_.run(3s);
+    EXPECT_EQ(plant_.velocity(), 0);
+    EXPECT_LE(std::abs(plant_.position()), kClose);
+    const std::int64_t motion = a_.word(shown::motion_state);
+    EXPECT_TRUE(motion == kNone || motion == kAborted) << motion;
+  }
+  static constexpr std::int64_t kHoming = 4;
+};
+
+TEST_P(IgnoredHoming, NeverComesLate) {
+  is_ready_to_home(stepper() ? kOrigin : kIndex);
+  never_homes();
+}
+
+class IgnoredReference : public IgnoredHoming {};
+
+// The bit of the homing before stands as if it were this one's.
+TEST_P(IgnoredReference, OfBeforeIsNotTakenForTheNewOne) {
+  is_ready_to_home(kHere);
+  ASSERT_EQ(a_.command(kHome), kOk);
+  plant_.run(2s);
+  constexpr std::int64_t kCompleted = 2;
+  ASSERT_EQ(a_.word(shown::motion_state), kCompleted);
+  ASSERT_EQ(a_.row(row::homing_method, kNegativeLimit), kOk);
+  ASSERT_EQ(a_.command(0), kOk);
+  numb(plant_.stage, GetParam(), true);
+  fails(kHome);
+  plant_.run(3s);
+  EXPECT_EQ(plant_.velocity(), 0);
+}
+
+// A drive that has found its reference where it stands shows nothing of finding it once more.
+TEST_P(IgnoredReference, ThatIsFoundWhereItStandsIsNotTakenForIgnored) {
+  is_ready_to_home(kHere);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(a_.command(0), kOk);
+    EXPECT_EQ(a_.command(kHome), kOk) << i;
+    plant_.run(2s);
+  }
+  EXPECT_FALSE(plant_.logged("was not reached"));
+}
+
+TEST_P(IgnoredHoming, IsNotSaidOfOneThatBegins) {
+  is_ready_to_home(stepper() ? kOrigin : kIndex);
+  EXPECT_EQ(a_.command(kHome), kOk);
+  EXPECT_TRUE(plant_.turns_within(1s));
+  EXPECT_EQ(a_.word(shown::axis_state), kHoming);
+  EXPECT_FALSE(plant_.logged("was not reached"));
+}
+
 // The others have no mode display, or their sheets print none: the mode that was written is all that can be read back.
 constexpr auto shows_mode = [](Subject s) {
   return s == Subject::jd_serial || s == Subject::jd_can || s == Subject::leadshine;
@@ -191,6 +368,12 @@ INSTANTIATE_TEST_SUITE_P(Every, NotReached, testing::ValuesIn(kSubjects), named)
 INSTANTIATE_TEST_SUITE_P(Every, Withdrawn, testing::ValuesIn(subjects(can_be_disabled)), named);
 INSTANTIATE_TEST_SUITE_P(Every, Disobeyed, testing::ValuesIn(subjects(can_be_disabled)), named);
 INSTANTIATE_TEST_SUITE_P(Every, LateStart, testing::ValuesIn(subjects(is_kinco)), named);
+INSTANTIATE_TEST_SUITE_P(Every, Ignored, testing::ValuesIn(kSubjects), named);
+INSTANTIATE_TEST_SUITE_P(Every, IgnoredRun, testing::ValuesIn(subjects(has_speeds)), named);
+INSTANTIATE_TEST_SUITE_P(Every, IgnoredDisable, testing::Values(Subject::id286pro), named);
+INSTANTIATE_TEST_SUITE_P(Every, LongRamp, testing::ValuesIn(subjects(has_homing)), named);
+INSTANTIATE_TEST_SUITE_P(Every, IgnoredHoming, testing::ValuesIn(subjects(has_homing)), named);
+INSTANTIATE_TEST_SUITE_P(Every, IgnoredReference, testing::ValuesIn(subjects(is_cia402)), named);
 INSTANTIATE_TEST_SUITE_P(Every, LateMode, testing::ValuesIn(subjects(shows_mode)), named);
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/obey/open_points.hpp"
 
 #include "gateway/core/random.hpp"

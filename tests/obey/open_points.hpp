@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the makers' sheets leave open of a drive, and how fast it and its line are: drawn from a number. Promises the
 // same for the same number. Never changes what a sheet says.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a plant can suffer, the same for every drive and protocol.
 #include <type_traits>
 

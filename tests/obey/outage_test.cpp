@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // That each outage does to the motor and to the wire what it says, and no more, on every drive and protocol.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/obey/plant.hpp"
 
 #include <algorithm>
@@ -21,10 +22,20 @@ std::vector<GatewayStage::Line> one_line(Subject subject, const PlantOptions& op
   std::vector<GatewayStage::Line> lines;
   lines.push_back(line_with(subject, options.lease, options.neighbour));
   if (options.open_points) draw_open_points(lines.back(), *options.open_points);
+  if (options.other_bus) {
+    lines.push_back(line_of(simulated::KincoType::jd, kAxisOfOtherBus));
+    lines.back().name = "other";
+  }
   return lines;
 }
 
 }  // namespace
+
+modbus_tcp::ListenerSettings plain(modbus_tcp::ListenerSettings listener) {
+  listener.float_numbers = listener.staged_halves = listener.posted_writes = listener.offline_reads_fail = false;
+  listener.idle_timeout = Duration{};
+  return listener;
+}
 
 Plant::Plant(Subject which, PlantOptions options)
     : subject(which),
@@ -36,7 +47,7 @@ Plant::Plant(Subject which, PlantOptions options)
       }),
       neighbour_(options.neighbour && may_have_neighbour(which)),
       power_back_(stage.runtime().make_timer([this] { restart_drive(); })),
-      fitter_(port_, stage.runtime(), kHostOfFitter),
+      fitter_(port_, stage.runtime(), kHostOfFitter, plain(listener)),
       a(port_, stage.runtime(), kHostOfA),
       b(port_, stage.runtime(), kHostOfB) {
   listener.idle_timeout = Duration{};  // tests that wait for a minute keep their connections

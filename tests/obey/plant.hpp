@@ -1,4 +1,5 @@
-// One simulated drive, or two on one line, behind the shipped core and the shipped Modbus-TCP face, in manual time; a
+// SPDX-License-Identifier: Apache-2.0
+// One simulated drive, or two on one line, behind the shipped core and the shipped Modbus-TCP server, in manual time; a
 // PLC (a), a panel (b) and whoever set the plant up, each with an address of its own. Promises that what the motor does
 // is read from the simulated drive, and that a and b have written nothing before the test does. Never decides what is
 // right.
@@ -8,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/upstream/modbus_tcp/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
 #include "tests/obey/client.hpp"
 #include "tests/obey/subject.hpp"
 
@@ -20,7 +21,11 @@ struct PlantOptions {
   std::uint64_t seed = 1;
   std::optional<std::uint64_t> open_points{};  ///< drawn from this (open_points.hpp); none: as the sheets print them
   bool neighbour = false;                      ///< a second drive on the line, where one may be (subject.hpp)
+  bool other_bus = false;                      ///< a line of its own beside it, with axis kAxisOfOtherBus
 };
+inline constexpr AxisNumber kAxisOfOtherBus = 50;
+/// The same listener for whoever writes integers, whole and awaited.
+[[nodiscard]] modbus_tcp::ListenerSettings plain(modbus_tcp::ListenerSettings listener);
 /// Leases of 2 s, quick_stop, any request.
 [[nodiscard]] inline PlantOptions with_leases(bool client_is_address = false) {
   PlantOptions options{.lease = LeaseRules{}};

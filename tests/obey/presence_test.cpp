@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who is there and who is not: a drive that was never there, and a device that is not what its profile says.
 #include <gtest/gtest.h>
 

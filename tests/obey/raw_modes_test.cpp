@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Raw velocity and torque modes, as a servo's programmer writes them (3.4): the motor does what the set-point says, as
 // long as the mode runs.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A reload: what becomes of a bus that changes, of its motor and of its clients; and that a refused one changes
 // nothing.
 #include <gtest/gtest.h>

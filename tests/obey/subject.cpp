@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/obey/subject.hpp"
 
 #include <ostream>
@@ -230,9 +231,28 @@ void lock(GatewayStage& stage, Subject subject, bool locked) {
 }
 
 void numb(GatewayStage& stage, Subject subject, bool numb) {
+  if (subject == Subject::id286pro) return stage.id286pro(0).numb(numb);
   if (is_keya(subject)) return stage.keya(0).numb(numb);
   if (subject == Subject::leadshine) return stage.leadshine(0).numb(numb);
   stage.drive(0).numb(numb);
+}
+
+ObjectPlace readable_object(Subject subject) {
+  switch (subject) {
+    case Subject::jd_rtu:
+    case Subject::md_rtu:
+      return {0x3200};
+    case Subject::id286pro:
+      return {117};
+    case Subject::keya_can_speed:
+    case Subject::keya_can_position:
+      return {0x2103, 1};
+    case Subject::keya_canopen_speed:
+    case Subject::keya_canopen_position:
+      return {0x2012};
+    default:
+      return is_keya(subject) ? ObjectPlace{0x2102} : ObjectPlace{0x6041};
+  }
 }
 
 std::optional<TargetObject> target_object(Subject subject) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The drives of these tests, each on every protocol it speaks; a Keya in each of the two modes that its maker's tool
 // can set. Promises one line whose first drive is axis 1. Never says what is right: the tests and the contract do.
 #pragma once
@@ -132,8 +133,10 @@ void break_down(GatewayStage& stage, Subject subject);
 /// the hard-wired enable switch.
 void lock(GatewayStage& stage, Subject subject, bool locked);
 /// The drive acknowledges commands and carries none out; when it comes to, a CiA 402 drive carries out those in effect.
-/// Not of an iD286pro.
 void numb(GatewayStage& stage, Subject subject, bool numb);
+
+/// An object of the drive that can be read at any time: its statusword where it has one, else a speed.
+[[nodiscard]] ObjectPlace readable_object(Subject subject);
 
 /// The drive's own object for a position target, in its own counts, where the mailbox can write it without the motor
 /// moving for it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A start uses the set-point that was accepted last (A7), whoever wrote it, by whichever way in, whatever the drive
 // happens to hold.
 #include <gtest/gtest.h>

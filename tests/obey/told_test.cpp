@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What log and events say of who asked for what, what was refused and why, and how leases and faults end. A line is
 // told once, and no client can fill the log.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Zeros (A6): what a scanner's image holds before its program runs asks for nothing; in some rows 0 means "leave as it
 // is".
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A clean Debian in a folder: what runs in it, a stand-in for its systemd, and two network namespaces with a cable between them."""
 import configparser
 import os

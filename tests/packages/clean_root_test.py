@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The packages as a user has them: see tests/packages/run, which calls this.
 
 clean_root_test.py SOURCE_FOLDER BUILD_FOLDER WORK_FOLDER CLEAN_ROOT_TAR [unittest's arguments]

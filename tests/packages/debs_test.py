@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What deploy/package makes of a build folder: packages with all that they should hold, that need no more than they say.
 
 debs_test.py SOURCE_FOLDER BUILD_FOLDER [unittest's arguments]
@@ -22,7 +23,8 @@ OF_ONE = {
               "/usr/share/man/man5/gateway.json.5.gz", "/usr/share/axisgate/schemas/gateway.schema.json",
               "/usr/share/axisgate/schemas/drive-profile.schema.json", "/usr/share/doc/axisgate/examples/gateway.json",
               "/usr/share/doc/axisgate/examples/70-axisgate.rules", "/usr/share/doc/axisgate/examples/80-can0.network",
-              "/usr/share/doc/axisgate/SECURITY.md", "/usr/share/doc/axisgate/installation.md"),
+              "/usr/share/doc/axisgate/SECURITY.md", "/usr/share/doc/axisgate/installation.md", "/usr/share/doc/axisgate/plc.md",
+              "/usr/share/doc/axisgate/examples/plc/axisgate.st", "/usr/share/doc/axisgate/examples/plc/axisgate.xml"),
     DDS: ("/usr/share/axisgate/schemas/axisgate.idl", "/usr/share/doc/axisgate-dds/examples/axisgate-dds.nft",
           "/usr/share/doc/axisgate-dds/examples/README.md"),
     SIMULATOR: (),

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What a program's --help says, its manual page says in the same words, and its completions offer: no more and no less.
 
 words_test.py PROGRAM [unittest's arguments]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whatever stands in a profile, reading it ends in faults or in a profile: never in an exception or a crash.
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
@@ -20,7 +21,7 @@ void read_with(json document, const json::json_pointer& place, const json& value
                const std::string& protocol) {
   document[place] = value;
   std::ofstream(file) << document;
-  const LoadedProfile loaded = load_profile(file);
+  const LoadedProfile loaded = load_profile(file, {AXISGATE_SOURCE_DIR "/tests/profiles/valid"});
   if (loaded.faults.empty()) {
     static_cast<void>(resolve(loaded, one_axis(protocol)));
     return;
@@ -28,11 +29,12 @@ void read_with(json document, const json::json_pointer& place, const json& value
   for (const Fault& fault : loaded.faults) EXPECT_FALSE(fault.message.empty());
 }
 
-void expect_no_throw(const std::string& profile, const std::string& protocol, const std::vector<json>& values) {
+void expect_no_throw(const std::string& profile, const std::string& protocol, const std::vector<json>& values,
+                     std::size_t least = 150) {
   const json document = json::parse(test::content(valid_file(profile)));
   std::vector<json::json_pointer> all;
   places(document, json::json_pointer(), all);
-  EXPECT_GE(all.size(), 150U);
+  EXPECT_GE(all.size(), least);
   const test::OwnFolder folder;
   const std::string file = folder.path() / (profile + ".json");
   for (const json::json_pointer& place : all)
@@ -47,6 +49,12 @@ TEST(AnyValue, AtAnyPlaceOfAProfileNeverThrows) {
 
 TEST(AnyValue, AtAnyPlaceOfAVirtualDrivesProfileNeverThrows) {
   expect_no_throw("virtual", "modbus-rtu", {-1, "lines", json::array({"x"})});
+}
+
+TEST(AnyValue, AtAnyPlaceOfAProfileThatExtendsAnotherNeverThrows) {
+  const std::vector<json> values{nullptr, -1, "$axis", json::array({"x"}), json::object({{"A", 7}})};
+  expect_no_throw("derived", "kinco-serial", values, 50);
+  expect_no_throw("each-axis", "modbus-rtu", values, 20);
 }
 
 }  // namespace

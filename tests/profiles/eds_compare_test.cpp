@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // A profile against an EDS: agreement is silence, and each way to contradict has its own words, with both places.
-#include "gateway/drive/eds_compare.hpp"
+#include "gateway/profile/eds/eds_compare.hpp"
 
 #include <gmock/gmock.h>
 

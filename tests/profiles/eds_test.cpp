@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reading an EDS: what such files look like in practice, and what a damaged one is told.
-#include "gateway/drive/eds.hpp"
+#include "gateway/profile/eds/eds.hpp"
 
 #include <gmock/gmock.h>
 

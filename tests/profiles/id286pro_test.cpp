@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped iD286pro profile against the manual's register table, conversions and codes.
 #include <map>
 #include <regex>
 #include <set>
 
-#include "gateway/drive/profile_scale.hpp"
+#include "gateway/model/scale.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::drive {
@@ -221,8 +222,8 @@ TEST(Id286pro, ItsLineIsAsTheManualSays) {
   EXPECT_EQ(model.rtu.broadcast, 255);
   EXPECT_EQ(model.rtu.answer, std::chrono::milliseconds(20));
   EXPECT_GE(model.timeout, 2 * model.rtu.answer);
-  EXPECT_GE(model.fence.worst_reply, model.timeout);
-  EXPECT_TRUE(model.fence.by_length);
+  EXPECT_GE(model.resync.worst_reply, model.timeout);
+  EXPECT_TRUE(model.resync.by_length);
   EXPECT_FALSE(model.stops_by_itself);
   EXPECT_EQ(model.nvm, Nvm::yes) << "a register that is not in the table is stored as well, so far as is known";
 }

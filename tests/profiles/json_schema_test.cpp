@@ -1,4 +1,5 @@
-#include "gateway/drive/json_schema.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/profile/json/json_schema.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped Keya profile in tests: configured for one or two motors, and what its model says in short words.
 // Promises a model, or a failed test that shows every fault.
 // Never knows what is right: the tests say it, from the manual's own tables.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped Keya profile: the steps of each command on each protocol and in each mode.
 #include <gmock/gmock.h>
 

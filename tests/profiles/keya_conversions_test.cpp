@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped Keya profile: the manual's conversions come out, and what counts by unknown constants is not supported.
 #include <gmock/gmock.h>
 

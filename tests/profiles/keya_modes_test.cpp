@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped Keya profile: which motor an axis is, which modes it has and what it can do in them, what is repeated.
 #include <gmock/gmock.h>
 
@@ -74,7 +75,7 @@ TEST(KeyaModes, AMotorThatIsNoAxisIsLeftOutButForTheControlFrame) {
     EXPECT_EQ(model.composed.size(), others.empty() ? 0U : 4U) << protocol;
     EXPECT_THAT(model.checks, IsEmpty()) << "motor B's mode is nowhere to be seen";
   }
-  const CanopenFacts facts = keya::model(keya::drive("canopen", {"B"})).canopen;
+  const CanopenProperties facts = keya::model(keya::drive("canopen", {"B"})).canopen;
   ASSERT_EQ(facts.tpdos.size(), 2U);
   EXPECT_EQ(facts.tpdos[1].map.size(), 3U) << "without the faults of motor A";
   EXPECT_THAT(facts.unused_tpdos, ElementsAre(1));
@@ -193,7 +194,7 @@ TEST(KeyaModes, OneQueryAnswersForBothMotorsInOnePollClass) {
       EXPECT_EQ(axis.binding(Quantity::position_actual)->poll, PollClass::fast);
       EXPECT_EQ(axis.binding(Quantity::motor_temperature)->poll, PollClass::slow);
       for (const Binding& binding : axis.bindings) {
-        if (binding.object == kNoObject || model.object(binding.object).made) continue;
+        if (binding.object == kNoObject || model.object(binding.object).emulated) continue;
         const bus::ObjectAddress at = model.object(binding.object).address;
         if (binding.quantity == Quantity::torque_actual) continue;  // the same object as current_actual
         EXPECT_EQ(classes.emplace(std::pair(at.index, at.sub), binding.poll).first->second, binding.poll)

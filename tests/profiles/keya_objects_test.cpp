@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped Keya profile against the manual's tables: where each object is, how it is read, what each fault means.
 #include <gmock/gmock.h>
 
@@ -94,7 +95,7 @@ TEST(Keya, EveryAnswerTheManualPrintsIsReadAsItSays) {
 std::set<bus::ObjectAddress> places(const DriveModel& model) {
   std::set<bus::ObjectAddress> out;
   for (const ObjectDef& object : model.objects)
-    if (!object.made) out.insert(object.address);
+    if (!object.emulated) out.insert(object.address);
   return out;
 }
 
@@ -109,7 +110,7 @@ TEST(Keya, EveryCommandAndQueryOfItsOwnCanProtocolIsThere) {
     const auto sub = row.at("sub").get<std::uint8_t>();
     int found = 0;
     for (const ObjectDef& object : model.objects) {
-      if (object.made || object.address.index != index || object.address.sub != sub) continue;
+      if (object.emulated || object.address.index != index || object.address.sub != sub) continue;
       ++found;
       const bool command = group == "keya-can command";
       EXPECT_EQ(object.writable, command);
@@ -162,7 +163,7 @@ TEST(Keya, TheControlFrameIsListedInItsOrderAndWrittenOnly) {
       EXPECT_EQ(object.slot, i % 2);
     }
     for (const ObjectDef& object : model.objects) {
-      EXPECT_EQ(object.composed, !object.made && object.writable) << object.name;
+      EXPECT_EQ(object.composed, !object.emulated && object.writable) << object.name;
       if (object.composed) {
         EXPECT_FALSE(object.readable) << object.name;
       }
@@ -194,7 +195,7 @@ TEST(Keya, TheObjectsOfItsCanopenDictionaryAreAsPrinted) {
     if (row.at("group") == "canopen")
       printed[{std::stoi(row.at("index").get<std::string>(), nullptr, 16), row.at("sub").get<int>()}] = row;
   for (const ObjectDef& object : model.objects) {
-    if (object.made) continue;
+    if (object.emulated) continue;
     SCOPED_TRACE(object.name);
     const auto row = printed.find({object.address.index, object.address.sub});
     ASSERT_NE(row, printed.end());
@@ -213,13 +214,13 @@ TEST(Keya, TheObjectsOfItsCanopenDictionaryAreAsPrinted) {
 
 TEST(Keya, MapsTheTpdosTheDriveHasByItself) {
   const DriveModel model = keya::model(keya::drive("canopen"));
-  const CanopenFacts& facts = model.canopen;
+  const CanopenProperties& facts = model.canopen;
   ASSERT_EQ(facts.tpdos.size(), 3U);
   std::map<std::pair<int, int>, std::string> defaults;
   for (const json& row : keya::vectors("objects"))
     if (row.at("group") == "canopen" && row.contains("default") && row["default"].is_string())
       defaults[{std::stoi(row.at("index").get<std::string>(), nullptr, 16), row.at("sub").get<int>()}] = row["default"];
-  for (const TpdoFacts& tpdo : facts.tpdos) {
+  for (const TpdoProperties& tpdo : facts.tpdos) {
     EXPECT_EQ(tpdo.type, 255);
     EXPECT_EQ(tpdo.event_ms, 100);
     EXPECT_EQ(tpdo.inhibit, 20) << "in steps of 1 ms";
@@ -247,7 +248,7 @@ TEST(Keya, WhatComesUnaskedIsNeverAskedFor) {
 
 TEST(Keya, ItsFaultsHaveTheManualsRemediesAndDisabledIsNone) {
   const DriveModel model = keya::model(keya::drive("keya-can"));
-  const VirtualFacts& facts = *model.axes[0].virtual_axis;
+  const VirtualProperties& facts = *model.axes[0].virtual_axis;
   const ObjectDef& word = keya::object(model, "A.fault");
   std::map<int, AlarmRow> rows;
   for (const AlarmRow& row : model.alarms) rows[row.bit] = row;
@@ -274,12 +275,12 @@ TEST(Keya, ItsFaultsHaveTheManualsRemediesAndDisabledIsNone) {
   EXPECT_EQ(vendor.bits[0].count, 15);
 }
 
-TEST(Keya, AFenceIsReadsThatNoOtherAnswers) {
+TEST(Keya, AResynchronisationIsReadsThatNoOtherAnswers) {
   for (const std::string protocol : keya::kProtocols)
     for (const std::vector<std::string>& motors : {std::vector<std::string>{"A", "B"}, {"B"}}) {
       const DriveModel model = keya::model(keya::drive(protocol, motors));
       std::set<std::pair<int, int>> asked;
-      for (const FenceRead& read : model.fence.candidates) {
+      for (const ResyncRead& read : model.resync.candidates) {
         EXPECT_TRUE(model.object(read.object).readable) << protocol;
         asked.insert({model.object(read.object).address.index, model.object(read.object).address.sub});
       }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The manuals' conversions of speed, acceleration, current and position, through the shipped profiles.
 #include <cmath>
 #include <regex>

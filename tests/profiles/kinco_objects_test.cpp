@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped Kinco profiles against the manuals' object tables: no address, width, sign or access may be mistyped.
 #include <map>
 
@@ -65,6 +66,15 @@ TEST(KincoJd, EachBitOfTheFirstFaultWordHasItsCode) {
   EXPECT_EQ(model.alarms.size(), 16U);
   for (const AlarmRow& row : model.alarms) EXPECT_NE(row.code, 0) << row.text;
   EXPECT_EQ(model.alarms.back().bit, 0) << "the vaguest fault speaks last";
+}
+
+TEST(Kinco, WhatItsMakerDoesBesideCia402IsInItsProfile) {
+  for (const char* drive : {"kinco-jd", "kinco-md"}) {
+    const AxisModel axis = resolved(shipped(drive), kinco_axis()).axes[0];
+    EXPECT_EQ(axis.cia402.velocity_modes, std::vector<std::int16_t>{-3}) << drive;
+    EXPECT_EQ(axis.cia402.follow_bits, 0xF800) << drive;
+    EXPECT_EQ(axis.velocity_lag, std::chrono::milliseconds(300)) << drive;
+  }
 }
 
 TEST(KincoMd, TheSecondFaultWordSpeaksBeforeTheBitThatPointsToIt) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped Leadshine LD2-CAN profile against the manual: objects, conversions, alarms, and what it does about the
 // drive's own traps.
 #include <gmock/gmock.h>
@@ -7,7 +8,7 @@
 #include <regex>
 #include <set>
 
-#include "gateway/drive/profile_scale.hpp"
+#include "gateway/model/scale.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::drive {
@@ -83,7 +84,7 @@ TEST(Leadshine, NothingIsMappedThatIsPrintedAsNotMappable) {
     if (row["pdo"].is_string() && row["sub"].is_number())
       pdo[{hex(row["index"]), row["sub"].get<std::int64_t>()}] = row["pdo"].get<std::string>();
   ASSERT_THAT(model.canopen.tpdos, SizeIs(4));
-  for (const TpdoFacts& tpdo : model.canopen.tpdos) {
+  for (const TpdoProperties& tpdo : model.canopen.tpdos) {
     EXPECT_EQ(tpdo.type, 255) << "254 is not supported";
     EXPECT_GT(tpdo.inhibit.value_or(0), 0) << "with type 255 an inhibit time must be set";
     EXPECT_EQ(tpdo.event_ms, std::nullopt) << "an event timer is not mentioned";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A table of mistakes (mistakes.txt): what is changed in a right file, and the words that this must cause.
 // Promises that each line was understood and each change changed something; a table that is wrong throws, with its
 // line. Never judges a file: that is up to the test.

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // The model's own arithmetic: numbers of an object, one rounding, conditions.
-#include "gateway/drive/model.hpp"
+#include "gateway/model/model.hpp"
 
 #include <gtest/gtest.h>
 

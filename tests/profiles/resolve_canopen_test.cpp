@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a CANopen section of a profile comes to: mapping, heartbeats and guarding, what the drive must hold to stop by
 // itself, and the identity that a configuration asks for.
 #include <gmock/gmock.h>
@@ -79,10 +80,10 @@ TEST(KincoOnCanopen, StateAndPositionComeTogether) {
 }
 
 TEST(KincoOnCanopen, InhibitTimesAreInTheUnitsOfTheDrive) {
-  const TpdoFacts jd = on_canopen("kinco-jd").canopen.tpdos.at(0);
+  const TpdoProperties jd = on_canopen("kinco-jd").canopen.tpdos.at(0);
   EXPECT_EQ(jd.inhibit, 50) << "of 100 us";
   EXPECT_EQ(jd.event_ms, std::nullopt);
-  const TpdoFacts md = on_canopen("kinco-md").canopen.tpdos.at(0);
+  const TpdoProperties md = on_canopen("kinco-md").canopen.tpdos.at(0);
   EXPECT_EQ(md.inhibit, 5) << "of 1 ms";
   EXPECT_EQ(md.event_ms, 20);
   EXPECT_EQ(jd.inhibit_time, milliseconds(5));
@@ -125,7 +126,7 @@ TEST_F(CanopenProfile, EveryKeyArrives) {
   canopen()["tpdo"][0].update({{"type", 4}, {"inhibit_us", 250}});
   canopen()["unused_tpdos"] = {1, 3};
   canopen()["guard"] = {{"time_ms", 200}, {"life_factor", 5}};
-  const CanopenFacts facts = model().canopen;
+  const CanopenProperties facts = model().canopen;
   EXPECT_EQ(facts.sync, milliseconds(10));
   EXPECT_EQ(facts.boot, milliseconds(3000));
   EXPECT_EQ(facts.confirm, milliseconds(250));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commands, modes, homing, checks and facts of the resolved Kinco models.
 #include <algorithm>
 
@@ -112,8 +113,8 @@ TEST(KincoModel, FactsOfTheLineAreThere) {
   EXPECT_EQ(model.profile, "kinco-jd");
   EXPECT_EQ(model.title, "Kinco JD");
   EXPECT_FALSE(model.stops_by_itself);
-  EXPECT_EQ(model.fence.candidates.size(), 4U);
-  EXPECT_EQ(model.fence.worst_reply, std::chrono::milliseconds(500));
+  EXPECT_EQ(model.resync.candidates.size(), 4U);
+  EXPECT_EQ(model.resync.worst_reply, std::chrono::milliseconds(500));
   EXPECT_TRUE(model.setup.empty()) << "the serial protocol needs none";
   EXPECT_EQ(model.axes[0].number, 7);
   EXPECT_EQ(model.axes[0].name, "lift");

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Constants that are read from the drive: their rules, what waits for them, and scale and limits once they are known.
 #include <gmock/gmock.h>
 
-#include "gateway/drive/profile_scale.hpp"
+#include "gateway/model/scale.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::drive {

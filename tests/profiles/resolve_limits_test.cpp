@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limits of a write: register type, object, profile and axis together, rounded inwards.
-#include "gateway/drive/profile_scale.hpp"
+#include "gateway/model/scale.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::drive {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What cannot be resolved is refused by name, pointing into the drive's entry of the configuration.
 #include <gmock/gmock.h>
 

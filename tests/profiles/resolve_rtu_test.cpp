@@ -1,4 +1,5 @@
-// Profiles on Modbus RTU: what each Kinco gives there, its line, and the reads that stand as fences.
+// SPDX-License-Identifier: Apache-2.0
+// Profiles on Modbus RTU: what each Kinco gives there, its line, and the reads that stand as resynchronisation reads.
 #include <gmock/gmock.h>
 
 #include "tests/profiles/resolving.hpp"
@@ -70,29 +71,29 @@ TEST(KincoRtu, TellsItsLine) {
 }
 
 /// "statusword/1 position_actual/2"
-std::string fences(const DriveModel& model) {
+std::string resyncs(const DriveModel& model) {
   std::string out;
-  for (const FenceRead& read : model.fence.candidates)
+  for (const ResyncRead& read : model.resync.candidates)
     out += (out.empty() ? "" : " ") + model.object(read.object).name + "/" + std::to_string(read.registers);
   return out;
 }
 
-TEST(Rtu, FencesDifferInLengthOnly) {
-  EXPECT_EQ(fences(on_rtu("kinco-jd")), "statusword/1 position_actual/2");
-  EXPECT_EQ(fences(on_rtu("kinco-md")), "statusword/1 position_actual/2");
-  EXPECT_EQ(fences(resolved(shipped("id286pro"), one_axis("modbus-rtu"))),
+TEST(Rtu, ResynchronisationReadsDifferInLengthOnly) {
+  EXPECT_EQ(resyncs(on_rtu("kinco-jd")), "statusword/1 position_actual/2");
+  EXPECT_EQ(resyncs(on_rtu("kinco-md")), "statusword/1 position_actual/2");
+  EXPECT_EQ(resyncs(resolved(shipped("id286pro"), one_axis("modbus-rtu"))),
             "fault_code/1 fault_code/2 fault_code/3 fault_code/4");
-  EXPECT_EQ(fences(resolved(valid_file("virtual"), one_axis("modbus-rtu"))), "fault_code/1 fault_code/3 position/2");
-  EXPECT_TRUE(on_rtu("kinco-jd").fence.by_length);
+  EXPECT_EQ(resyncs(resolved(valid_file("virtual"), one_axis("modbus-rtu"))), "fault_code/1 fault_code/3 position/2");
+  EXPECT_TRUE(on_rtu("kinco-jd").resync.by_length);
 }
 
-TEST(Rtu, ElsewhereAFenceIsAnObjectAsItIs) {
-  EXPECT_EQ(fences(on_serial("kinco-jd")), "controlword/0 mode/0 fault_word_1/0 output_levels/0");
-  EXPECT_FALSE(on_serial("kinco-jd").fence.by_length);
+TEST(Rtu, ElsewhereAResynchronisationReadIsAnObjectAsItIs) {
+  EXPECT_EQ(resyncs(on_serial("kinco-jd")), "controlword/0 mode/0 fault_word_1/0 output_levels/0");
+  EXPECT_FALSE(on_serial("kinco-jd").resync.by_length);
 }
 
 TEST(Rtu, FactsOfTheLineAreTheProfiles) {
-  const RtuFacts facts = resolved(valid_file("virtual"), one_axis("modbus-rtu")).rtu;
+  const RtuProperties facts = resolved(valid_file("virtual"), one_axis("modbus-rtu")).rtu;
   EXPECT_FALSE(facts.low_word_first);
   EXPECT_EQ(facts.max_registers, 8);
   EXPECT_THAT(facts.runs, ElementsAre(Pair(10, 13), Pair(100, 109)));

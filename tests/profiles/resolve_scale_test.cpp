@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Units of an axis: units per revolution, inversion, torque by rated current, composed bits.
 #include "tests/profiles/resolving.hpp"
 

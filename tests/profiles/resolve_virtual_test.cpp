@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A drive that is no CiA 402 one, resolved: the gateway's own objects, what the state is made from, codes and values.
 #include <gmock/gmock.h>
 
@@ -14,10 +15,10 @@ DriveModel virtual_drive() { return resolved(valid_file("virtual"), one_axis("mo
 TEST(VirtualDrive, HasAStatuswordAControlwordAndAModeThatTheGatewayMakes) {
   const DriveModel model = virtual_drive();
   const AxisModel& axis = model.axes[0];
-  const std::vector<ObjectId> made{axis.statusword, axis.controlword, axis.mode};
-  EXPECT_THAT(names(model, made), ElementsAre("statusword", "controlword", "mode"));
-  for (const ObjectId id : made) {
-    EXPECT_TRUE(model.object(id).made);
+  const std::vector<ObjectId> emulated{axis.statusword, axis.controlword, axis.mode};
+  EXPECT_THAT(names(model, emulated), ElementsAre("statusword", "controlword", "mode"));
+  for (const ObjectId id : emulated) {
+    EXPECT_TRUE(model.object(id).emulated);
     EXPECT_TRUE(model.object(id).readable);
     EXPECT_EQ(model.object(id).slot, 0);
   }
@@ -26,7 +27,8 @@ TEST(VirtualDrive, HasAStatuswordAControlwordAndAModeThatTheGatewayMakes) {
   EXPECT_TRUE(model.object(axis.controlword).writable);
   EXPECT_EQ(model.object(axis.mode).range(), (Range{-128, 127}));
   for (std::size_t i = 0; i < model.objects.size(); ++i)
-    EXPECT_EQ(model.objects[i].made, std::find(made.begin(), made.end(), i) != made.end()) << model.objects[i].name;
+    EXPECT_EQ(model.objects[i].emulated, std::find(emulated.begin(), emulated.end(), i) != emulated.end())
+        << model.objects[i].name;
   EXPECT_EQ(model.find({0, 0}), kNoObject) << "they have no address of the drive";
 }
 
@@ -53,7 +55,7 @@ TEST(VirtualDrive, ItsModesAreTheRegistersOwnNumbers) {
   EXPECT_EQ(virtual_drive().axes[0].supported_modes, 0x0025);
 }
 
-TEST(VirtualDrive, ItsStateIsMadeFromTheFaultFirst) {
+TEST(VirtualDrive, ItsStateIsEmulatedFromTheFaultFirst) {
   const DriveModel model = virtual_drive();
   EXPECT_THAT(names(model, model.axes[0].state_sources), ElementsAre("fault_code", "run_state"));
   const DriveModel kinco = resolved(shipped("kinco-jd"), kinco_axis());

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Resolves shipped and test profiles in tests, with one axis and what it needs.
 // Promises a model, or a failed test that shows every fault.
 // Never reads a configuration.
@@ -9,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "gateway/drive/profile_loader.hpp"
+#include "gateway/profile/resolve/profile_resolve.hpp"
 #include "tests/stage/profile_once.hpp"
 
 namespace axisgate::drive {

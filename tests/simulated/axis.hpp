@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The motor: demanded and actual position in 1/16384 count, moved one millisecond at a time.
 // Promises exact integer steps, index pulses at their exact place, and a stand-still at stops or while jammed.
 // Never decides where to go.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A drive behind a CAN node: the node speaks CiA 301, the drive holds the objects and moves.
 // Promises that reads and writes act at once. Never sees a frame.
 #pragma once

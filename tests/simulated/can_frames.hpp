@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What frames on a CANopen bus are made of: identifiers (CiA 301, predefined connection set), numbers, time on the
 // wire. Promises the sheets' identifiers (JD 2.3, MD 4.2, LD2 2.3). Never uses the gateway's codec, so that a mistake
 // there cannot hide here.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/simulated/can_line.hpp"
 
 #include <stdexcept>
@@ -118,7 +119,7 @@ bool CanLine::has(DriveFault fault) const {
   }
 }
 
-std::size_t CanLine::add_twin(std::size_t position) {
+std::size_t CanLine::add_duplicate(std::size_t position) {
   (void)add(CanDriveOptions(slots_.at(position).options));
   return slots_.size() - 1;
 }

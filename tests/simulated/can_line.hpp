@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One CAN bus with simulated drives of several kinds, as the host's end of the cable sees it.
 // Promises arbitration: of the frames that wait, the lowest identifier goes next, and each takes its bits' time; a
 // drive answers in order. Never reads a clock and never delivers a frame outside from_host() and advance().
@@ -68,7 +69,7 @@ class CanLine {
   // A drive's own plug: off, it hears nothing and is not heard, and lives on.
   void connect(std::size_t position, bool connected);
   // A second drive of the same kind under the same number; it stands behind all others. Tells where.
-  std::size_t add_twin(std::size_t position);
+  std::size_t add_duplicate(std::size_t position);
   // The host's controller has left the bus, or is back: no frame passes either way. The drives hear each other.
   void set_bus_off(bool off);
   bool bus_off() const { return bus_off_; }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the drives of CanLine answer, and the faults in it.
 #include "tests/simulated/can_line.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The PDOs of a CANopen node: their communication and mapping objects (1400h, 1600h, 1800h, 1A00h and on), what is sent
 // when, and what a received one writes (CiA 301 7.2.2, 7.5.2.35 to 7.5.2.38).
 // Promises that a mapping changes only in pre-operational, while its PDO is off and has no entries, and that nothing is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A CAN bus behind a port that carries bytes: the drives of a CanLine, reached through an adapter of some kind.
 // Promises whole frames in order, each as the adapter of that kind puts it. Never acts on a frame itself.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One node on a CANopen bus (CiA 301 slave): NMT states, heartbeat, guarding, SDO, PDO, EMCY around a drive.
 // Promises that nothing but NMT and error control works while it is stopped, and nothing at all while it boots; that a
 // reply is given to a request alone. Never reads a clock and never knows a bus: CanLine does.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The communication objects of CanopenNode (CiA 301 7.5.2), 1000h to 1FFFh and MD's 6007h.
 #include "tests/simulated/canopen_node.hpp"
 

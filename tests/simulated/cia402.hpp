@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The CiA 402 state machine as the Kinco drives run it: states, the command in a controlword, one table of transitions.
 // Promises that 0x06, 0x0B and 0x0F do what JD 6.1 and MD 8.1 print for them.
 // Never waits, ramps or looks at a motor: the drive asks and obeys.

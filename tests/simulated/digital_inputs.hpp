@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The drive's digital inputs: pins, polarity 2010:01, simulation 2010:02 and the functions 2010:03 to :09 and :1D.
 // Promises that a limit function is at its limit while its input is inactive (JD K44, MD C50), wired or not.
 // Never decides what a function leads to.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fault switches of one drive on a line: each a probability per reply, and a number of next replies for tests.
 // Promises that a switch which is off draws no random number, so switching one fault on shifts no other draw before it.
 // Never touches the drive or the line; the line asks it.

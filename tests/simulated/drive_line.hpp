@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A line with simulated drives as the host's end of the cable sees it, whatever is spoken on it: bytes in, bytes out,
 // time pushed in. Promises to deliver nothing outside from_host() and advance(), and the same bytes at the same times
 // for the same seed and calls. Never reads a clock.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How one simulated drive is made: type, station, what its EEPROM holds, its mechanics, and the points the sheets leave
 // open. Promises that the defaults give a commissioned drive: DIN functions that block the bus removed and stored.
 // Never changes while the drive runs.

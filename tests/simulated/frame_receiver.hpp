@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collects the bytes a drive hears into ten-byte frames.
 // Promises: a frame is found however its bytes are split; a frame with a wrong sum is dropped whole and in silence
 // (JD 2.1, MD 2.2); a pause longer than the gap drops what was begun.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The homing methods of 6098 as a table: which signal, from which side, with or without the index pulse (JD 6.5,
 // MD 8.5). Promises CiA 402's meaning inside the groups, which the manual says the methods follow; its own figures are
 // lost. Never moves anything.

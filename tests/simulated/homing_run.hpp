@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One homing in mode 6, from the start bit to the reference or to failure.
 // Promises: search at 6099:01, the last run and the index search at 6099:02 (JD K26, MD C12), ramps of 609A, and that
 // the motor ends on the reference it latched. Never runs for ever: a search longer than `longest_search` revolutions

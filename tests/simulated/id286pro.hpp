@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One simulated iD286pro: registers, built-in motion controller, inputs, faults, EEPROM, as its fact sheet tells.
 // Promises the same answers for the same requests at the same times, and a record of every motion it began and why.
 // Never reads a clock, never draws a random number, and never knows a line: RtuLine does.
@@ -43,7 +44,8 @@ class Id286pro final : public RtuSlave {
   void lack(std::set<std::uint16_t> registers) { lacks_ = std::move(registers); }  // of another type: refused
   void inject_fault(std::uint16_t code, bool clearable = true);                    // the cause stays until cleared
   void clear_fault_cause() { cause_ = 0; }
-  void set_enable_switch(bool on);  // the hard-wired one: off frees the motor
+  void numb(bool numb) { numb_ = numb; }  // commands and targets are acknowledged, and none is carried out
+  void set_enable_switch(bool on);        // the hard-wired one: off frees the motor
   void set_input(int input, bool on);
   void jam(bool jammed) { axis_.jam(jammed); }               // the rotor stands; an open-loop drive does not see it
   RtuException poke(std::uint16_t row, std::int64_t value);  // as the maker's tool would write it: not counted
@@ -98,6 +100,7 @@ class Id286pro final : public RtuSlave {
   std::uint8_t unit_ = 1;
   bool internal_ = true;
   bool enable_switch_ = true;
+  bool numb_ = false;
   std::uint16_t fault_ = 0;
   std::uint16_t cause_ = 0;
   bool clearable_ = true;

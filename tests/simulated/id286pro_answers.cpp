@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests to the iD286pro's registers, and what a write leads to (iD286pro 2, 3, 4).
 #include <algorithm>
 
@@ -67,7 +68,7 @@ void Id286pro::written(const Id286proRegisters::Change& change, std::uint64_t ta
       if (!motion_.running()) obey_user_command(change.value);
       break;
     case target:  // "changing the target while moving takes effect", of an absolute move alone
-      if (motion_.task() == Id286proMotion::Task::absolute) motion_.retarget(change.value * fine_per_count);
+      if (!numb_ && motion_.task() == Id286proMotion::Task::absolute) motion_.retarget(change.value * fine_per_count);
       break;
     case 307:
       if (options_.speed_follows_register && motion_.task() == Id286proMotion::Task::speed) obey(3, tag);

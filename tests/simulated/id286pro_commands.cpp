@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What 0323, 0206 and the inputs' functions make the iD286pro do (iD286pro 5, 6, 7).
 #include <algorithm>
 
@@ -48,7 +49,7 @@ bool Id286pro::can_obey(std::uint16_t command) const {
 }
 
 void Id286pro::obey(std::uint16_t command, std::uint64_t tag) {
-  if (!can_obey(command)) return;
+  if (numb_ || !can_obey(command)) return;
   if (begins_motion(command)) {
     starts_.push_back({now_, tag, command});
     if (starts_.size() > start_limit) starts_.pop_front();

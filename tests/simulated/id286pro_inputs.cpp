@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/simulated/id286pro_inputs.hpp"
 
 namespace axisgate::simulated {

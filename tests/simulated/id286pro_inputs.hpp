@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The iD286pro's three inputs: terminals, simulated inputs 0410 to 0412 and functions 0400 to 0402 (iD286pro 5).
 // Promises that an input is on while its terminal or its simulation is, and that each rising edge is told once.
 // Never decides what a function leads to.

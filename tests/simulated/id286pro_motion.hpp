@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The iD286pro's built-in trapezoidal controller (iD286pro 6): move, run, stop, home, one millisecond at a time.
 // Promises that a move ends exactly on its target, that nothing passes a soft limit, and that a limit switch stops at
 // once. Never knows a register, a command number or a fault.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How one simulated iD286pro is made: address, what its EEPROM holds, its mechanics, and the points the sheet leaves
 // open. Promises that the defaults give a commissioned drive: internal pulses chosen and stored.
 // Never changes while the drive runs.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The iD286pro's registers (iD286pro 4 and 8): the 49 rows of its manual and the multi-segment area, with what a write
 // of each costs the EEPROM. Promises that a request is checked whole before any of it acts, and one counter of writes
 // per row that is stored. Never gives a register a meaning: that is the drive's part.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the drives of a line saw and sent: one entry per request that reached a drive, tied together by its tag.
 // Promises a bound (the oldest entries go first) and a hash over all entries ever made, for "same seed, same run".
 // Never alters what it records.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Keya on its maker's own CAN protocol (3): 29-bit identifiers, index low byte first, data high byte first.
 // Promises an acknowledge for each correct write, an answer to each correct read, and silence to all else; a heartbeat
 // each second with motor A's faults. Never does anything with a frame of 11 bits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Keya in its CANopen mode (6): the objects of its dictionary, which is not CiA 402's; commands are codes in 607Ah
 // and 6083h, their data 6081h and 6084h. Promises the widths and codes the manual prints, and an abort for every other
 // code. Never speaks CiA 301: CanopenNode does.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One simulated Keya KYDAS4860-2E: two motors, their fault words, the watchdog over both, what can be measured.
 // Promises the same answers for the same commands at the same times, whatever interface they came by, and a count of
 // what a test asks about: commands heard, moves begun, expiries of the watchdog.

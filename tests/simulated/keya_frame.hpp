@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The twelve-byte frames of a Keya on RS232 and RS485 (4, 5), as the drive sees them, and numbers high byte first.
 // Promises that on RS485 byte 11 is the sum of the others. Never uses the gateway's codec, so that a mistake there
 // cannot hide here.

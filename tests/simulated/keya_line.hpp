@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One serial line with simulated Keya drives: RS232 with one of them, or RS485 with several.
 // Promises that the heartbeat of RS232 comes between frames and never inside one, not even inside a reply that is
 // split; that a drive answers in order. Never reads a clock and never delivers a byte outside from_host() and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One of the two motors of a simulated Keya: what it does while enabled, and how it comes to rest when it is not.
 // Promises ramps by parameters 0013 and 0030, a brake that falls 0027 after the disabling, and a move that ends exactly
 // on its target. Never knows a fault word, a watchdog or a frame.

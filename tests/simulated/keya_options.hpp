@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How one simulated Keya KYDAS4860-2E is made: node, parameters as the maker's tool has stored them, mechanics, and the
 // points the manual leaves open. Promises that where the manual has two readings the default is the one that can hurt.
 // Never changes while the drive runs.

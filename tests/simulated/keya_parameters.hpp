@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parameters of a simulated Keya that change what it does, as its manual lists them (7): number, default, range.
 // Promises that motor B's number is motor A's plus 30. Never changes one: no bus can write them (2).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a Keya says to a frame on RS232 or RS485 (4, 5): control frames without a reply, queries, the RS232 heartbeat.
 // Promises that data begins at byte 2 on RS232 and at byte 3 on RS485, and a checksum on RS485 alone. Never keeps state
 // of its own.

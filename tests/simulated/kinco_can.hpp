@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Kinco JD or MD on its CAN port: the same drive, reached by SDO and PDO (JD 2.3, MD 4).
 // Promises the objects and the behaviour of KincoDrive, and that a JD obeys no controlword before a first 0x06.
 // Never speaks CiA 301: CanopenNode does.

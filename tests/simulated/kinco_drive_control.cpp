@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Controlword, modes and stops of KincoDrive (JD 6, MD 8, MD M).
 #include "tests/simulated/kinco_drive.hpp"
 
@@ -42,6 +43,7 @@ void KincoDrive::numb(bool numb) {
   set_mode(object(0x6060));
   if (unheard_) take_controlword(*unheard_, 0);
   unheard_.reset();
+  take_target_speed();
 }
 
 void KincoDrive::obey(Cia402Command command, std::uint64_t tag) {
@@ -177,6 +179,7 @@ void KincoDrive::start_mode() {
 }
 
 void KincoDrive::take_target_speed() {
+  if (numb_) return;
   const Task task = commanded().task();
   if (operating() && (task == Task::velocity || task == Task::immediate_velocity)) {
     commanded().run_at(object(0x60FF), mode_ == -3);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads and writes of KincoDrive's objects, and what a write leads to (JD 2.1, JD 4, MD 2.2, MD 6).
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What KincoDrive reports: statusword, inputs, outputs and measured values (JD 4.2, JD 6.2, MD B, MD 8.2).
 #include <algorithm>
 #include <cstdlib>

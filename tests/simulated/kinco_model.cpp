@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/simulated/kinco_model.hpp"
 
 #include "tests/simulated/jd_objects.hpp"

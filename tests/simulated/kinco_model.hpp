@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What tells a simulated JD from a simulated MD, as data with the section of the sheet beside each row.
 // Promises one table per model and no `if (jd)` elsewhere.
 // Never holds a figure of a single device; those are DriveOptions.

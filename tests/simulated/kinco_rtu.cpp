@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/simulated/kinco_rtu.hpp"
 
 namespace axisgate::simulated {

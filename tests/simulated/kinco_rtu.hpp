@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Kinco JD or MD on its RS485 port speaking Modbus RTU (JD 2.2, MD 3): the same drive, reached by registers.
 // Promises functions 3, 6 and 16 over the registers the sheet gives, one object per request, low word first, and the
 // error replies both manuals print. Never reaches an object without a printed base, nor half of a 32-bit one.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A CAN bus behind a serial adapter that speaks Lawicel's text protocol (CANUSB manual 1.0): the adapter and its bus.
 // Promises that nothing passes while the channel is closed, CR for what was done and BELL for what was not. Never
 // shares code with the gateway's own reader of this protocol.

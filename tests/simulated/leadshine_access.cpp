@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads and writes of LeadshineDrive's objects, its units (4), and what a write leads to.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The alarms of the LD2-CAN (6): 603Fh, the code of the PC tool, and what 1001h holds meanwhile.
 #include <algorithm>
 #include <iterator>

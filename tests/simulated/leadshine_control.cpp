@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Controlword, modes, stops and alarms of LeadshineDrive (5, 6).
 #include "tests/simulated/leadshine_drive.hpp"
 
@@ -63,6 +64,7 @@ void LeadshineDrive::numb(bool numb) {
   set_mode(object(0x6060));
   if (unheard_) take_controlword(*unheard_, 0);
   unheard_.reset();
+  take_target_speed();
 }
 
 void LeadshineDrive::obey(Cia402Command command, std::uint64_t tag) {
@@ -204,7 +206,7 @@ void LeadshineDrive::start_mode() {
 }
 
 void LeadshineDrive::take_target_speed() {
-  if (!operating() || commanded().task() != Task::velocity || options_.needs_halt_edge) return;
+  if (numb_ || !operating() || commanded().task() != Task::velocity || options_.needs_halt_edge) return;
   commanded().run_at(speed_of(object(0x60FF)), false);
 }
 

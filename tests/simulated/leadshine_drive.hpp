@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One simulated Leadshine LD2-CAN: objects, CiA 402 machine, units, motion, alarms, saving, as its manual tells.
 // Promises the same answers for the same requests at the same times, and a record of every write and every transition.
 // Never reads a clock, never draws a random number, and never speaks CiA 301: CanopenNode does.

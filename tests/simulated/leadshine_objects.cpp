@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Special, vendor and CiA 402 objects of the LD2-CAN, 3000h to 6000h (3.3 to 3.5). What is not printed is as CiA 402
 // has it.
 #include "tests/simulated/leadshine_objects.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Leadshine LD2-CAN's objects from 2000h on and its alarms, as tables from its manual.
 // Promises every row of the sheet's sections 3.2 to 3.5 and 6, with what is printed of width, range and default.
 // Never lists the communication objects (1000h): CanopenNode holds those.

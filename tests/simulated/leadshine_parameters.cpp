@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Pr parameters of the LD2-CAN, 2000h (3.2). Widths are not printed: by the range.
 #include "tests/simulated/leadshine_objects.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What LeadshineDrive reports: statusword, inputs and measured values (3.4, 3.5, 5.2).
 #include <algorithm>
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the motor drives: where its switches, stops and index pulses are, and how fast it can change speed.
 // Promises that all places are counts of the motor from where it stood when the world began.
 // Never moves by itself.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an enabled drive does with its motor: hold, move to a position, run at a speed or torque, stop, home.
 // Promises the ramps and limits of the dictionary, one millisecond at a time, and never a move nobody began.
 // Never knows a controlword, a mode number or a state.

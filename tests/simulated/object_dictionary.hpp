@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The values behind a drive's objects: the running ones and those the EEPROM would bring back.
 // Promises CiA 301 refusals (no such object, read-only, wrong width), the sheet's clamping, and a count of every write.
 // Never gives a value a meaning: that is the drive's part.

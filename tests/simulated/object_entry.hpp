@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One row of a drive's object dictionary as the sheet prints it: address, type, access, what keeps it, default, range.
 // Promises that a row is plain data which can be compared with the sheet line by line.
 // Never holds a value of a running drive.

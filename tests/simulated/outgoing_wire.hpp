@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The drives' way to the host: what they send, when its last byte arrives, one after the other on one pair of wires.
 // Promises that each byte takes its time at the baud rate and that nothing overtakes. Never alters a byte.
 #pragma once

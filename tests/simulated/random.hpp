@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The only source of chance in the simulated drives: xoshiro256** filled by splitmix64 (Blackman and Vigna).
 // Promises the same numbers for the same seed on every machine and compiler, which std:: distributions do not.
 // Never seeds itself and holds no state outside the object.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/simulated/rtu_frame.hpp"
 
 namespace axisgate::simulated {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Modbus RTU frame as a drive sees it: unit, PDU, CRC-16 (JD 2.2, MD 3.2, iD286pro 2 and 3), written from the sheets
 // alone. Promises that what seal_rtu() closed opens again, and that any single wrong bit does not. Never uses the
 // gateway's codec, so that a mistake there cannot hide here.

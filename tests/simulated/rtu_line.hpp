@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One RS485 line with simulated drives of several kinds that speak Modbus RTU.
 // Promises: a frame ends with 3.5 characters of silence; a wrong CRC and a foreign unit meet silence; a broadcast is
 // obeyed without an answer; a drive answers in order and leaves a gap between its answers. Never reads a clock and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collects the bytes that a Modbus RTU slave hears into frames; the line tells when the silence that ends one has come.
 // Promises that a pause longer than `longest_pause` inside a frame throws away what was collected, the next byte being
 // taken for an address, and that a frame of more than 256 bytes is thrown away whole. Never answers, never looks

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A drive on a Modbus RTU line as the line sees it, whatever it is: PDUs and times in, PDUs out.
 // Promises that answer() acts at once and tells what the drive holds at that instant; when the answer leaves is the
 // line's part. Never sees a CRC, a gap or another slave.

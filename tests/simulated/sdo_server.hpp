@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The SDO server of a CANopen node (CiA 301 7.2.4.3): expedited and segmented transfers, block transfers where switched
 // on. Promises one transfer at a time and the abort codes of CiA 301 for what does not fit it.
 // Never gives an object a meaning.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One serial line with Kinco drives that speak Kinco's own protocol.
 // Promises: an RS232 chain gives the host's bytes back exactly when every drive in it has 6510:0B = 1 (JD 2.1); a drive
 // answers in order. Never reads a clock and never delivers a byte outside from_host() and advance().

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/simulated/socket_can_line.hpp"
 
 #include <bit>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A CAN bus behind a SocketCAN interface: frames as `struct can_frame` of <linux/can.h>, 16 bytes each.
 // Promises the layout of that header and error frames of <linux/can/error.h>. Never opens a socket.
 #pragma once

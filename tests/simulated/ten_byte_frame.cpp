@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/simulated/ten_byte_frame.hpp"
 
 #include <numeric>

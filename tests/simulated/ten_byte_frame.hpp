@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The drive's view of Kinco's ten-byte RS232 frame (JD 2.1, MD 2.2), written from the sheets alone.
 // Promises: what seal() closed sums to 0 mod 256, and the accessors read the little-endian fields where the sheet puts
 // them. Never uses the gateway's codec, so that a mistake there cannot hide here.

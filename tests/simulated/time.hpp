@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulation's time: nanoseconds since the world began, pushed in by whoever owns the world.
 // Promises the same unit everywhere in this folder.
 // Never reads a clock.

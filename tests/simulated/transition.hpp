@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One change of a drive's CiA 402 state, and the request that caused it.
 // Promises that tag 0 means "no request": an input, the motor, a fault or the power-up did it.
 // Never refers to a request of another drive.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One millisecond of a trapezoidal profile in exact integers: ramp to a speed, or approach a position.
 // Promises that an approach ends exactly on its target, never beyond it unless it starts too fast to stop in time.
 // Never keeps state: speed in, speed out.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The internal units of the Kinco drives (JD 5, MD 7) in 64-bit arithmetic.
 // Promises: one DEC of speed is exactly 1/16384 count per millisecond, and one DEC of acceleration changes the speed by
 // exactly one DEC per millisecond (both follow from 512 * enc / 1875 and 65536 * enc / 4000000), so a 1 ms step is

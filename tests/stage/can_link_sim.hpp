@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cable between the gateway and a simulated CAN bus: a CanLink whose far end is a CanLine, in manual time.
 // Promises frames at the instants the line says, those alone that the gateway's filters let through, and a cut that
 // loses what is under way. Never calls back from inside a call of its own.

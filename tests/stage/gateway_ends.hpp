@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gateway's end of each kind of simulated cable: what its wires own, while the stage owns the cable and the drives.
 // Promises that the cable is let go when the end is destroyed, so that drives and cable outlive a gateway. Never keeps
 // anything of its own.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/stage/gateway_stage.hpp"
 
 #include <algorithm>
@@ -8,9 +9,9 @@
 #include "adapters/keya/keya_serial_wire.hpp"
 #include "adapters/kinco/kinco_wire.hpp"
 #include "adapters/modbus_rtu/rtu_wire.hpp"
-#include "gateway/app/adapter_names.hpp"
-#include "gateway/app/can_wires.hpp"
-#include "gateway/app/config_sections.hpp"
+#include "gateway/compose/can_wires.hpp"
+#include "gateway/config/adapter_names.hpp"
+#include "gateway/config/config_sections.hpp"
 #include "tests/stage/gateway_ends.hpp"
 #include "tests/stage/stage_lines.hpp"
 
@@ -224,38 +225,38 @@ bool GatewayStage::run_until(const std::function<bool()>& done, Duration limit) 
   return true;
 }
 
-std::shared_ptr<std::optional<GroupResult>> GatewayStage::begin(AxisNumber axis, Group group) {
-  if (group.role == Role::viewer) group.role = Role::engineer;
-  if (group.start_by == kNever) group.start_by = runtime_.now() + std::chrono::milliseconds(500);
-  if (group.answer_by == kNever) group.answer_by = runtime_.now() + std::chrono::milliseconds(900);
-  auto place = std::make_shared<std::optional<GroupResult>>();
-  if (auto result = gateway().submit(axis, group, [place](const GroupResult& r) { *place = r; })) *place = result;
+std::shared_ptr<std::optional<BatchResult>> GatewayStage::begin(AxisNumber axis, WriteBatch batch) {
+  if (batch.role == Role::viewer) batch.role = Role::engineer;
+  if (batch.start_by == kNever) batch.start_by = runtime_.now() + std::chrono::milliseconds(500);
+  if (batch.answer_by == kNever) batch.answer_by = runtime_.now() + std::chrono::milliseconds(900);
+  auto place = std::make_shared<std::optional<BatchResult>>();
+  if (auto result = gateway().submit(axis, batch, [place](const BatchResult& r) { *place = r; })) *place = result;
   return place;
 }
 
-GroupResult GatewayStage::ask(AxisNumber axis, Group group) {
-  const auto place = begin(axis, std::move(group));
-  if (!run_until([&] { return place->has_value(); })) throw std::runtime_error("a group never got its result");
+BatchResult GatewayStage::ask(AxisNumber axis, WriteBatch batch) {
+  const auto place = begin(axis, std::move(batch));
+  if (!run_until([&] { return place->has_value(); })) throw std::runtime_error("a write batch never got its result");
   return **place;
 }
 
-GroupResult GatewayStage::command(AxisNumber axis, Command command) {
-  Group group;
-  group.command = command;
-  return ask(axis, group);
+BatchResult GatewayStage::command(AxisNumber axis, Command command) {
+  WriteBatch batch;
+  batch.command = command;
+  return ask(axis, batch);
 }
 
-GroupResult GatewayStage::write(AxisNumber axis, Quantity quantity, std::int64_t value) {
-  Group group;
+BatchResult GatewayStage::write(AxisNumber axis, Quantity quantity, std::int64_t value) {
+  WriteBatch batch;
   if (quantity == Quantity::mode) {
-    group.mode = static_cast<std::int16_t>(value);
+    batch.mode = static_cast<std::int16_t>(value);
   } else if (quantity == Quantity::controlword) {
-    group.controlword = static_cast<std::uint16_t>(value);
-    group.single_controlword = true;
+    batch.controlword = static_cast<std::uint16_t>(value);
+    batch.single_controlword = true;
   } else {
-    group.setpoints.push_back({quantity, value});
+    batch.setpoints.push_back({quantity, value});
   }
-  return ask(axis, group);
+  return ask(axis, batch);
 }
 
 }  // namespace axisgate::test

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped gateway core on a stage: manual time, simulated lines of every kind, shipped profiles; a client speaks
 // to the command port. Promises that nothing happens but by the clock that the test moves. Never opens a device or a
 // socket.
@@ -8,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "gateway/app/gateway.hpp"
-#include "gateway/drive/profile_loader.hpp"
+#include "gateway/compose/gateway.hpp"
+#include "gateway/profile/resolve/profile_resolve.hpp"
 #include "tests/stage/can_link_sim.hpp"
 #include "tests/stage/keya_link_sim.hpp"
 #include "tests/stage/rtu_link_sim.hpp"
@@ -121,11 +122,11 @@ class GatewayStage {
   }
 
   /// Submits and runs until the result is there.
-  GroupResult ask(AxisNumber axis, Group group);
-  GroupResult command(AxisNumber axis, Command command);
-  GroupResult write(AxisNumber axis, Quantity quantity, std::int64_t value);
+  BatchResult ask(AxisNumber axis, WriteBatch batch);
+  BatchResult command(AxisNumber axis, Command command);
+  BatchResult write(AxisNumber axis, Quantity quantity, std::int64_t value);
   /// Submits without waiting; the result appears in the returned place.
-  std::shared_ptr<std::optional<GroupResult>> begin(AxisNumber axis, Group group);
+  std::shared_ptr<std::optional<BatchResult>> begin(AxisNumber axis, WriteBatch batch);
 
  private:
   ManualRuntime runtime_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cable between the gateway and a simulated line with Keya drives: a ByteLink whose far end is a KeyaLine, in
 // manual time. Promises bytes at the instants the line says and a cut that loses what is under way. Never delivers a
 // byte from inside send().

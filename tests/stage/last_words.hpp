@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A gateway that dies while it sends: so many bytes, on CAN frames, still leave it, and whatever was to come after them
 // does not. Promises that one that was not told to die never does. Never ends the gateway itself: the test does that
 // when it is dead to its cable.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Profiles for tests, read and checked once for each process, however many rigs and tests use them.
 // Promises what load_profile() gives, of files in the source folder alone: no test writes those.
 // Never reads what a test has made.
@@ -5,7 +6,7 @@
 
 #include <string>
 
-#include "gateway/drive/profile_loader.hpp"
+#include "gateway/profile/read/profile_loader.hpp"
 
 namespace axisgate::test {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cable between the gateway and a simulated Modbus RTU line: an RtuLink whose far end is an RtuLine, in manual
 // time. Promises frames at the instants the line says, each with the number of the newest request sent before it was
 // heard, and a cut that loses what is under way. Finds frames as libmodbus does: by the length their function byte

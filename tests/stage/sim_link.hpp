@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cable between the gateway and a simulated line: a ByteLink whose far end is a SerialLine, in manual time.
 // Promises bytes at the instants the line says, a cut that loses what is under way, and a check that at most one
 // request is outstanding. Never delivers a byte from inside send().

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/stage/stage_lines.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "adapters/modbus_rtu/rtu_wire.hpp"
-#include "gateway/app/adapter_names.hpp"
-#include "gateway/app/config_sections.hpp"
+#include "gateway/config/adapter_names.hpp"
+#include "gateway/config/config_sections.hpp"
 #include "tests/simulated/keya_drive.hpp"
 #include "tests/stage/profile_once.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the gateway's configuration would say of a line on the stage: its bus, and the resolved models of its drives.
 // Promises the shipped profile of each type. Never makes a line or a wire.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What goes over a cable of the stage, whichever kind it is, and the lines of a transcript (tests/golden). Promises
 // that equal frames at equal times are equal text. Never changes what it tells of.
 #pragma once

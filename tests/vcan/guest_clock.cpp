@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What stands before libc's clock, timer and sigsuspend() in the process of User-Mode Linux's kernel, and nowhere
 // else: in_guest compiles and preloads it. Promises that the time of the guest is its own: it passes with the
 // processor time that the guest uses, and where all its processes wait, the instant comes at once that the first of

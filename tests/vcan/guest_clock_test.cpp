@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Linked with guest_clock.cpp in place of libc's clock, timer and sigsuspend(), as User-Mode Linux is run.
 #include <gtest/gtest.h>
 #include <sys/ptrace.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sourced by in_guest: kernels that run as processes. Each gets a folder of its own ($state) with what it is to run, leaves the
 # exit status there, and nothing else anywhere: processes and folder are gone when in_guest ends, however it ends.
 # shellcheck shell=bash

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A CAN interface is taken down, removed and made anew, stops and starts again, or its queue is full, while the gateway runs.
 
 Run as: interface_test.py AXISGATE AXISGATE_SIM SOURCE_FOLDER --vcan [unittest's arguments]
@@ -228,7 +229,7 @@ class AnotherMaster(Interface):
                 self.assertAlmostEqual(block["position_actual"], before[number], delta=20)
         for axis in self.lost:
             axis.until(link_state=ONLINE)
-            self.assertEqual(axis.get("axis_alarms") & DUPLICATE_NODE, 0, "a second master is no twin")
+            self.assertEqual(axis.get("axis_alarms") & DUPLICATE_NODE, 0, "a second master is no duplicate node-ID")
         self.assert_goes_on(*self.lost)
 
     def test_random_frames_stop_nobody(self):

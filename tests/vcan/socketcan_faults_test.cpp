@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error frames as a controller's driver hands them over; vcan has no controller, so a peer writes them.
 #include "tests/vcan/vcan_stage.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/vcan/vcan_stage.hpp"
 
 namespace axisgate::test {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Queues that overflow. vcan itself never fills: a token bucket (tc, sch_tbf) that lets nothing through takes the place
 // of a bus on which nobody acknowledges.
 #include "tests/vcan/vcan_stage.hpp"

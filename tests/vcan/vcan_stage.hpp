@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A SocketCanLink on a vcan interface of its own, and a second socket on it as the rest of the bus.
 // Needs root and a kernel with vcan: tests/vcan/in_guest.
 #pragma once

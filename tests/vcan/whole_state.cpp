@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What stands before libc's ptrace() in the process of User-Mode Linux's kernel, and nowhere else: in_guest compiles
 // and preloads it. Linux sets a traced process's extended state (XSAVE) only as a whole. User-Mode Linux 6.1 has room
 // for 2,696 bytes of it; a processor with AMX has 11,008, and the kernel of the guest dies at its first process:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Linked with whole_state.cpp in place of libc's ptrace(), as User-Mode Linux is run. Every processor with AVX has more
 // state than the part that is set here, so the refusal that ends the guest on processors with AMX comes on the others,
 // too.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Prints each state of each axis, with Eclipse Cyclone DDS: axes_cyclonedds [DOMAIN]. Ends with Ctrl-C. */
 #include <dds/dds.h>
 #include <stdio.h>
@@ -35,8 +36,8 @@ int main(int argc, char **argv) {
       const axisgate_AxisState *axis = samples[i];
       if (!infos[i].valid_data) continue;
       /* link_state 2 is online; a value is good while its bit in `valid` is 1 (bit 2: position, bit 3: velocity). */
-      printf("axis %u %s  link %u  statusword %04x  position %.4f%s  velocity %.4f%s  error %04x\n", axis->axis,
-             axis->name, axis->link_state, axis->statusword, axis->position, (axis->valid & 4) != 0 ? "" : "?",
+      printf("%s axis %u %s  link %u  statusword %04x  position %.4f%s  velocity %.4f%s  error %04x\n", axis->gateway,
+             axis->axis, axis->name, axis->link_state, axis->statusword, axis->position, (axis->valid & 4) != 0 ? "" : "?",
              axis->velocity, (axis->valid & 8) != 0 ? "" : "?", axis->error_code);
     }
     fflush(stdout);

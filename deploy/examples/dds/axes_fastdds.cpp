@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints each state of each axis, with Fast DDS: axes_fastdds [DOMAIN]. Ends with Ctrl-C.
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <cstdio>
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
     while (reader->take_next_sample(&axis, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;
       // link_state 2 is online; a value is good while its bit in `valid` is 1 (bit 2: position, bit 3: velocity).
-      std::printf("axis %u %s  link %u  statusword %04x  position %.4f%s  velocity %.4f%s  error %04x\n", axis.axis(),
+      std::printf("%s axis %u %s  link %u  statusword %04x  position %.4f%s  velocity %.4f%s  error %04x\n", axis.gateway().c_str(), axis.axis(),
                   axis.name().c_str(), axis.link_state(), axis.statusword(), axis.position(),
                   (axis.valid() & 4) != 0 ? "" : "?", axis.velocity(), (axis.valid() & 8) != 0 ? "" : "?",
                   axis.error_code());

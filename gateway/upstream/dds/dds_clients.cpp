@@ -1,19 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds/dds_clients.hpp"
 
 #include <algorithm>
+#include <utility>
 
-#include "gateway/upstream/dds/dds_face.hpp"
+#include "gateway/upstream/dds/dds_session.hpp"
 
 namespace axisgate::dds {
 namespace {
 
-constexpr std::size_t kPrefix = 12;    // DDSI-RTPS 2.2, 9.3.1: GuidPrefix_t
-constexpr std::size_t kEntityKey = 3;  // 9.3.1.2; the last byte of the GUID is the entity's kind
+constexpr std::size_t kEntityKey = 3;  // DDSI-RTPS 2.2, 9.3.1.2; the last byte of the GUID is the entity's kind
 
 /// Where a writer comes from is its participant: a new writer of it takes an orphan of an old one over.
 Origin origin_of(const Guid& writer) {
   Origin origin{};
-  std::copy_n(writer.begin(), kPrefix, origin.begin());
+  std::copy_n(writer.begin(), kGuidPrefix, origin.begin());
   return origin;
 }
 
@@ -30,7 +31,7 @@ std::string hex(const Guid& guid, std::size_t from, std::size_t count) {
 }  // namespace
 
 std::string client_name(const Guid& writer, const std::string& where) {
-  const std::string guid = hex(writer, 0, kPrefix) + ":" + hex(writer, kPrefix, kEntityKey);
+  const std::string guid = hex(writer, 0, kGuidPrefix) + ":" + hex(writer, kGuidPrefix, kEntityKey);
   return where.empty() ? "dds " + guid : "dds " + where + " " + guid;
 }
 
@@ -74,7 +75,8 @@ void DdsClients::heard(ClientLife& life, Instant now) {
   if (!needed) life.grace = Duration{};
 }
 
-void DdsClients::on_writer(const WriterRecord& record, Instant now) {
+std::string DdsClients::on_writer(const WriterRecord& record, Instant now) {
+  std::string told;
   if (record.gone) {
     if (const auto found = clients_.find(record.writer); found != clients_.end()) forget(found);
   } else if (DdsClient* const client = known(record.writer)) {
@@ -82,26 +84,41 @@ void DdsClients::on_writer(const WriterRecord& record, Instant now) {
     client->life->name = client_name(record.writer, record.where);
     client->returns_by = kNever;
     heard(*client->life, now);
+    told = told_of_liveliness(record.liveliness);
+    if (!told.empty()) told = std::exchange(client->told_of_liveliness, true) ? "" : client->life->name + ": " + told;
   }
   look_at_deadlines();
+  return told;
 }
 
 void DdsClients::on_beats(const BeatRecord& record, Instant now) {
-  for (const BeatRecord::Beat& beat : record.beats) {
-    DdsClient* const client = find(beat.writer);
+  for (const Guid& writer : record.writers) {
+    DdsClient* const client = find(writer);
     if (client == nullptr) continue;
     heard(*client->life, now);
-    if (beat.manual) client->life->heartbeat = now;
+    client->life->heartbeat = now;
     client->returns_by = kNever;
   }
   look_at_deadlines();
 }
 
-DdsClient* DdsClients::on_sample(const Guid& writer, Instant now) {
+// What it says of the lease counts as long as its writer is there, also once it has fallen silent.
+void DdsClients::on_heartbeat(const HeartbeatRecord& record, Instant now) {
+  DdsClient* const client = find(record.client);
+  if (client == nullptr || !signs_.counts(record, client->counter, now)) return;
+  client->counter = record.counter;
+  client->life->heartbeat = now;
+  client->life->lease_limit.reset();
+  if (record.lease_ms != 0) client->life->lease_limit = std::chrono::milliseconds(record.lease_ms);
+  heard(*client->life, now);
+}
+
+DdsClient* DdsClients::on_sample(const Guid& writer, std::optional<std::int32_t> strength, bool fresh, Instant now) {
   const bool is_new = find(writer) == nullptr;
   DdsClient* const client = known(writer);
   if (client == nullptr) return nullptr;
-  heard(*client->life, now);
+  if (strength) client->life->strength = strength;
+  if (fresh) heard(*client->life, now);
   if (is_new || client->returns_by != kNever) {
     client->returns_by = now + kReturnsWithin;
     look_at_deadlines();

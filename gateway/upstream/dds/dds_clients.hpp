@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The DDS writers as clients of the gateway: one ClientLife each, by which leases are judged (design 3.5 and 4).
 // Promises that their number is bounded, that a writer whose end is told or who does not come back is dead to its
 // leases, and that the silence of axisgate-dds itself is not taken for theirs for as long as their grace. Never speaks
@@ -9,6 +10,7 @@
 
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/process_image.hpp"
+#include "gateway/upstream/dds/signs_of_life.hpp"
 #include "gateway/upstream/dds_link/records.hpp"
 
 namespace axisgate::dds {
@@ -31,19 +33,23 @@ struct HeldJog {
 struct DdsClient {
   std::shared_ptr<ClientLife> life;
   std::map<AxisNumber, HeldJog> held{};
-  bool commands = false;        ///< it writes axis_command; else it may be one that asks for objects alone
-  Instant returns_by = kNever;  ///< kNever: it was told of since the link is up
+  bool commands = false;                   ///< it writes axis_command; else it may be one that asks for objects alone
+  Instant returns_by = kNever;             ///< kNever: it was told of since the link is up
+  std::optional<std::uint32_t> counter{};  ///< of its last heartbeat
+  bool told_of_liveliness = false;         ///< the log has its line
 };
 
 class DdsClients {
  public:
-  DdsClients(Role role, const ProcessImage& image, CommandPort& commands)
-      : role_(role), image_(image), commands_(commands) {}
+  DdsClients(Role role, const SignsOfLife& signs, const ProcessImage& image, CommandPort& commands)
+      : role_(role), signs_(signs), image_(image), commands_(commands) {}
 
-  void on_writer(const WriterRecord& record, Instant now);
+  /// A line for the log; mostly empty.
+  [[nodiscard]] std::string on_writer(const WriterRecord& record, Instant now);
   void on_beats(const BeatRecord& record, Instant now);
+  void on_heartbeat(const HeartbeatRecord& record, Instant now);
   /// Who sends this sample: known from now on, also where the record of it is still to come. nullptr: too many.
-  [[nodiscard]] DdsClient* on_sample(const Guid& writer, Instant now);
+  [[nodiscard]] DdsClient* on_sample(const Guid& writer, std::optional<std::int32_t> strength, bool fresh, Instant now);
   /// One of those that are too many, for a stop, which is open to everybody.
   [[nodiscard]] std::shared_ptr<ClientLife> stranger(const Guid& writer, Instant now);
   /// nullptr where it is unknown or gone.
@@ -69,6 +75,7 @@ class DdsClients {
   void look_at_deadlines();
 
   Role role_;
+  const SignsOfLife& signs_;
   const ProcessImage& image_;
   CommandPort& commands_;
   Clients clients_;

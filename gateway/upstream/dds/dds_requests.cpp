@@ -1,16 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds/dds_requests.hpp"
+
+#include <fmt/format.h>
 
 #include <utility>
 
 #include "gateway/core/words.hpp"
 #include "gateway/image/shown.hpp"
-#include "gateway/upstream/dds/dds_face.hpp"
-#include "gateway/upstream/dds/object_groups.hpp"
+#include "gateway/upstream/dds/addressee.hpp"
+#include "gateway/upstream/dds/dds_session.hpp"
+#include "gateway/upstream/dds/object_batches.hpp"
 
 namespace axisgate::dds {
 namespace {
 
-constexpr std::uint8_t kAlreadySeen = 21;  // schemas/axisgate.idl
+// schemas/axisgate.idl
+constexpr std::uint8_t kAlreadySeen = 21, kNameTaken = 22;
 
 bool is_press(const CommandRecord& record) {
   const auto command = Command{record.command};
@@ -25,7 +30,7 @@ bool runs(const AxisImage& axis, Command jog) {
 
 }  // namespace
 
-/// The groups of one request, one after another.
+/// The write batches of one request, one after another.
 struct DdsRequests::Run {
   std::weak_ptr<DdsRequests> of;
   CommandPort& commands;
@@ -36,13 +41,15 @@ struct DdsRequests::Run {
 };
 
 DdsRequests::DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image,
-                         CommandPort& commands, DdsClients& clients, ReplyQueue& replies, std::function<void()> wake,
-                         TellLine tell)
+                         CommandPort& commands, DdsClients& clients, const SignsOfLife& signs,
+                         const Namesakes& namesakes, ReplyQueue& replies, std::function<void()> wake, TellLine tell)
     : settings_(settings),
       units_(units),
       image_(image),
       commands_(commands),
       clients_(clients),
+      signs_(signs),
+      namesakes_(namesakes),
       replies_(replies),
       wake_(std::move(wake)),
       tell_(std::move(tell)),
@@ -50,43 +57,77 @@ DdsRequests::DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, 
 
 // --- Taking a request ------------------------------------------------------------------------------------------------
 
-DdsRequests::Admitted DdsRequests::admit(const RequestKey& key, bool stops, Instant now) {
+bool DdsRequests::is_for_us(const GatewayId& gateway, const Guid& writer, bool lets_go, Instant now) {
+  switch (addressee(gateway, settings_.gateway)) {
+    case Addressee::ours:
+    case Addressee::half:
+      return true;
+    case Addressee::other:
+      return false;
+    case Addressee::nobody:
+      break;
+  }
+  // A stop too many is the smaller harm.
+  if (!lets_go) {
+    tell(writer,
+         fmt::format("a request for gateway \"{}\", key {:08x}, is not answered: this one is \"{}\", key {:08x}",
+                     gateway.name, gateway.key, settings_.gateway.name, settings_.gateway.key),
+         now);
+  }
+  return lets_go;
+}
+
+DdsRequests::Admitted DdsRequests::admit(const Asked& asked, Instant now) {
   if (!settings_.commands) return dds_result(Errc::role_forbidden);
-  const DdsClient* const client = clients_.on_sample(key.writer, now);
-  if (client == nullptr && !stops) return dds_result(Errc::queue_full);
+  // Nor is it remembered, or a sign of life: whoever was cut off may ask once more.
+  if (!asked.fresh && !asked.lets_go) return dds_result(Errc::never_started);
+  const RequestKey& key = asked.key;
+  const DdsClient* const client = clients_.on_sample(key.writer, asked.strength, asked.fresh, now);
+  if (client == nullptr && !asked.stops) return dds_result(Errc::queue_full);
   // What is refused here is not remembered, nor is a stop that came when there was no room: it is one as often as it
   // comes.
-  if (!replies_.admits() && !stops) return dds_result(Errc::queue_full);
+  if (!replies_.admits() && !asked.stops) return dds_result(Errc::queue_full);
   if (key.request_id != 0) {
     const RequestMemory::Seen seen = memory_.see(key, now);
     if (seen == RequestMemory::Seen::again) return kAlreadySeen;
-    if (seen == RequestMemory::Seen::full && !stops) return dds_result(Errc::busy);
-  } else if (!stops) {
+    if (seen == RequestMemory::Seen::full && !asked.stops) return dds_result(Errc::queue_full);
+  } else if (!asked.stops) {
     return dds_result(Errc::bad_value);
   }
   return client != nullptr ? std::shared_ptr<const ClientLife>(client->life) : clients_.stranger(key.writer, now);
 }
 
-Group DdsRequests::new_group(std::shared_ptr<const ClientLife> life, Instant now) const {
-  Group group;
-  group.client = life->id;
-  group.role = life->role;
-  group.life = std::move(life);
-  group.start_by = now + settings_.start_deadline;
-  group.answer_by = now + settings_.reply_deadline;
-  return group;
+WriteBatch DdsRequests::new_batch(std::shared_ptr<const ClientLife> life, bool fresh, Instant now) const {
+  WriteBatch batch;
+  batch.client = life->id;
+  batch.role = life->role;
+  batch.life = std::move(life);
+  batch.renews = fresh;
+  batch.start_by = now + settings_.start_deadline;
+  batch.answer_by = now + settings_.reply_deadline;
+  return batch;
 }
 
-void DdsRequests::on_command(const CommandRecord& record, Instant now) {
-  const auto refuse = [&](std::uint8_t result) {
-    tell_refused(record.writer, record.axis, text(Command{record.command}), result, now);
-    reply(record, result);
-  };
-  const Admitted admitted = admit({record.writer, record.axis, record.request_id}, stops(record), now);
-  if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return refuse(*result);
+void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
+  const std::string_view what = text(Command{asked.command});
+  const bool exempt = lets_go(asked);
+  if (!is_for_us(asked.gateway, asked.writer, exempt, now)) return;
+  const bool named = asked.gateway == settings_.gateway;
+  if (!named && !exempt) return refuse(asked, what, dds_result(Errc::bad_value), now);
+  const bool fresh = signs_.fresh(asked.written, now);
+  const Admitted admitted = admit({.key = {asked.writer, asked.axis, asked.request_id},
+                                   .strength = asked.strength,
+                                   .stops = stops(asked),
+                                   .lets_go = exempt,
+                                   .fresh = fresh && named},
+                                  now);
+  if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return refuse(asked, what, *result, now);
   const auto& life = std::get<std::shared_ptr<const ClientLife>>(admitted);
-  const AxisImage* const axis = image_.find(record.axis);
+  const AxisImage* const axis = image_.find(asked.axis);
 
+  // Only the stop or the release is carried out of what is too old, or not surely meant for us.
+  CommandRecord record = asked;
+  if (!fresh || !named) record.mask = 0;
   DdsClient* const client = clients_.find(record.writer);
   if (client != nullptr) client->commands = true;
   bool held = false;
@@ -94,13 +135,15 @@ void DdsRequests::on_command(const CommandRecord& record, Instant now) {
     const auto found = client->held.find(record.axis);
     held = found != client->held.end() && found->second.direction == Command{record.command};
   }
+  if (namesakes_.taken() && starts(record, held)) return refuse(record, what, kNameTaken, now);
   static const DdsUnits kUsual;
   const auto units = units_.find(record.axis);
-  PlannedCommand planned =
-      plan_command(record, new_group(life, now), axis, units == units_.end() ? kUsual : units->second, held);
-  if (const auto* const refused = std::get_if<Errc>(&planned)) return refuse(dds_result(*refused));
+  PlannedCommand planned = plan_command(record, new_batch(life, fresh && named, now), axis,
+                                        units == units_.end() ? kUsual : units->second, held);
+  if (const auto* const refused = std::get_if<Errc>(&planned)) return refuse(record, what, dds_result(*refused), now);
   auto& plan = std::get<CommandPlan>(planned);
   if (record.request_id == 0) plan.afterwards = Errc::bad_value;
+  if (record.mask != asked.mask) plan.afterwards = Errc::never_started;
   press(record, axis, held);
   // Where the participant has written objects of this axis first, by its other writer, that one makes way: for as long
   // as the claim is judged, its lease is one that its own participant may take.
@@ -108,61 +151,68 @@ void DdsRequests::on_command(const CommandRecord& record, Instant now) {
   const auto sibling = owner ? clients_.asks_for_objects(*owner, *life) : nullptr;
   if (sibling) sibling->connected = false;
   start(record.axis, std::move(plan),
-        [record, held](DdsRequests& self, const GroupResult& result) { self.end_command(record, held, result); });
+        [record, held](DdsRequests& self, const BatchResult& result) { self.end_command(record, held, result); });
   if (sibling) sibling->connected = true;
 }
 
 void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {
-  const auto refuse = [&](std::uint8_t result) {
-    ObjectReplyRecord refusal;
-    refusal.axis = record.axis;
-    refusal.request_id = record.request_id;
-    refusal.writer = record.writer;
-    refusal.result = result;
-    if (record.write) tell_refused(record.writer, record.axis, "a write of an object", result, now);
-    replies_.add(refusal);
-  };
-  const Admitted admitted = admit({record.writer, record.axis, record.request_id}, false, now);
-  if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return refuse(*result);
+  const std::string_view what = record.write ? "a write of an object" : "";
+  if (!is_for_us(record.gateway, record.writer, false, now)) return;
+  if (record.gateway != settings_.gateway) return refuse(record, what, dds_result(Errc::bad_value), now);
+  const bool fresh = signs_.fresh(record.written, now);
+  const Admitted admitted = admit({.key = {record.writer, record.axis, record.request_id}, .fresh = fresh}, now);
+  if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return refuse(record, what, *result, now);
   auto life = std::get<std::shared_ptr<const ClientLife>>(admitted);
   const AxisImage* const axis = image_.find(record.axis);
   // Objects are asked for by a writer of their own: where its participant commands the axis by another, it is that
   // client who writes.
   if (axis != nullptr && record.write) {
     const auto& owner = axis->lease.owner;
-    const bool of_this_face = owner && owner->id >= kFirstDdsClient;
-    if (of_this_face && owner->connected && owner->origin == life->origin) life = owner;
+    const bool of_this_session = owner && owner->id >= kFirstDdsClient;
+    if (of_this_session && owner->connected && owner->origin == life->origin) life = owner;
   }
-  const PlannedObject planned = plan_object(record, new_group(life, now), axis);
-  if (const auto* const refused = std::get_if<Errc>(&planned)) return refuse(dds_result(*refused));
-  // The bytes that are written belong to the group now; the reply needs none of them.
+  const PlannedObject planned = plan_object(record, new_batch(life, fresh, now), axis);
+  if (const auto* const refused = std::get_if<Errc>(&planned)) return refuse(record, what, dds_result(*refused), now);
+  // The bytes that are written belong to the write batch now; the reply needs none of them.
   ObjectRequestRecord asked = record;
   asked.data.clear();
-  start(record.axis, {{std::get<Group>(planned)}, Errc::ok},
-        [asked = std::move(asked)](DdsRequests& self, const GroupResult& result) {
+  start(record.axis, {{std::get<WriteBatch>(planned)}, Errc::ok},
+        [asked = std::move(asked)](DdsRequests& self, const BatchResult& result) {
           self.replies_.add(object_reply(asked, result));
         });
+}
+
+template <typename Request>
+void DdsRequests::refuse(const Request& record, std::string_view what, std::uint8_t result, Instant now) {
+  if (!what.empty()) tell_refused(record.writer, record.axis, what, result, now);
+  reply(record, result);
 }
 
 // What the axes themselves refuse is an event of theirs. A request that was seen before has had its line.
 void DdsRequests::tell_refused(const Guid& writer, AxisNumber axis, std::string_view what, std::uint8_t result,
                                Instant now) {
-  if (!tell_ || result == kAlreadySeen || !refused_lines_.takes(now)) return;
+  if (result == kAlreadySeen) return;
   const Word* const word = find_word(WordKind::result, result);
+  tell(writer,
+       std::string(what) + " of axis " + std::to_string(axis) + " is refused: result " + std::to_string(result) +
+           (word == nullptr ? std::string() : " " + std::string(word->name) + ": " + std::string(word->meaning)),
+       now);
+}
+
+void DdsRequests::tell(const Guid& writer, const std::string& what, Instant now) {
+  if (!tell_ || !refused_lines_.takes(now)) return;
   const DdsClient* const client = clients_.find(writer);
-  tell_((client != nullptr ? client->life->name : client_name(writer, {})) + ": " + std::string(what) + " of axis " +
-        std::to_string(axis) + " is refused: result " + std::to_string(result) +
-        (word == nullptr ? std::string() : " " + std::string(word->name) + ": " + std::string(word->meaning)) +
+  tell_((client != nullptr ? client->life->name : client_name(writer, {})) + ": " + what +
         left_out_text(refused_lines_.left_out()));
 }
 
 // --- Carrying it out -------------------------------------------------------------------------------------------------
 
-/// `last`: the result of the group before.
-std::optional<GroupResult> DdsRequests::carry_on(const std::shared_ptr<Run>& run, GroupResult last) {
-  while (last.outcome.code == Errc::ok && run->next < run->plan.groups.size()) {
-    const Group& group = run->plan.groups[run->next++];
-    const auto at_once = run->commands.submit(run->axis, group, [run](const GroupResult& result) {
+/// `last`: the result of the write batch before.
+std::optional<BatchResult> DdsRequests::carry_on(const std::shared_ptr<Run>& run, BatchResult last) {
+  while (last.outcome.code == Errc::ok && run->next < run->plan.batches.size()) {
+    const WriteBatch& batch = run->plan.batches[run->next++];
+    const auto at_once = run->commands.submit(run->axis, batch, [run](const BatchResult& result) {
       const auto self = run->of.lock();
       if (self == nullptr) return;  // nobody is there to be told, nor to ask for the rest
       const auto end = carry_on(run, result);
@@ -187,13 +237,22 @@ void DdsRequests::start(AxisNumber axis, CommandPlan plan, Done done) {
   run->done(*this, *result);
 }
 
-void DdsRequests::end_command(const CommandRecord& record, bool held, const GroupResult& result) {
+void DdsRequests::end_command(const CommandRecord& record, bool held, const BatchResult& result) {
   const Outcome outcome = is_press(record) ? of_jog(record, held, result.outcome) : result.outcome;
   reply(record, dds_result(outcome.code), outcome.detail);
 }
 
 void DdsRequests::reply(const CommandRecord& record, std::uint8_t result, std::uint32_t detail) {
   replies_.add(ReplyRecord{record.axis, record.request_id, record.writer, result, detail});
+}
+
+void DdsRequests::reply(const ObjectRequestRecord& record, std::uint8_t result) {
+  ObjectReplyRecord refusal;
+  refusal.axis = record.axis;
+  refusal.request_id = record.request_id;
+  refusal.writer = record.writer;
+  refusal.result = result;
+  replies_.add(refusal);
 }
 
 // --- Jog -------------------------------------------------------------------------------------------------------------

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // What DDS writers ask of axes, on its way through the command port: one reply for each sample.
-// Promises that a request which was seen before is not run again, that results which come when the face is gone harm
+// Promises that a request which was seen before is not run again, that results which come when the session is gone harm
 // nobody, and that a stop is never refused for want of room. Never repeats anything.
 #pragma once
 
@@ -11,9 +12,10 @@
 #include <variant>
 
 #include "gateway/core/line_bucket.hpp"
-#include "gateway/upstream/dds/command_groups.hpp"
+#include "gateway/upstream/dds/command_batches.hpp"
 #include "gateway/upstream/dds/dds_clients.hpp"
 #include "gateway/upstream/dds/dds_settings.hpp"
+#include "gateway/upstream/dds/namesakes.hpp"
 #include "gateway/upstream/dds/reply_queue.hpp"
 #include "gateway/upstream/dds/request_memory.hpp"
 
@@ -26,7 +28,8 @@ class DdsRequests {
  public:
   /// `wake`: a reply has come that nobody waits for in this turn. `tell`: a line for the log, of what is refused here.
   DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image, CommandPort& commands,
-              DdsClients& clients, ReplyQueue& replies, std::function<void()> wake, TellLine tell);
+              DdsClients& clients, const SignsOfLife& signs, const Namesakes& namesakes, ReplyQueue& replies,
+              std::function<void()> wake, TellLine tell);
   DdsRequests(const DdsRequests&) = delete;
   DdsRequests& operator=(const DdsRequests&) = delete;
 
@@ -35,26 +38,43 @@ class DdsRequests {
 
  private:
   struct Run;
-  using Done = std::function<void(DdsRequests&, const GroupResult&)>;
+  using Done = std::function<void(DdsRequests&, const BatchResult&)>;
 
+  /// What counts of a request before anybody looks at what it asks.
+  struct Asked {
+    RequestKey key;
+    std::optional<std::int32_t> strength{};  ///< of its writer; none: of a topic without ownership
+    bool stops = false;                      ///< it finds room where there is none
+    bool lets_go = false;                    ///< neither its age nor its name counts
+    bool fresh = true;                       ///< and so a sign of life
+  };
   /// Who asks, or the result of a request that is not judged any further.
   using Admitted = std::variant<std::shared_ptr<const ClientLife>, std::uint8_t>;
-  [[nodiscard]] Admitted admit(const RequestKey& key, bool stops, Instant now);
-  [[nodiscard]] Group new_group(std::shared_ptr<const ClientLife> life, Instant now) const;
+  [[nodiscard]] Admitted admit(const Asked& asked, Instant now);
+  /// False: another gateway's, or nobody's, and not answered. Of one that is meant for us by half, and may not be: 17.
+  [[nodiscard]] bool is_for_us(const GatewayId& gateway, const Guid& writer, bool lets_go, Instant now);
+  [[nodiscard]] WriteBatch new_batch(std::shared_ptr<const ClientLife> life, bool fresh, Instant now) const;
   void start(AxisNumber axis, CommandPlan plan, Done done);
-  [[nodiscard]] static std::optional<GroupResult> carry_on(const std::shared_ptr<Run>& run, GroupResult last);
+  [[nodiscard]] static std::optional<BatchResult> carry_on(const std::shared_ptr<Run>& run, BatchResult last);
 
   void press(const CommandRecord& record, const AxisImage* axis, bool held);
-  void end_command(const CommandRecord& record, bool held, const GroupResult& result);
+  void end_command(const CommandRecord& record, bool held, const BatchResult& result);
   [[nodiscard]] Outcome of_jog(const CommandRecord& record, bool held, const Outcome& outcome);
   void reply(const CommandRecord& record, std::uint8_t result, std::uint32_t detail = 0);
+  void reply(const ObjectRequestRecord& record, std::uint8_t result);
+  /// The one way in which a request ends before it comes to an axis. `what`: for the log; empty: no line.
+  template <typename Request>
+  void refuse(const Request& record, std::string_view what, std::uint8_t result, Instant now);
   void tell_refused(const Guid& writer, AxisNumber axis, std::string_view what, std::uint8_t result, Instant now);
+  void tell(const Guid& writer, const std::string& what, Instant now);
 
   const DdsSettings& settings_;
   const UnitsOfAxes& units_;
   const ProcessImage& image_;
   CommandPort& commands_;
   DdsClients& clients_;
+  const SignsOfLife& signs_;
+  const Namesakes& namesakes_;
   ReplyQueue& replies_;
   std::function<void()> wake_;
   TellLine tell_;

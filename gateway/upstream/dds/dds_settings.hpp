@@ -1,4 +1,5 @@
-// The settings of the DDS face (configuration key "dds", design sections 4 and 5), with their defaults.
+// SPDX-License-Identifier: Apache-2.0
+// The settings of the DDS server (configuration key "dds", design sections 4 and 5), with their defaults.
 // Promises values within their documented ranges: the configuration was checked before.
 // Never changes while the gateway runs.
 #pragma once
@@ -12,6 +13,7 @@
 #include "gateway/core/rational.hpp"
 #include "gateway/image/axis_image.hpp"
 #include "gateway/image/lease.hpp"
+#include "gateway/upstream/dds_link/gateway_name.hpp"
 
 namespace axisgate::dds {
 
@@ -24,15 +26,20 @@ struct AxisUnits {
 };
 
 struct DdsSettings {
+  GatewayId gateway{};                           ///< configuration key "gateway"
   std::uint32_t domain = 0;                      ///< 0..232
   std::vector<std::string> interfaces{"lo"};     ///< by name or address; of a host with others, these alone are used
   bool shared_memory = false;                    ///< the shared memory transport beside UDP
   std::vector<std::string> peers{};              ///< addresses of participants to look for; then nothing is multicast
   std::vector<std::string> discovery_servers{};  ///< "192.168.1.5:11811"
+  bool multicast = false;                        ///< data goes to multicast addresses that readers name
   std::string qos_file{};                        ///< Fast DDS XML profiles; empty: none
   bool commands = false;                         ///< axis_command and object_request are read
   Role role = Role::engineer;                    ///< of every DDS writer
-  bool ros2 = false;                             ///< rt/joint_states
+  /// A command that was written longer ago, or as far ahead, is not carried out; none: its age is not looked at.
+  std::optional<Duration> max_age{};
+  bool ros2 = false;             ///< the topics of ROS 2 (schemas/ros2)
+  double sync_tolerance = 0.01;  ///< rad of the motor: how near a stream of positions must begin
   Duration min_period = std::chrono::milliseconds(10);
   Duration max_period = std::chrono::milliseconds(1000);
   Duration start_deadline = std::chrono::milliseconds(500);  ///< as start_deadline_ms of a listener

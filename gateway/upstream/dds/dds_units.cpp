@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds/dds_units.hpp"
 
 #include <cmath>
@@ -12,6 +13,7 @@ DdsUnits::DdsUnits(const AxisUnits& units) {
   Scale turn{kTwoPi, DoubleDouble(1)};
   if (units.metres_per_rev)
     turn = {number(units.metres_per_rev->numerator()), number(units.metres_per_rev->denominator())};
+  turn_ = turn.numerator.high / turn.denominator.high;
   at(Kind::position) = {turn.numerator * number(units.units_per_rev.denominator()),
                         turn.denominator * number(units.units_per_rev.numerator())};
   constexpr std::int64_t kVelocityPerTurn = 60 * 1000;    // 0.001 rpm -> turns/s

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One axis's units: registers on one side, SI on the other (design 2).
 // Promises that a double is the one nearest to the exact value, that a register value is the nearest, half away from
 // zero, and that what is shown and written back is the same register value again. Never wraps: what does not fit is no
@@ -24,6 +25,8 @@ class DdsUnits {
   [[nodiscard]] std::optional<std::int64_t> to_register(Quantity quantity, double si) const;
   /// The same for rows that are no quantities (jog_velocity, set_position_value).
   [[nodiscard]] std::optional<std::int64_t> to_register(Kind kind, RegisterType type, double si) const;
+  /// A turn of the motor, in rad or in metres.
+  [[nodiscard]] double turn() const { return turn_; }
 
  private:
   /// SI = register * numerator / denominator.
@@ -33,6 +36,7 @@ class DdsUnits {
   };
   [[nodiscard]] const Scale& scale(Kind kind) const { return scales_[static_cast<std::size_t>(kind)]; }
 
+  double turn_ = 0;
   std::array<Scale, static_cast<std::size_t>(Kind::voltage) + 1> scales_{};
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A number as the unevaluated sum of two doubles, about 106 bits: so that a value scaled by a rational and by pi
 // becomes the double nearest to the exact result. Promises that products and quotients are right to some 30 digits.
 // Never says anything of infinities and NaN: whoever uses it has sorted them out.

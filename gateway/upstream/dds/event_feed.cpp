@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds/event_feed.hpp"
 
 #include <algorithm>
 
-#include "gateway/upstream/dds/dds_face.hpp"
+#include "gateway/upstream/dds/dds_session.hpp"
 
 namespace axisgate::dds {
 

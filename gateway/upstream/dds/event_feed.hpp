@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which events are still to be sent: by their numbers, out of the gateway's one ring.
 // Promises that they come in their order, once for each life of the reader, and that those which a slow or late reader
 // will never see are counted. Never copies an event before its turn.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gateway and its buses as a sample of gateway_state.
 // Promises the numbers that the registers of the gateway and of the buses show, gathered when it is called.
 // Never more buses than fit one packet.

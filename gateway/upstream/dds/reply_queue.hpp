@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replies on their way to axisgate-dds: those that wait for the socket, and how many requests still have theirs to
 // come. Promises that a request which was accepted finds room for its reply. Never holds more than its bound, whatever
 // is asked by a process that does not read.

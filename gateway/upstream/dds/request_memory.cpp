@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds/request_memory.hpp"
 
 namespace axisgate::dds {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which requests were seen lately, of all DDS writers together: so that one that comes again is not run again.
 // Promises that a request stays known for kRequestsKept after it came last, and that memory is bounded: where it is
 // full it says so instead of forgetting. Never knows what a request asks for.

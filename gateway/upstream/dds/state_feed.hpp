@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whose state is to be sent next: each axis on change, at most each min_period, at least each max_period.
 // Promises that of several the one that is due longest comes first, so that none is passed over for ever, and that an
 // axis waits in one place only: where the reader is slow, the newest state is what it gets. Never holds a state.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The image of one axis as a sample of axis_state.
 // Promises that it says what the registers say at the same moment, by the rules of gateway/image/shown.hpp, and NaN
 // where they show no value. Never changes the image and never mixes two moments.

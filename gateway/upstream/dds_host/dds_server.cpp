@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_host/dds_server.hpp"
 
 #include <algorithm>
@@ -27,9 +28,9 @@ DdsServer::DdsServer(boost::asio::io_context& io, Runtime& runtime, const DdsSet
       reports_(std::move(reports)),
       turn_timer_(runtime.make_timer([this] { turn(); })),
       patience_(runtime.make_timer([this] { on_patience_ended(); })),
-      face_(
-          settings, image, events, commands, [this] { turn_timer_->expires_at(runtime_.now()); },
-          [this](const std::string& line) { log_.write(LogLevel::info, "dds", line); }) {}
+      session_(settings, image, events, commands, [this] { turn_timer_->expires_at(runtime_.now()); },
+               {[this](const std::string& line) { log_.write(LogLevel::info, "dds", line); },
+                [this](bool taken, const std::string& where) { on_name_taken(taken, where); }}) {}
 
 DdsServer::~DdsServer() { stop(); }
 
@@ -74,7 +75,7 @@ void DdsServer::look_whether_it_takes(Instant now) {
 
 void DdsServer::read_soon() {
   const bool open = process_ && process_->socket() != nullptr;
-  if (!open || reading_ || !face_.has_room()) return;
+  if (!open || reading_ || !session_.has_room()) return;
   reading_ = true;
   process_->socket()->when_readable([this] {
     reading_ = false;
@@ -85,7 +86,7 @@ void DdsServer::read_soon() {
 
 void DdsServer::read_turn() {
   const Instant now = runtime_.now();
-  for (int i = 0; i < kMaxReadATurn && face_.has_room(); ++i) {
+  for (int i = 0; i < kMaxReadATurn && session_.has_room(); ++i) {
     const auto received = process_->socket()->receive();
     if (received.what == PacketSocket::Got::nothing) return;
     if (received.what == PacketSocket::Got::closed) return drop_link();
@@ -118,7 +119,7 @@ bool DdsServer::take(const Record& record, Instant now) {
   if (readiness != nullptr) {
     on_ready(*readiness, now);
   } else {
-    face_.on_record(record, now);
+    session_.on_record(record, now);
   }
   return true;
 }
@@ -137,7 +138,17 @@ void DdsServer::on_ready(const ReadyRecord& record, Instant now) {
   patience_->expires_at(now + kLooksEach);
   reports_.down(false);
   reports_.event(EventKind::boot, plan_.on_ready(printable(record.version), now));
-  face_.on_link_up(now);
+  session_.on_link_up(now);
+}
+
+void DdsServer::on_name_taken(bool taken, const std::string& where) {
+  if (reports_.name_taken) reports_.name_taken(taken);
+  const std::string name = "the gateway name \"" + settings_.gateway.name + "\" ";
+  if (!taken) return reports_.event(EventKind::warning, name + "is ours alone again: DDS clients may start axes");
+  reports_.event(EventKind::warning,
+                 name + "is taken in this domain as well (" + printable(where) +
+                     "): DDS clients start nothing until it is not; give each gateway a \"gateway\": {\"name\": ...} "
+                     "of its own");
 }
 
 // --- To the process --------------------------------------------------------------------------------------------------
@@ -152,8 +163,8 @@ void DdsServer::send_turn() {
   const Instant now = runtime_.now();
   for (int i = 0; i < kMaxSentATurn; ++i) {
     if (packet_.empty()) {
-      const auto record = face_.next(now);
-      if (!record) return turn_timer_->expires_at(face_.wake_at());
+      const auto record = session_.next(now);
+      if (!record) return turn_timer_->expires_at(session_.wake_at());
       packet_ = encode(*record);
     }
     const auto sent = process_->socket()->send(packet_);
@@ -188,7 +199,7 @@ void DdsServer::drop_link() {
   patience_->expires_at(now + kEndsWithin);
   if (!std::exchange(ready_, false)) return;
   reports_.down(true);
-  face_.on_link_down(now);
+  session_.on_link_down(now);
 }
 
 void DdsServer::fail(ProcessEnd cause) {

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // The DDS server of the gateway: runs axisgate-dds, starts it again when it ends, and carries records between it and
-// the DDS face. Promises that nothing of it waits for that process, that one turn of the loop does bounded work, and
+// the DDS server. Promises that nothing of it waits for that process, that one turn of the loop does bounded work, and
 // that every end is told (event, log, alarm). Never sends from inside a turn of a drive: what changes there arms a
 // timer.
 #pragma once
@@ -16,7 +17,7 @@
 #include "gateway/core/clock.hpp"
 #include "gateway/core/line_bucket.hpp"
 #include "gateway/core/log.hpp"
-#include "gateway/upstream/dds/dds_face.hpp"
+#include "gateway/upstream/dds/dds_session.hpp"
 #include "gateway/upstream/dds_host/child_process.hpp"
 #include "gateway/upstream/dds_host/restart_plan.hpp"
 #include "gateway/upstream/dds_host/taking_watch.hpp"
@@ -30,7 +31,8 @@ inline constexpr int kMaxSentATurn = 128;
 /// What the gateway is told of the process.
 struct DdsReports {
   std::function<void(EventKind, std::string)> event;
-  std::function<void(bool down)> down;  ///< gateway alarm dds_process_down
+  std::function<void(bool down)> down;           ///< gateway alarm dds_process_down
+  std::function<void(bool taken)> name_taken{};  ///< gateway alarm of that name
 };
 
 class DdsServer {
@@ -44,7 +46,7 @@ class DdsServer {
 
   void start();
   /// The image has other axes now, with these units.
-  void take_axes(const std::vector<AxisUnits>& units) { face_.take_axes(units, runtime_.now()); }
+  void take_axes(const std::vector<AxisUnits>& units) { session_.take_axes(units, runtime_.now()); }
   /// Ends the process; waits for it, kEndsWithin at most. When the loop has ended: it would stand still meanwhile.
   void stop();
 
@@ -62,6 +64,7 @@ class DdsServer {
   bool take(const Record& record, Instant now);
   void take_line(const LogRecord& line, Instant now);
   void on_ready(const ReadyRecord& record, Instant now);
+  void on_name_taken(bool taken, const std::string& where);
   void turn();
   void send_turn();
   void wait_for_room();
@@ -79,7 +82,7 @@ class DdsServer {
   DdsReports reports_;
   std::unique_ptr<Timer> turn_timer_;
   std::unique_ptr<Timer> patience_;  ///< the next start, the next look, or until when something is waited for
-  DdsFace face_;
+  DdsSession session_;
   RestartPlan plan_;
   LineBucket lines_;
   TakingWatch taking_;
@@ -87,7 +90,7 @@ class DdsServer {
   bool ready_ = false;
   bool reading_ = false;             ///< called when it has sent something
   bool waiting_for_room_ = false;    ///< called when it has taken something
-  std::vector<Byte> packet_;         ///< taken from the face, not by the socket yet; empty: none
+  std::vector<Byte> packet_;         ///< taken from the session, not by the socket yet; empty: none
   std::optional<ProcessEnd> cause_;  ///< why we have ended it
 };
 

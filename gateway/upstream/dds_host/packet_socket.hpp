@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gateway's end of the socket pair to axisgate-dds: packets in, packets out, none of them ever waited for.
 // Promises that one call sends or takes one packet whole, or none.
 // Never knows what is in a packet, and keeps none.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program axisgate-dds: where it is looked for, and its command line.
 // Promises that run, check and topics look in the same places and name the same network.
 // Never starts it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How axisgate-dds ended, or why it did not start, and the words for it.
 // Promises that each way has words of its own, with what to change where that is known.
 // Never asks the system: the status was read by child_process.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When axisgate-dds is started again after an end, and what is told of it.
 // Promises a quick first restart, pauses that double while it fails, and one message a change: an end that only repeats
 // the one before is counted, not told. Never starts or ends a process itself.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // With what axisgate-dds ends, so that the gateway can say why and try again as often as it makes sense.
 // Promises that the numbers never change within one installation; 64 and 70 are those of sysexits.h.
 // Never says more than the program knows: an end by a signal has no code.

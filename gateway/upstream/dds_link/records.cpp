@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_link/records.hpp"
 
 #include <algorithm>
@@ -61,26 +62,54 @@ void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>,
 
 template <typename Coder, typename R>
 void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, WriterRecord> {
-  coder(r.writer, r.strength, r.gone);
+  coder(r.writer, r.strength, r.gone, r.liveliness);
   coder.text(r.where, kMaxName);
 }
 
 template <typename Coder, typename R>
 void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, BeatRecord> {
-  coder.list(r.beats, kMaxBeats, [&](auto& beat) { coder(beat.writer, beat.manual); });
+  coder.list(r.writers, kMaxBeats, [&](auto& writer) { coder(writer); });
 }
 
 template <typename Coder, typename R>
 void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, CommandRecord> {
-  coder(r.writer, r.axis, r.request_id, r.command, r.mode, r.mask, r.target_position, r.target_velocity,
-        r.target_torque, r.max_torque, r.profile_velocity, r.profile_acceleration, r.profile_deceleration,
-        r.jog_velocity, r.set_position_value, r.homing_method);
+  coder(r.writer, r.strength, r.written, r.gateway.key);
+  coder.text(r.gateway.name, kMaxName);
+  coder(r.axis, r.request_id, r.command, r.mode, r.mask, r.target_position, r.target_velocity, r.target_torque,
+        r.max_torque, r.profile_velocity, r.profile_acceleration, r.profile_deceleration, r.jog_velocity,
+        r.set_position_value, r.homing_method);
 }
 
 template <typename Coder, typename R>
 void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, ObjectRequestRecord> {
-  coder(r.writer, r.axis, r.request_id, r.write, r.index, r.subindex, r.size, r.value);
+  coder(r.writer, r.written, r.gateway.key);
+  coder.text(r.gateway.name, kMaxName);
+  coder(r.axis, r.request_id, r.write, r.index, r.subindex, r.size, r.value);
   coder.list(r.data, kMaxObjectBytes, [&](auto& byte) { coder(byte); });
+}
+
+template <typename Coder, typename R>
+void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, JointCommandsRecord> {
+  coder(r.writer, r.written, r.efforts);
+  coder.list(r.names, kMaxJoints + 1, [&](auto& name) { coder.text(name, kMaxName); });
+  coder.list(r.positions, kMaxJoints + 1, [&](auto& each) { coder(each); });
+  coder.list(r.velocities, kMaxJoints + 1, [&](auto& each) { coder(each); });
+}
+
+template <typename Coder, typename R>
+void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, RosActionRecord> {
+  coder(r.writer, r.written, r.axis, r.action);
+}
+
+template <typename Coder, typename R>
+void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, HeartbeatRecord> {
+  coder(r.writer, r.client, r.counter, r.lease_ms, r.written);
+}
+
+template <typename Coder, typename R>
+void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, NamesakeRecord> {
+  coder(r.writer, r.axis, r.gone);
+  coder.text(r.where, kMaxName);
 }
 
 class Encoder {
@@ -110,6 +139,7 @@ class Encoder {
     auto bits = static_cast<std::uint64_t>(value);
     for (std::size_t i = 0; i < sizeof(T); ++i, bits >>= 8) to_.push_back(static_cast<Byte>(bits & 0xFF));
   }
+  void put(LivelinessKind value) { put(static_cast<std::uint8_t>(value)); }
   void put(double value) { put(std::bit_cast<std::uint64_t>(value)); }
   void put(const Guid& guid) { to_.insert(to_.end(), guid.begin(), guid.end()); }
 
@@ -157,6 +187,12 @@ class Decoder {
     const Bytes bytes = next(sizeof(T));
     for (std::size_t i = bytes.size(); i-- > 0;) bits = (bits << 8) | bytes[i];
     value = static_cast<T>(bits);
+  }
+  void take(LivelinessKind& value) {
+    std::uint8_t kind = 0;
+    take(kind);
+    failed_ = failed_ || kind > static_cast<std::uint8_t>(kLastLivelinessKind);
+    value = static_cast<LivelinessKind>(kind);
   }
   void take(double& value) {
     std::uint64_t bits = 0;

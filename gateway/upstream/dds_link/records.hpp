@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the gateway and axisgate-dds say to each other over their socket pair (design 7 point 10): one record a packet.
 // Promises that every record has a bound (kMaxPacket) and that one of another version, an unknown kind or a wrong
 // length is refused whole. Never knows a DDS type, a socket or a clock.
@@ -10,19 +11,21 @@
 #include <vector>
 
 #include "gateway/core/bytes.hpp"
+#include "gateway/upstream/dds_link/gateway_name.hpp"
+#include "gateway/upstream/dds_link/guid.hpp"
+#include "gateway/upstream/dds_link/liveliness.hpp"
 
 namespace axisgate::dds {
 
 /// First byte of each packet. Both ends are installed together: another version is another installation.
-inline constexpr std::uint8_t kLinkVersion = 1;
-inline constexpr std::size_t kMaxPacket = 16 * 1024;
+inline constexpr std::uint8_t kLinkVersion = 2;
+inline constexpr std::size_t kMaxPacket = 64 * 1024;
 inline constexpr std::size_t kMaxName = 64;
 inline constexpr std::size_t kMaxText = 256;
 inline constexpr std::size_t kMaxBusesShown = 100;
-inline constexpr std::size_t kMaxBeats = 64;  ///< DDS writers that may command at the same time
+inline constexpr std::size_t kMaxJoints = 512;  ///< of one sample of joint_commands
+inline constexpr std::size_t kMaxBeats = 64;    ///< DDS writers that may command at the same time
 
-/// DDSI-RTPS GUID of a DataWriter: 12 bytes of its participant's prefix, 4 of the entity id.
-using Guid = std::array<std::uint8_t, 16>;
 /// On the steady clock, in nanoseconds: it is the same one in both processes. 0: unknown.
 using SteadyNs = std::int64_t;
 
@@ -132,24 +135,42 @@ struct WriterRecord {
   std::int32_t strength = 0;
   bool gone = false;
   std::string where;  ///< its locator, for names in events: "192.168.1.7"; empty: not known
+  LivelinessKind liveliness = LivelinessKind::endless;
   friend bool operator==(const WriterRecord&, const WriterRecord&) = default;
 };
 
-/// Writers whose liveliness was good when this was sent, each time at least every kBeatPeriod. Only those that have
-/// stated a finite lease: a writer with an endless one proves nothing by being silent.
+/// Writers whose liveliness was good when this was sent, each time at least every kBeatPeriod. Only those whose
+/// liveliness is a sign of life (dds_link/liveliness.hpp).
 struct BeatRecord {
-  struct Beat {
-    Guid writer{};
-    bool manual = false;  ///< MANUAL_BY_TOPIC or MANUAL_BY_PARTICIPANT: its program says so, not its library
-    friend bool operator==(const Beat&, const Beat&) = default;
-  };
-  std::vector<Beat> beats;  ///< at most kMaxBeats
+  std::vector<Guid> writers;  ///< at most kMaxBeats
   friend bool operator==(const BeatRecord&, const BeatRecord&) = default;
+};
+
+/// A sample of heartbeat, as it came.
+struct HeartbeatRecord {
+  Guid writer{};  ///< of the heartbeat
+  Guid client{};  ///< the writer of commands that it speaks for
+  std::uint32_t counter = 0;
+  std::uint32_t lease_ms = 0;
+  SteadyNs written = 0;
+  friend bool operator==(const HeartbeatRecord&, const HeartbeatRecord&) = default;
+};
+
+/// Another participant has published this axis under our key, or its writer of states is gone (axis 0).
+struct NamesakeRecord {
+  Guid writer{};
+  std::uint16_t axis = 0;
+  std::string where;
+  bool gone = false;
+  friend bool operator==(const NamesakeRecord&, const NamesakeRecord&) = default;
 };
 
 /// A sample of axis_command, as it came: nothing of it has been checked.
 struct CommandRecord {
   Guid writer{};
+  std::int32_t strength = 0;  ///< of its writer, when this sample was received; 0 of a SHARED one
+  SteadyNs written = 0;       ///< its source timestamp, by the clocks' difference of its arrival; 0: it has none
+  GatewayId gateway{};
   std::uint16_t axis = 0;
   std::uint64_t request_id = 0;
   std::uint8_t command = 0;
@@ -171,6 +192,8 @@ struct CommandRecord {
 /// A sample of object_request, as it came.
 struct ObjectRequestRecord {
   Guid writer{};
+  SteadyNs written = 0;
+  GatewayId gateway{};
   std::uint16_t axis = 0;
   std::uint64_t request_id = 0;
   bool write = false;
@@ -182,9 +205,31 @@ struct ObjectRequestRecord {
   friend bool operator==(const ObjectRequestRecord&, const ObjectRequestRecord&) = default;
 };
 
+/// A sample of ROS 2's joint_commands, as it came: its lists need not be of one length. A name that no axis can have is
+/// empty here; of lists longer than kMaxJoints one more is told.
+struct JointCommandsRecord {
+  Guid writer{};
+  SteadyNs written = 0;  ///< its source timestamp
+  std::vector<std::string> names;
+  std::vector<double> positions;
+  std::vector<double> velocities;
+  std::uint32_t efforts = 0;  ///< how many there are: their values are of no use
+  friend bool operator==(const JointCommandsRecord&, const JointCommandsRecord&) = default;
+};
+
+/// A sample of one of an axis's own ROS 2 topics.
+struct RosActionRecord {
+  Guid writer{};
+  SteadyNs written = 0;  ///< its source timestamp
+  std::uint16_t axis = 0;
+  std::uint8_t action = 0;  ///< RosAction
+  friend bool operator==(const RosActionRecord&, const RosActionRecord&) = default;
+};
+
 /// In the order of their kinds on the wire.
 using Record = std::variant<StateRecord, EventRecord, GatewayRecord, ReplyRecord, ObjectReplyRecord, ReadyRecord,
-                            LogRecord, WriterRecord, BeatRecord, CommandRecord, ObjectRequestRecord>;
+                            LogRecord, WriterRecord, BeatRecord, CommandRecord, ObjectRequestRecord, HeartbeatRecord,
+                            NamesakeRecord, JointCommandsRecord, RosActionRecord>;
 
 /// Texts and lists longer than their bound are cut.
 [[nodiscard]] std::vector<Byte> encode(const Record& record);

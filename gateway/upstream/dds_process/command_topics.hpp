@@ -1,4 +1,5 @@
-// The two topics that are read: names, types, and the part of their QoS that decides who is matched.
+// SPDX-License-Identifier: Apache-2.0
+// The topics that are read: names, types, and the part of their QoS that decides who is matched.
 // Promises the same answers to all readers of one topic.
 // Never makes a reader.
 #pragma once
@@ -15,16 +16,18 @@
 namespace axisgate::dds {
 
 inline constexpr const char* kCommandTopicName = "axisgate/axis_command";
+inline constexpr const char* kStateTopicName = "axisgate/axis_state";
+inline constexpr const char* kHeartbeatTopicName = "axisgate/heartbeat";
 inline constexpr const char* kObjectTopicName = "axisgate/object_request";
 /// Any axis number may be asked for: one that does not exist is to be answered, not to block the others.
 inline constexpr std::int32_t kMostInstances = 65536;
 
 [[nodiscard]] inline const char* name_of(CommandTopic topic) {
-  return topic == CommandTopic::command ? kCommandTopicName : kObjectTopicName;
+  return topic == CommandTopic::object ? kObjectTopicName : kCommandTopicName;
 }
 
 [[nodiscard]] inline eprosima::fastdds::dds::TypeSupport type_of(CommandTopic topic) {
-  if (topic == CommandTopic::command)
+  if (topic != CommandTopic::object)
     return eprosima::fastdds::dds::TypeSupport(new GuardedType<AxisCommandPubSubType>());
   return eprosima::fastdds::dds::TypeSupport(new GuardedType<ObjectRequestPubSubType>());
 }

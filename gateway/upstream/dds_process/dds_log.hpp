@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the DDS library has to say, as lines for the gateway's log.
 // Promises at most kMaxLogLinesWaiting lines between two looks and kMaxLogLinesPerSecond; what is left out is counted.
 // Never writes to a terminal or a file.

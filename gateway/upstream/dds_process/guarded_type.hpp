@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A generated type whose samples come from the network: bytes that are none of its samples are refused, whatever they
 // are. Promises that no exception leaves deserialize(): the generated code lets those of Fast CDR for a bad
 // encapsulation pass, and they would end the process. Never changes what a sound sample is read as.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The IPv4 addresses of network interfaces that were named in the configuration.
 // Promises at least one address for each name, or a StartError that lists the interfaces there are.
 // Never adds an interface that was not named.

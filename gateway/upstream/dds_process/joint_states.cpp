@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/joint_states.hpp"
 
 #include <algorithm>
@@ -5,7 +6,12 @@
 namespace axisgate::dds {
 
 void JointStates::on_state(const StateRecord& record) {
-  joints_[record.axis] = {record.name, record.position, record.velocity};
+  // The last state of an axis that a reload has taken away has no name.
+  if (record.name.empty()) {
+    joints_.erase(record.axis);
+  } else {
+    joints_[record.axis] = {record.name, record.position, record.velocity};
+  }
   newest_ = std::max(newest_, record.at);
   due_ = true;
 }

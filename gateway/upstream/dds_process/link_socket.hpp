@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // axisgate-dds's end of the socket pair to the gateway: records in, records out, one a packet.
 // Promises that nothing blocks: what the gateway does not take waits here in its order, at most kMaxPacketsWaiting.
 // Never loses what it has accepted, and never interprets a record.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/liveliness_readers.hpp"
 #include "gateway/upstream/dds_process/steady.hpp"
 
@@ -13,27 +14,12 @@ namespace {
 using eprosima::fastrtps::Duration_t;
 using eprosima::fastrtps::types::ReturnCode_t;
 
-fastdds::LivelinessQosPolicyKind to_fastdds(LivelinessKind kind) {
-  switch (kind) {
-    case LivelinessKind::automatic:
-      break;
-    case LivelinessKind::manual_by_participant:
-      return fastdds::MANUAL_BY_PARTICIPANT_LIVELINESS_QOS;
-    case LivelinessKind::manual_by_topic:
-      return fastdds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
-  }
-  return fastdds::AUTOMATIC_LIVELINESS_QOS;
-}
-
 fastdds::DataReaderQos ear_qos(const LivelinessLease& lease) {
   fastdds::DataReaderQos qos = reader_qos(lease.topic, 1);
   qos.history().kind = fastdds::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = 1;
-  // Only assertions by topic come as heartbeats, which a best effort reader does not hear.
-  if (lease.kind != LivelinessKind::manual_by_topic) {
-    qos.reliability().kind = fastdds::BEST_EFFORT_RELIABILITY_QOS;
-  }
-  qos.liveliness().kind = to_fastdds(lease.kind);
+  // Reliable: assertions come as heartbeats, which a best effort reader does not hear.
+  qos.liveliness().kind = fastdds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
   qos.liveliness().lease_duration =
       Duration_t(static_cast<std::int32_t>(lease.length / kSecond), static_cast<std::uint32_t>(lease.length % kSecond));
   return qos;
@@ -55,7 +41,7 @@ class LivelinessReaders::Ear : private fastdds::DataReaderListener {
 
  private:
   void on_data_available(fastdds::DataReader* reader) override {
-    if (lease_.topic == CommandTopic::command) {
+    if (lease_.topic != CommandTopic::object) {
       drop_all<AxisCommand>(*reader);
     } else {
       drop_all<ObjectRequest>(*reader);

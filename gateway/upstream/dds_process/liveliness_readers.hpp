@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Readers that hear no more than whether writers are alive: one for each lease that a writer of commands states.
 // Promises the library's own verdict on each such writer; the readers of commands ask for no lease, since they would
 // not be matched with writers that state none, and the library then watches nobody for them. Never takes a sample for
@@ -13,7 +14,7 @@
 
 namespace axisgate::dds {
 
-/// Leases of different kind, length or topic at the same time. Of writers with others the samples alone count.
+/// Leases of different length, topic or ownership at the same time. Of writers with others the samples alone count.
 inline constexpr std::size_t kMaxLeasesHeard = 24;
 
 class LivelinessReaders {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // axisgate-dds: the DDS topics of axisgate, in a process of their own.
 #include <cstdio>
 #include <exception>

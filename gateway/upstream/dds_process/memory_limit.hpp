@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A bound on this process's own memory: beyond it the process ends at once, instead of the host's other programs.
 // Promises exit code kExitMemory and one line on stderr when an allocation fails.
 // Never tries to go on without the memory.

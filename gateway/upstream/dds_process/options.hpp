@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line of axisgate-dds: what to serve or to show, and where on the network.
 // Promises options within their ranges, or a message that names the option and what to change.
 // Never opens anything.
@@ -21,6 +22,7 @@ struct ParticipantOptions {
   std::uint32_t domain = 0;
   std::vector<std::string> interfaces{"lo"};  ///< by name or IPv4 address
   bool shared_memory = false;
+  bool multicast = false;                        ///< samples go to multicast addresses that readers name
   std::vector<std::string> peers{};              ///< ADDRESS or ADDRESS:PORT; then nothing is multicast
   std::vector<std::string> discovery_servers{};  ///< ADDRESS:PORT
   std::string qos_file{};                        ///< Fast DDS XML profiles; empty: none
@@ -29,13 +31,17 @@ struct ParticipantOptions {
 struct ServeOptions {
   int link_fd = -1;
   ParticipantOptions participant{};
+  std::string gateway_name{};
   bool commands = false;
   bool ros2 = false;
+  std::uint32_t min_period_ms = 10;  ///< of what is gathered here: joint_states
   std::uint32_t memory_limit_mib = 512;
 };
 
 struct TopicsOptions {
   ParticipantOptions participant{};
+  bool all = false;                           ///< every gateway of the domain, and which of them there are
+  std::optional<std::string> gateway_name{};  ///< this one alone; none: all, as with `all`, but axes alone
   bool once = false;
   bool json = false;
 };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/participant.hpp"
 
 #include <fmt/format.h>
@@ -132,6 +133,8 @@ Participant::Participant(const ParticipantOptions& options, fastdds::DomainParti
     qos.wire_protocol().builtin.typelookup_config.use_client = false;
     qos.wire_protocol().builtin.typelookup_config.use_server = false;
   }
+  // Two readers of Cyclone DDS that name a multicast address end Fast DDS 2.9.1 by an assertion (OutputTrafficManager).
+  if (!options.multicast) qos.allocation().locators.max_multicast_locators = 0;
   qos.name("axisgate");
   participant_ = factory->create_participant(options.domain, qos, listener, fastdds::StatusMask::none());
   if (participant_ != nullptr) {
@@ -174,11 +177,13 @@ fastdds::Topic* Participant::find_or_make_topic(const std::string& topic, fastdd
 }
 
 fastdds::DataWriter& Participant::make_writer(const std::string& topic, const std::string& name,
-                                              fastdds::TypeSupport type, fastdds::DataWriterQos qos) {
+                                              fastdds::TypeSupport type, fastdds::DataWriterQos qos,
+                                              const std::vector<std::uint8_t>& user_data) {
   const std::string profile = "axisgate_" + name;
   if (in_qos_file(profile) && publisher_->get_datawriter_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
     throw StartError(kExitParticipant, fmt::format("--qos-file: profile {} is no data_writer profile", profile));
   }
+  if (!user_data.empty()) qos.user_data().data_vec(user_data);
   fastdds::DataWriter* made = publisher_->create_datawriter(find_or_make_topic(topic, std::move(type)), qos);
   if (made == nullptr) {
     throw StartError(kExitParticipant,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The DDS participant and what is made under it: topics, writers and readers, their QoS ours or the QoS file's.
 // Promises that no packet leaves by an interface that was not named, and a StartError that says what could not be made.
 // Never knows what is published.
@@ -26,13 +27,15 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  /// `name` as in the QoS file, without "axisgate_".
+  /// `name` as in the QoS file, without "axisgate_". `user_data`: what others read of it when they discover it.
   [[nodiscard]] fastdds::DataWriter& make_writer(const std::string& topic, const std::string& name,
-                                                 fastdds::TypeSupport type, fastdds::DataWriterQos qos);
+                                                 fastdds::TypeSupport type, fastdds::DataWriterQos qos,
+                                                 const std::vector<std::uint8_t>& user_data = {});
   [[nodiscard]] fastdds::DataReader& make_reader(const std::string& topic, fastdds::TypeSupport type,
                                                  const fastdds::DataReaderQos& qos,
                                                  fastdds::DataReaderListener* listener);
   void end_reader(fastdds::DataReader& reader);
+  [[nodiscard]] const fastdds::DomainParticipantQos& qos() const { return participant_->get_qos(); }
   /// That of the QoS file where it has one of this name, else the one given.
   [[nodiscard]] fastdds::DataReaderQos reader_qos_of(const std::string& name, fastdds::DataReaderQos qos) const;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/serve_command.hpp"
 
 #include <poll.h>
@@ -17,9 +18,12 @@
 #include "gateway/upstream/dds_process/link_socket.hpp"
 #include "gateway/upstream/dds_process/liveliness_readers.hpp"
 #include "gateway/upstream/dds_process/memory_limit.hpp"
+#include "gateway/upstream/dds_process/namesake_reader.hpp"
 #include "gateway/upstream/dds_process/publishers.hpp"
+#include "gateway/upstream/dds_process/ros_topics.hpp"
 #include "gateway/upstream/dds_process/start_error.hpp"
 #include "gateway/upstream/dds_process/steady.hpp"
+#include "gateway/upstream/dds_process/writer_discovery.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -41,11 +45,15 @@ class Server {
       : link_(link),
         log_(log),
         wake_(wake),
-        discovery_(watch_, wake_),
-        participant_(options.participant, options.commands ? &discovery_ : nullptr),
-        publishers_(participant_, options.ros2) {
+        namesakes_(gateway_key(options.gateway_name)),
+        discovery_(watch_, namesakes_, wake_),
+        participant_(options.participant, &discovery_),
+        publishers_(participant_, gateway_id(options.gateway_name)),
+        namesake_reader_(participant_, namesakes_, wake_) {
+    if (options.ros2)
+      ros_.emplace(participant_, wake_, options.gateway_name, options.min_period_ms * kMillisecond, options.commands);
     if (options.commands) {
-      readers_.emplace(participant_, watch_, wake_);
+      readers_.emplace(participant_, options.participant.domain, watch_, wake_);
       liveliness_.emplace(participant_, watch_, wake_);
     }
   }
@@ -63,8 +71,14 @@ class Server {
       if (const std::optional<int> end = take_records()) return *end;
       wake_.clear();
       if (!link_.flush()) return kExitGatewayGone;
+      more_ = false;
+      namesake_reader_.update();
+      if (link_.idle())
+        for (const NamesakeRecord& record : namesakes_.take()) link_.send(record);
       if (link_.idle() && readers_) take_samples();
+      if (link_.idle() && ros_) take_ros_samples();
       const SteadyNs now = steady_now();
+      if (ros_ && now >= ros_->due()) ros_->on_time(now, difference_);
       if (readers_ && now >= next_beat) {
         // A socket that is full proves nothing of the writers to anybody: the next beat will.
         if (link_.idle()) link_.send(watch_.beats(now));
@@ -84,14 +98,12 @@ class Server {
                     {wake_.fd(), POLLIN, 0}};
     // Samples and changes wait while the gateway does not read: only its socket can change that.
     const nfds_t count = link_.idle() ? 2 : 1;
-    int timeout_ms = static_cast<int>(kMemoryPeriod / kMillisecond);
-    if (more_) {
-      timeout_ms = 0;
-    } else if (readers_) {
-      timeout_ms =
-          static_cast<int>(std::max<SteadyNs>(0, (next_beat - steady_now() + kMillisecond - 1) / kMillisecond));
-    }
-    poll(fds, count, timeout_ms);
+    const SteadyNs now = steady_now();
+    SteadyNs until = now + kMemoryPeriod;
+    if (readers_) until = std::min(until, next_beat);
+    if (ros_) until = std::min(until, ros_->due());
+    if (more_) until = now;
+    poll(fds, count, static_cast<int>(std::max<SteadyNs>(0, (until - now + kMillisecond - 1) / kMillisecond)));
   }
 
   /// An exit code where this was the last.
@@ -108,8 +120,8 @@ class Server {
       if (!publishers_.publish(packet.record, steady_now(), difference_)) {
         return protocol_error("a record that the gateway never sends");
       }
+      if (ros_) ros_->on_record(packet.record);
     }
-    publishers_.end_batch(difference_);
     return std::nullopt;
   }
 
@@ -129,32 +141,29 @@ class Server {
       tell(link_, LogLevel::warning,
            "more than " + std::to_string(kMaxWritersKnown) + " writers of commands: some are not known");
     }
-    if (changes.doubted) {
-      tell(
-          link_, LogLevel::warning,
-          "several programs state an automatic liveliness lease, and the DDS library cannot tell whose it hears: until "
-          "one is left, masters keep their axes by samples or by MANUAL_BY_TOPIC alone");
-    }
-    more_ = samples.size() == kSamplesPerTurn;
+    more_ = more_ || samples.size() == kSamplesPerTurn;
     liveliness_->update();
-    if (changes.owner_silent) owner_silent_ = true;
-    if (owner_silent_ && !more_) {
-      readers_->forget_owners();
-      owner_silent_ = false;
-    }
+  }
+
+  void take_ros_samples() {
+    const std::vector<Record> samples = ros_->take(kSamplesPerTurn, difference_);
+    for (const Record& record : samples) link_.send(record);
+    more_ = more_ || samples.size() == kSamplesPerTurn;
   }
 
   LinkSocket& link_;
   DdsLog& log_;
   Wake& wake_;
   WriterWatch watch_;
+  NamesakeWatch namesakes_;
   WriterDiscovery discovery_;
   Participant participant_;
   Publishers publishers_;
+  NamesakeReader namesake_reader_;
+  std::optional<RosTopics> ros_;
   std::optional<CommandReaders> readers_;
   std::optional<LivelinessReaders> liveliness_;
   ClockDifference difference_ = time_of_day_difference();
-  bool owner_silent_ = false;
   bool more_ = false;
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Why the program cannot begin: the text says what to change, the code is what it ends with.
 // Promises to be thrown while starting only, and caught in one place a command.
 // Never crosses a turn of the loop.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two clocks of this program: the steady one, which the gateway shares, and the time of day for samples.
 // Promises nanoseconds.
 // Never is looked at by what decides.
@@ -21,5 +22,10 @@ inline constexpr SteadyNs kSecond = 1000 * kMillisecond;
 [[nodiscard]] inline SteadyNs steady_now() { return clock_ns(CLOCK_MONOTONIC); }
 /// What is to be added to a steady instant.
 [[nodiscard]] inline std::int64_t time_of_day_difference() { return clock_ns(CLOCK_REALTIME) - steady_now(); }
+
+/// An instant of the time of day, as samples carry it; 0 where there is none.
+[[nodiscard]] inline SteadyNs to_steady(std::int64_t of_day) {
+  return of_day <= 0 ? 0 : of_day - time_of_day_difference();
+}
 
 }  // namespace axisgate::dds

@@ -1,7 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/to_idl.hpp"
+#include "gateway/upstream/dds_link/command_mask.hpp"
 #include "gateway/upstream/dds_process/steady.hpp"
 
 namespace axisgate::dds {
+
+// The gateway's own half does not know the IDL.
+static_assert(kHasMode == HAS_MODE && kHasTargetPosition == HAS_TARGET_POSITION &&
+              kHasTargetVelocity == HAS_TARGET_VELOCITY && kHasTargetTorque == HAS_TARGET_TORQUE &&
+              kHasMaxTorque == HAS_MAX_TORQUE && kHasProfileVelocity == HAS_PROFILE_VELOCITY &&
+              kHasProfileAcceleration == HAS_PROFILE_ACCELERATION &&
+              kHasProfileDeceleration == HAS_PROFILE_DECELERATION && kHasJogVelocity == HAS_JOG_VELOCITY &&
+              kHasHomingMethod == HAS_HOMING_METHOD && kHasSetPositionValue == HAS_SET_POSITION_VALUE);
+
+namespace {
+
+template <typename Sample>
+void put_gateway(Sample& sample, const GatewayId& gateway) {
+  sample.gateway_key(gateway.key);
+  sample.gateway(eprosima::fastrtps::fixed_string<kMaxGatewayName>(gateway.name));
+}
+
+template <typename Sample>
+GatewayId gateway_of(const Sample& sample) {
+  return {sample.gateway_key(), sample.gateway().to_string()};
+}
+
+}  // namespace
 
 axisgate::Time to_time(SteadyNs at, ClockDifference difference) {
   axisgate::Time time;
@@ -12,8 +37,9 @@ axisgate::Time to_time(SteadyNs at, ClockDifference difference) {
   return time;
 }
 
-axisgate::AxisState to_idl(const StateRecord& record, ClockDifference difference) {
+axisgate::AxisState to_idl(const StateRecord& record, ClockDifference difference, const GatewayId& gateway) {
   axisgate::AxisState state;
+  put_gateway(state, gateway);
   state.axis(record.axis);
   state.name(eprosima::fastrtps::fixed_string<kMaxName>(record.name));
   state.stamp(to_time(record.at, difference));
@@ -42,8 +68,9 @@ axisgate::AxisState to_idl(const StateRecord& record, ClockDifference difference
   return state;
 }
 
-axisgate::AxisEvent to_idl(const EventRecord& record, ClockDifference difference) {
+axisgate::AxisEvent to_idl(const EventRecord& record, ClockDifference difference, const GatewayId& gateway) {
   axisgate::AxisEvent event;
+  put_gateway(event, gateway);
   event.axis(record.axis);
   event.stamp(to_time(record.at, difference));
   event.number(record.number);
@@ -77,8 +104,10 @@ axisgate::BusState to_idl(const BusRecord& record) {
 
 }  // namespace
 
-axisgate::GatewayState to_idl(const GatewayRecord& record, SteadyNs now, ClockDifference difference) {
+axisgate::GatewayState to_idl(const GatewayRecord& record, SteadyNs now, ClockDifference difference,
+                              const GatewayId& gateway) {
   axisgate::GatewayState state;
+  put_gateway(state, gateway);
   state.stamp(to_time(now, difference));
   state.state(record.state);
   state.axis_count(record.axis_count);
@@ -90,8 +119,9 @@ axisgate::GatewayState to_idl(const GatewayRecord& record, SteadyNs now, ClockDi
   return state;
 }
 
-axisgate::CommandReply to_idl(const ReplyRecord& record) {
+axisgate::CommandReply to_idl(const ReplyRecord& record, const GatewayId& gateway) {
   axisgate::CommandReply reply;
+  put_gateway(reply, gateway);
   reply.axis(record.axis);
   reply.request_id(record.request_id);
   reply.writer(record.writer);
@@ -100,8 +130,9 @@ axisgate::CommandReply to_idl(const ReplyRecord& record) {
   return reply;
 }
 
-axisgate::ObjectReply to_idl(const ObjectReplyRecord& record) {
+axisgate::ObjectReply to_idl(const ObjectReplyRecord& record, const GatewayId& gateway) {
   axisgate::ObjectReply reply;
+  put_gateway(reply, gateway);
   reply.axis(record.axis);
   reply.request_id(record.request_id);
   reply.writer(record.writer);
@@ -112,8 +143,11 @@ axisgate::ObjectReply to_idl(const ObjectReplyRecord& record) {
   return reply;
 }
 
-CommandRecord to_record(const axisgate::AxisCommand& sample, const Guid& writer) {
-  return {.writer = writer,
+CommandRecord to_record(const axisgate::AxisCommand& sample, const Sender& sender) {
+  return {.writer = sender.writer,
+          .strength = sender.strength,
+          .written = sender.written,
+          .gateway = gateway_of(sample),
           .axis = sample.axis(),
           .request_id = sample.request_id(),
           .command = sample.command(),
@@ -131,8 +165,10 @@ CommandRecord to_record(const axisgate::AxisCommand& sample, const Guid& writer)
           .homing_method = sample.homing_method()};
 }
 
-ObjectRequestRecord to_record(const axisgate::ObjectRequest& sample, const Guid& writer) {
-  return {.writer = writer,
+ObjectRequestRecord to_record(const axisgate::ObjectRequest& sample, const Sender& sender) {
+  return {.writer = sender.writer,
+          .written = sender.written,
+          .gateway = gateway_of(sample),
           .axis = sample.axis(),
           .request_id = sample.request_id(),
           .write = sample.write(),
@@ -141,6 +177,14 @@ ObjectRequestRecord to_record(const axisgate::ObjectRequest& sample, const Guid&
           .size = sample.size(),
           .value = sample.value(),
           .data = sample.data()};
+}
+
+HeartbeatRecord to_record(const axisgate::Heartbeat& sample, const Sender& sender) {
+  return {.writer = sender.writer,
+          .client = sample.client(),
+          .counter = sample.counter(),
+          .lease_ms = sample.lease_ms(),
+          .written = sender.written};
 }
 
 }  // namespace axisgate::dds

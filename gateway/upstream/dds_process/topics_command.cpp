@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/topics_command.hpp"
 
 #include <axisgatePubSubTypes.h>
@@ -9,6 +10,7 @@
 #include <cstdio>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -26,7 +28,13 @@ constexpr SteadyNs kRedrawPeriod = 200 * kMillisecond;
 /// With --once: for the first axis, and then for one more.
 constexpr SteadyNs kFirstWithin = 5'000 * kMillisecond;
 constexpr SteadyNs kNextWithin = 500 * kMillisecond;
-constexpr std::int32_t kMostAxes = 500;
+/// With --all as well: each gateway says once a second that it is there.
+constexpr SteadyNs kNextGatewayWithin = 2'500 * kMillisecond;
+/// Of all gateways of the domain.
+constexpr std::int32_t kMostAxes = 16'000;
+constexpr std::int32_t kMostGateways = 256;
+/// Of one name, so that two which speak at once are both heard.
+constexpr std::int32_t kStatesOfAName = 8;
 constexpr int kNoAxisFound = 1;
 
 volatile std::sig_atomic_t ended = 0;
@@ -66,13 +74,15 @@ class Terminal {
   }
 };
 
-fastdds::DataReaderQos last_state() {
+fastdds::DataReaderQos last_states(std::int32_t instances, std::int32_t depth) {
   fastdds::DataReaderQos qos;
   qos.reliability().kind = fastdds::RELIABLE_RELIABILITY_QOS;
   qos.durability().kind = fastdds::TRANSIENT_LOCAL_DURABILITY_QOS;
-  qos.resource_limits().max_instances = kMostAxes;
-  qos.resource_limits().max_samples_per_instance = 1;
-  qos.resource_limits().max_samples = kMostAxes;
+  qos.resource_limits().max_instances = instances;
+  qos.history().depth = depth;
+  qos.resource_limits().max_samples_per_instance = depth;
+  qos.resource_limits().max_samples = instances * depth;
+  qos.resource_limits().allocated_samples = 0;
   qos.data_sharing().off();
   return qos;
 }
@@ -83,7 +93,10 @@ class Topics {
       : options_(options),
         participant_(options.participant, nullptr),
         reader_(participant_.make_reader("axisgate/axis_state", fastdds::TypeSupport(new AxisStatePubSubType()),
-                                         last_state(), nullptr)) {}
+                                         last_states(kMostAxes, 1), nullptr)),
+        gateways_reader_(participant_.make_reader("axisgate/gateway_state",
+                                                  fastdds::TypeSupport(new GatewayStatePubSubType()),
+                                                  last_states(kMostGateways, kStatesOfAName), nullptr)) {}
 
   int run() {
     const bool redraws = isatty(STDOUT_FILENO) == 1 && !options_.json && !options_.once;
@@ -94,14 +107,15 @@ class Topics {
     while (ended == 0) {
       reader_.wait_for_unread_message(Duration_t(0, static_cast<std::uint32_t>(kRedrawPeriod)));
       const SteadyNs now = steady_now();
+      take_gateways();
       if (take(!redraws)) newest = now;
       if (terminal) {
-        terminal->draw(heading() + topics_table(axes_, clock_ns(CLOCK_REALTIME)));
+        terminal->draw(heading() + tables());
         usleep(static_cast<useconds_t>(kRedrawPeriod / 1000));
       }
-      if (options_.once && now - newest > (axes_.empty() ? kFirstWithin : kNextWithin)) break;
+      if (options_.once && now - newest > patience()) break;
     }
-    if (options_.once && !options_.json) put(axes_.empty() ? "" : topics_table(axes_, clock_ns(CLOCK_REALTIME)));
+    if (options_.once && !options_.json) put(axes_.empty() ? "" : tables());
     if (options_.once && axes_.empty()) {
       std::fprintf(stderr,
                    "axisgate-dds: no axis in domain %u: is the gateway running with \"dds\" in its configuration, "
@@ -118,14 +132,42 @@ class Topics {
                        options_.participant.domain, axes_.size());
   }
 
+  [[nodiscard]] SteadyNs patience() const {
+    if (axes_.empty()) return kFirstWithin;
+    return options_.all ? kNextGatewayWithin : kNextWithin;
+  }
+
+  [[nodiscard]] std::string tables() const {
+    const std::int64_t now = clock_ns(CLOCK_REALTIME);
+    const std::string gateways = options_.all ? gateways_table(gateways_, now) + "\n" : std::string();
+    return gateways + topics_table(axes_, now);
+  }
+
+  [[nodiscard]] bool wanted(const std::string& gateway) const {
+    return options_.all || !options_.gateway_name || *options_.gateway_name == gateway;
+  }
+
+  void take_gateways() {
+    axisgate::GatewayState sample;
+    fastdds::SampleInfo info;
+    while (gateways_reader_.take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
+      if (!info.valid_data) continue;
+      SeenGateway& seen = gateways_[sample.gateway().to_string()];
+      seen.state = sample;
+      const auto& prefix = info.sample_identity.writer_guid().guidPrefix;
+      seen.writers[std::string(std::begin(prefix.value), std::end(prefix.value))] = clock_ns(CLOCK_REALTIME);
+    }
+  }
+
   /// True: a new axis, or anything at all where there are lines.
   bool take(bool lines) {
     bool any_new = false;
     axisgate::AxisState sample;
     fastdds::SampleInfo info;
     while (ended == 0 && reader_.take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
-      if (!info.valid_data) continue;
-      const bool is_new = axes_.insert_or_assign(sample.axis(), sample).second;
+      const std::string gateway = sample.gateway().to_string();
+      if (!info.valid_data || !wanted(gateway)) continue;
+      const bool is_new = axes_.insert_or_assign(AxisKey(gateway, sample.axis()), sample).second;
       any_new = any_new || is_new;
       if (options_.json && (is_new || !options_.once)) {
         put(topics_json(sample) + "\n");
@@ -139,7 +181,9 @@ class Topics {
   TopicsOptions options_;
   Participant participant_;
   fastdds::DataReader& reader_;
+  fastdds::DataReader& gateways_reader_;
   AxisSamples axes_;
+  SeenGateways gateways_;
 };
 
 }  // namespace

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/topics_table.hpp"
 #include "gateway/upstream/dds_process/steady.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -35,36 +37,61 @@ std::string age(const axisgate::Time& stamp, std::int64_t now_ns) {
 }
 
 constexpr const char* kRow = "{:>4}  {:<16} {:<9}  {:<17} {:>6} {:>5} {:>13} {:>12} {:>9} {:>6} {:>10} {:>8}\n";
+constexpr const char* kGatewayRow = "{:<16} {:<9} {:>5} {:>7} {:>9}  {}\n";
+
+std::string shown_gateway(const std::string& name) { return name.empty() ? "(no name)" : name; }
 
 }  // namespace
 
+std::string gateways_table(const SeenGateways& gateways, std::int64_t now_ns) {
+  std::string text = fmt::format(kGatewayRow, "gateway", "state", "axes", "online", "uptime s", "alarms");
+  for (const auto& [name, seen] : gateways) {
+    std::size_t there = 0;
+    for (const auto& [writer, at] : seen.writers) there += now_ns - at < kGatewayGoneAfter ? 1 : 0;
+    std::string alarms = names_of_bits(WordKind::gateway_alarm, seen.state.alarms());
+    if (there > 1) alarms = fmt::format("{} GATEWAYS HAVE THIS NAME{}{}", there, alarms.empty() ? "" : "; ", alarms);
+    text += fmt::format(kGatewayRow, shown_gateway(name),
+                        there == 0 ? "gone" : name_of(WordKind::gateway_state, seen.state.state()),
+                        seen.state.axis_count(), seen.state.axes_online(), seen.state.uptime_s(), alarms);
+  }
+  return text;
+}
+
 std::string topics_table(const AxisSamples& axes, std::int64_t now_ns) {
-  std::string text = fmt::format(kRow, "axis", "name", "link", "state", "status", "mode", "position", "velocity",
-                                 "torque", "error", "alarms", "age s");
-  for (const auto& [number_of_axis, axis] : axes) {
-    text += fmt::format(
-        fmt::runtime(kRow), number_of_axis, axis.name().to_string(), name_of(WordKind::link_state, axis.link_state()),
-        name_of(WordKind::axis_state, axis.axis_state()),
-        marked(axis, kStatusword, fmt::format("{:04X}", axis.statusword())),
-        marked(axis, kMode, fmt::format("{}", axis.mode())), number(axis, kPosition, axis.position(), 3),
-        number(axis, kVelocity, axis.velocity(), 3), number(axis, kTorque, axis.torque(), 1),
-        fmt::format("{:04X}", axis.error_code()), fmt::format("{:08X}", axis.alarms()), age(axis.stamp(), now_ns));
+  const bool named = std::any_of(axes.begin(), axes.end(), [](const auto& each) { return !each.first.first.empty(); });
+  const auto with_gateway = [&](const std::string& gateway, const std::string& line) {
+    return named ? fmt::format("{:<16} {}", gateway, line) : line;
+  };
+  std::string text = with_gateway("gateway", fmt::format(kRow, "axis", "name", "link", "state", "status", "mode",
+                                                         "position", "velocity", "torque", "error", "alarms", "age s"));
+  for (const auto& [key, axis] : axes) {
+    text += with_gateway(
+        key.first,
+        fmt::format(kRow, key.second, axis.name().to_string(), name_of(WordKind::link_state, axis.link_state()),
+                    name_of(WordKind::axis_state, axis.axis_state()),
+                    marked(axis, kStatusword, fmt::format("{:04X}", axis.statusword())),
+                    marked(axis, kMode, fmt::format("{}", axis.mode())), number(axis, kPosition, axis.position(), 3),
+                    number(axis, kVelocity, axis.velocity(), 3), number(axis, kTorque, axis.torque(), 1),
+                    fmt::format("{:04X}", axis.error_code()), fmt::format("{:08X}", axis.alarms()),
+                    age(axis.stamp(), now_ns)));
   }
   return text;
 }
 
 std::string topics_line(const axisgate::AxisState& axis) {
-  return fmt::format("axis {} {}: {}, {}, statusword {}, mode {}, position {}, velocity {}, torque {}, error {:04X}",
-                     axis.axis(), axis.name().to_string(), name_of(WordKind::link_state, axis.link_state()),
-                     name_of(WordKind::axis_state, axis.axis_state()),
-                     marked(axis, kStatusword, fmt::format("{:04X}", axis.statusword())),
-                     marked(axis, kMode, fmt::format("{}", axis.mode())), number(axis, kPosition, axis.position(), 3),
-                     number(axis, kVelocity, axis.velocity(), 3), number(axis, kTorque, axis.torque(), 1),
-                     axis.error_code());
+  return fmt::format(
+      "{}axis {} {}: {}, {}, statusword {}, mode {}, position {}, velocity {}, torque {}, error {:04X}",
+      axis.gateway().size() == 0 ? "" : axis.gateway().to_string() + " ", axis.axis(), axis.name().to_string(),
+      name_of(WordKind::link_state, axis.link_state()), name_of(WordKind::axis_state, axis.axis_state()),
+      marked(axis, kStatusword, fmt::format("{:04X}", axis.statusword())),
+      marked(axis, kMode, fmt::format("{}", axis.mode())), number(axis, kPosition, axis.position(), 3),
+      number(axis, kVelocity, axis.velocity(), 3), number(axis, kTorque, axis.torque(), 1), axis.error_code());
 }
 
 std::string topics_json(const axisgate::AxisState& axis) {
-  const nlohmann::ordered_json sample{{"axis", axis.axis()},
+  const nlohmann::ordered_json sample{{"gateway_key", axis.gateway_key()},
+                                      {"gateway", axis.gateway().to_string()},
+                                      {"axis", axis.axis()},
                                       {"name", axis.name().to_string()},
                                       {"stamp", {{"sec", axis.stamp().sec()}, {"nanosec", axis.stamp().nanosec()}}},
                                       {"sequence_number", axis.sequence_number()},

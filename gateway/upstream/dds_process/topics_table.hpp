@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table and the lines that `axisgate-dds topics` shows: samples in, text out. Pure: no topic, no terminal, no
 // clock. Promises that a value which is not there is a '-', and one whose valid bit is 0 is marked with '?'. Never
 // rounds away the sign or more than three digits behind the point.
@@ -8,12 +9,27 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace axisgate::dds {
 
-using AxisSamples = std::map<std::uint16_t, axisgate::AxisState>;
+/// An axis of a gateway: its name, then the number.
+using AxisKey = std::pair<std::string, std::uint16_t>;
+using AxisSamples = std::map<AxisKey, axisgate::AxisState>;
 
-/// Lines ended by '\n': one that names the columns, then one an axis. `now_ns`: time of day.
+/// A gateway as its gateway_state tells of it, and who writes that: of a name that two gateways have, two participants.
+struct SeenGateway {
+  axisgate::GatewayState state{};
+  std::map<std::string, std::int64_t> writers{};  ///< by participant, the time of day of its newest sample
+};
+using SeenGateways = std::map<std::string, SeenGateway>;
+/// A participant that has said nothing for so long is gone: gateway_state comes each second.
+inline constexpr std::int64_t kGatewayGoneAfter = 5'000'000'000;
+
+/// Lines ended by '\n': one that names the columns, then one a gateway.
+[[nodiscard]] std::string gateways_table(const SeenGateways& gateways, std::int64_t now_ns);
+/// Lines ended by '\n': one that names the columns, then one an axis. `now_ns`: time of day. With a column
+/// for the gateways' names where one has a name.
 [[nodiscard]] std::string topics_table(const AxisSamples& axes, std::int64_t now_ns);
 /// One axis, one line, without '\n'.
 [[nodiscard]] std::string topics_line(const axisgate::AxisState& axis);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/wake.hpp"
 
 #include <sys/eventfd.h>

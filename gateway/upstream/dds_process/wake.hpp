@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How threads of the DDS library tell the one thread that works that there is something to do: an eventfd.
 // Promises that set() never blocks and may come from any thread, and that many of it are one wake-up.
 // Never says what there is to do.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/dds/changing_image.hpp"
 
 #include <atomic>
@@ -16,8 +17,8 @@ namespace {
 
 class NoCommands final : public CommandPort {
  public:
-  std::optional<GroupResult> submit(AxisNumber, const Group&, GroupCallback) override {
-    return GroupResult{refusal(Errc::not_supported)};
+  std::optional<BatchResult> submit(AxisNumber, const WriteBatch&, BatchCallback) override {
+    return BatchResult{refusal(Errc::not_supported)};
   }
   void client_gone(ClientId) override {}
   bool holds(AxisNumber, Quantity, std::int64_t) const override { return false; }

@@ -1,6 +1,7 @@
-// An image whose axes change at a steady rate, and the gateway's half of the DDS face over it, on a thread of its own.
-// Promises that each change is stamped when it is made. Never has a drive behind it: what is measured begins at the
-// image. Never takes commands.
+// SPDX-License-Identifier: Apache-2.0
+// An image whose axes change at a steady rate, and the gateway's half of the DDS server over it, on a thread of its
+// own. Promises that each change is stamped when it is made. Never has a drive behind it: what is measured begins at
+// the image. Never takes commands.
 #pragma once
 
 #include <sys/types.h>

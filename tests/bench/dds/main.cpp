@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // axisgate-dds-bench: from a change of the image to the sample at a subscriber, beside a bare Fast DDS writer of the
 // same run; and what both processes take of the machine with 64 axes at 100 Hz.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A subscriber of axisgate/axis_state in a process of its own, and how the bench speaks to it.
 // Promises that each latency is from the stamp of a sample to the call of its listener, on this computer's clock.
 // Never counts samples that were published before it was asked to begin.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """mbpoll (libmodbus) reads and writes every table."""
 import re
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """pymodbus speaks every function code the gateway has, on one connection and on many."""
 import socket
 import sys

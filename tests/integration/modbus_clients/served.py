@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Starts and ends the server that the clients under test speak to."""
 import subprocess
 

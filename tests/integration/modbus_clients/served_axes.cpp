@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The server that foreign Modbus clients are tried on: our own Server and Session over an image filled by hand.
 // Axis 1 does what it is told at once, axis 2 is offline, axis 3's drive refuses everything, axis 4 never answers in
 // time. Prints "PORT n" and serves until its standard input ends.
@@ -12,9 +13,9 @@
 #include <exception>
 
 #include "adapters/asio/asio_runtime.hpp"
-#include "gateway/upstream/modbus_tcp/client_registry.hpp"
-#include "gateway/upstream/modbus_tcp/descriptors.hpp"
-#include "gateway/upstream/modbus_tcp/server.hpp"
+#include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
+#include "gateway/upstream/modbus_tcp/server/server.hpp"
 #include "tests/unit/modbus_server/filled_image.hpp"
 
 namespace {
@@ -25,18 +26,18 @@ class ServedAxes final : public CommandPort {
  public:
   explicit ServedAxes(ProcessImage& image) : image_(image) {}
 
-  std::optional<GroupResult> submit(AxisNumber number, const Group& group, GroupCallback) override {
+  std::optional<BatchResult> submit(AxisNumber number, const WriteBatch& batch, BatchCallback) override {
     AxisImage* axis = image_.find(number);
-    if (axis == nullptr) return GroupResult{{Errc::no_path, 0}};
+    if (axis == nullptr) return BatchResult{{Errc::no_path, 0}};
     switch (number) {
       case 2:
-        return GroupResult{{Errc::offline, 0}};
+        return BatchResult{{Errc::offline, 0}};
       case 3:
-        return GroupResult{{Errc::refused_by_drive, 0x06090030}};
+        return BatchResult{{Errc::refused_by_drive, 0x06090030}};
       case 4:
-        return GroupResult{{Errc::timed_out, 0}};
+        return BatchResult{{Errc::timed_out, 0}};
       default:
-        return done(*axis, group);
+        return done(*axis, batch);
     }
   }
   void client_gone(ClientId) override {}
@@ -45,15 +46,15 @@ class ServedAxes final : public CommandPort {
   std::int32_t set_position_value(AxisNumber) const override { return 0; }
 
  private:
-  static GroupResult done(AxisImage& axis, const Group& group) {
-    for (const Setpoint& setpoint : group.setpoints) axis[setpoint.quantity].value = setpoint.value;
-    if (group.mode) axis[Quantity::mode].value = axis[Quantity::mode_display].value = *group.mode;
-    if (group.controlword) axis[Quantity::controlword].value = *group.controlword;
-    if (group.command == Command::disable) {
+  static BatchResult done(AxisImage& axis, const WriteBatch& batch) {
+    for (const Setpoint& setpoint : batch.setpoints) axis[setpoint.quantity].value = setpoint.value;
+    if (batch.mode) axis[Quantity::mode].value = axis[Quantity::mode_display].value = *batch.mode;
+    if (batch.controlword) axis[Quantity::controlword].value = *batch.controlword;
+    if (batch.command == Command::disable) {
       axis.inputs &= static_cast<std::uint16_t>(~bit(AxisInput::enabled));
       axis.level_coils &= static_cast<std::uint16_t>(~1U);
     }
-    if (group.command == Command::enable) {
+    if (batch.command == Command::enable) {
       axis.inputs |= bit(AxisInput::enabled);
       axis.level_coils |= 1U;
     }

@@ -1,4 +1,5 @@
-#include "gateway/app/bus_budget.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/config/bus_budget.hpp"
 
 #include <gmock/gmock.h>
 
@@ -78,8 +79,8 @@ TEST(BusBudget, WaitsAreCountedInExchanges) {
   EXPECT_EQ(budget.exchange, microseconds(10208));
   EXPECT_EQ(budget.stop_wait, microseconds(10208));
   EXPECT_EQ(budget.command_wait, microseconds(20416));
-  EXPECT_EQ(budget.stop_wait_mute, milliseconds(110));
-  EXPECT_EQ(budget.command_wait_mute, microseconds(120208));
+  EXPECT_EQ(budget.stop_wait_unresponsive, milliseconds(110));
+  EXPECT_EQ(budget.command_wait_unresponsive, microseconds(120208));
 }
 
 TEST(BusBudget, AnOverloadedBusStretchesItsCycleAndNamesPeriodsThatFit) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An axis, as the plan of a command by hand sees it, and what that plan writes: answered when a test says so.
 // Promises that signs of life are answered in their turn and counted apart. Never answers anything else by itself.
 #pragma once
@@ -7,7 +8,7 @@
 #include <deque>
 #include <utility>
 
-#include "gateway/app/hand_plan.hpp"
+#include "gateway/commands/hand/hand_plan.hpp"
 
 namespace axisgate::app {
 

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a CAN bus is planned with, by the shipped profiles: frames as long as they can be, requests only for what no
 // TPDO brings, inhibit times that leave the line to requests; and what `check` says of it.
 #include <gmock/gmock.h>
 
-#include "gateway/app/check.hpp"
+#include "gateway/check/check.hpp"
 #include "tests/unit/app/one_bus.hpp"
 
 namespace axisgate::app {
@@ -43,7 +44,7 @@ TEST(CanBus, AnExchangeIsTwoFramesAndTheServersTime) {
   EXPECT_EQ(timing_of(bus_of(loaded)).on_wire, microseconds(540));
   EXPECT_EQ(plan_of(loaded).exchange, microseconds(1540));
   EXPECT_EQ(plan_of(loaded).stop_wait, microseconds(1810)) << "and a frame that another node has begun";
-  EXPECT_EQ(plan_of(loaded).stop_wait_mute, bus_of(loaded).timeout + microseconds(270));
+  EXPECT_EQ(plan_of(loaded).stop_wait_unresponsive, bus_of(loaded).timeout + microseconds(270));
 }
 
 TEST(CanBus, WhatComesByTpdoIsOnlyConfirmed) {
@@ -93,8 +94,8 @@ TEST(CanBus, TpdosOfManyDrivesLeaveTheLineToRequests) {
     const LoadedConfig loaded = load_bus(several(profile, 30));
     const BusBudget budget = plan_of(loaded);
     EXPECT_LE(budget.load_unasked, kUnaskedPermille + 50) << profile << ": heartbeats are not stretched";
-    const drive::TpdoFacts& tpdo = loaded.models.at(0).at(0).canopen.tpdos.at(0);
-    const drive::TpdoFacts alone = load_bus(drive(profile, 1)).models.at(0).at(0).canopen.tpdos.at(0);
+    const drive::TpdoProperties& tpdo = loaded.models.at(0).at(0).canopen.tpdos.at(0);
+    const drive::TpdoProperties alone = load_bus(drive(profile, 1)).models.at(0).at(0).canopen.tpdos.at(0);
     EXPECT_GT(*tpdo.inhibit, *alone.inhibit);
     EXPECT_EQ(tpdo.inhibit_time / *tpdo.inhibit, alone.inhibit_time / *alone.inhibit) << "of the same unit";
     EXPECT_FALSE(budget.overloaded()) << profile;

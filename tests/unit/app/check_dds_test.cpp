@@ -1,10 +1,11 @@
-// What `axisgate check` says of the DDS face, and of DDS clients as masters of an axis.
-#include "gateway/app/check_dds.hpp"
+// SPDX-License-Identifier: Apache-2.0
+// What `axisgate check` says of the DDS server, and of DDS clients as masters of an axis.
+#include "gateway/check/check_dds.hpp"
 
 #include <gmock/gmock.h>
 
-#include "gateway/app/check.hpp"
-#include "gateway/app/check_masters.hpp"
+#include "gateway/check/check.hpp"
+#include "gateway/check/check_masters.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -20,7 +21,7 @@ class CheckDds : public ::testing::Test {
     settings->units.resize(8);
     axis.number = 3;
     budget.command_wait = milliseconds(20);
-    budget.command_wait_mute = milliseconds(120);
+    budget.command_wait_unresponsive = milliseconds(120);
   }
   std::string said() {
     std::string out = dds_title(*settings) + "\n";
@@ -55,7 +56,12 @@ TEST_F(CheckDds, TellsWhichTopicsThereAre) {
   EXPECT_THAT(said(), HasSubstr("topics          axisgate/axis_state, axis_event, gateway_state\n"));
   settings->ros2 = true;
   settings->commands = true;
-  EXPECT_THAT(said(), HasSubstr("gateway_state, command_reply, object_reply; rt/joint_states\n"));
+  EXPECT_THAT(said(), HasSubstr("gateway_state, command_reply, object_reply\n"));
+  EXPECT_THAT(said(),
+              HasSubstr("ROS 2           /joint_states and /diagnostics, /joint_commands, and of each axis enable"));
+  EXPECT_THAT(said(), HasSubstr("a stream of positions begins within 0.01 rad of its axis\n"));
+  settings->commands = false;
+  EXPECT_THAT(said(), HasSubstr("ROS 2           /joint_states and /diagnostics\n"));
 }
 
 TEST_F(CheckDds, TellsHowParticipantsFindEachOther) {
@@ -81,13 +87,13 @@ TEST_F(CheckDds, TellsWhoMayCommand) {
 TEST_F(CheckDds, TellsWhatCountsAsAliveForADdsClient) {
   settings->commands = true;
   EXPECT_THAT(of_the_axis(),
-              HasSubstr("DDS client      kept by its samples, and its liveliness where its writer states "
-                        "a finite lease\n"));
+              HasSubstr("DDS client      kept by its samples, axisgate/heartbeat, and its liveliness where that is "
+                        "MANUAL_BY_TOPIC with a finite lease\n"));
   axis.lease.renew = LeaseRenewal::write;
-  EXPECT_THAT(of_the_axis(), HasSubstr("its samples for this axis; its liveliness does not count\n"));
+  EXPECT_THAT(of_the_axis(), HasSubstr("its samples for this axis; neither heartbeat nor liveliness count\n"));
   EXPECT_THAT(of_the_axis(), Not(HasSubstr("outlives")));
   axis.lease.renew = LeaseRenewal::heartbeat;
-  EXPECT_THAT(of_the_axis(), HasSubstr("asserts it itself (MANUAL_BY_...)"));
+  EXPECT_THAT(of_the_axis(), HasSubstr("kept by axisgate/heartbeat, and its liveliness where that is MANUAL_BY_TOPIC"));
 }
 
 TEST_F(CheckDds, TellsTheWorstTimeFromADeadDdsClientToTheStop) {

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `axisgate check` says of the death of an axis's masters, and the warnings that go with it.
-#include "gateway/app/check_masters.hpp"
+#include "gateway/check/check_masters.hpp"
 
 #include <gmock/gmock.h>
 
-#include "gateway/app/check.hpp"
+#include "gateway/check/check.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -13,7 +14,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// One drive of two motors on a bus where a command waits at most 20 ms, 120 ms beside a mute drive.
+/// One drive of two motors on a bus where a command waits at most 20 ms, 120 ms beside an unresponsive drive.
 class Masters : public ::testing::Test {
  protected:
   Masters() {
@@ -42,7 +43,7 @@ class Masters : public ::testing::Test {
     loaded.models.push_back({model});
     budgets.emplace_back();
     budgets[0].command_wait = milliseconds(20);
-    budgets[0].command_wait_mute = milliseconds(120);
+    budgets[0].command_wait_unresponsive = milliseconds(120);
   }
 
   AxisConfig& config(std::size_t axis = 0) { return loaded.config.buses[0].drives[0].axes[axis]; }
@@ -76,7 +77,7 @@ TEST_F(Masters, TellsTheTimeFromADeadProgramToTheStop) {
   config().lease.timeout = milliseconds(1500);
   EXPECT_THAT(said(),
               HasSubstr("program dies    quick stop at most 1520 ms after its last sign of life, 1620 ms beside "
-                        "a mute drive\n"));
+                        "an unresponsive drive\n"));
   config().lease.on_expiry = LeaseAction::halt;
   EXPECT_THAT(said(), HasSubstr("halt at most 1520 ms"));
 }
@@ -197,14 +198,14 @@ TEST_F(Masters, WarnsOfALeaseThatEndsBeforeAWriteIsAnswered) {
 }
 
 TEST_F(Masters, WarnsOfALeaseThatTheBusItselfCouldUseUp) {
-  budgets[0].command_wait_mute = milliseconds(700);
+  budgets[0].command_wait_unresponsive = milliseconds(700);
   EXPECT_THAT(warned(),
               HasSubstr("axis 1: its lease of 2000 ms is shorter than 3 of the longest waits for its bus (2100 ms)"));
   config().lease.timeout = milliseconds(2100);
   EXPECT_THAT(warned(), Not(HasSubstr("axis 1: its lease")));
 }
 
-TEST_F(Masters, WarnsWhereAMuteDriveCouldMakeTheKeepAliveOfOthersLate) {
+TEST_F(Masters, WarnsWhereAnUnresponsiveDriveCouldMakeTheKeepAliveOfOthersLate) {
   loaded.config.buses[0].name = "agv";
   loaded.models[0].push_back(drive());
   loaded.config.buses[0].drives.push_back(loaded.config.buses[0].drives[0]);
@@ -212,9 +213,10 @@ TEST_F(Masters, WarnsWhereAMuteDriveCouldMakeTheKeepAliveOfOthersLate) {
   budgets[0].kept_alive.period = milliseconds(120);
   EXPECT_THAT(warned(), Not(HasSubstr("bus agv")));
   budgets[0].kept_alive.period = milliseconds(100);
-  EXPECT_THAT(warned(), HasSubstr("bus agv: beside a mute drive a command may wait 120 ms, longer than the 100 ms"));
+  EXPECT_THAT(warned(),
+              HasSubstr("bus agv: beside an unresponsive drive a command may wait 120 ms, longer than the 100 ms"));
   loaded.models[0].pop_back();
-  EXPECT_THAT(warned(), Not(HasSubstr("bus agv"))) << "no other drive can be mute";
+  EXPECT_THAT(warned(), Not(HasSubstr("bus agv"))) << "no other drive can be unresponsive";
 }
 
 TEST_F(Masters, HintsAtOneShotToolsWhereEachConnectionIsAClient) {

@@ -1,4 +1,5 @@
-#include "gateway/app/check.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/check/check.hpp"
 
 #include <gmock/gmock.h>
 
@@ -48,7 +49,7 @@ TEST(Check, SaysThatTheFileIsValidAndPlansEachBus) {
   EXPECT_THAT(report.text, HasSubstr("fast 1 each 20 ms"));
   EXPECT_THAT(report.text,
               HasSubstr("planned load    51.1 % with drives that answer after 5 ms, 26.1 % on the wire alone"));
-  EXPECT_THAT(report.text, HasSubstr("stop waits      at most 10.2 ms; beside a mute drive at most 100.0 ms"));
+  EXPECT_THAT(report.text, HasSubstr("stop waits      at most 10.2 ms; beside an unresponsive drive at most 100.0 ms"));
   EXPECT_FALSE(report.overloaded);
 }
 

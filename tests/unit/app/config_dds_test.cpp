@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The section "dds" of a configuration, and what axes say of their units: defaults, values and warnings.
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -5,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "gateway/app/config_loader.hpp"
-#include "gateway/app/descriptor_needs.hpp"
+#include "gateway/config/config_loader.hpp"
+#include "gateway/process/descriptor_needs.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -55,6 +56,20 @@ TEST_F(ConfigDds, IsOffWithoutItsKey) {
   const LoadedConfig loaded = load("");
   EXPECT_FALSE(loaded.config.dds);
   EXPECT_THAT(loaded.warnings, IsEmpty());
+}
+
+TEST_F(ConfigDds, IsWhereRos2NodesOfThisMachineLookForIt) {
+  EXPECT_TRUE(settings(R"({"ros2": true})").shared_memory);
+  EXPECT_FALSE(settings(R"({"ros2": true, "shared_memory": false})").shared_memory);
+  EXPECT_FALSE(settings(R"({"ros2": true, "interfaces": ["eth0"]})").shared_memory);
+  EXPECT_FALSE(settings("{}").shared_memory);
+}
+
+TEST_F(ConfigDds, TakesATolerance) {
+  EXPECT_EQ(settings("{}").sync_tolerance, 0.01);
+  EXPECT_EQ(settings(R"({"ros2": true, "commands": true, "sync_tolerance": 0.05})").sync_tolerance, 0.05);
+  EXPECT_THAT(warnings(R"({"ros2": true, "sync_tolerance": 0.05})"),
+              ElementsAre(HasSubstr("/dds/sync_tolerance: without \"ros2\" and \"commands\" this has no effect")));
 }
 
 TEST_F(ConfigDds, FillsInEveryDefault) {

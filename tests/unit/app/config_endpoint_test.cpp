@@ -1,4 +1,5 @@
-#include "gateway/app/config_endpoint.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/config/config_endpoint.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,5 @@
-#include "gateway/app/config_fault.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/config/config_fault.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,5 @@
-#include "gateway/app/config_loader.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/config/config_loader.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -191,6 +192,12 @@ TEST_F(ConfigLoader, GivesEachDriveItsModel) {
   EXPECT_EQ(model.poll_period[0], milliseconds(40));
   ASSERT_THAT(model.axes, SizeIs(1));
   EXPECT_EQ(model.axes[0].number, 1);
+}
+
+TEST_F(ConfigLoader, NamesEveryFileThatAProfileIsMadeFrom) {
+  const std::string drives = kShipped.front() + "/";
+  EXPECT_THAT(load_good(one_drive("", "")).config.profile_files,
+              ElementsAre(drives + "kinco-jd.json", drives + "kinco.json", drives + "cia402.json"));
 }
 
 TEST_F(ConfigLoader, WarnsWithoutRefusing) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The buttons of `axisgate jog`: what presses them, what lets them go, and nothing else.
 #include "tests/unit/app/by_hand.hpp"
 

@@ -1,4 +1,5 @@
-#include "gateway/app/hand_keys.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/commands/hand/hand_keys.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,5 @@
-#include "gateway/app/hand_view.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/commands/hand/hand_view.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a bus with Keya drives is planned with, by the shipped profile: one query for the values of both motors, control
 // frames that nobody answers, keep-alives and heartbeats; and what `check` says of it.
 #include <gmock/gmock.h>
 
-#include "gateway/app/check.hpp"
+#include "gateway/check/check.hpp"
 #include "tests/unit/app/one_bus.hpp"
 
 namespace axisgate::app {

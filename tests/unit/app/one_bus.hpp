@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A configuration of one bus with drives of the shipped profiles, loaded as the gateway loads its own.
 // Never decides what is right: the tests do.
 #pragma once
@@ -8,8 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "gateway/app/bus_budget.hpp"
-#include "gateway/app/config_loader.hpp"
+#include "gateway/config/bus_budget.hpp"
+#include "gateway/config/config_loader.hpp"
 
 namespace axisgate::app {
 

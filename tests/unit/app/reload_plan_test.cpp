@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a reload does about each key of the configuration: nothing, a listener, a bus, or it is refused.
-#include "gateway/app/reload_plan.hpp"
+#include "gateway/compose/reload_plan.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -9,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "gateway/app/config_loader.hpp"
+#include "gateway/config/config_loader.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -77,7 +78,11 @@ const Row kRows[] = {
     {"/dds/commands", "/dds/commands", "false", "refused"},
     {"/dds/role", "/dds/role", R"("operator")", "refused"},
     {"/dds/ros2", "/dds/ros2", "true", "refused"},
+    {"/dds/multicast", "/dds/multicast", "true", "refused"},
+    {"/dds/max_age_ms", "/dds/max_age_ms", "0", "refused"},
+    {"/gateway/name", "/gateway", R"({"name": "cell_7"})", "refused"},
     {"/dds/min_period_ms", "/dds/min_period_ms", "20", "refused"},
+    {"/dds/sync_tolerance", "/dds/sync_tolerance", "0.02", "refused"},
     {"/dds/max_period_ms", "/dds/max_period_ms", "2000", "refused"},
     {"/dds/start_deadline_ms", "/dds/start_deadline_ms", "600", "refused"},
     {"/dds/reply_deadline_ms", "/dds/reply_deadline_ms", "950", "refused"},

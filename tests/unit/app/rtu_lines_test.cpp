@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a Modbus RTU line is planned with, by the shipped profiles: lengths of its own for each exchange, runs of
 // registers as one request, and timeouts and periods that follow from the drives on it.
 #include <gmock/gmock.h>
 
-#include "gateway/app/check.hpp"
+#include "gateway/check/check.hpp"
 #include "tests/unit/app/one_bus.hpp"
 
 namespace axisgate::app {

@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scan against nodes written down here: who is found, in which order, what is read of them, and what fits.
-#include "gateway/app/scan_plan.hpp"
+#include "gateway/commands/scan/scan_plan.hpp"
 
 #include <gmock/gmock.h>
 
 #include <map>
 #include <set>
 
-#include "gateway/app/scan_table.hpp"
+#include "gateway/commands/scan/scan_table.hpp"
 #include "tests/stage/profile_once.hpp"
 
 namespace axisgate::app {
@@ -66,11 +67,11 @@ class Scan : public ::testing::Test {
     }
     FAIL() << "the scan does not end";
   }
-  static bus::Notice sign_of_life(std::uint8_t node, bus::NodeState state) {
-    bus::Notice notice;
-    notice.node = node;
-    notice.state = state;
-    return notice;
+  static bus::UnsolicitedEvent sign_of_life(std::uint8_t node, bus::NodeState state) {
+    bus::UnsolicitedEvent unsolicited;
+    unsolicited.node = node;
+    unsolicited.state = state;
+    return unsolicited;
   }
 
   std::map<std::uint8_t, Node> nodes_;
@@ -217,16 +218,16 @@ TEST_F(Scan, AsksTheNodesOfItsRangeAlone) {
   EXPECT_THAT(std::set<std::uint8_t>(asked_.begin(), asked_.end()), ElementsAre(4, 5, 6));
 }
 
-TEST_F(Scan, TellsOfATwinAtAnyTime) {
+TEST_F(Scan, TellsOfADuplicateNodeIdAtAnyTime) {
   nodes_[1] = {};
   nodes_[2] = {};
   ScanPlan plan(shipped_);
   run(plan);
-  bus::Notice notice = sign_of_life(2, bus::NodeState::unknown);
-  notice.kind = bus::Notice::Kind::twin;
-  plan.heard(notice);
-  EXPECT_FALSE(plan.found().at(0).twin);
-  EXPECT_TRUE(plan.found().at(1).twin);
+  bus::UnsolicitedEvent unsolicited = sign_of_life(2, bus::NodeState::unknown);
+  unsolicited.kind = bus::UnsolicitedEvent::Kind::duplicate_node;
+  plan.heard(unsolicited);
+  EXPECT_FALSE(plan.found().at(0).duplicate);
+  EXPECT_TRUE(plan.found().at(1).duplicate);
   EXPECT_THAT(scan_table(plan.found()), HasSubstr("node 2: two answers came to one request"));
 }
 

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // The first lines of a log: what was configured, in words that need no configuration file beside them.
-#include "gateway/app/start_lines.hpp"
+#include "gateway/compose/start_lines.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random operations, each answer judged by the reference; then time alone must bring everything to an end.
 #include "gateway/core/random.hpp"
 #include "tests/unit/bus/arbiter_reference.hpp"
@@ -11,13 +12,13 @@ class RandomRun {
 
   void step() {
     // Rush and quiet by turns: some rules show only on a full queue, others only on one that runs dry.
-    if (random_.chance(1, 256)) orders_per_16_ = random_.below(17);
+    if (random_.chance(1, 256)) jobs_per_16_ = random_.below(17);
     switch (random_.below(16)) {
       case 0:
       case 1:
       case 2:
       case 3:
-        if (random_.below(16) < orders_per_16_) submit();
+        if (random_.below(16) < jobs_per_16_) submit();
         break;
       case 4:
       case 5:
@@ -50,7 +51,7 @@ class RandomRun {
     }
   }
 
-  /// No more orders come: what is left must end within one start deadline and its own few exchanges.
+  /// No more bus jobs come: what is left must end within one start deadline and its own few exchanges.
   void drain() {
     for (int i = 0; i < 2000 && !(reference_.quiet() && !arbiter_.wire_busy()); ++i) {
       if (arbiter_.wire_busy()) {
@@ -62,7 +63,7 @@ class RandomRun {
       take_endings();
       if (!arbiter_.wire_busy()) now_ += milliseconds(1);
     }
-    EXPECT_TRUE(reference_.quiet()) << "an order is stranded";
+    EXPECT_TRUE(reference_.quiet()) << "a bus job is stranded";
     EXPECT_EQ(arbiter_.waiting(), 0u);
   }
 
@@ -72,9 +73,9 @@ class RandomRun {
   }
 
   void submit() {
-    Order o =
-        order(static_cast<Priority>(random_.below(5)), static_cast<DriveSlot>(random_.below(ArbiterReference::kDrives)),
-              static_cast<bus::AxisSlot>(random_.below(2)));
+    BusJob o =
+        job(static_cast<Priority>(random_.below(5)), static_cast<DriveSlot>(random_.below(ArbiterReference::kDrives)),
+            static_cast<bus::AxisSlot>(random_.below(2)));
     if (o.priority == Priority::stop && !random_.chance(1, 4)) o.priority = Priority::command;
     if (random_.chance(1, o.priority == Priority::setup ? 2 : 16)) o.axis = bus::kNoAxis;
     if (random_.chance(1, 2)) o.start_by = now_ + milliseconds(random_.below(40));
@@ -86,8 +87,8 @@ class RandomRun {
       o.read = {random_.chance(1, 2) ? kStatusword : kTargetPosition,
                 static_cast<std::uint8_t>(random_.chance(1, 2) ? 2 : 4)};
     }
-    const auto admission = arbiter_.submit(o, now_);
-    reference_.on_submit(o, admission, now_);
+    const auto submission = arbiter_.submit(o, now_);
+    reference_.on_submit(o, submission, now_);
   }
   void grant() {
     if (const auto granted = arbiter_.next(now_)) {
@@ -114,13 +115,13 @@ class RandomRun {
     if (reference_.known().empty()) return;
     auto at = reference_.known().begin();
     std::advance(at, static_cast<long>(random_.below(reference_.known().size())));
-    const OrderId id = at->first;
+    const JobId id = at->first;
     if (random_.chance(1, 4)) return finish(id);
     const Instant until = now_ + milliseconds(random_.below(20));
     reference_.on_wait(id, until);
     arbiter_.wait(id, until);
   }
-  void finish(OrderId id) {
+  void finish(JobId id) {
     reference_.on_finish(id);
     arbiter_.finish(id);
   }
@@ -164,13 +165,13 @@ class RandomRun {
   Arbiter arbiter_{ArbiterReference::kDrives};
   ArbiterReference reference_;
   Instant now_ = Instant{} + 1h;
-  OrderId granted_ = 0;
-  std::uint64_t orders_per_16_ = 16;
+  JobId granted_ = 0;
+  std::uint64_t jobs_per_16_ = 16;
 };
 
 class ArbiterProperty : public testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(ArbiterProperty, keeps_every_rule_and_strands_no_order) {
+TEST_P(ArbiterProperty, keeps_every_rule_and_strands_no_job) {
   RandomRun run(GetParam());
   for (int step = 0; step < 20'000; ++step) {
     run.step();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plain second telling of the arbiter's rules, against which the real one is checked step by step.
 // Promises to judge each answer by the words of design section 7 point 3, rule by rule. Never chooses: it only objects.
 #pragma once
@@ -14,37 +15,37 @@ namespace axisgate::test {
 class ArbiterReference {
  public:
   struct Known {
-    Order order;
-    OrderId place = 0;
+    BusJob job;
+    JobId place = 0;
     bool started = false;
     Instant ready_at = kLongAgo;
   };
   static constexpr std::size_t kDrives = 3;
 
   // What happens to the arbiter.
-  void on_submit(const Order& order, const Arbiter::Admission& admission, Instant now) {
+  void on_submit(const BusJob& job, const Arbiter::Submission& submission, Instant now) {
     expire(now);
-    if (order.priority == Priority::stop) drop_for(order);
-    if (admission.joined) return check_join(order, admission.id);
-    OrderId place = admission.id;
-    if (const auto older = replaceable(order); older != 0) {
-      EXPECT_EQ(admission.code, Errc::ok) << "a newer setpoint always finds room";
+    if (job.priority == Priority::stop) drop_for(job);
+    if (submission.joined) return check_join(job, submission.id);
+    JobId place = submission.id;
+    if (const auto older = replaceable(job); older != 0) {
+      EXPECT_EQ(submission.code, Errc::ok) << "a newer setpoint always finds room";
       place = known_.at(older).place;
       end(older, Errc::superseded);
     }
-    if (admission.code == Errc::ok) {
-      EXPECT_TRUE(seen_.insert(admission.id).second) << "a number was given twice";
-      known_[admission.id] = {order, place};
+    if (submission.code == Errc::ok) {
+      EXPECT_TRUE(seen_.insert(submission.id).second) << "a number was given twice";
+      known_[submission.id] = {job, place};
     } else {
-      EXPECT_EQ(admission.code, Errc::queue_full);
+      EXPECT_EQ(submission.code, Errc::queue_full);
     }
     EXPECT_LE(
-        count([](const Order& o) { return o.priority == Priority::command || o.priority == Priority::interactive; }),
-        bus::kMaxOrdersPerBus);
-    EXPECT_LE(count([&](const Order& o) { return o.priority == Priority::command && same_axis(o, order); }),
-              bus::kMaxOrdersPerAxis);
-    EXPECT_LE(count([](const Order& o) { return o.priority == Priority::stop; }), bus::kMaxStopsPerBus);
-    EXPECT_LE(count([&](const Order& o) { return o.priority == Priority::cause && o.drive == order.drive; }),
+        count([](const BusJob& o) { return o.priority == Priority::command || o.priority == Priority::interactive; }),
+        bus::kMaxJobsPerBus);
+    EXPECT_LE(count([&](const BusJob& o) { return o.priority == Priority::command && same_axis(o, job); }),
+              bus::kMaxJobsPerAxis);
+    EXPECT_LE(count([](const BusJob& o) { return o.priority == Priority::stop; }), bus::kMaxStopsPerBus);
+    EXPECT_LE(count([&](const BusJob& o) { return o.priority == Priority::cause && o.drive == job.drive; }),
               bus::kMaxCausesPerDrive);
   }
   void on_grant(const Arbiter::Grant& grant, Instant now) {
@@ -54,7 +55,7 @@ class ArbiterReference {
     if (grant.id == 0) {
       check_poll(grant, now);
     } else {
-      check_order(grant, now);
+      check_job(grant, now);
     }
     busy_ = true;
     granted_ = grant;
@@ -65,7 +66,7 @@ class ArbiterReference {
   void on_nothing(Instant now) {
     expire(now);
     if (busy_ || now < silent_until_) return;
-    for (const auto& [id, known] : known_) EXPECT_FALSE(ready(known, now)) << "order " << id << " is stranded";
+    for (const auto& [id, known] : known_) EXPECT_FALSE(ready(known, now)) << "job " << id << " is stranded";
     for (DriveSlot drive = 0; drive < kDrives; ++drive) EXPECT_FALSE(poll_ready(drive, now)) << "a poll is stranded";
   }
   void on_over(Instant silent_until) {
@@ -78,18 +79,18 @@ class ArbiterReference {
     const auto at = known_.find(granted_.id);
     if (at != known_.end()) at->second.ready_at = std::max(at->second.ready_at, granted_at_ + bus::kDeclinePause);
   }
-  void on_wait(OrderId id, Instant until) {
+  void on_wait(JobId id, Instant until) {
     if (known_.contains(id) && known_[id].started) known_[id].ready_at = until;
   }
-  void on_finish(OrderId id) {
+  void on_finish(JobId id) {
     known_.erase(id);
     std::erase_if(ended_, [id](const auto& e) { return e.id == id; });
   }
   void on_poll_due(DriveSlot drive, Instant due) { due_[drive] = due; }
   void on_end(std::optional<DriveSlot> drive, Errc waiting, Errc started) {
-    for (const OrderId id : ids()) {
+    for (const JobId id : ids()) {
       const Known& known = known_.at(id);
-      if (!drive || known.order.drive == *drive) end(id, known.started ? started : waiting);
+      if (!drive || known.job.drive == *drive) end(id, known.started ? started : waiting);
     }
     if (!drive) on_over(kLongAgo);
   }
@@ -102,72 +103,71 @@ class ArbiterReference {
   }
 
   [[nodiscard]] bool busy() const { return busy_; }
-  [[nodiscard]] const std::map<OrderId, Known>& known() const { return known_; }
+  [[nodiscard]] const std::map<JobId, Known>& known() const { return known_; }
   [[nodiscard]] bool quiet() const { return known_.empty() && ended_.empty(); }
 
  private:
-  static bool same_axis(const Order& a, const Order& b) { return a.drive == b.drive && a.axis == b.axis; }
+  static bool same_axis(const BusJob& a, const BusJob& b) { return a.drive == b.drive && a.axis == b.axis; }
 
-  [[nodiscard]] std::vector<OrderId> ids() const {
-    std::vector<OrderId> all;
+  [[nodiscard]] std::vector<JobId> ids() const {
+    std::vector<JobId> all;
     for (const auto& [id, known] : known_) all.push_back(id);
     return all;
   }
   template <typename Which>
   [[nodiscard]] std::size_t count(Which which) const {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(known_, [&](const auto& k) { return which(k.second.order); }));
+    return static_cast<std::size_t>(std::ranges::count_if(known_, [&](const auto& k) { return which(k.second.job); }));
   }
-  void end(OrderId id, Errc code) {
-    ended_.push_back({id, known_.at(id).order.drive, code});
+  void end(JobId id, Errc code) {
+    ended_.push_back({id, known_.at(id).job.drive, code});
     known_.erase(id);
   }
   void expire(Instant now) {
-    for (const OrderId id : ids()) {
-      if (!known_.at(id).started && known_.at(id).order.start_by <= now) end(id, Errc::never_started);
+    for (const JobId id : ids()) {
+      if (!known_.at(id).started && known_.at(id).job.start_by <= now) end(id, Errc::never_started);
     }
   }
-  void drop_for(const Order& stop) {
-    for (const OrderId id : ids()) {
+  void drop_for(const BusJob& stop) {
+    for (const JobId id : ids()) {
       const Known& k = known_.at(id);
-      const bool hit = k.order.drive == stop.drive && (stop.axis == bus::kNoAxis || k.order.axis == stop.axis);
+      const bool hit = k.job.drive == stop.drive && (stop.axis == bus::kNoAxis || k.job.axis == stop.axis);
       const bool can_fall =
-          k.order.priority == Priority::command || (k.order.priority == Priority::interactive && !k.started);
-      if (hit && can_fall && !k.order.survives_stop) end(id, Errc::dropped_by_stop);
+          k.job.priority == Priority::command || (k.job.priority == Priority::interactive && !k.started);
+      if (hit && can_fall && !k.job.survives_stop) end(id, Errc::dropped_by_stop);
     }
   }
-  void check_join(const Order& order, OrderId id) {
+  void check_join(const BusJob& job, JobId id) {
     ASSERT_TRUE(known_.contains(id));
-    EXPECT_TRUE(order.read.has_value());
+    EXPECT_TRUE(job.read.has_value());
     EXPECT_FALSE(known_[id].started) << "never one on the wire";
-    EXPECT_EQ(known_[id].order.read, order.read);
-    EXPECT_TRUE(same_axis(known_[id].order, order));
-    known_[id].order.start_by = std::max(known_[id].order.start_by, order.start_by);
+    EXPECT_EQ(known_[id].job.read, job.read);
+    EXPECT_TRUE(same_axis(known_[id].job, job));
+    known_[id].job.start_by = std::max(known_[id].job.start_by, job.start_by);
     for (const auto& [other, known] : known_) {
-      if (other > id && known.order.drive == order.drive) {
-        EXPECT_TRUE(known.order.read && known.order.writes.empty()) << "joined across a write";
+      if (other > id && known.job.drive == job.drive) {
+        EXPECT_TRUE(known.job.read && known.job.writes.empty()) << "joined across a write";
       }
     }
   }
-  [[nodiscard]] OrderId replaceable(const Order& order) const {
-    OrderId newest = 0;
+  [[nodiscard]] JobId replaceable(const BusJob& job) const {
+    JobId newest = 0;
     for (const auto& [id, known] : known_) {
-      if (same_axis(known.order, order)) newest = id;
+      if (same_axis(known.job, job)) newest = id;
     }
-    if (newest == 0 || !order.setpoints_only) return 0;
+    if (newest == 0 || !job.setpoints_only) return 0;
     const Known& k = known_.at(newest);
     const bool fits =
-        !k.started && k.order.setpoints_only && k.order.writes == order.writes && k.order.priority == order.priority;
+        !k.started && k.job.setpoints_only && k.job.writes == job.writes && k.job.priority == job.priority;
     return fits ? newest : 0;
   }
   [[nodiscard]] bool ready(const Known& known, Instant now) const {
     if (known.started) return known.ready_at <= now;
-    if (known.order.priority == Priority::stop) return true;
+    if (known.job.priority == Priority::stop) return true;
     return std::ranges::none_of(known_, [&](const auto& k) {
-      const Order& o = k.second.order;
+      const BusJob& o = k.second.job;
       const bool same_queue =
-          known.order.priority == Priority::setup ? o.drive == known.order.drive : same_axis(o, known.order);
-      return k.second.started && o.priority == known.order.priority && same_queue;
+          known.job.priority == Priority::setup ? o.drive == known.job.drive : same_axis(o, known.job);
+      return k.second.started && o.priority == known.job.priority && same_queue;
     });
   }
   void check_poll(const Arbiter::Grant& grant, Instant now) {
@@ -175,8 +175,8 @@ class ArbiterReference {
     due_[grant.drive] = kNever;
     for (const auto& [id, known] : known_) {
       if (!ready(known, now)) continue;
-      EXPECT_GT(known.order.priority, Priority::cause) << "a stop, or the cause of a fault, waited for a poll";
-      EXPECT_GE(others_, bus::kOthersPerPoll) << "a poll went before order " << id << " and was not owed";
+      EXPECT_GT(known.job.priority, Priority::cause) << "a stop, or the cause of a fault, waited for a poll";
+      EXPECT_GE(others_, bus::kOthersPerPoll) << "a poll went before job " << id << " and was not owed";
     }
     for (DriveSlot drive = 0; drive < kDrives; ++drive) {
       if (poll_ready(drive, now)) {
@@ -184,38 +184,38 @@ class ArbiterReference {
       }
     }
   }
-  void check_order(const Arbiter::Grant& grant, Instant now) {
+  void check_job(const Arbiter::Grant& grant, Instant now) {
     ASSERT_TRUE(known_.contains(grant.id)) << "granted though it has ended";
     Known& mine = known_[grant.id];
-    EXPECT_EQ(grant.drive, mine.order.drive);
-    EXPECT_EQ(grant.priority, mine.order.priority);
+    EXPECT_EQ(grant.drive, mine.job.drive);
+    EXPECT_EQ(grant.priority, mine.job.priority);
     EXPECT_TRUE(ready(mine, now));
-    if (mine.order.priority > Priority::cause && others_ >= bus::kOthersPerPoll) {
+    if (mine.job.priority > Priority::cause && others_ >= bus::kOthersPerPoll) {
       for (DriveSlot drive = 0; drive < kDrives; ++drive) {
         EXPECT_FALSE(poll_ready(drive, now)) << "poll did not get its share";
       }
     }
     for (const auto& [id, known] : known_) {
       if (id == grant.id || !ready(known, now)) continue;
-      EXPECT_LE(mine.order.priority, known.order.priority) << "order " << id << " is more urgent";
-      if (known.order.priority != mine.order.priority) continue;
-      if (mine.order.priority == Priority::stop && mine.started != known.started) {
+      EXPECT_LE(mine.job.priority, known.job.priority) << "job " << id << " is more urgent";
+      if (known.job.priority != mine.job.priority) continue;
+      if (mine.job.priority == Priority::stop && mine.started != known.started) {
         EXPECT_FALSE(mine.started) << "a new stop waited for an older one's second exchange";
         continue;
       }
-      const auto my_turn = served_[{mine.order.drive, mine.order.priority}];
-      const auto other_turn = served_[{known.order.drive, known.order.priority}];
+      const auto my_turn = served_[{mine.job.drive, mine.job.priority}];
+      const auto other_turn = served_[{known.job.drive, known.job.priority}];
       EXPECT_LE(my_turn, other_turn) << "it was the other drive's turn";
-      if (mine.order.drive == known.order.drive) {
+      if (mine.job.drive == known.job.drive) {
         EXPECT_LT(mine.place, known.place) << "out of order";
       }
     }
     mine.started = true;
   }
 
-  std::map<OrderId, Known> known_;
+  std::map<JobId, Known> known_;
   std::vector<Arbiter::Ending> ended_;
-  std::set<OrderId> seen_;
+  std::set<JobId> seen_;
   [[nodiscard]] bool poll_ready(DriveSlot drive, Instant now) const {
     return due_[drive] <= now && not_before_[drive] <= now;
   }

@@ -1,4 +1,5 @@
-// Words for telling stories about an arbiter: who orders what, who gets the wire, who is told of an end.
+// SPDX-License-Identifier: Apache-2.0
+// Words for telling stories about an arbiter: who submits what, who gets the wire, who is told of an end.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -11,7 +12,7 @@
 namespace axisgate::bus {
 
 inline void PrintTo(const Arbiter::Ending& ending, std::ostream* out) {
-  *out << "order " << ending.id << " of drive " << int{ending.drive} << ": " << text(ending.code);
+  *out << "job " << ending.id << " of drive " << int{ending.drive} << ": " << text(ending.code);
 }
 
 }  // namespace axisgate::bus
@@ -20,34 +21,34 @@ namespace axisgate::test {
 
 using namespace std::chrono_literals;
 using bus::Arbiter;
+using bus::BusJob;
 using bus::DriveSlot;
-using bus::Order;
-using bus::OrderId;
+using bus::JobId;
 using bus::Priority;
 
 inline constexpr bus::ObjectAddress kTargetPosition{0x607A, 0};
 inline constexpr bus::ObjectAddress kProfileVelocity{0x6081, 0};
 inline constexpr bus::ObjectAddress kStatusword{0x6041, 0};
 
-inline Order order(Priority priority, DriveSlot drive, bus::AxisSlot axis = 0) {
-  Order o;
+inline BusJob job(Priority priority, DriveSlot drive, bus::AxisSlot axis = 0) {
+  BusJob o;
   o.priority = priority;
   o.drive = drive;
   o.axis = axis;
   return o;
 }
-inline Order stop(DriveSlot drive, bus::AxisSlot axis = 0) { return order(Priority::stop, drive, axis); }
-inline Order command(DriveSlot drive, bus::AxisSlot axis = 0) { return order(Priority::command, drive, axis); }
-inline Order interactive(DriveSlot drive, bus::AxisSlot axis = 0) { return order(Priority::interactive, drive, axis); }
-inline Order setup(DriveSlot drive) { return order(Priority::setup, drive, bus::kNoAxis); }
-inline Order setpoint(DriveSlot drive, bus::ObjectAddress object = kTargetPosition, bus::AxisSlot axis = 0) {
-  Order o = command(drive, axis);
+inline BusJob stop(DriveSlot drive, bus::AxisSlot axis = 0) { return job(Priority::stop, drive, axis); }
+inline BusJob command(DriveSlot drive, bus::AxisSlot axis = 0) { return job(Priority::command, drive, axis); }
+inline BusJob interactive(DriveSlot drive, bus::AxisSlot axis = 0) { return job(Priority::interactive, drive, axis); }
+inline BusJob setup(DriveSlot drive) { return job(Priority::setup, drive, bus::kNoAxis); }
+inline BusJob setpoint(DriveSlot drive, bus::ObjectAddress object = kTargetPosition, bus::AxisSlot axis = 0) {
+  BusJob o = command(drive, axis);
   o.setpoints_only = true;
   o.writes.push_back(object);
   return o;
 }
-inline Order reading(DriveSlot drive, bus::ObjectAddress object = kStatusword, std::uint8_t size = 2) {
-  Order o = interactive(drive);
+inline BusJob reading(DriveSlot drive, bus::ObjectAddress object = kStatusword, std::uint8_t size = 2) {
+  BusJob o = interactive(drive);
   o.read = {object, size};
   return o;
 }
@@ -56,23 +57,23 @@ class ArbiterStage : public testing::Test {
  protected:
   static constexpr std::size_t kDrives = 4;
 
-  OrderId submit(const Order& o) {
-    const auto admission = arbiter.submit(o, now);
-    EXPECT_EQ(admission.code, Errc::ok);
-    EXPECT_FALSE(admission.joined);
-    return admission.id;
+  JobId submit(const BusJob& o) {
+    const auto submission = arbiter.submit(o, now);
+    EXPECT_EQ(submission.code, Errc::ok);
+    EXPECT_FALSE(submission.joined);
+    return submission.id;
   }
-  void expect_refused(const Order& o) { EXPECT_EQ(arbiter.submit(o, now).code, Errc::queue_full); }
+  void expect_refused(const BusJob& o) { EXPECT_EQ(arbiter.submit(o, now).code, Errc::queue_full); }
   /// Who gets the wire next; 0 for a poll. The exchange is over at once.
-  std::optional<OrderId> exchange() {
+  std::optional<JobId> exchange() {
     const auto grant = arbiter.next(now);
     if (!grant) return std::nullopt;
     granted_drive = grant->drive;
     arbiter.exchange_over(now);
     return grant->id;
   }
-  /// An order of one exchange from grant to end.
-  std::optional<OrderId> serve() {
+  /// A bus job of one exchange from grant to end.
+  std::optional<JobId> serve() {
     const auto id = exchange();
     if (id) arbiter.finish(*id);
     return id;

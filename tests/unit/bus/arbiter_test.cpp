@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who gets the wire, and when.
 #include "tests/unit/bus/arbiter_stage.hpp"
 
@@ -10,10 +11,10 @@ using ArbiterTest = ArbiterStage;
 
 TEST_F(ArbiterTest, grants_in_order_of_class_however_they_came) {
   arbiter.set_poll_due(0, now);
-  const OrderId of_setup = submit(setup(1));
-  const OrderId of_mailbox = submit(interactive(1));
-  const OrderId of_command = submit(command(2));
-  const OrderId of_stop = submit(stop(3));
+  const JobId of_setup = submit(setup(1));
+  const JobId of_mailbox = submit(interactive(1));
+  const JobId of_command = submit(command(2));
+  const JobId of_stop = submit(stop(3));
   EXPECT_EQ(serve(), of_stop);
   EXPECT_EQ(serve(), of_command);
   EXPECT_EQ(serve(), of_mailbox);
@@ -43,9 +44,9 @@ TEST_F(ArbiterTest, keeps_the_line_silent_even_before_a_stop) {
 }
 
 TEST_F(ArbiterTest, drives_take_turns_inside_a_class) {
-  const OrderId first = submit(command(0));
-  const OrderId second = submit(command(0));
-  const OrderId of_other = submit(command(1));
+  const JobId first = submit(command(0));
+  const JobId second = submit(command(0));
+  const JobId of_other = submit(command(1));
   EXPECT_EQ(serve(), first);
   EXPECT_EQ(serve(), of_other) << "drive 1 was served less recently";
   EXPECT_EQ(serve(), second);
@@ -64,42 +65,42 @@ TEST_F(ArbiterTest, a_turn_taken_in_one_class_costs_none_in_another) {
 }
 
 TEST_F(ArbiterTest, what_stood_beside_a_stop_goes_before_what_came_later) {
-  const OrderId of_stop = submit(stop(0));
+  const JobId of_stop = submit(stop(0));
   ASSERT_EQ(exchange(), of_stop);
-  const OrderId later = submit(command(0));
+  const JobId later = submit(command(0));
   ASSERT_TRUE(arbiter.go_on_as(of_stop, command(0)));
-  const OrderId of_other = submit(stop(1));
+  const JobId of_other = submit(stop(1));
   EXPECT_EQ(serve(), of_other) << "it has no precedence any more";
   EXPECT_EQ(serve(), of_stop);
   EXPECT_EQ(serve(), later);
 }
 
 TEST_F(ArbiterTest, what_stood_beside_a_stop_falls_to_the_next_one) {
-  const OrderId of_stop = submit(stop(0));
+  const JobId of_stop = submit(stop(0));
   ASSERT_EQ(exchange(), of_stop);
   ASSERT_TRUE(arbiter.go_on_as(of_stop, command(0)));
-  const OrderId next = submit(stop(0));
+  const JobId next = submit(stop(0));
   EXPECT_EQ(serve(), next);
   EXPECT_EQ(serve(), std::nullopt);
 }
 
-TEST_F(ArbiterTest, only_a_started_order_goes_on_and_only_where_there_is_room) {
-  const OrderId of_stop = submit(stop(0));
+TEST_F(ArbiterTest, only_a_started_job_goes_on_and_only_where_there_is_room) {
+  const JobId of_stop = submit(stop(0));
   EXPECT_FALSE(arbiter.go_on_as(of_stop, command(0))) << "it has not begun";
   EXPECT_FALSE(arbiter.go_on_as(of_stop + 1, command(0))) << "there is none";
   ASSERT_EQ(exchange(), of_stop);
-  for (std::size_t i = 0; i < bus::kMaxOrdersPerAxis; ++i) submit(command(0));
+  for (std::size_t i = 0; i < bus::kMaxJobsPerAxis; ++i) submit(command(0));
   EXPECT_FALSE(arbiter.go_on_as(of_stop, command(0)));
 }
 
 TEST_F(ArbiterTest, commands_of_one_axis_are_never_interleaved_and_those_of_others_do_not_wait_for_them) {
-  const OrderId first = submit(command(0));
-  const OrderId second = submit(command(0));
+  const JobId first = submit(command(0));
+  const JobId second = submit(command(0));
   EXPECT_EQ(exchange(), first);
   EXPECT_EQ(exchange(), first) << "started, so it goes on";
   arbiter.wait(first, now + 20ms);
   EXPECT_EQ(exchange(), std::nullopt) << "the next one waits for the end of this one, not for its pauses";
-  const OrderId of_other_axis = submit(command(0, 1));
+  const JobId of_other_axis = submit(command(0, 1));
   EXPECT_EQ(serve(), of_other_axis);
   EXPECT_EQ(arbiter.next_deadline(), now + 20ms);
   now += 20ms;
@@ -109,19 +110,19 @@ TEST_F(ArbiterTest, commands_of_one_axis_are_never_interleaved_and_those_of_othe
 }
 
 TEST_F(ArbiterTest, one_setup_runs_per_drive) {
-  const OrderId first = submit(setup(0));
+  const JobId first = submit(setup(0));
   submit(setup(0));
-  const OrderId of_other = submit(setup(1));
+  const JobId of_other = submit(setup(1));
   EXPECT_EQ(exchange(), first);
   EXPECT_EQ(exchange(), of_other);
   EXPECT_EQ(exchange(), first);
 }
 
 TEST_F(ArbiterTest, poll_gets_every_fifth_exchange_while_one_is_due) {
-  std::vector<OrderId> seen;
+  std::vector<JobId> seen;
   for (int i = 0; i < 10; ++i) {
     arbiter.set_poll_due(0, now);
-    const OrderId id = submit(command(1));
+    const JobId id = submit(command(1));
     seen.push_back(*exchange() == 0 ? 0 : 1);
     arbiter.finish(id);
   }
@@ -132,7 +133,7 @@ TEST_F(ArbiterTest, polls_that_are_owed_go_round_all_drives) {
   std::vector<int> polled;
   for (int i = 0; i < 20; ++i) {
     for (DriveSlot drive = 0; drive < kDrives; ++drive) arbiter.set_poll_due(drive, now);
-    const OrderId id = submit(command(0));
+    const JobId id = submit(command(0));
     if (*exchange() == 0) polled.push_back(granted_drive);
     arbiter.finish(id);
   }
@@ -142,7 +143,7 @@ TEST_F(ArbiterTest, polls_that_are_owed_go_round_all_drives) {
 TEST_F(ArbiterTest, a_poll_that_is_not_due_is_not_owed) {
   arbiter.set_poll_due(0, now + 100ms);
   for (int i = 0; i < 10; ++i) {
-    const OrderId id = submit(command(1));
+    const JobId id = submit(command(1));
     EXPECT_EQ(serve(), id);
   }
   EXPECT_EQ(arbiter.next_deadline(), now + 100ms);
@@ -155,16 +156,16 @@ TEST_F(ArbiterTest, a_stop_does_not_wait_for_the_share_of_poll) {
     ASSERT_NE(serve(), 0u);
   }
   submit(command(1));
-  const OrderId halt = submit(stop(2));
+  const JobId halt = submit(stop(2));
   EXPECT_EQ(serve(), halt);
   EXPECT_EQ(serve(), 0u) << "then the poll that is owed";
 }
 
 TEST_F(ArbiterTest, a_stop_does_not_wait_for_what_follows_from_an_older_one) {
-  const OrderId halt = submit(stop(0));
+  const JobId halt = submit(stop(0));
   ASSERT_EQ(exchange(), halt);
-  const OrderId quick_stop = submit(stop(0));
-  const OrderId of_other_drive = submit(stop(1));
+  const JobId quick_stop = submit(stop(0));
+  const JobId of_other_drive = submit(stop(1));
   EXPECT_EQ(exchange(), of_other_drive) << "the less recently served drive of the two new ones";
   EXPECT_EQ(exchange(), quick_stop);
 }
@@ -172,13 +173,13 @@ TEST_F(ArbiterTest, a_stop_does_not_wait_for_what_follows_from_an_older_one) {
 TEST_F(ArbiterTest, a_flood_of_stops_of_one_drive_holds_up_another_by_one_exchange) {
   for (std::size_t i = 0; i < bus::kMaxStopsPerAxis; ++i) submit(stop(0));
   serve();
-  const OrderId of_other = submit(stop(1));
+  const JobId of_other = submit(stop(1));
   EXPECT_EQ(serve(), of_other);
 }
 
-TEST_F(ArbiterTest, an_order_that_declines_frees_the_wire_at_once_and_is_asked_again_after_a_pause_or_its_own_wait) {
-  const OrderId idle = submit(command(0));
-  const OrderId other = submit(command(1));
+TEST_F(ArbiterTest, a_bus_job_that_declines_frees_the_wire_at_once_and_is_asked_again_after_a_pause_or_its_own_wait) {
+  const JobId idle = submit(command(0));
+  const JobId other = submit(command(1));
   ASSERT_EQ(arbiter.next(now)->id, idle);
   arbiter.decline();
   EXPECT_FALSE(arbiter.wire_busy());

@@ -1,5 +1,6 @@
-// One conversation of three exchanges, with each step failing in each way; afterwards the bus must serve the next
-// order.
+// SPDX-License-Identifier: Apache-2.0
+// One bus job of three exchanges, with each step failing in each way; afterwards the bus must serve the next bus
+// job.
 #include "tests/unit/bus/bus_stage.hpp"
 
 namespace axisgate::test {
@@ -23,17 +24,17 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.failure.name << " at 
 
 class BusFailure : public BusStage, public testing::WithParamInterface<Case> {
  public:
-  /// The drive's side of the conversation: three exchanges, ended at once by a failure.
-  void converse(OrderId order) {
-    drives[0].result_hook = [this, order](const ExchangeResult& result) {
+  /// The drive's side of the bus job: three exchanges, ended at once by a failure.
+  void converse(JobId job) {
+    drives[0].result_hook = [this, job](const ExchangeResult& result) {
       if (gone) return;
       if (result.code != Errc::ok || ++done == kSteps) {
         end(result.code);
-        bus->finish(order);
+        bus->finish(job);
       }
     };
-    drives[0].ended_hook = [this, order](OrderId id, Errc code) {
-      if (id == order) end(code);
+    drives[0].ended_hook = [this, job](JobId id, Errc code) {
+      if (id == job) end(code);
     };
   }
   void end(Errc code) {
@@ -65,7 +66,7 @@ class BusFailure : public BusStage, public testing::WithParamInterface<Case> {
   using BusStage::wire;
   bool gone = false;
   int done = 0;
-  OrderId stop = 0;
+  JobId stop = 0;
   std::vector<Errc> endings;
 };
 
@@ -78,7 +79,7 @@ const Failure kFailures[] = {
     {"drive_offline", Errc::timed_out, [](BusFailure& on) { on.drive_goes_offline(); }},
 };
 
-TEST_P(BusFailure, ends_the_order_once_and_serves_the_next) {
+TEST_P(BusFailure, ends_the_job_once_and_serves_the_next) {
   link_up();
   converse(submit(0));
   turn();
@@ -99,7 +100,7 @@ TEST_P(BusFailure, ends_the_order_once_and_serves_the_next) {
     wire->reply();
     pass_gap();
   }
-  const OrderId next = submit(1);
+  const JobId next = submit(1);
   turn();
   EXPECT_EQ(drives[1].granted, next);
   wire->reply();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The link comes and goes, in each state of the bus (P7).
 #include "tests/unit/bus/bus_stage.hpp"
 
@@ -10,9 +11,9 @@ using testing::SizeIs;
 
 using BusLink = BusStage;
 
-TEST_F(BusLink, takes_no_order_before_it_is_up_and_then_serves_the_poll_that_was_due) {
+TEST_F(BusLink, takes_no_job_before_it_is_up_and_then_serves_the_poll_that_was_due) {
   EXPECT_FALSE(bus->up());
-  EXPECT_EQ(bus->submit(Order{}).code, Errc::offline);
+  EXPECT_EQ(bus->submit(BusJob{}).code, Errc::offline);
   bus->set_poll_due(0, runtime.now());
   turn();
   EXPECT_THAT(wire->sent, IsEmpty());
@@ -40,24 +41,24 @@ TEST_F(BusLink, lost_with_an_exchange_on_the_wire_it_ends_everything_in_the_same
   turn();
   diary.clear();
   wire->down("gone");
-  EXPECT_THAT(diary, ElementsAre("drive 1: link lost", "drive 1: order 1 link lost", "drive 1: order 2 offline",
-                                 "drive 2: order 3 offline", "drive 1: link down", "drive 2: link down"));
+  EXPECT_THAT(diary, ElementsAre("drive 1: link lost", "drive 1: job 1 link lost", "drive 1: job 2 offline",
+                                 "drive 2: job 3 offline", "drive 1: link down", "drive 2: link down"));
   EXPECT_EQ(bus->queue_depth(), 0u);
   EXPECT_EQ(runtime.next_deadline(), kNever) << "nothing is left to wait for";
 }
 
-TEST_F(BusLink, lost_between_two_exchanges_of_an_order_or_while_it_waits_for_a_condition_its_outcome_is_unknown) {
+TEST_F(BusLink, lost_between_two_exchanges_of_a_bus_job_or_while_it_waits_for_a_condition_its_outcome_is_unknown) {
   for (const bool waits : {false, true}) {
     link_up();
-    const OrderId id = submit(0);
+    const JobId id = submit(0);
     turn();
     wire->reply();
     if (waits) bus->wait(id, runtime.now() + 1h);
     turn();
     diary.clear();
     wire->down("gone");
-    EXPECT_THAT(
-        diary, ElementsAre(fmt::format("drive 1: order {} link lost", id), "drive 1: link down", "drive 2: link down"));
+    EXPECT_THAT(diary,
+                ElementsAre(fmt::format("drive 1: job {} link lost", id), "drive 1: link down", "drive 2: link down"));
   }
 }
 
@@ -69,10 +70,10 @@ TEST_F(BusLink, lost_from_inside_send_the_exchange_ends_in_the_same_turn_and_a_r
       wire->down("gone");
       if (returns) wire->up();
     };
-    const OrderId id = submit(0);
+    const JobId id = submit(0);
     turn();
     Diary expected{fmt::format("drive 1: grant {}", id), "drive 1: link lost",
-                   fmt::format("drive 1: order {} link lost", id), "drive 1: link down", "drive 2: link down"};
+                   fmt::format("drive 1: job {} link lost", id), "drive 1: link down", "drive 2: link down"};
     if (returns) expected.insert(expected.end(), {"drive 1: link up", "drive 2: link up"});
     EXPECT_EQ(diary, expected);
     EXPECT_EQ(bus->up(), returns);
@@ -82,9 +83,9 @@ TEST_F(BusLink, lost_from_inside_send_the_exchange_ends_in_the_same_turn_and_a_r
 TEST_F(BusLink, a_drive_may_ask_for_more_while_the_link_is_going_down) {
   link_up();
   std::vector<Errc> answers;
-  const auto ask = [&] { answers.push_back(bus->submit(Order{}).code); };
+  const auto ask = [&] { answers.push_back(bus->submit(BusJob{}).code); };
   drives[0].result_hook = [&](const ExchangeResult&) { ask(); };
-  drives[0].ended_hook = [&](OrderId id, Errc) {
+  drives[0].ended_hook = [&](JobId id, Errc) {
     bus->finish(id);
     ask();
   };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A bus with a wire that does as the test says and drives that keep a diary.
 #pragma once
 
@@ -18,11 +19,11 @@ namespace axisgate::test {
 using namespace std::chrono_literals;
 using bus::Access;
 using bus::Bus;
+using bus::BusJob;
 using bus::DriveSlot;
 using bus::Exchange;
 using bus::ExchangeResult;
-using bus::Order;
-using bus::OrderId;
+using bus::JobId;
 using bus::Priority;
 
 using Diary = std::vector<std::string>;
@@ -88,12 +89,12 @@ class FakeWire final : public bus::Wire {
   bus::Statistics counted;
 };
 
-/// Each order takes `exchanges_per_order` exchanges, unless a hook says otherwise.
+/// Each bus job takes `exchanges_per_job` exchanges, unless a hook says otherwise.
 class DiaryDrive final : public bus::BusDrive {
  public:
   DiaryDrive(std::uint8_t node, Diary& diary) : node_(node), diary_(diary) {}
 
-  std::optional<Exchange> on_grant(OrderId id, Priority priority) override {
+  std::optional<Exchange> on_grant(JobId id, Priority priority) override {
     granted = id;
     diary_.push_back(fmt::format("drive {}: grant {}", node_, id == 0 ? "poll" : std::to_string(id)));
     if (grant_hook) return grant_hook(id, priority);
@@ -104,8 +105,8 @@ class DiaryDrive final : public bus::BusDrive {
     diary_.push_back(fmt::format("drive {}: {}", node_, word(result.code)));
     if (result_hook) result_hook(result);
   }
-  void on_order_ended(OrderId id, Errc code) override {
-    diary_.push_back(fmt::format("drive {}: order {} {}", node_, id, word(code)));
+  void on_job_ended(JobId id, Errc code) override {
+    diary_.push_back(fmt::format("drive {}: job {} {}", node_, id, word(code)));
     if (ended_hook) ended_hook(id, code);
   }
   void on_link(bool up) override {
@@ -114,21 +115,21 @@ class DiaryDrive final : public bus::BusDrive {
   }
 
   std::uint8_t node() const override { return node_; }
-  void on_notice(const bus::Notice& notice) override {
-    diary_.push_back(fmt::format("drive {}: notice {}", node_, static_cast<int>(notice.kind)));
-    if (notice_hook) notice_hook(notice);
+  void on_unsolicited(const bus::UnsolicitedEvent& unsolicited) override {
+    diary_.push_back(fmt::format("drive {}: unsolicited {}", node_, static_cast<int>(unsolicited.kind)));
+    if (unsolicited_hook) unsolicited_hook(unsolicited);
   }
 
   [[nodiscard]] Exchange exchange() const {
     return {.node = node_, .access = Access::read, .object = {0x6041, 0}, .size = 2};
   }
 
-  OrderId granted = 0;
-  std::function<std::optional<Exchange>(OrderId, Priority)> grant_hook;
+  JobId granted = 0;
+  std::function<std::optional<Exchange>(JobId, Priority)> grant_hook;
   std::function<void(const ExchangeResult&)> result_hook;
-  std::function<void(OrderId, Errc)> ended_hook;
+  std::function<void(JobId, Errc)> ended_hook;
   std::function<void(bool)> link_hook;
-  std::function<void(const bus::Notice&)> notice_hook;
+  std::function<void(const bus::UnsolicitedEvent&)> unsolicited_hook;
 
  private:
   std::uint8_t node_;
@@ -155,14 +156,14 @@ class BusStage : public testing::Test {
     diary.clear();
     log_lines.clear();
   }
-  OrderId submit(DriveSlot drive, Priority priority = Priority::command, bus::AxisSlot axis = 0) {
-    Order order;
-    order.priority = priority;
-    order.drive = drive;
-    order.axis = axis;
-    const auto admission = bus->submit(order);
-    EXPECT_EQ(admission.code, Errc::ok);
-    return admission.id;
+  JobId submit(DriveSlot drive, Priority priority = Priority::command, bus::AxisSlot axis = 0) {
+    BusJob job;
+    job.priority = priority;
+    job.drive = drive;
+    job.axis = axis;
+    const auto submission = bus->submit(job);
+    EXPECT_EQ(submission.code, Errc::ok);
+    return submission.id;
   }
   /// A turn of the loop at the same instant.
   void turn() { runtime.run_due(); }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grants become exchanges, exchanges get one result, and callbacks may call back.
 #include "tests/unit/bus/bus_stage.hpp"
 
@@ -15,7 +16,7 @@ TEST_F(BusTest, a_grant_becomes_one_exchange_and_its_reply_one_result_and_then_t
   EXPECT_TRUE(wire->decode) << "the decode level is passed on";
   link_up();
   submit(0);
-  EXPECT_THAT(diary, IsEmpty()) << "the drive does not know the order's number yet";
+  EXPECT_THAT(diary, IsEmpty()) << "the drive does not know the bus job's number yet";
   EXPECT_EQ(runtime.next_deadline(), runtime.now()) << "but the next turn of the loop goes on at once";
   submit(1);
   turn();
@@ -47,7 +48,7 @@ TEST_F(BusTest, an_exchange_without_an_answer_times_out_and_the_line_settles) {
 
 TEST_F(BusTest, a_drive_with_nothing_to_send_gives_its_turn_to_the_next) {
   link_up();
-  drives[0].grant_hook = [this](OrderId id, Priority) -> std::optional<Exchange> {
+  drives[0].grant_hook = [this](JobId id, Priority) -> std::optional<Exchange> {
     bus->finish(id);
     return std::nullopt;
   };
@@ -70,7 +71,7 @@ TEST_F(BusTest, a_poll_is_granted_when_it_is_due) {
 
 TEST_F(BusTest, a_drive_may_submit_finish_wait_and_poll_from_inside_any_callback) {
   link_up();
-  OrderId second = 0;
+  JobId second = 0;
   drives[0].result_hook = [&](const ExchangeResult&) {
     if (second != 0) return;
     bus->finish(drives[0].granted);
@@ -78,7 +79,7 @@ TEST_F(BusTest, a_drive_may_submit_finish_wait_and_poll_from_inside_any_callback
     bus->set_poll_due(1, bus->now());
   };
   drives[1].result_hook = [&](const ExchangeResult&) { bus->end_drive(0, Errc::offline, Errc::link_lost); };
-  drives[0].ended_hook = [&](OrderId, Errc) { bus->set_poll_due(1, kNever); };
+  drives[0].ended_hook = [&](JobId, Errc) { bus->set_poll_due(1, kNever); };
   submit(0);
   turn();
   wire->reply();
@@ -89,12 +90,12 @@ TEST_F(BusTest, a_drive_may_submit_finish_wait_and_poll_from_inside_any_callback
   EXPECT_THAT(wire->sent, ElementsAre(drives[0].exchange(), drives[0].exchange(), drives[1].exchange()));
   wire->reply();
   EXPECT_THAT(diary, ElementsAre("drive 1: grant 1", "drive 1: ok", "drive 1: grant 2", "drive 1: ok",
-                                 "drive 2: grant poll", "drive 2: ok", "drive 1: order 2 link lost"));
+                                 "drive 2: grant poll", "drive 2: ok", "drive 1: job 2 link lost"));
 }
 
-TEST_F(BusTest, an_order_submitted_from_inside_a_grant_is_served_too) {
+TEST_F(BusTest, a_bus_job_submitted_from_inside_a_grant_is_served_too) {
   link_up();
-  drives[0].grant_hook = [this](OrderId id, Priority) -> std::optional<Exchange> {
+  drives[0].grant_hook = [this](JobId id, Priority) -> std::optional<Exchange> {
     if (id == 1) submit(1, Priority::stop);
     return drives[0].exchange();
   };
@@ -108,12 +109,12 @@ TEST_F(BusTest, an_order_submitted_from_inside_a_grant_is_served_too) {
 TEST_F(BusTest, a_turn_of_the_loop_does_bounded_work) {
   link_up();
   for (DiaryDrive& drive : drives) {
-    drive.grant_hook = [this](OrderId id, Priority) -> std::optional<Exchange> {
+    drive.grant_hook = [this](JobId id, Priority) -> std::optional<Exchange> {
       bus->finish(id);
       return std::nullopt;
     };
   }
-  for (std::size_t i = 0; i < bus::kMaxOrdersPerBus; ++i) submit(0, Priority::interactive);
+  for (std::size_t i = 0; i < bus::kMaxJobsPerBus; ++i) submit(0, Priority::interactive);
   submit(1, Priority::stop);
   ASSERT_TRUE(runtime.fire_one(runtime.now()));
   EXPECT_THAT(diary, SizeIs(64));
@@ -124,7 +125,7 @@ TEST_F(BusTest, a_turn_of_the_loop_does_bounded_work) {
 
 TEST_F(BusTest, a_drive_that_wants_a_poll_and_declines_it_for_ever_lets_the_loop_rest) {
   link_up();
-  drives[0].grant_hook = [this](OrderId, Priority) -> std::optional<Exchange> {
+  drives[0].grant_hook = [this](JobId, Priority) -> std::optional<Exchange> {
     bus->set_poll_due(0, bus->now());
     return std::nullopt;
   };
@@ -144,7 +145,7 @@ TEST_F(BusTest, a_stop_waits_for_the_exchange_on_the_wire_and_the_gap_alone) {
   }
   turn();
   ASSERT_TRUE(wire->outstanding);
-  const OrderId stop = submit(0, Priority::stop, 9);
+  const JobId stop = submit(0, Priority::stop, 9);
   turn();
   runtime.advance_by(5ms);
   const Instant replied = runtime.now();
@@ -158,16 +159,16 @@ TEST_F(BusTest, a_stop_waits_for_the_exchange_on_the_wire_and_the_gap_alone) {
 
 TEST_F(BusTest, a_superseded_setpoint_is_told_in_the_next_turn) {
   link_up();
-  Order setpoint;
+  BusJob setpoint;
   setpoint.axis = 0;
   setpoint.setpoints_only = true;
   setpoint.writes.push_back({0x607A, 0});
-  drives[0].grant_hook = [](OrderId, Priority) { return std::nullopt; };
+  drives[0].grant_hook = [](JobId, Priority) { return std::nullopt; };
   ASSERT_EQ(bus->submit(setpoint).id, 1u);
   ASSERT_EQ(bus->submit(setpoint).id, 2u);
   EXPECT_THAT(diary, IsEmpty());
   turn();
-  EXPECT_THAT(diary, ElementsAre("drive 1: order 1 superseded", "drive 1: grant 2"));
+  EXPECT_THAT(diary, ElementsAre("drive 1: job 1 superseded", "drive 1: grant 2"));
 }
 
 TEST_F(BusTest, counts_its_own_the_arbiters_and_the_wires) {

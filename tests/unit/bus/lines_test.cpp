@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A line that is noisy, lost or opened anew; what is worked out from instants alone: noise, load, the pauses of probes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

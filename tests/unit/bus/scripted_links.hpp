@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Links whose far end is the test: of bytes, of CAN frames, of Modbus RTU frames.
 #pragma once
 

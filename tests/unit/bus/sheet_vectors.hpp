@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frames of the drive sheets (tests/vectors).
 #pragma once
 

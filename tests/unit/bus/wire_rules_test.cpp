@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rules of wire.hpp, asked of the wire of each protocol: one reply to each request, none that belongs to another,
 // none after abandon() or a loss of the link; and of the lines that can babble, what becomes of one that does.
 #include "adapters/canopen/canopen_wire.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the tests of all wires share: bytes in the notation of the manuals, results, printers that make a failure
 // readable, and a stage with a wire on it that hears the wire as the bus does.
 #pragma once
@@ -27,11 +28,11 @@ inline void PrintTo(const ExchangeResult& result, std::ostream* out) {
   *out << std::dec << (result.more ? " more" : "") << (result.for_now ? " for now" : "");
 }
 
-inline void PrintTo(const Notice& notice, std::ostream* out) {
-  static constexpr std::array kKinds{"started", "present", "gone", "values", "emergency", "twin", "babbling"};
-  *out << kKinds.at(static_cast<std::size_t>(notice.kind)) << " node " << int{notice.node} << " state "
-       << static_cast<int>(notice.state) << std::hex << " code 0x" << notice.code << std::dec << " repeats "
-       << notice.repeats << " fields " << notice.fields.size();
+inline void PrintTo(const UnsolicitedEvent& unsolicited, std::ostream* out) {
+  static constexpr std::array kKinds{"started", "present", "gone", "values", "emergency", "duplicate_node", "babbling"};
+  *out << kKinds.at(static_cast<std::size_t>(unsolicited.kind)) << " node " << int{unsolicited.node} << " state "
+       << static_cast<int>(unsolicited.state) << std::hex << " code 0x" << unsolicited.code << std::dec << " repeats "
+       << unsolicited.repeats << " fields " << unsolicited.fields.size();
 }
 
 }  // namespace axisgate::bus
@@ -79,24 +80,24 @@ class WireStage : public testing::Test, protected bus::WireEvents {
     replies.push_back(result);
     if (next) wire->send(*std::exchange(next, std::nullopt));
   }
-  void on_notice(const bus::Notice& notice) override {
-    told.emplace_back("notice");
-    notices.push_back(notice);
+  void on_unsolicited(const bus::UnsolicitedEvent& unsolicited) override {
+    told.emplace_back("unsolicited");
+    unsolicited_events.push_back(unsolicited);
   }
   void forget() {
     told.clear();
     replies.clear();
-    notices.clear();
+    unsolicited_events.clear();
   }
-  [[nodiscard]] std::vector<bus::Notice::Kind> kinds() const {
-    std::vector<bus::Notice::Kind> all;
-    for (const bus::Notice& notice : notices) all.push_back(notice.kind);
+  [[nodiscard]] std::vector<bus::UnsolicitedEvent::Kind> kinds() const {
+    std::vector<bus::UnsolicitedEvent::Kind> all;
+    for (const bus::UnsolicitedEvent& unsolicited : unsolicited_events) all.push_back(unsolicited.kind);
     return all;
   }
 
   std::vector<std::string> told;
   std::vector<bus::ExchangeResult> replies;
-  std::vector<bus::Notice> notices;
+  std::vector<bus::UnsolicitedEvent> unsolicited_events;
   std::optional<bus::Exchange> next;  ///< sent from inside the next reply, as the bus does
   std::vector<std::string> log_lines;
   Log log{[this](LogLevel, std::string_view source, std::string_view message) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a CAN link told, in order and in words.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bits of a frame on the wire, against numbers worked out by another program from ISO 11898-1.
 #include "adapters/can/frame_bits.hpp"
 

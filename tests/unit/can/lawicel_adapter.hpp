@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Lawicel adapter as its manual (CAN232, version 3) describes it: commands in, answers out, and a CAN bus of its own.
 // Written from the manual, without the gateway's codec.
 #pragma once

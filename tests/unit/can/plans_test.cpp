@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is worked out without a socket: bus-off, errors, filters, what waits to be sent, devices and their mistakes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -114,7 +115,7 @@ TEST_F(BusOffPlanTest, a_full_queue_alone_says_nothing_about_acknowledgements) {
   now += 10s;
   EXPECT_EQ(health(), Health::usable) << "a receiver may be error passive, too";
   tell({.no_ack = true});
-  EXPECT_EQ(health(), Health::usable) << "what was full before the doubt is forgotten";
+  EXPECT_EQ(health(), Health::usable) << "what was full before the missing acknowledgement is forgotten";
 }
 
 TEST_F(BusOffPlanTest, no_acknowledgement_lasts_as_long_as_the_controller_complains_or_until_a_sign_of_life) {

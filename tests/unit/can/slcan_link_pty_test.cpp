@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The link as the product makes it, on a real pty, before a simulated adapter.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CAN frames in the notation of the manuals, and exchanges.
 #pragma once
 

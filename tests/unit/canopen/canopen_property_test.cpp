@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Property: whatever frames come, nothing crashes, and no request ends that the frame did not answer. A second opinion
 // on which frame answers what is kept here, from the standard's tables, apart from the codec's.
 #include "gateway/core/random.hpp"
@@ -103,7 +104,7 @@ TEST_P(CanopenProperty, random_frames_end_no_request_that_they_do_not_answer) {
     }
   }
   EXPECT_GT(ended, 100) << "the frames are too strange to prove anything";
-  EXPECT_LT(notices.size(), static_cast<std::size_t>(kSteps));
+  EXPECT_LT(unsolicited_events.size(), static_cast<std::size_t>(kSteps));
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, CanopenProperty, testing::Range<std::uint64_t>(1, 9));

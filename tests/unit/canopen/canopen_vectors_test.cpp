@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every CANopen frame of the three drive sheets (tests/vectors), through codec and wire.
 #include "adapters/canopen/cob_id.hpp"
 #include "adapters/canopen/emergency.hpp"
@@ -95,14 +96,15 @@ TEST_P(NmtCommands, are_sent_with_exactly_two_bytes) {
 TEST_P(ErrorControls, tell_the_nodes_state) {
   const SheetVector& v = GetParam();
   bring(printed(v));
-  ASSERT_EQ(notices.size(), 1u);
-  EXPECT_EQ(notices[0].node, v.value("node"));
+  ASSERT_EQ(unsolicited_events.size(), 1u);
+  EXPECT_EQ(unsolicited_events[0].node, v.value("node"));
   const std::string state = v.says("state");
   const auto is = [&](std::string_view word) { return state.find(word) != std::string::npos; };
-  EXPECT_EQ(notices[0].kind, is("boot-up") ? bus::Notice::Kind::started : bus::Notice::Kind::present);
-  EXPECT_EQ(notices[0].state, is("stopped")                 ? bus::NodeState::stopped
-                              : is("pre-") || is("boot-up") ? bus::NodeState::pre_operational
-                                                            : bus::NodeState::operational);
+  EXPECT_EQ(unsolicited_events[0].kind,
+            is("boot-up") ? bus::UnsolicitedEvent::Kind::started : bus::UnsolicitedEvent::Kind::present);
+  EXPECT_EQ(unsolicited_events[0].state, is("stopped")                 ? bus::NodeState::stopped
+                                         : is("pre-") || is("boot-up") ? bus::NodeState::pre_operational
+                                                                       : bus::NodeState::operational);
   if (v.decoded().contains("toggle")) {
     EXPECT_EQ(canopen::decode_error_control(v.printed)->toggle, v.says("toggle") == 1);
   }
@@ -111,11 +113,11 @@ TEST_P(ErrorControls, tell_the_nodes_state) {
 TEST_P(Emergencies, are_told_with_code_register_and_the_makers_bytes) {
   const SheetVector& v = GetParam();
   bring(printed(v));
-  ASSERT_EQ(notices.size(), 1u);
-  EXPECT_EQ(notices[0].kind, bus::Notice::Kind::emergency);
-  EXPECT_EQ(notices[0].code, v.value("error_code"));
-  EXPECT_EQ(notices[0].error_register, v.value("error_register"));
-  EXPECT_THAT(notices[0].vendor, testing::ElementsAreArray(Bytes(v.printed).subspan(3)));
+  ASSERT_EQ(unsolicited_events.size(), 1u);
+  EXPECT_EQ(unsolicited_events[0].kind, bus::UnsolicitedEvent::Kind::emergency);
+  EXPECT_EQ(unsolicited_events[0].code, v.value("error_code"));
+  EXPECT_EQ(unsolicited_events[0].error_register, v.value("error_register"));
+  EXPECT_THAT(unsolicited_events[0].vendor, testing::ElementsAreArray(Bytes(v.printed).subspan(3)));
 }
 
 TEST_P(Misprints, end_no_exchange) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A CANopen wire on a bus whose other nodes are the test.
 #pragma once
 
@@ -36,7 +37,7 @@ class CanopenWireStage : public WireStage {
   void flood(std::uint32_t id, std::string_view hex, int frames, Duration pause = {}) {
     for (int i = 0; i < frames; ++i, runtime.advance_by(pause)) bring(id, hex);
   }
-  [[nodiscard]] auto count(bus::Notice::Kind kind) const { return std::ranges::count(kinds(), kind); }
+  [[nodiscard]] auto count(bus::UnsolicitedEvent::Kind kind) const { return std::ranges::count(kinds(), kind); }
 
   ScriptedCanLink* link = nullptr;
 };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The wire as a whole: link, NMT, its own heartbeat and SYNC, what nodes say, floods, counters, the decode log.
 #include "adapters/can/babble_watch.hpp"
 #include "tests/unit/canopen/canopen_wire_stage.hpp"
@@ -7,7 +8,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
-using Kind = bus::Notice::Kind;
+using Kind = bus::UnsolicitedEvent::Kind;
 
 using CanopenWireTest = CanopenWireStage;
 
@@ -103,7 +104,7 @@ TEST_F(CanopenWireTest, presence_restart_and_absence_are_told) {
   runtime.advance_by(1ms);
   EXPECT_THAT(kinds(), ElementsAre(Kind::present, Kind::gone));
   bring(0x701, "00");
-  EXPECT_EQ(notices.back().kind, Kind::started);
+  EXPECT_EQ(unsolicited_events.back().kind, Kind::started);
 }
 
 TEST_F(CanopenWireTest, a_guarded_node_is_asked_and_its_silence_told) {
@@ -116,7 +117,7 @@ TEST_F(CanopenWireTest, a_guarded_node_is_asked_and_its_silence_told) {
   EXPECT_THAT(kinds(), ElementsAre(Kind::present, Kind::gone));
 }
 
-TEST_F(CanopenWireTest, a_call_sends_one_remote_frame_while_the_link_is_up_and_its_answer_is_a_notice) {
+TEST_F(CanopenWireTest, a_call_sends_one_remote_frame_while_the_link_is_up_and_its_answer_is_an_unsolicited_event) {
   bring(0x702, "05");
   clear();
   EXPECT_TRUE(wire->call(2));
@@ -124,7 +125,7 @@ TEST_F(CanopenWireTest, a_call_sends_one_remote_frame_while_the_link_is_up_and_i
   EXPECT_THAT(told, IsEmpty());
   bring(0x702, "05");
   EXPECT_THAT(kinds(), ElementsAre(Kind::present));
-  EXPECT_EQ(notices[0].state, bus::NodeState::operational);
+  EXPECT_EQ(unsolicited_events[0].state, bus::NodeState::operational);
   link->events->on_link_down("gone");
   EXPECT_TRUE(wire->call(2));
   EXPECT_EQ(link->sent.size(), 1u);
@@ -137,15 +138,15 @@ TEST_F(CanopenWireTest, process_data_are_told_by_their_map_until_their_node_star
   wire->map_process_data(1, 2, {{{0x6041, 0}, 2}, {{0x6064, 0}, 4}});
   bring(0x281, "37 06 E0 B1 FF FF");
   ASSERT_THAT(kinds(), ElementsAre(Kind::values));
-  EXPECT_EQ(notices[0].node, 1);
-  EXPECT_THAT(notices[0].fields,
+  EXPECT_EQ(unsolicited_events[0].node, 1);
+  EXPECT_THAT(unsolicited_events[0].fields,
               ElementsAre(bus::ReplyField{{0x6041, 0}, 2, 0x0637}, bus::ReplyField{{0x6064, 0}, 4, 0xFFFFB1E0}));
   bring(0x701, "00");
   bring(0x281, "37 06 E0 B1 FF FF");
   EXPECT_THAT(kinds(), ElementsAre(Kind::values, Kind::started));
   wire->map_process_data(1, 2, {{{0x6041, 0}, 2}});
   bring(0x281, "37 06");
-  EXPECT_EQ(notices.back().kind, Kind::values);
+  EXPECT_EQ(unsolicited_events.back().kind, Kind::values);
 }
 
 TEST_F(CanopenWireTest, process_data_without_a_map_or_too_short_give_no_values) {
@@ -157,15 +158,15 @@ TEST_F(CanopenWireTest, process_data_without_a_map_or_too_short_give_no_values) 
   bring(can::remote_frame(0x181, 2));
   wire->map_process_data(1, 1, {});
   bring(0x181, "37 06");
-  EXPECT_THAT(notices, IsEmpty());
+  EXPECT_THAT(unsolicited_events, IsEmpty());
 }
 
-TEST_F(CanopenWireTest, an_emergency_storm_is_told_in_few_notices) {
+TEST_F(CanopenWireTest, an_emergency_storm_is_told_in_few_unsolicited_events) {
   flood(0x081, "10 32 04 00 00 00 00 00", 40);
-  EXPECT_EQ(notices.size(), 4u);
+  EXPECT_EQ(unsolicited_events.size(), 4u);
   runtime.advance_by(1s);
-  ASSERT_EQ(notices.size(), 5u);
-  EXPECT_EQ(notices.back().repeats, 35u);
+  ASSERT_EQ(unsolicited_events.size(), 5u);
+  EXPECT_EQ(unsolicited_events.back().repeats, 35u);
 }
 
 TEST_F(CanopenWireTest, two_devices_with_contradicting_heartbeats_are_told_and_a_new_period_is_none) {
@@ -176,7 +177,7 @@ TEST_F(CanopenWireTest, two_devices_with_contradicting_heartbeats_are_told_and_a
   flood(0x701, "05", 30, 100ms);
   EXPECT_THAT(kinds(), ElementsAre(Kind::present));
   for (int i = 0; i < 10; ++i) flood(0x701, i % 2 == 0 ? "05" : "7F", 1, 250ms);
-  EXPECT_EQ(count(Kind::twin), 1);
+  EXPECT_EQ(count(Kind::duplicate_node), 1);
 }
 
 TEST_F(CanopenWireTest, frames_of_nobody_are_nobodys) {
@@ -228,7 +229,7 @@ TEST_F(CanopenWireTest, heartbeats_that_waited_behind_a_stall_are_heard_before_a
   loop.turn();  // the timer comes first, a second late
   can.events->on_frame(frame_of(0x701, "05"), loop.time - 50ms);
   loop.turn();
-  EXPECT_THAT(notices, IsEmpty());
+  EXPECT_THAT(unsolicited_events, IsEmpty());
   loop.time = loop.deadline;
   loop.turn();
   EXPECT_THAT(kinds(), ElementsAre(Kind::gone)) << "but a silence is one";
@@ -262,7 +263,7 @@ TEST_F(CanopenWireTest, process_data_at_full_bus_load_are_thinned_and_their_id_n
   flood(0x381, "37 06", 5000);
   EXPECT_EQ(count(Kind::values), can::kMaxProcessDataPerSecond);
   ASSERT_EQ(count(Kind::babbling), 1);
-  EXPECT_EQ(std::ranges::find(notices, Kind::babbling, &bus::Notice::kind)->code, 0x381);
+  EXPECT_EQ(std::ranges::find(unsolicited_events, Kind::babbling, &bus::UnsolicitedEvent::kind)->code, 0x381);
 }
 
 TEST_F(CanopenWireTest, heartbeats_and_emergencies_are_thinned_by_themselves) {
@@ -271,15 +272,15 @@ TEST_F(CanopenWireTest, heartbeats_and_emergencies_are_thinned_by_themselves) {
   EXPECT_EQ(count(Kind::babbling), 2);
   EXPECT_EQ(count(Kind::present), 1);
   bring(0x081, "10 32 04");
-  EXPECT_EQ(notices.back().node, 1) << "other nodes are heard as ever";
-  EXPECT_EQ(notices.back().kind, Kind::emergency);
+  EXPECT_EQ(unsolicited_events.back().node, 1) << "other nodes are heard as ever";
+  EXPECT_EQ(unsolicited_events.back().kind, Kind::emergency);
 }
 
 TEST_F(CanopenWireTest, replies_that_nobody_asked_for_and_frames_that_are_none_are_counted_and_named) {
   wire->send(read_of(0x6041));
   flood(0x581, "4B 42 60 00 37 02 00 00", 500);
   EXPECT_THAT(kinds(), ElementsAre(Kind::babbling));
-  EXPECT_EQ(notices[0].code, 0x581);
+  EXPECT_EQ(unsolicited_events[0].code, 0x581);
   bring(0x581, "4B 41 60 00 37 02 00 00");
   EXPECT_EQ(replies.size(), 1u) << "the true one is still taken";
   begin({.name = "can0", .nodes = {{.node = 1}}});
@@ -294,7 +295,7 @@ TEST_F(CanopenWireTest, replies_that_were_asked_for_come_as_fast_as_we_ask) {
     bring(0x581, "4B 41 60 00 37 02 00 00");
   }
   EXPECT_EQ(replies.size(), 2000u);
-  EXPECT_THAT(notices, IsEmpty());
+  EXPECT_THAT(unsolicited_events, IsEmpty());
 }
 
 // --- Decode log -----------------------------------------------------------------------------------------------------

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SDO frames forth and back, byte by byte as CiA 301 prints them; process data, ids and filters; frames in words.
 #include "adapters/canopen/canopen_text.hpp"
 #include "adapters/canopen/cob_id.hpp"

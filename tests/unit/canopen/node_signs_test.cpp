@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // What nodes show of themselves: presence and state, emergencies and storms of them, two devices under one number and
 // the many ways in which one device may look odd without being two.
+#include "adapters/canopen/duplicate_node_watch.hpp"
 #include "adapters/canopen/emergency.hpp"
 #include "adapters/canopen/node_watch.hpp"
-#include "adapters/canopen/twin_watch.hpp"
 #include "gateway/core/random.hpp"
 #include "tests/unit/canopen/canopen_frames.hpp"
 #include "tests/unit/support/manual_runtime.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using bus::NodeState;
-using NoticeKind = bus::Notice::Kind;
+using UnsolicitedKind = bus::UnsolicitedEvent::Kind;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
@@ -24,12 +25,12 @@ class NodeWatchTest : public testing::Test {
     due();
   }
   /// A frame of error control, as it is on the wire; what was told of it.
-  std::vector<std::pair<NoticeKind, NodeState>> hear(Byte byte) {
+  std::vector<std::pair<UnsolicitedKind, NodeState>> hear(Byte byte) {
     const auto told = watch.on_error_control(*decode_error_control(std::array{byte}), runtime.now());
     ignored = !told;
-    std::vector<std::pair<NoticeKind, NodeState>> all;
+    std::vector<std::pair<UnsolicitedKind, NodeState>> all;
     if (told) {
-      for (const bus::Notice& notice : *told) all.emplace_back(notice.kind, notice.state);
+      for (const bus::UnsolicitedEvent& unsolicited : *told) all.emplace_back(unsolicited.kind, unsolicited.state);
     }
     return all;
   }
@@ -60,7 +61,8 @@ TEST_F(NodeWatchTest, the_first_heartbeat_every_change_of_state_and_each_one_tha
                                               {0x05, NodeState::operational},     {0x04, NodeState::stopped},
                                               {0x04, NodeState::stopped},         {0x05, NodeState::operational},
                                               {0x02, NodeState::unknown}};  // a state it passes through
-  for (const auto& [byte, state] : heard) EXPECT_THAT(hear(byte), ElementsAre(std::pair(NoticeKind::present, state)));
+  for (const auto& [byte, state] : heard)
+    EXPECT_THAT(hear(byte), ElementsAre(std::pair(UnsolicitedKind::present, state)));
   hear(0x05);
   EXPECT_THAT(hear(0x05), IsEmpty());
 }
@@ -85,15 +87,15 @@ TEST_F(NodeWatchTest, a_heartbeat_is_overdue_after_one_and_a_half_periods_and_th
   }
   EXPECT_TRUE(after(1ms).gone);
   EXPECT_FALSE(after(1h).gone) << "told once";
-  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(NoticeKind::present, NodeState::operational))) << "and back again";
+  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(UnsolicitedKind::present, NodeState::operational))) << "and back again";
 }
 
 TEST_F(NodeWatchTest, a_boot_up_is_told_and_ends_the_watch_until_the_next_heartbeat) {
   watch_with({.node = 3, .heartbeat = 500ms});
   hear(0x05);
-  EXPECT_THAT(hear(0x00), ElementsAre(std::pair(NoticeKind::started, NodeState::pre_operational)));
+  EXPECT_THAT(hear(0x00), ElementsAre(std::pair(UnsolicitedKind::started, NodeState::pre_operational)));
   EXPECT_EQ(watch.next_deadline(), kNever) << "its heartbeat may be off now";
-  EXPECT_THAT(hear(0x7F), ElementsAre(std::pair(NoticeKind::present, NodeState::pre_operational)));
+  EXPECT_THAT(hear(0x7F), ElementsAre(std::pair(UnsolicitedKind::present, NodeState::pre_operational)));
   EXPECT_EQ(watch.next_deadline(), runtime.now() + 850ms);
 }
 
@@ -101,7 +103,7 @@ TEST_F(NodeWatchTest, a_call_makes_the_next_sign_of_life_news) {
   watch_with({.node = 3, .heartbeat = 500ms});
   hear(0x05);
   watch.call();
-  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(NoticeKind::present, NodeState::operational)));
+  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(UnsolicitedKind::present, NodeState::operational)));
   EXPECT_THAT(hear(0x05), IsEmpty());
 }
 
@@ -131,7 +133,7 @@ TEST_F(NodeGuarding, a_guarding_frame_is_due_at_once_and_in_every_guard_time) {
 }
 
 TEST_F(NodeGuarding, answers_that_toggle_keep_the_node_present) {
-  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(NoticeKind::present, NodeState::operational)));
+  EXPECT_THAT(hear(0x05), ElementsAre(std::pair(UnsolicitedKind::present, NodeState::operational)));
   Byte answer = 0x05;
   for (int i = 0; i < 10; ++i) {
     EXPECT_FALSE(after(200ms).gone);
@@ -208,10 +210,10 @@ TEST(EmergencyFrame, has_code_register_and_five_bytes_of_the_maker_and_may_be_sh
 
 class EmergencyStorm : public testing::Test {
  protected:
-  std::optional<bus::Notice> pass(std::uint16_t code) {
-    bus::Notice notice{.kind = bus::Notice::Kind::emergency, .node = 1};
-    notice.code = code;
-    return limit.pass(notice, now);
+  std::optional<bus::UnsolicitedEvent> pass(std::uint16_t code) {
+    bus::UnsolicitedEvent unsolicited{.kind = bus::UnsolicitedEvent::Kind::emergency, .node = 1};
+    unsolicited.code = code;
+    return limit.pass(unsolicited, now);
   }
   Instant now = Instant{} + 1h;
   EmergencyLimit limit;
@@ -251,9 +253,9 @@ TEST_F(EmergencyStorm, slow_ones_all_pass_and_of_fast_ones_a_few_each_second_and
   }
   limit = {};
   std::uint32_t told = 0, repeats = 0;
-  const auto count = [&](const std::optional<bus::Notice>& notice) {
-    told += notice ? 1U : 0U;
-    repeats += notice ? notice->repeats : 0U;
+  const auto count = [&](const std::optional<bus::UnsolicitedEvent>& unsolicited) {
+    told += unsolicited ? 1U : 0U;
+    repeats += unsolicited ? unsolicited->repeats : 0U;
   };
   for (int i = 0; i < 10'000; ++i) {
     now += 1ms;
@@ -269,14 +271,14 @@ TEST_F(EmergencyStorm, slow_ones_all_pass_and_of_fast_ones_a_few_each_second_and
 
 constexpr Duration kPeriod = 500ms;
 
-class TwinWatchTest : public testing::Test {
+class DuplicateNodeWatchTest : public testing::Test {
  protected:
   bool beat(Duration gap, NodeState state = NodeState::operational) {
     now += gap;
     return watch.on_heartbeat(state, now);
   }
-  /// Heartbeats until a twin is seen; 0: it is not, in so many.
-  int beats_until_twin(const std::vector<Duration>& gaps, const std::vector<NodeState>& states, int most = 60) {
+  /// Heartbeats until a duplicate node-ID is seen; 0: it is not, in so many.
+  int beats_until_duplicate(const std::vector<Duration>& gaps, const std::vector<NodeState>& states, int most = 60) {
     for (int i = 0; i < most; ++i) {
       const auto at = static_cast<std::size_t>(i);
       if (beat(gaps[at % gaps.size()], states[at % states.size()])) return i + 1;
@@ -285,17 +287,17 @@ class TwinWatchTest : public testing::Test {
   }
 
   Instant now = Instant{} + 1h;
-  TwinWatch watch{kPeriod};
+  DuplicateNodeWatch watch{kPeriod};
 };
 
-TEST_F(TwinWatchTest, one_device_of_any_period_is_one) {
+TEST_F(DuplicateNodeWatchTest, one_device_of_any_period_is_one) {
   for (const Duration period : {20ms, 100ms, 125ms, 250ms, 400ms, 500ms, 600ms, 1000ms, 5000ms}) {
     watch.forget();
-    EXPECT_EQ(beats_until_twin({period}, {NodeState::operational}), 0) << period / 1ms;
+    EXPECT_EQ(beats_until_duplicate({period}, {NodeState::operational}), 0) << period / 1ms;
   }
 }
 
-TEST_F(TwinWatchTest, one_device_whose_heartbeats_jitter_is_one) {
+TEST_F(DuplicateNodeWatchTest, one_device_whose_heartbeats_jitter_is_one) {
   Random random(7);
   for (int i = 0; i < 5000; ++i) {
     const auto jitter = std::chrono::milliseconds(random.below(101));
@@ -303,50 +305,50 @@ TEST_F(TwinWatchTest, one_device_whose_heartbeats_jitter_is_one) {
   }
 }
 
-TEST_F(TwinWatchTest, two_devices_are_seen_by_their_rhythm_whatever_the_phase) {
+TEST_F(DuplicateNodeWatchTest, two_devices_are_seen_by_their_rhythm_whatever_the_phase) {
   for (int phase = 1; phase < 10; ++phase) {
     watch.forget();
     const Duration offset = kPeriod * phase / 10;
     if (phase == 5) continue;  // looks like one device of half the period
-    EXPECT_GT(beats_until_twin({offset, kPeriod - offset}, {NodeState::operational}), 0) << phase;
+    EXPECT_GT(beats_until_duplicate({offset, kPeriod - offset}, {NodeState::operational}), 0) << phase;
   }
 }
 
-TEST_F(TwinWatchTest, a_second_device_that_joins_in_the_middle_is_seen) {
+TEST_F(DuplicateNodeWatchTest, a_second_device_that_joins_in_the_middle_is_seen) {
   for (int i = 0; i < 10; ++i) ASSERT_FALSE(beat(kPeriod));
-  EXPECT_GT(beats_until_twin({kPeriod / 2}, {NodeState::operational}), 0);
+  EXPECT_GT(beats_until_duplicate({kPeriod / 2}, {NodeState::operational}), 0);
 }
 
-TEST_F(TwinWatchTest, contradicting_states_in_turn_are_two_devices_with_and_without_a_period) {
+TEST_F(DuplicateNodeWatchTest, contradicting_states_in_turn_are_two_devices_with_and_without_a_period) {
   for (const Duration period : {kPeriod, Duration{}}) {
-    watch = TwinWatch(period);
-    const int beats = beats_until_twin({250ms}, {NodeState::operational, NodeState::pre_operational});
-    EXPECT_GT(beats, 2 + TwinWatch::kMaxFlips - 1);
-    EXPECT_LE(beats, 3 + TwinWatch::kMaxFlips);
+    watch = DuplicateNodeWatch(period);
+    const int beats = beats_until_duplicate({250ms}, {NodeState::operational, NodeState::pre_operational});
+    EXPECT_GT(beats, 2 + DuplicateNodeWatch::kMaxFlips - 1);
+    EXPECT_LE(beats, 3 + DuplicateNodeWatch::kMaxFlips);
   }
 }
 
-TEST_F(TwinWatchTest, states_that_change_and_stay_are_one_device) {
-  EXPECT_EQ(beats_until_twin({kPeriod}, {NodeState::pre_operational, NodeState::pre_operational, NodeState::operational,
-                                         NodeState::operational}),
+TEST_F(DuplicateNodeWatchTest, states_that_change_and_stay_are_one_device) {
+  EXPECT_EQ(beats_until_duplicate({kPeriod}, {NodeState::pre_operational, NodeState::pre_operational,
+                                              NodeState::operational, NodeState::operational}),
             0);
 }
 
-TEST_F(TwinWatchTest, states_that_we_command_are_no_contradiction) {
+TEST_F(DuplicateNodeWatchTest, states_that_we_command_are_no_contradiction) {
   for (int i = 0; i < 30; ++i) {
     watch.forget();
     ASSERT_FALSE(beat(kPeriod, i % 2 == 0 ? NodeState::operational : NodeState::pre_operational));
   }
 }
 
-TEST_F(TwinWatchTest, heartbeats_of_the_old_state_at_their_old_times_after_a_boot_up_are_anothers) {
+TEST_F(DuplicateNodeWatchTest, heartbeats_of_the_old_state_at_their_old_times_after_a_boot_up_are_anothers) {
   for (int i = 0; i < 5; ++i) ASSERT_FALSE(beat(kPeriod));
   watch.on_boot_up(now + 200ms);
   EXPECT_FALSE(beat(kPeriod));
   EXPECT_TRUE(beat(kPeriod));
 }
 
-TEST_F(TwinWatchTest, a_device_that_starts_anew_is_one_whether_it_or_we_make_it_operational) {
+TEST_F(DuplicateNodeWatchTest, a_device_that_starts_anew_is_one_whether_it_or_we_make_it_operational) {
   for (const bool by_itself : {true, false}) {
     for (int i = 0; i < 5; ++i) ASSERT_FALSE(beat(kPeriod));
     now += 230ms;
@@ -355,7 +357,7 @@ TEST_F(TwinWatchTest, a_device_that_starts_anew_is_one_whether_it_or_we_make_it_
       EXPECT_FALSE(beat(kPeriod, NodeState::pre_operational));
       watch.forget();  // NMT start
     }
-    EXPECT_EQ(beats_until_twin({kPeriod}, {NodeState::operational}), 0);
+    EXPECT_EQ(beats_until_duplicate({kPeriod}, {NodeState::operational}), 0);
   }
 }
 

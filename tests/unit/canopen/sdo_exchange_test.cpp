@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exchanges of up to four bytes: one frame each way, and one reply for each request.
 #include "tests/unit/canopen/canopen_wire_stage.hpp"
 
@@ -6,7 +7,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
-using Kind = bus::Notice::Kind;
+using Kind = bus::UnsolicitedEvent::Kind;
 
 constexpr std::string_view kStatus = "4B 41 60 00 37 02 00 00";
 
@@ -103,13 +104,13 @@ TEST_F(SdoExchange, a_second_reply_to_a_finished_request_within_two_timeouts_tel
   read_status();
   runtime.advance_by(201ms);
   bring(0x581, kStatus);
-  EXPECT_THAT(notices, IsEmpty());
+  EXPECT_THAT(unsolicited_events, IsEmpty());
   EXPECT_EQ(wire->statistics().late_replies, 1u);
   read_status();
   runtime.advance_by(200ms);
   bring(0x581, "80 41 60 00 00 00 02 06");
-  EXPECT_THAT(kinds(), ElementsAre(Kind::twin));
-  EXPECT_EQ(notices[0].node, 1);
+  EXPECT_THAT(kinds(), ElementsAre(Kind::duplicate_node));
+  EXPECT_EQ(unsolicited_events[0].node, 1);
   EXPECT_EQ(replies.size(), 2u);
 }
 
@@ -118,18 +119,18 @@ TEST_F(SdoExchange, the_reply_to_a_request_given_up_is_no_second_devices) {
   wire->abandon();
   read_status(2);  // one to the first request, one to the second
   EXPECT_EQ(replies.size(), 1u);
-  EXPECT_THAT(notices, IsEmpty());
+  EXPECT_THAT(unsolicited_events, IsEmpty());
   bring(0x581, kStatus);  // one too many
-  EXPECT_THAT(kinds(), ElementsAre(Kind::twin));
+  EXPECT_THAT(kinds(), ElementsAre(Kind::duplicate_node));
 }
 
 TEST_F(SdoExchange, two_devices_are_told_once_in_ten_seconds) {
   read_status(2);
   read_status(2);
-  EXPECT_EQ(notices.size(), 1u);
+  EXPECT_EQ(unsolicited_events.size(), 1u);
   runtime.advance_by(10s);
   read_status(2);
-  EXPECT_EQ(notices.size(), 2u);
+  EXPECT_EQ(unsolicited_events.size(), 2u);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An SDO server by the letter of CiA 301 section 7.2.4.3, written for the tests alone, with switches for what a server
 // may do wrong. Requests in, replies out.
 #pragma once

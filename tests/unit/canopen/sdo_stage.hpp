@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A CANopen wire with a drive's SDO server behind it. `spoil` may change, drop or add replies on their way.
 #pragma once
 

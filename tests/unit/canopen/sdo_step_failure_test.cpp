@@ -1,4 +1,5 @@
-// Every conversation, with every one of its replies failing in every way: silence, abort, wrong toggle, wrong object,
+// SPDX-License-Identifier: Apache-2.0
+// Every transfer, with every one of its replies failing in every way: silence, abort, wrong toggle, wrong object,
 // another node's, too late, twice, and the drive restarting in its midst.
 #include "tests/unit/canopen/sdo_stage.hpp"
 
@@ -7,15 +8,15 @@ namespace {
 
 using Result = std::optional<bus::ExchangeResult>;
 
-struct Conversation {
+struct Transfer {
   const char* name;
   bool write;
   std::size_t size;
   bool blocks;
 };
-void PrintTo(const Conversation& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const Transfer& c, std::ostream* out) { *out << c.name; }
 
-class SdoStepFailure : public SdoStage, public testing::WithParamInterface<Conversation> {
+class SdoStepFailure : public SdoStage, public testing::WithParamInterface<Transfer> {
  protected:
   void SetUp() override { fresh(); }
   void fresh() {
@@ -30,7 +31,7 @@ class SdoStepFailure : public SdoStage, public testing::WithParamInterface<Conve
   [[nodiscard]] bus::Exchange what() const {
     return GetParam().write ? long_write_of(kObject, content_of(GetParam().size)) : long_read_of(kObject);
   }
-  /// Runs the conversation once for each of its replies, that one spoiled: `how` may change it; false: it is lost.
+  /// Runs the transfer once for each of its replies, that one spoiled: `how` may change it; false: it is lost.
   /// In blocks a lost segment is repeated, and nobody notices: that is no silence.
   template <typename How, typename Check>
   void with_each_reply(How how, Check check) {
@@ -156,7 +157,7 @@ TEST_P(SdoStepFailure, a_restart_in_its_midst_is_told_and_the_transfer_forgotten
         return false;
       },
       [&](const Result& result) {
-        EXPECT_THAT(kinds(), testing::ElementsAre(bus::Notice::Kind::started));
+        EXPECT_THAT(kinds(), testing::ElementsAre(bus::UnsolicitedEvent::Kind::started));
         if (result) return;
         const std::size_t sent = link->sent.size();
         wire->abandon();
@@ -180,9 +181,9 @@ TEST_P(SdoStepFailure, a_link_loss_in_its_midst_leaves_nothing_behind) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, SdoStepFailure,
-    testing::Values(Conversation{"expedited_read", false, 4, false}, Conversation{"expedited_write", true, 2, false},
-                    Conversation{"segmented_read", false, 20, false}, Conversation{"segmented_write", true, 20, false},
-                    Conversation{"block_read", false, 200, true}, Conversation{"block_write", true, 200, true}),
+    testing::Values(Transfer{"expedited_read", false, 4, false}, Transfer{"expedited_write", true, 2, false},
+                    Transfer{"segmented_read", false, 20, false}, Transfer{"segmented_write", true, 20, false},
+                    Transfer{"block_read", false, 200, true}, Transfer{"block_write", true, 200, true}),
     [](const auto& of) { return std::string(of.param.name); });
 
 }  // namespace

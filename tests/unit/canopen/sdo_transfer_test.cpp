@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Long objects: chains of exchanges, segmented and in blocks, against a server of the standard.
 #include "tests/unit/canopen/sdo_stage.hpp"
 
@@ -187,7 +188,7 @@ TEST_F(SdoTransfer, anything_else_with_the_node_ends_an_open_chain_and_with_othe
 TEST_F(SdoTransfer, a_server_that_waited_too_long_ends_its_chain_and_is_no_second_device) {
   const bus::Exchange goes_on = open_chain();
   bring(0x581, "80 00 20 00 00 00 04 05");
-  EXPECT_THAT(notices, IsEmpty());
+  EXPECT_THAT(unsolicited_events, IsEmpty());
   EXPECT_EQ(exchange(goes_on), refusal_of(0x08000022, true));
   EXPECT_THAT(server.aborts_heard, IsEmpty()) << "there is nothing left to abort";
 }
@@ -207,7 +208,7 @@ TEST_F(SdoTransfer, a_server_that_answers_an_abort_is_no_second_device) {
   open_chain();
   EXPECT_EQ(exchange(nmt_of(0x80, 1)), bus::ExchangeResult{});
   bring(0x581, "80 00 20 00 00 00 04 05");
-  EXPECT_THAT(notices, IsEmpty());
+  EXPECT_THAT(unsolicited_events, IsEmpty());
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // One reply for each request, whatever comes between: repetitions, a full memory, a reader that does not read, an end
-// of axisgate-dds, an end of the face.
+// of axisgate-dds, an end of the session.
 #include <gmock/gmock.h>
 
-#include "tests/unit/dds/plain_face.hpp"
+#include "tests/unit/dds/plain_session.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::command;
 using test::guid;
-using test::PlainFace;
+using test::PlainSession;
 using testing::Each;
 using testing::ElementsAre;
 using testing::Field;
@@ -20,29 +21,29 @@ using testing::SizeIs;
 constexpr int kDone = 2, kBusy = 19, kSeen = 21;
 
 TEST(Requests, AreAnsweredWhenTheAxisHasAnswered) {
-  PlainFace plain;
+  PlainSession plain;
   static_cast<void>(plain.read());
-  plain.face->on_record(command(guid(1), 1, 7), plain.now);
+  plain.session->on_record(command(guid(1), 1, 7), plain.now);
   EXPECT_THAT(plain.read<ReplyRecord>(), IsEmpty());
   ASSERT_THAT(plain.port.submitted, SizeIs(1));
   plain.port.submitted.front().on_result({{Errc::refused_by_drive, 0x06090030}});
   EXPECT_EQ(plain.woken, 1);
-  EXPECT_EQ(plain.face->wake_at(), kLongAgo);
+  EXPECT_EQ(plain.session->wake_at(), kLongAgo);
   EXPECT_THAT(plain.read<ReplyRecord>(), ElementsAre(ReplyRecord{1, 7, guid(1), 3, 0x06090030}));
   EXPECT_THAT(plain.read<ReplyRecord>(), IsEmpty());
 }
 
 TEST(Requests, AnUnsuitableStateCarriesItsDetail) {
-  PlainFace plain;
-  plain.port.at_once = GroupResult{refusal(Errc::state_unsuitable)};
+  PlainSession plain;
+  plain.port.at_once = BatchResult{refusal(Errc::state_unsuitable)};
   static_cast<void>(plain.read());
-  plain.face->on_record(command(guid(1), 6, 7), plain.now);
+  plain.session->on_record(command(guid(1), 6, 7), plain.now);
   EXPECT_THAT(plain.read<ReplyRecord>(), ElementsAre(ReplyRecord{1, 7, guid(1), 9, 0x08000022}));
 }
 
 TEST(Requests, ThatComeAgainAreNotRunAgainForTenSeconds) {
-  PlainFace plain;
-  plain.port.at_once = GroupResult{};
+  PlainSession plain;
+  plain.port.at_once = BatchResult{};
   EXPECT_EQ(plain.ask(command(guid(1), 7, 1)), kDone);
   EXPECT_EQ(plain.ask(command(guid(1), 7, 1)), kSeen);
   EXPECT_EQ(plain.ask(command(guid(1), 3, 1)), kSeen) << "a stop has an id of its own like any other";
@@ -53,20 +54,20 @@ TEST(Requests, ThatComeAgainAreNotRunAgainForTenSeconds) {
 }
 
 TEST(Requests, ThatAreUnderWayAreNotRunAgainEither) {
-  PlainFace plain;
+  PlainSession plain;
   static_cast<void>(plain.read());
-  plain.face->on_record(command(guid(1), 7, 1), plain.now);
+  plain.session->on_record(command(guid(1), 7, 1), plain.now);
   EXPECT_EQ(plain.ask(command(guid(1), 7, 1)), kSeen);
   plain.port.submitted.front().on_result({});
   EXPECT_THAT(plain.read<ReplyRecord>(), SizeIs(1));
 }
 
 TEST(Requests, BeyondTheMemoryAreRefusedAndNotRunButStopsAreCarriedOut) {
-  PlainFace plain;
-  plain.port.at_once = GroupResult{};
+  PlainSession plain;
+  plain.port.at_once = BatchResult{};
   static_cast<void>(plain.read());
   for (std::uint64_t id = 1; id <= kMaxRequestsKept; ++id) {
-    plain.face->on_record(command(guid(1), 1, id), plain.now);
+    plain.session->on_record(command(guid(1), 1, id), plain.now);
     ASSERT_THAT(plain.read<ReplyRecord>(), ElementsAre(Field(&ReplyRecord::result, kDone)));
   }
   const std::size_t run = plain.port.submitted.size();
@@ -79,26 +80,26 @@ TEST(Requests, BeyondTheMemoryAreRefusedAndNotRunButStopsAreCarriedOut) {
 }
 
 TEST(Requests, OfMoreWritersThanThereIsRoomForAreRefusedButTheirStops) {
-  PlainFace plain;
-  plain.port.at_once = GroupResult{};
+  PlainSession plain;
+  plain.port.at_once = BatchResult{};
   for (std::uint8_t i = 1; i <= kMaxWriters; ++i) EXPECT_EQ(plain.ask(command(guid(i), 1, 1)), kDone);
   EXPECT_EQ(plain.ask(command(guid(200), 1, 1)), kBusy);
   EXPECT_EQ(plain.ask(command(guid(200), 2, 2)), kDone);
-  EXPECT_EQ(plain.port.submitted.back().group.life->origin[2], 200) << "with a name for the event of it";
+  EXPECT_EQ(plain.port.submitted.back().batch.life->origin[2], 200) << "with a name for the event of it";
 }
 
 TEST(Replies, OfAProcessThatDoesNotReadAreBoundedAndNothingIsRunWithoutAReply) {
-  PlainFace plain;
+  PlainSession plain;
   static_cast<void>(plain.read());
   std::uint64_t id = 0;
-  for (; plain.face->has_room(); ++id) {
+  for (; plain.session->has_room(); ++id) {
     ASSERT_LE(id, 4 * kMaxRepliesWaiting) << "it must end";
-    plain.face->on_record(command(guid(1), 1, id + 1), plain.now);
+    plain.session->on_record(command(guid(1), 1, id + 1), plain.now);
   }
   EXPECT_THAT(plain.port.submitted, SizeIs(kMaxRepliesWaiting)) << "accepted while a reply has its place";
-  plain.face->on_record(command(guid(1), 3, id + 1), plain.now);
+  plain.session->on_record(command(guid(1), 3, id + 1), plain.now);
   ASSERT_THAT(plain.port.submitted, SizeIs(kMaxRepliesWaiting + 1)) << "a stop is carried out all the same";
-  EXPECT_EQ(plain.port.submitted.back().group.command, Command::quick_stop);
+  EXPECT_EQ(plain.port.submitted.back().batch.command, Command::quick_stop);
   plain.port.submitted.pop_back();
   const std::uint64_t refused = id - kMaxRepliesWaiting;
   auto replies = plain.read<ReplyRecord>();
@@ -108,23 +109,23 @@ TEST(Replies, OfAProcessThatDoesNotReadAreBoundedAndNothingIsRunWithoutAReply) {
   replies = plain.read<ReplyRecord>();
   EXPECT_THAT(replies, SizeIs(kMaxRepliesWaiting)) << "each that was accepted has its reply";
   EXPECT_THAT(replies, Each(Field(&ReplyRecord::result, kDone)));
-  plain.port.at_once = GroupResult{};
+  plain.port.at_once = BatchResult{};
   EXPECT_EQ(plain.ask(command(guid(1), 1, id)), kDone) << "one that was refused may be asked again at once";
 }
 
 TEST(Replies, ThatCouldNotBeReadAreKnownAsAlreadySeenToWhoeverAsksAgain) {
-  PlainFace plain;
+  PlainSession plain;
   static_cast<void>(plain.read());
-  plain.face->on_record(command(guid(1), 7, 1), plain.now);
-  plain.face->on_record(command(guid(1), 7, 2), plain.now);
-  plain.face->on_record(command(guid(1), 99, 3), plain.now);  // its refusal waits for the socket
-  plain.face->on_link_down(plain.now);
+  plain.session->on_record(command(guid(1), 7, 1), plain.now);
+  plain.session->on_record(command(guid(1), 7, 2), plain.now);
+  plain.session->on_record(command(guid(1), 99, 3), plain.now);  // its refusal waits for the socket
+  plain.session->on_link_down(plain.now);
   plain.port.submitted[0].on_result({});
   EXPECT_EQ(plain.woken, 0) << "nobody reads";
-  EXPECT_EQ(plain.face->wake_at(), kNever);
+  EXPECT_EQ(plain.session->wake_at(), kNever);
   EXPECT_THAT(plain.read(), IsEmpty());
   plain.now += 1s;
-  plain.face->on_link_up(plain.now);
+  plain.session->on_link_up(plain.now);
   EXPECT_THAT(plain.read<ReplyRecord>(), IsEmpty());
   EXPECT_EQ(plain.ask(command(guid(1), 7, 1)), kSeen);
   plain.port.submitted[1].on_result({});
@@ -136,12 +137,12 @@ TEST(Replies, ThatCouldNotBeReadAreKnownAsAlreadySeenToWhoeverAsksAgain) {
 // ------------------------------------------------------------------------------
 
 struct Pressed : testing::Test {
-  PlainFace plain;
+  PlainSession plain;
   void jog(std::uint64_t id, double velocity = 10) {
     CommandRecord record = command(guid(1), 31, id);
     record.mask = 256;
     record.jog_velocity = velocity;
-    plain.face->on_record(record, plain.now);
+    plain.session->on_record(record, plain.now);
   }
 };
 
@@ -149,16 +150,16 @@ TEST_F(Pressed, IsHeldByItsRepetitionsWhileItsStartIsUnderWay) {
   static_cast<void>(plain.read());
   jog(1);
   ASSERT_THAT(plain.port.submitted, SizeIs(1)) << "its velocity first";
-  EXPECT_TRUE(plain.port.submitted[0].group.jog_velocity);
-  plain.port.at_once = GroupResult{};
+  EXPECT_TRUE(plain.port.submitted[0].batch.jog_velocity);
+  plain.port.at_once = BatchResult{};
   jog(2);
   ASSERT_THAT(plain.port.submitted, SizeIs(2));
-  EXPECT_EQ(plain.port.submitted[1].group.jog_again, Command::jog_forward);
-  EXPECT_TRUE(plain.port.submitted[1].group.claims);
+  EXPECT_EQ(plain.port.submitted[1].batch.jog_again, Command::jog_forward);
+  EXPECT_TRUE(plain.port.submitted[1].batch.claims);
   EXPECT_THAT(plain.read<ReplyRecord>(), ElementsAre(ReplyRecord{1, 2, guid(1), kDone, 0}));
   plain.port.submitted[0].on_result({});
   ASSERT_THAT(plain.port.submitted, SizeIs(3));
-  EXPECT_EQ(plain.port.submitted[2].group.command, Command::jog_forward);
+  EXPECT_EQ(plain.port.submitted[2].batch.command, Command::jog_forward);
   EXPECT_THAT(plain.read<ReplyRecord>(), ElementsAre(ReplyRecord{1, 1, guid(1), kDone, 0}));
 }
 
@@ -172,27 +173,27 @@ TEST_F(Pressed, DoesNotBeginWhereItsVelocityIsRefused) {
 
 TEST_F(Pressed, IsNotLetGoByTheLateResultOfThePressBeforeIt) {
   jog(1);
-  plain.face->on_record(command(guid(1), 33, 2), plain.now);
+  plain.session->on_record(command(guid(1), 33, 2), plain.now);
   jog(3);
   plain.port.submitted[0].on_result({{Errc::timed_out, 0}});
   plain.port.submitted.clear();
   jog(4);
   ASSERT_THAT(plain.port.submitted, SizeIs(1));
-  EXPECT_EQ(plain.port.submitted[0].group.jog_again, Command::jog_forward);
+  EXPECT_EQ(plain.port.submitted[0].batch.jog_again, Command::jog_forward);
 }
 
-TEST(Replies, ThatComeWhenTheFaceIsGoneHarmNobody) {
-  PlainFace plain;
-  plain.face->on_record(command(guid(1), 1, 1), plain.now);
+TEST(Replies, ThatComeWhenTheSessionIsGoneHarmNobody) {
+  PlainSession plain;
+  plain.session->on_record(command(guid(1), 1, 1), plain.now);
   CommandRecord jog = command(guid(1), 31, 2);
   jog.mask = 256;
   jog.jog_velocity = 1;
-  plain.face->on_record(jog, plain.now);
-  ObjectRequestRecord object{guid(1, 2), 1, 3, false, 0x1000, 0, 4, 0, {}};
-  plain.face->on_record(object, plain.now);
+  plain.session->on_record(jog, plain.now);
+  ObjectRequestRecord object{guid(1, 2), 0, {}, 1, 3, false, 0x1000, 0, 4, 0, {}};
+  plain.session->on_record(object, plain.now);
   auto submitted = plain.port.submitted;
   ASSERT_THAT(submitted, SizeIs(3));
-  plain.face.reset();
+  plain.session.reset();
   plain.image.changes.take([](std::size_t) {});
   plain.woken = 0;
   plain.image.changes.mark(1);

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // DDS writers as clients: who they are, when they are heard, and when they are gone.
 #include "gateway/upstream/dds/dds_clients.hpp"
 
 #include <gmock/gmock.h>
 
-#include "gateway/upstream/dds/dds_face.hpp"
+#include "gateway/upstream/dds/dds_session.hpp"
 #include "tests/unit/dds/fake_port.hpp"
 #include "tests/unit/dds/samples.hpp"
 
@@ -22,13 +23,14 @@ using testing::IsEmpty;
 struct Writers : testing::Test {
   ProcessImage image;
   test::FakePort port;
-  DdsClients clients{Role::operator_, image, port};
+  SignsOfLife signs{500ms};
+  DdsClients clients{Role::operator_, signs, image, port};
   Writers() {
     image.add_axis(1, "lift", 0);
     clients.on_link_up(kStart);
   }
   std::shared_ptr<ClientLife> there(const Guid& writer, std::int32_t strength = 0, Instant now = kStart) {
-    clients.on_writer(writer_there(writer, strength), now);
+    static_cast<void>(clients.on_writer(writer_there(writer, strength), now));
     return clients.find(writer)->life;
   }
 };
@@ -49,13 +51,77 @@ TEST_F(Writers, AreClientsOfTheirOwnWithTheSettingsRole) {
   EXPECT_EQ(client_name(guid(1), ""), "dds 010f01000000000000000000:000001");
 }
 
-TEST_F(Writers, AreHeardByTheirBeatsAndAManualOneIsAHeartbeat) {
+TEST_F(Writers, AreHeardByTheirBeatsWhichAreHeartbeats) {
   const auto life = there(guid(1));
   clients.on_beats(beat(guid(1)), kStart + 1s);
   EXPECT_EQ(life->last_request, kStart + 1s);
-  EXPECT_EQ(life->heartbeat, kLongAgo) << "its library lives, which says nothing of its program";
-  clients.on_beats(beat(guid(1), true), kStart + 2s);
-  EXPECT_EQ(life->heartbeat, kStart + 2s);
+  EXPECT_EQ(life->heartbeat, kStart + 1s);
+}
+
+TEST_F(Writers, OfALivelinessThatCountsForNothingAreToldSoOnce) {
+  for (const auto kind : {LivelinessKind::automatic, LivelinessKind::manual_by_participant}) {
+    const Guid who = guid(static_cast<std::uint8_t>(kind));
+    WriterRecord record = writer_there(who);
+    record.liveliness = kind;
+    EXPECT_THAT(clients.on_writer(record, kStart), testing::HasSubstr("liveliness counts for nothing"));
+    EXPECT_EQ(clients.on_writer(record, kStart), "");
+  }
+  for (const auto kind : {LivelinessKind::endless, LivelinessKind::manual_by_topic}) {
+    WriterRecord record = writer_there(guid(10 + static_cast<std::uint8_t>(kind)));
+    record.liveliness = kind;
+    EXPECT_EQ(clients.on_writer(record, kStart), "");
+  }
+}
+
+/// Of the participant's second writer.
+HeartbeatRecord heartbeat(const Guid& client, std::uint32_t counter, Instant now, std::uint32_t lease_ms = 0) {
+  Guid writer = client;
+  writer[14] = 77;
+  return {writer, client, counter, lease_ms, now.time_since_epoch().count()};
+}
+
+TEST_F(Writers, AHeartbeatCountsWhoseCounterHasChanged) {
+  const auto life = there(guid(1));
+  clients.on_heartbeat(heartbeat(guid(1), 0, kStart + 1s), kStart + 1s);
+  EXPECT_EQ(life->heartbeat, kStart + 1s) << "the first one, whatever its counter";
+  EXPECT_EQ(life->last_request, kStart + 1s);
+  clients.on_heartbeat(heartbeat(guid(1), 0, kStart + 2s), kStart + 2s);
+  EXPECT_EQ(life->heartbeat, kStart + 1s) << "a library that repeats it";
+  clients.on_heartbeat(heartbeat(guid(1), UINT32_MAX, kStart + 3s), kStart + 3s);
+  EXPECT_EQ(life->heartbeat, kStart + 3s);
+}
+
+TEST_F(Writers, AHeartbeatCountsForItsOwnParticipantAlone) {
+  const auto life = there(guid(1));
+  HeartbeatRecord foreign = heartbeat(guid(1), 1, kStart + 1s);
+  foreign.writer = guid(2);
+  clients.on_heartbeat(foreign, kStart + 1s);
+  clients.on_heartbeat(heartbeat(guid(3), 1, kStart + 1s), kStart + 1s);
+  EXPECT_EQ(life->heartbeat, kLongAgo);
+  EXPECT_EQ(clients.size(), 1U) << "it makes no client";
+}
+
+TEST_F(Writers, AnOldHeartbeatRenewsNothing) {
+  const auto life = there(guid(1));
+  clients.on_heartbeat(heartbeat(guid(1), 1, kStart), kStart + 501ms);
+  clients.on_heartbeat(heartbeat(guid(1), 2, kStart + 1002ms), kStart + 501ms);
+  EXPECT_EQ(life->heartbeat, kLongAgo);
+  clients.on_heartbeat(heartbeat(guid(1), 1, kStart), kStart + 500ms);
+  EXPECT_EQ(life->heartbeat, kStart + 500ms);
+}
+
+TEST_F(Writers, AHeartbeatMakesItsLeasesShorterAndNeverLonger) {
+  const auto life = there(guid(1));
+  Lease& lease = image.find(1)->lease;
+  lease.owner = life;
+  lease.running = lease.any_sign = true;
+  lease.renewed = kStart;
+  clients.on_heartbeat(heartbeat(guid(1), 1, kStart, 300), kStart);
+  EXPECT_EQ(lease.until(), kStart + 300ms);
+  clients.on_heartbeat(heartbeat(guid(1), 2, kStart, 9000), kStart);
+  EXPECT_EQ(lease.until(), kStart + 2s);
+  clients.on_heartbeat(heartbeat(guid(1), 3, kStart), kStart);
+  EXPECT_EQ(lease.until(), kStart + 2s);
 }
 
 TEST_F(Writers, ABeatOfNobodyMakesNobody) {
@@ -65,10 +131,10 @@ TEST_F(Writers, ABeatOfNobodyMakesNobody) {
 
 TEST_F(Writers, OneThatIsGoneIsDeadToItsLeasesAndItsAxesAreTold) {
   const auto life = there(guid(1));
-  clients.on_writer(writer_gone(guid(1)), kStart + 1s);
+  static_cast<void>(clients.on_writer(writer_gone(guid(1)), kStart + 1s));
   EXPECT_FALSE(life->connected);
   EXPECT_THAT(port.gone, ElementsAre(life->id));
-  clients.on_writer(writer_gone(guid(1)), kStart + 1s);
+  static_cast<void>(clients.on_writer(writer_gone(guid(1)), kStart + 1s));
   EXPECT_EQ(port.gone.size(), 1U);
   EXPECT_NE(there(guid(1))->id, life->id) << "a dead client does not come back: another of its origin does";
 }
@@ -84,11 +150,11 @@ TEST_F(Writers, ARecordOfAKnownOneIsTheSameClientAgain) {
   EXPECT_THAT(port.gone, IsEmpty());
 }
 
-TEST_F(Writers, ASampleBeforeItsRecordIsOfAWriterWithoutStrength) {
-  DdsClient* const client = clients.on_sample(guid(1), kStart);
+TEST_F(Writers, ASampleBeforeItsRecordTellsTheStrength) {
+  DdsClient* const client = clients.on_sample(guid(1), 4, true, kStart);
   ASSERT_NE(client, nullptr);
   const auto life = client->life;
-  EXPECT_EQ(life->strength, 0);
+  EXPECT_EQ(life->strength, 4);
   EXPECT_EQ(life->last_request, kStart);
   EXPECT_EQ(there(guid(1), 3), life);
   EXPECT_EQ(life->strength, 3);
@@ -96,7 +162,7 @@ TEST_F(Writers, ASampleBeforeItsRecordIsOfAWriterWithoutStrength) {
 }
 
 TEST_F(Writers, ASampleOfOneThatIsNeverToldOfIsForgottenWithIt) {
-  const auto life = clients.on_sample(guid(1), kStart)->life;
+  const auto life = clients.on_sample(guid(1), 4, true, kStart)->life;
   EXPECT_EQ(clients.deadline(), kStart + kReturnsWithin);
   clients.on_time(kStart + kReturnsWithin);
   EXPECT_FALSE(life->connected);
@@ -105,11 +171,11 @@ TEST_F(Writers, ASampleOfOneThatIsNeverToldOfIsForgottenWithIt) {
 
 TEST_F(Writers, AreBoundedAndAGoneOneMakesRoom) {
   for (std::uint8_t i = 1; i <= kMaxWriters; ++i) static_cast<void>(there(guid(i)));
-  EXPECT_EQ(clients.on_sample(guid(200), kStart), nullptr);
-  clients.on_writer(writer_there(guid(200)), kStart);
+  EXPECT_EQ(clients.on_sample(guid(200), 0, true, kStart), nullptr);
+  static_cast<void>(clients.on_writer(writer_there(guid(200)), kStart));
   EXPECT_EQ(clients.size(), kMaxWriters);
-  clients.on_writer(writer_gone(guid(3)), kStart);
-  EXPECT_NE(clients.on_sample(guid(200), kStart), nullptr);
+  static_cast<void>(clients.on_writer(writer_gone(guid(3)), kStart));
+  EXPECT_NE(clients.on_sample(guid(200), 0, true, kStart), nullptr);
 }
 
 struct Grace : Writers {
@@ -153,7 +219,7 @@ TEST_F(Grace, OfALeaseThatOnlyWritesRenewLastsUntilItsOwnerCouldWrite) {
 
 TEST_F(Grace, IsNotForOneThatIsKnownToBeDead) {
   own(LeaseRenewal::any);
-  clients.on_writer(writer_gone(guid(1)), kStart + 1s);
+  static_cast<void>(clients.on_writer(writer_gone(guid(1)), kStart + 1s));
   clients.on_link_down();
   EXPECT_EQ(lease.until(), kStart + 2s);
 }

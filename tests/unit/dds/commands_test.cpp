@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every command of design 3.4, asked by a DDS writer of a servo and of a virtual axis: one reply each, and what the
 // motor does of it.
 #include <gmock/gmock.h>
 
-#include "gateway/upstream/dds/command_groups.hpp"
+#include "gateway/upstream/dds/command_batches.hpp"
 #include "tests/unit/dds/dds_rig.hpp"
 
 namespace axisgate::test {
@@ -57,7 +58,7 @@ TEST_P(OfAxis, MoveAbsoluteAndRelative) {
   EXPECT_NEAR(turns_shown(), 2, 0.01);
   EXPECT_EQ(move(6, 30), kDone);
   rig.run(300ms);
-  EXPECT_EQ(move(7, 1), kBusy) << "never added while it moves";
+  EXPECT_EQ(move(7, 1), kUnsuitable) << "never added while it moves";
 }
 
 TEST_P(OfAxis, RunVelocityAndHaltAndQuickStop) {
@@ -112,7 +113,7 @@ TEST_P(OfAxis, RunTorqueWhereTheDriveHasIt) {
   }
   torque.mask = dds::kHasTargetTorque;
   torque.target_torque = 200;
-  Group speed;
+  WriteBatch speed;
   speed.setpoints.push_back({Quantity::max_velocity, 1'000'000});
   ASSERT_EQ(rig.stage.ask(axis, speed).outcome.code, Errc::ok);
   EXPECT_EQ(rig.ask(torque).result, kDone);

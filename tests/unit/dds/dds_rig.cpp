@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/dds/dds_rig.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "gateway/upstream/dds/command_groups.hpp"
+#include "gateway/upstream/dds/command_batches.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -27,9 +28,9 @@ std::vector<GatewayStage::Line> lines(const DdsRigOptions& options) {
 
 DdsRig::DdsRig(DdsRigOptions options) : stage(lines(options)) {
   options.settings.commands = true;
-  face_ = std::make_unique<dds::DdsFace>(
+  session_ = std::make_unique<dds::DdsSession>(
       options.settings, stage.gateway().image(), stage.gateway().events(), stage.gateway(), [this] { woken_ = true; },
-      [this](const std::string& line) { told.push_back(line); });
+      dds::DdsTold{[this](const std::string& line) { told.push_back(line); }, {}});
   link_up();
   if (!run_until([&] {
         return axis(kServo).link_state == LinkState::online && axis(kStepper).link_state == LinkState::online;
@@ -40,18 +41,18 @@ DdsRig::DdsRig(DdsRigOptions options) : stage(lines(options)) {
 
 void DdsRig::link_up() {
   up_ = true;
-  face_->on_link_up(now());
+  session_->on_link_up(now());
   read();
 }
 
 void DdsRig::link_down() {
   up_ = false;
-  face_->on_link_down(now());
+  session_->on_link_down(now());
 }
 
 void DdsRig::read() {
   woken_ = false;
-  while (const auto record = face_->next(now())) {
+  while (const auto record = session_->next(now())) {
     if (const auto* const state = std::get_if<dds::StateRecord>(&*record)) {
       samples.push_back(*state);
       states_[state->axis] = *state;
@@ -70,11 +71,9 @@ bool DdsRig::run_until(const std::function<bool()>& done, Duration limit) {
     stage.runtime().advance_by(1ms);
     if (up_ && now() >= next_beat_ && !beating_.empty()) {
       next_beat_ = now() + kBeatPeriod;
-      dds::BeatRecord beats;
-      for (const dds::Guid& each : beating_) beats.beats.push_back({each, false});
-      face_->on_record(beats, now());
+      session_->on_record(dds::BeatRecord{beating_}, now());
     }
-    if (up_ && (woken_ || face_->wake_at() <= now())) read();
+    if (up_ && (woken_ || session_->wake_at() <= now())) read();
   }
   return true;
 }
@@ -86,14 +85,15 @@ void DdsRig::run(Duration time) {
 
 dds::Guid DdsRig::writer(std::uint8_t participant, std::uint8_t entity, std::int32_t strength) {
   const dds::Guid out = guid(participant, entity);
-  face_->on_record(writer_there(out, strength), now());
+  strengths_[out] = strength;
+  session_->on_record(writer_there(out, strength), now());
   if (std::ranges::find(beating_, out) == beating_.end()) beating_.push_back(out);
   return out;
 }
 
 void DdsRig::die(const dds::Guid& writer) {
   fall_silent(writer);
-  face_->on_record(writer_gone(writer), now());
+  session_->on_record(writer_gone(writer), now());
 }
 
 std::uint64_t DdsRig::send(dds::CommandRecord record) {
@@ -103,7 +103,13 @@ std::uint64_t DdsRig::send(dds::CommandRecord record) {
 
 void DdsRig::send_again(dds::CommandRecord record, std::uint64_t id) {
   record.request_id = id;
-  face_->on_record(record, now());
+  if (const auto known = strengths_.find(record.writer); known != strengths_.end()) record.strength = known->second;
+  session_->on_record(record, now());
+  read();
+}
+
+void DdsRig::give(const dds::Record& record) {
+  session_->on_record(record, now());
   read();
 }
 
@@ -134,7 +140,7 @@ dds::ReplyRecord DdsRig::run_at(const dds::Guid& writer, double turns_per_s, Axi
 
 dds::ObjectReplyRecord DdsRig::ask(dds::ObjectRequestRecord record) {
   record.request_id = ++last_id_;
-  face_->on_record(record, now());
+  session_->on_record(record, now());
   read();
   const auto mine = [&](const dds::ObjectReplyRecord& each) { return each.request_id == record.request_id; };
   if (!run_until([&] { return std::ranges::any_of(object_replies_, mine); }, 10s))
@@ -158,14 +164,14 @@ bool DdsRig::turns(AxisNumber axis) {
   return std::abs(position(axis) - before) > 1;
 }
 
-Errc DdsRig::modbus(const std::shared_ptr<ClientLife>& client, Group group, bool claims) {
+Errc DdsRig::modbus(const std::shared_ptr<ClientLife>& client, WriteBatch batch, bool claims) {
   client->last_request = now();
-  group.client = client->id;
-  group.role = client->role;
-  group.life = client;
-  group.claims = claims;
-  const auto place = stage.begin(kServo, std::move(group));
-  if (!run_until([&] { return place->has_value(); })) throw std::runtime_error("a group never got its result");
+  batch.client = client->id;
+  batch.role = client->role;
+  batch.life = client;
+  batch.claims = claims;
+  const auto place = stage.begin(kServo, std::move(batch));
+  if (!run_until([&] { return place->has_value(); })) throw std::runtime_error("a write batch never got its result");
   return (*place)->outcome.code;
 }
 

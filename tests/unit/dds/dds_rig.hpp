@@ -1,5 +1,6 @@
-// The DDS face before the shipped core with simulated drives: DDS writers ask, Modbus clients beside them, and motors
-// turn or stand. Promises that the face is read when it asks to be, and never besides, as its host would; and that a
+// SPDX-License-Identifier: Apache-2.0
+// The DDS server before the shipped core with simulated drives: DDS writers ask, Modbus clients beside them, and motors
+// turn or stand. Promises that the session is read when it asks to be, and never besides, as its host would; and that a
 // request whose reply does not come, or comes twice, fails the test. Never decides what is right.
 #pragma once
 
@@ -7,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "gateway/upstream/dds/dds_face.hpp"
+#include "gateway/upstream/dds/dds_session.hpp"
 #include "tests/stage/gateway_stage.hpp"
 #include "tests/unit/dds/samples.hpp"
 
@@ -16,8 +17,7 @@ namespace axisgate::test {
 /// A CiA 402 servo (Kinco JD by its own protocol), and a virtual axis (iD286pro on Modbus RTU).
 inline constexpr AxisNumber kServo = 1, kStepper = 2;
 /// Of command_result.
-inline constexpr int kDone = 2, kRefused = 3, kNotOwner = 7, kUnsuitable = 9, kNotSupported = 16, kBadValue = 17,
-                     kBusy = 19;
+inline constexpr int kDone = 2, kRefused = 3, kNotOwner = 7, kUnsuitable = 9, kNotSupported = 16, kBadValue = 17;
 
 struct DdsRigOptions {
   LeaseRules lease{};
@@ -48,6 +48,8 @@ class DdsRig {
   /// Without waiting; its id.
   std::uint64_t send(dds::CommandRecord record);
   void send_again(dds::CommandRecord record, std::uint64_t id);
+  /// A record of axisgate-dds that has no reply.
+  void give(const dds::Record& record);
   [[nodiscard]] std::size_t replies(std::uint64_t id) const;
 
   void link_down();
@@ -56,7 +58,7 @@ class DdsRig {
   /// A reload has taken this axis away.
   void take_away(AxisNumber axis) {
     stage.gateway().image().remove_axis(axis);
-    face_->take_axes({}, now());
+    session_->take_axes({}, now());
   }
 
   void run(Duration time);
@@ -69,7 +71,7 @@ class DdsRig {
   [[nodiscard]] bool turns(AxisNumber axis = kServo);
   [[nodiscard]] const AxisImage& axis(AxisNumber number = kServo) { return stage.axis(number); }
   /// A Modbus client's request.
-  Errc modbus(const std::shared_ptr<ClientLife>& client, Group group, bool claims = true);
+  Errc modbus(const std::shared_ptr<ClientLife>& client, WriteBatch batch, bool claims = true);
   [[nodiscard]] Instant now() { return stage.runtime().now(); }
 
   std::vector<dds::StateRecord> samples;  ///< of axis_state, all of them
@@ -83,8 +85,9 @@ class DdsRig {
 
   bool woken_ = true;
   bool up_ = false;
-  std::unique_ptr<dds::DdsFace> face_;
+  std::unique_ptr<dds::DdsSession> session_;
   std::vector<dds::Guid> beating_;
+  std::map<dds::Guid, std::int32_t> strengths_;
   Instant next_beat_ = kLongAgo;
   std::uint64_t last_id_ = 0;
   std::map<AxisNumber, dds::StateRecord> states_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A command port that tests play themselves: what was submitted lies here until it is answered.
 // Promises to answer nothing by itself, unless told how all are answered at once. Never decides what is right.
 #pragma once
@@ -13,15 +14,15 @@ class FakePort final : public CommandPort {
  public:
   struct Submitted {
     AxisNumber axis = 0;
-    Group group;
-    GroupCallback on_result;
+    WriteBatch batch;
+    BatchCallback on_result;
   };
   std::vector<Submitted> submitted;
-  std::optional<GroupResult> at_once{};
+  std::optional<BatchResult> at_once{};
   std::vector<ClientId> gone;
 
-  std::optional<GroupResult> submit(AxisNumber axis, const Group& group, GroupCallback on_result) override {
-    submitted.push_back({axis, group, std::move(on_result)});
+  std::optional<BatchResult> submit(AxisNumber axis, const WriteBatch& batch, BatchCallback on_result) override {
+    submitted.push_back({axis, batch, std::move(on_result)});
     return at_once;
   }
   void client_gone(ClientId client) override { gone.push_back(client); }

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Jogging by DDS: a button that is held by saying so again and again (design 3.4, "Jog").
 #include <gmock/gmock.h>
 
-#include "gateway/upstream/dds/command_groups.hpp"
+#include "gateway/upstream/dds/command_batches.hpp"
 #include "tests/unit/dds/dds_rig.hpp"
 #include "tests/unit/drive/clients.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples that no honest program sends, and those that ask for what this axis does not have: each is refused by its
 // result, nothing of it reaches the axis, and a stop is carried out whatever stands beside it.
 #include <gmock/gmock.h>
@@ -6,15 +7,15 @@
 #include <limits>
 #include <random>
 
-#include "gateway/upstream/dds/command_groups.hpp"
-#include "tests/unit/dds/plain_face.hpp"
+#include "gateway/upstream/dds/command_batches.hpp"
+#include "tests/unit/dds/plain_session.hpp"
 
 namespace axisgate::dds {
 namespace {
 
 using test::command;
 using test::guid;
-using test::PlainFace;
+using test::PlainSession;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -24,9 +25,9 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 struct Malformed : testing::Test {
-  PlainFace plain;
+  PlainSession plain;
   std::uint64_t id = 0;
-  Malformed() { plain.port.at_once = GroupResult{}; }
+  Malformed() { plain.port.at_once = BatchResult{}; }
   CommandRecord sample(std::uint8_t number, std::uint32_t mask = 0) {
     CommandRecord out = command(guid(1), number, ++id);
     out.mask = mask;
@@ -79,8 +80,8 @@ TEST_F(Malformed, ANumberThatTheMaskDoesNotNameIsNotLookedAt) {
   record.mode = 99;
   EXPECT_EQ(plain.ask(record), 2);
   ASSERT_THAT(plain.port.submitted, SizeIs(1));
-  EXPECT_THAT(plain.port.submitted.front().group.setpoints, IsEmpty());
-  EXPECT_FALSE(plain.port.submitted.front().group.mode);
+  EXPECT_THAT(plain.port.submitted.front().batch.setpoints, IsEmpty());
+  EXPECT_FALSE(plain.port.submitted.front().batch.mode);
 }
 
 TEST_F(Malformed, OnlyTheAxesThatThereAreCanBeAsked) {
@@ -140,16 +141,16 @@ TEST_F(Malformed, AStopIsCarriedOutAndTheAnswerTellsOfTheNonsense) {
       plain.port.submitted.clear();
       EXPECT_EQ(plain.ask(record), kBadValue);
       ASSERT_THAT(plain.port.submitted, SizeIs(1));
-      const Group& group = plain.port.submitted.front().group;
-      EXPECT_EQ(group.command, Command{number});
-      EXPECT_THAT(group.setpoints, IsEmpty());
-      EXPECT_FALSE(group.claims);
+      const WriteBatch& batch = plain.port.submitted.front().batch;
+      EXPECT_EQ(batch.command, Command{number});
+      EXPECT_THAT(batch.setpoints, IsEmpty());
+      EXPECT_FALSE(batch.claims);
     }
   }
 }
 
 TEST_F(Malformed, AStopThatFailedIsToldAsThatAndNotAsTheNonsense) {
-  plain.port.at_once = GroupResult{{Errc::offline, 0}};
+  plain.port.at_once = BatchResult{{Errc::offline, 0}};
   CommandRecord nan = sample(3, kHasTargetVelocity);
   nan.target_velocity = kNaN;
   EXPECT_EQ(plain.ask(nan), 6);
@@ -160,11 +161,11 @@ TEST_F(Malformed, RecordsThatOnlyTheGatewaySendsAreNothing) {
   for (const Record& record :
        std::initializer_list<Record>{StateRecord{}, EventRecord{}, GatewayRecord{}, ReplyRecord{}, ObjectReplyRecord{},
                                      ReadyRecord{}, LogRecord{}})
-    plain.face->on_record(record, plain.now);
+    plain.session->on_record(record, plain.now);
   EXPECT_THAT(plain.read(), IsEmpty());
 }
 
-TEST_F(Malformed, AnyBytesAtAllHaveOneReplyAndOnlySoundGroupsReachTheAxis) {
+TEST_F(Malformed, AnyBytesAtAllHaveOneReplyAndOnlySoundBatchesReachTheAxis) {
   std::mt19937_64 random(6);
   static_cast<void>(plain.read());
   for (int i = 0; i < 20'000; ++i) {
@@ -186,8 +187,8 @@ TEST_F(Malformed, AnyBytesAtAllHaveOneReplyAndOnlySoundGroupsReachTheAxis) {
     EXPECT_NE(plain.ask(record), 0);
     for (const auto& each : plain.port.submitted) {
       EXPECT_EQ(each.axis, 1);
-      EXPECT_TRUE(each.group.life);
-      for (const Setpoint& setpoint : each.group.setpoints)
+      EXPECT_TRUE(each.batch.life);
+      for (const Setpoint& setpoint : each.batch.setpoints)
         EXPECT_TRUE(range_of(row(setpoint.quantity).type).holds(setpoint.value));
     }
   }
@@ -204,14 +205,14 @@ TEST(Roles, OfDdsWritersAreTheSettings) {
        {RoleCase{Role::engineer, false, kRole, kRole, kRole, kRole},
         RoleCase{Role::viewer, true, kRole, kRole, 2, kRole}, RoleCase{Role::operator_, true, 2, kRole, 2, kRole},
         RoleCase{Role::engineer, true, 2, 2, 2, 2}}) {
-    DdsSettings settings = PlainFace::settings();
+    DdsSettings settings = PlainSession::settings();
     settings.role = each.role;
     settings.commands = each.commands;
-    PlainFace plain(1, settings);
-    plain.port.at_once = GroupResult{};
+    PlainSession plain(1, settings);
+    plain.port.at_once = BatchResult{};
     EXPECT_EQ(plain.ask(command(guid(1), 1, 1)), each.enable);
     EXPECT_EQ(plain.ask(command(guid(1), 12, 2)), each.save);
-    ObjectRequestRecord object{guid(1, 2), 1, 3, false, 0x1000, 0, 4, 0, {}};
+    ObjectRequestRecord object{guid(1, 2), 0, {}, 1, 3, false, 0x1000, 0, 4, 0, {}};
     EXPECT_EQ(plain.ask<ObjectReplyRecord>(object), each.object_read);
     object.write = true;
     object.request_id = 4;
@@ -225,11 +226,11 @@ TEST(Roles, OfDdsWritersAreTheSettings) {
 // ----------------------------------------------------------------
 
 struct Asked : Malformed {
-  const Group& asked(const CommandRecord& record) {
+  const WriteBatch& asked(const CommandRecord& record) {
     plain.port.submitted.clear();
     EXPECT_EQ(plain.ask(record), 2);
     EXPECT_THAT(plain.port.submitted, SizeIs(1));
-    return plain.port.submitted.back().group;
+    return plain.port.submitted.back().batch;
   }
 };
 
@@ -246,31 +247,31 @@ TEST_F(Asked, EveryMemberIsItsQuantityInRegisterUnits) {
   record.profile_deceleration = 2 * kTurn;
   record.homing_method = 35;
   record.set_position_value = -kTurn;
-  const Group group = asked(record);
+  const WriteBatch batch = asked(record);
   std::vector<std::pair<Quantity, std::int64_t>> setpoints;
-  for (const Setpoint& each : group.setpoints) setpoints.emplace_back(each.quantity, each.value);
+  for (const Setpoint& each : batch.setpoints) setpoints.emplace_back(each.quantity, each.value);
   EXPECT_THAT(setpoints,
               ElementsAre(std::pair(Quantity::target_position, 10'000), std::pair(Quantity::target_velocity, -60'000),
                           std::pair(Quantity::target_torque, -100), std::pair(Quantity::max_torque, 2000),
                           std::pair(Quantity::profile_velocity, 60'000), std::pair(Quantity::profile_acceleration, 600),
                           std::pair(Quantity::profile_deceleration, 1200), std::pair(Quantity::homing_method, 35)));
-  EXPECT_EQ(group.mode, -3);
-  EXPECT_EQ(group.set_position_value, -10'000);
-  EXPECT_EQ(group.command, Command::move_absolute);
+  EXPECT_EQ(batch.mode, -3);
+  EXPECT_EQ(batch.set_position_value, -10'000);
+  EXPECT_EQ(batch.command, Command::move_absolute);
 }
 
-TEST_F(Asked, WhoAsksAndUntilWhenIsInEachGroup) {
+TEST_F(Asked, WhoAsksAndUntilWhenIsInEachBatch) {
   CommandRecord record = command(guid(1), 1, 0xABCD'0012'3456);
-  const Group group = asked(record);
-  EXPECT_EQ(group.command_id, 0x3456);
-  EXPECT_GE(group.client, ClientId{1} << 63U);
-  ASSERT_TRUE(group.life);
-  EXPECT_EQ(group.life->id, group.client);
-  EXPECT_EQ(group.role, Role::engineer);
-  EXPECT_EQ(group.start_by, plain.now + std::chrono::milliseconds(500));
-  EXPECT_EQ(group.answer_by, plain.now + std::chrono::milliseconds(900));
-  EXPECT_TRUE(group.beats);
-  EXPECT_TRUE(group.life->strength);
+  const WriteBatch batch = asked(record);
+  EXPECT_EQ(batch.command_id, 0x3456);
+  EXPECT_GE(batch.client, ClientId{1} << 63U);
+  ASSERT_TRUE(batch.life);
+  EXPECT_EQ(batch.life->id, batch.client);
+  EXPECT_EQ(batch.role, Role::engineer);
+  EXPECT_EQ(batch.start_by, plain.now + std::chrono::milliseconds(500));
+  EXPECT_EQ(batch.answer_by, plain.now + std::chrono::milliseconds(900));
+  EXPECT_TRUE(batch.beats);
+  EXPECT_TRUE(batch.life->strength);
 }
 
 TEST_F(Asked, WhatClaimsTheAxisIsWhatClaimsItOnModbus) {

@@ -1,31 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
 // object_request: sizes, values and bytes, and what its reply says.
 #include <gmock/gmock.h>
 
-#include "tests/unit/dds/plain_face.hpp"
+#include "tests/unit/dds/plain_session.hpp"
 
 namespace axisgate::dds {
 namespace {
 
 using test::guid;
-using test::PlainFace;
+using test::PlainSession;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
 struct Objects : testing::Test {
-  PlainFace plain;
+  PlainSession plain;
   std::uint64_t id = 0;
   ObjectRequestRecord request(bool write, std::uint8_t size, std::uint32_t value = 0, std::vector<Byte> data = {}) {
-    return {guid(1), 1, ++id, write, 0x6083, 2, size, value, std::move(data)};
+    return {guid(1), 0, {}, 1, ++id, write, 0x6083, 2, size, value, std::move(data)};
   }
   int ask(const ObjectRequestRecord& record) {
     plain.port.submitted.clear();
     return plain.ask<ObjectReplyRecord>(record);
   }
-  ObjectReplyRecord answered(const ObjectRequestRecord& record, const GroupResult& result) {
+  ObjectReplyRecord answered(const ObjectRequestRecord& record, const BatchResult& result) {
     static_cast<void>(plain.read());
     plain.port.submitted.clear();
-    plain.face->on_record(record, plain.now);
+    plain.session->on_record(record, plain.now);
     plain.port.submitted.at(0).on_result(result);
     const auto replies = plain.read<ObjectReplyRecord>();
     EXPECT_THAT(replies, SizeIs(1));
@@ -34,9 +35,9 @@ struct Objects : testing::Test {
 };
 
 TEST_F(Objects, AReadClaimsNothingAndAWriteClaims) {
-  plain.port.at_once = GroupResult{};
+  plain.port.at_once = BatchResult{};
   EXPECT_EQ(ask(request(false, 4)), 2);
-  const Group read = plain.port.submitted.at(0).group;
+  const WriteBatch read = plain.port.submitted.at(0).batch;
   EXPECT_FALSE(read.claims);
   ASSERT_TRUE(read.object);
   EXPECT_EQ(read.object->index, 0x6083);
@@ -44,14 +45,14 @@ TEST_F(Objects, AReadClaimsNothingAndAWriteClaims) {
   EXPECT_EQ(read.object->size, 4);
   EXPECT_FALSE(read.object->write);
   EXPECT_EQ(ask(request(true, 2, 0xFFFFFFFF)), 2) << "-1";
-  const Group write = plain.port.submitted.at(0).group;
+  const WriteBatch write = plain.port.submitted.at(0).batch;
   EXPECT_TRUE(write.claims);
   EXPECT_TRUE(write.object->write);
   EXPECT_EQ(write.object->data, 0xFFFFU);
 }
 
 TEST_F(Objects, OfNoSizeThatThereIsOrAValueThatDoesNotFitAreRefused) {
-  plain.port.at_once = GroupResult{};
+  plain.port.at_once = BatchResult{};
   for (const std::uint8_t size : std::initializer_list<std::uint8_t>{3, 5, 8, 255})
     EXPECT_EQ(ask(request(false, size)), 17) << int{size};
   EXPECT_EQ(ask(request(true, 1, 0x100)), 17);
@@ -65,10 +66,10 @@ TEST_F(Objects, OfNoSizeThatThereIsOrAValueThatDoesNotFitAreRefused) {
 }
 
 TEST_F(Objects, BytesGoOutAsTheyAre) {
-  plain.port.at_once = GroupResult{};
+  plain.port.at_once = BatchResult{};
   EXPECT_EQ(ask(request(true, 0, 0, {3, 1, 2})), 2);
-  ASSERT_TRUE(plain.port.submitted.at(0).group.object->bytes);
-  EXPECT_THAT(*plain.port.submitted.at(0).group.object->bytes, ElementsAre(3, 1, 2));
+  ASSERT_TRUE(plain.port.submitted.at(0).batch.object->bytes);
+  EXPECT_THAT(*plain.port.submitted.at(0).batch.object->bytes, ElementsAre(3, 1, 2));
 }
 
 TEST_F(Objects, WhatIsReadComesAsAValueAndAsItsBytes) {
@@ -93,7 +94,7 @@ TEST_F(Objects, ARefusalCarriesItsAbortCode) {
 }
 
 TEST_F(Objects, ThatComeAgainAreNotRunAgain) {
-  plain.port.at_once = GroupResult{};
+  plain.port.at_once = BatchResult{};
   const auto write = request(true, 2, 1);
   EXPECT_EQ(ask(write), 2);
   EXPECT_EQ(ask(write), 21);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Objects of real drives by object_request, with limits, ownership and the drive's own refusals.
 #include <gmock/gmock.h>
 
@@ -11,10 +12,10 @@ using namespace std::chrono_literals;
 
 dds::ObjectRequestRecord read(const dds::Guid& writer, std::uint16_t index, std::uint8_t size,
                               AxisNumber axis = kServo) {
-  return {writer, axis, 0, false, index, 0, size, 0, {}};
+  return {writer, 0, {}, axis, 0, false, index, 0, size, 0, {}};
 }
 dds::ObjectRequestRecord write(const dds::Guid& writer, std::uint16_t index, std::uint8_t size, std::uint32_t value) {
-  return {writer, kServo, 0, true, index, 0, size, value, {}};
+  return {writer, 0, {}, kServo, 0, true, index, 0, size, value, {}};
 }
 
 TEST(DdsObjects, AreReadAndWrittenAsTheDriveHoldsThem) {
@@ -80,7 +81,7 @@ TEST(DdsObjects, KeepNoDeadWritersLeaseAlive) {
 TEST(DdsObjects, OfAModbusClientsAxisAreReadAlone) {
   DdsRig rig;
   const auto plc = client(1, "10.0.0.1");
-  Group enable;
+  WriteBatch enable;
   enable.command = Command::enable;
   ASSERT_EQ(rig.modbus(plc, enable), Errc::ok);
   const auto objects = rig.writer(1, 2, 100);

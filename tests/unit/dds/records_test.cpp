@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the two processes say to each other: every kind comes through whole, and nothing that is not whole comes
 // through.
 #include "gateway/upstream/dds_link/records.hpp"
@@ -32,9 +33,10 @@ std::vector<Record> one_of_each() {
   GatewayRecord gateway{2, 499, 17, UINT32_MAX, 0x80, 5, {a_bus("can0"), a_bus("")}};
   ReplyRecord reply{1, UINT64_MAX, a_guid(), 21, 0x08000022};
   ObjectReplyRecord object_reply{2, 1, a_guid(), 2, 3, 4, {1, 2, 3}};
-  BeatRecord beats{{{a_guid(), true}, {Guid{}, false}}};
-  CommandRecord command{a_guid(), 1, 2, 33, -3, 0x7FF, 1, -2, 3, 4, 5, 6, 7, 8, -9, -4};
-  ObjectRequestRecord object{a_guid(), 9, 8, true, 0x6040, 1, 4, 0xFFFFFFFF, {9}};
+  BeatRecord beats{{a_guid(), Guid{}}};
+  CommandRecord command{
+      a_guid(), -5, 123456789012345, {0xCAFEBABE, "cell_7"}, 1, 2, 33, -3, 0x7FF, 1, -2, 3, 4, 5, 6, 7, 8, -9, -4};
+  ObjectRequestRecord object{a_guid(), -1, {7, "cell_8"}, 9, 8, true, 0x6040, 1, 4, 0xFFFFFFFF, {9}};
   return {state,
           event,
           gateway,
@@ -42,10 +44,14 @@ std::vector<Record> one_of_each() {
           object_reply,
           ReadyRecord{"0.6.0"},
           LogRecord{3, "a line"},
-          WriterRecord{a_guid(), -7, true, "192.168.1.7"},
+          WriterRecord{a_guid(), -7, true, "192.168.1.7", LivelinessKind::manual_by_topic},
           beats,
           command,
-          object};
+          object,
+          HeartbeatRecord{a_guid(), Guid{1, 2}, 0xFFFFFFFE, 300, -9},
+          NamesakeRecord{a_guid(), 499, "192.168.1.8", true},
+          JointCommandsRecord{a_guid(), 77, {"lift", "", "feeder"}, {1.5, -2, 0}, {3}, 2},
+          RosActionRecord{a_guid(), -78, 499, 3}};
 }
 
 TEST(Records, EveryKindComesThroughAsItWas) {
@@ -99,7 +105,7 @@ TEST(Records, AnotherVersionAnUnknownKindAndNothingAreRefusedByName) {
   EXPECT_EQ(decode({}).error, DecodeError::too_short);
   EXPECT_EQ(decode(std::vector<Byte>{kLinkVersion}).error, DecodeError::too_short);
   EXPECT_EQ(decode(std::vector<Byte>{kLinkVersion + 1, 0}).error, DecodeError::version);
-  EXPECT_EQ(decode(std::vector<Byte>{kLinkVersion, 11}).error, DecodeError::kind);
+  EXPECT_EQ(decode(std::vector<Byte>{kLinkVersion, std::variant_size_v<Record>}).error, DecodeError::kind);
   EXPECT_EQ(decode(std::vector<Byte>{kLinkVersion, 0}).error, DecodeError::length);
   for (const auto error :
        {DecodeError::none, DecodeError::too_short, DecodeError::version, DecodeError::kind, DecodeError::length})
@@ -130,9 +136,15 @@ TEST(Records, WhatIsLongerThanItsBoundIsCutAndEveryPacketHasOne) {
   object.data.assign(kMaxObjectBytes + 1, 7);
   EXPECT_THAT(encode(object), SizeIs(Le(kMaxPacket)));
   EXPECT_EQ(decode(encode(object)).error, DecodeError::none);
+  JointCommandsRecord joints;
+  joints.names.assign(2000, std::string(300, 'j'));
+  joints.positions.assign(2000, 1);
+  joints.velocities.assign(2000, 1);
+  EXPECT_THAT(encode(joints), SizeIs(Le(kMaxPacket)));
+  EXPECT_EQ(decode(encode(joints)).error, DecodeError::none);
   BeatRecord beats;
-  beats.beats.resize(2 * kMaxBeats);
-  EXPECT_THAT(std::get<BeatRecord>(decode(encode(beats)).record).beats, SizeIs(kMaxBeats));
+  beats.writers.resize(2 * kMaxBeats);
+  EXPECT_THAT(std::get<BeatRecord>(decode(encode(beats)).record).writers, SizeIs(kMaxBeats));
 }
 
 }  // namespace

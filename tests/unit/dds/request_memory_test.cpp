@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which requests are known, for how long, and how many.
 #include "gateway/upstream/dds/request_memory.hpp"
 
 #include <gtest/gtest.h>
 
-#include "gateway/upstream/dds/dds_face.hpp"
+#include "gateway/upstream/dds/dds_session.hpp"
 #include "tests/unit/dds/samples.hpp"
 
 namespace axisgate::dds {

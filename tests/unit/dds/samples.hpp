@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records as axisgate-dds would send them, for tests of the gateway's half.
 // Promises that each writer has a GUID of its own, and those of one participant its prefix. Never decides what is
 // right.
@@ -23,7 +24,7 @@ inline constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
   return {writer, strength, false, "192.168.1.7"};
 }
 [[nodiscard]] inline dds::WriterRecord writer_gone(const dds::Guid& writer) { return {writer, 0, true, {}}; }
-[[nodiscard]] inline dds::BeatRecord beat(const dds::Guid& writer, bool manual = false) { return {{{writer, manual}}}; }
+[[nodiscard]] inline dds::BeatRecord beat(const dds::Guid& writer) { return {{writer}}; }
 
 [[nodiscard]] inline dds::CommandRecord command(const dds::Guid& writer, std::uint8_t number, std::uint64_t id,
                                                 std::uint16_t axis = 1) {

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a subscriber sees when axisgate-dds reads late, slowly, or for the first time.
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <map>
 
-#include "tests/unit/dds/plain_face.hpp"
+#include "tests/unit/dds/plain_session.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::command;
 using test::guid;
-using test::PlainFace;
+using test::PlainSession;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -20,7 +21,7 @@ using testing::SizeIs;
 constexpr double kTurn = 2 * 3.14159265358979323846;
 
 TEST(Reader, FirstHearsOfAllAxesAndOfTheGateway) {
-  PlainFace plain(64);
+  PlainSession plain(64);
   plain.image.buses.resize(2);
   plain.image.buses[1].name = "can0";
   plain.image.buses[1].reconnects = 4;
@@ -37,9 +38,9 @@ TEST(Reader, FirstHearsOfAllAxesAndOfTheGateway) {
 }
 
 TEST(Reader, HearsOfTheGatewayEachSecond) {
-  PlainFace plain;
+  PlainSession plain;
   EXPECT_THAT(plain.read<GatewayRecord>(), SizeIs(1));
-  EXPECT_EQ(plain.face->wake_at(), plain.now + 1s);
+  EXPECT_EQ(plain.session->wake_at(), plain.now + 1s);
   plain.now += 999ms;
   EXPECT_THAT(plain.read<GatewayRecord>(), IsEmpty());
   plain.now += 1ms;
@@ -47,7 +48,7 @@ TEST(Reader, HearsOfTheGatewayEachSecond) {
 }
 
 TEST(Reader, IsWokenByAChangeOnceAndFindsTheNewestState) {
-  PlainFace plain(2);
+  PlainSession plain(2);
   static_cast<void>(plain.read());
   plain.now += 50ms;
   plain.woken = 0;
@@ -63,14 +64,14 @@ TEST(Reader, IsWokenByAChangeOnceAndFindsTheNewestState) {
 }
 
 TEST(Reader, ThatIsSlowMissesStatesButNeverTheNewestOfAnyAxis) {
-  PlainFace plain(64);
+  PlainSession plain(64);
   static_cast<void>(plain.read());
   std::map<int, int> count;
   for (int i = 1; i <= 1000; ++i) {
     plain.now += 10ms;
     for (AxisNumber axis = 1; axis <= 64; ++axis) plain.change(axis, i);
     for (int room = 0; room < 16; ++room) {  // a quarter of what would be due
-      const auto record = plain.face->next(plain.now);
+      const auto record = plain.session->next(plain.now);
       ASSERT_TRUE(record);
       const auto* const state = std::get_if<StateRecord>(&*record);
       if (state == nullptr) continue;
@@ -82,25 +83,25 @@ TEST(Reader, ThatIsSlowMissesStatesButNeverTheNewestOfAnyAxis) {
 }
 
 TEST(Reader, ThatIsAlwaysBehindHearsOfTheGatewayAllTheSame) {
-  PlainFace plain(64);
+  PlainSession plain(64);
   static_cast<void>(plain.read());
   int gateway = 0;
   for (int i = 1; i <= 1000; ++i) {
     plain.now += 10ms;
     for (AxisNumber axis = 1; axis <= 64; ++axis) plain.change(axis, i);
-    const auto record = plain.face->next(plain.now);
+    const auto record = plain.session->next(plain.now);
     gateway += record && std::holds_alternative<GatewayRecord>(*record);
   }
   EXPECT_GE(gateway, 4);
 }
 
 TEST(Reader, GetsRepliesBeforeEventsBeforeStatesBeforeTheGateway) {
-  PlainFace plain;
-  plain.port.at_once = GroupResult{};
+  PlainSession plain;
+  plain.port.at_once = BatchResult{};
   plain.now += 1s;
   plain.ring.add(plain.now, 1, EventKind::fault, 1, "a fault");
-  plain.face->on_record(command(guid(1), 1, 1), plain.now);
-  plain.face->on_link_up(plain.now);
+  plain.session->on_record(command(guid(1), 1, 1), plain.now);
+  plain.session->on_link_up(plain.now);
   const auto all = plain.read();
   ASSERT_THAT(all, SizeIs(4));
   EXPECT_TRUE(std::holds_alternative<ReplyRecord>(all[0]));
@@ -110,33 +111,33 @@ TEST(Reader, GetsRepliesBeforeEventsBeforeStatesBeforeTheGateway) {
 }
 
 TEST(Reader, OfABurstOfEventsGetsTheNewestAndIsToldHowManyWereLost) {
-  PlainFace plain;
+  PlainSession plain;
   static_cast<void>(plain.read());
   plain.woken = 0;
-  for (int i = 0; i < 200; ++i) plain.ring.add(plain.now, 1, EventKind::warning, 0, "again");
+  for (int i = 0; i < 1200; ++i) plain.ring.add(plain.now, 1, EventKind::warning, 0, "again");
   EXPECT_EQ(plain.woken, 1);
   const auto events = plain.read<EventRecord>();
   ASSERT_THAT(events, SizeIs(kMaxEventsWaiting));
-  EXPECT_EQ(events.front().number, 137U);
-  EXPECT_EQ(events.back().number, 200U);
+  EXPECT_EQ(events.front().number, 201U);
+  EXPECT_EQ(events.back().number, 1200U);
   plain.now += 1s;
   const auto gateway = plain.read<GatewayRecord>();
   ASSERT_THAT(gateway, SizeIs(1));
-  EXPECT_EQ(gateway.front().events_lost, 136U);
+  EXPECT_EQ(gateway.front().events_lost, 200U);
 }
 
 TEST(Reader, ThatComesBackGetsAllAxesAndTheNewestEventsAgain) {
-  PlainFace plain(3);
+  PlainSession plain(3);
   plain.ring.add(plain.now, 1, EventKind::boot, 0, "boot");
   static_cast<void>(plain.read());
-  plain.face->on_link_down(plain.now);
+  plain.session->on_link_down(plain.now);
   plain.now += 100ms;
   plain.change(2, 10'000);
   plain.ring.add(plain.now, 2, EventKind::link, 0, "gone");
   plain.woken = 0;
   EXPECT_THAT(plain.read(), IsEmpty());
   plain.now += 2s;
-  plain.face->on_link_up(plain.now);
+  plain.session->on_link_up(plain.now);
   const auto all = plain.read();
   ASSERT_THAT(all, SizeIs(6));
   EXPECT_EQ(std::get<EventRecord>(all[0]).number, 1U);
@@ -148,23 +149,23 @@ TEST(Reader, ThatComesBackGetsAllAxesAndTheNewestEventsAgain) {
 }
 
 TEST(Reader, ThatComesBackWithoutOneOfItsWritersHasLostIt) {
-  PlainFace plain;
-  plain.face->on_record(test::writer_there(guid(1)), plain.now);
+  PlainSession plain;
+  plain.session->on_record(test::writer_there(guid(1)), plain.now);
   static_cast<void>(plain.read());
-  plain.face->on_link_down(plain.now);
+  plain.session->on_link_down(plain.now);
   plain.now += 2s;
-  plain.face->on_link_up(plain.now);
+  plain.session->on_link_up(plain.now);
   plain.now += 8s - 500ms;
   static_cast<void>(plain.read());
   EXPECT_THAT(plain.port.gone, IsEmpty());
-  EXPECT_EQ(plain.face->wake_at(), plain.now + 500ms) << "before anything is to be sent";
+  EXPECT_EQ(plain.session->wake_at(), plain.now + 500ms) << "before anything is to be sent";
   plain.now += 500ms;
   static_cast<void>(plain.read());
   EXPECT_THAT(plain.port.gone, SizeIs(1));
 }
 
 TEST(Reader, OfAnAxisThatCannotBeReachedHearsSoAndKeepsItsLastNumbers) {
-  PlainFace plain;
+  PlainSession plain;
   AxisImage& axis = *plain.image.find(1);
   axis[Quantity::position_actual].value = 10'000;
   axis[Quantity::statusword].value = 0x1237;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a subscriber sees of motors that really move.
 #include <gmock/gmock.h>
 

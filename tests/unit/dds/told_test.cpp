@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What log and events say of DDS writers: which writer of which participant has asked for what, and what was refused.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Registers and SI: the nearest double one way, the nearest register value the other, and nothing that is wrapped.
 #include "gateway/upstream/dds/dds_units.hpp"
 

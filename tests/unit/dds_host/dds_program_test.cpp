@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where axisgate-dds is looked for, and what it is told on its command line.
 #include "gateway/upstream/dds_host/program.hpp"
 
@@ -52,12 +53,13 @@ TEST(CommandLine, NamesEverySetting) {
   settings.qos_file = "/etc/qos file.xml";
   settings.commands = true;
   settings.ros2 = true;
+  settings.min_period = std::chrono::milliseconds(20);
   settings.memory_limit_mib = 64;
   EXPECT_THAT(serve_arguments(settings, 3),
               ElementsAre("serve", "--link-fd=3", "--domain=7", "--interface=eth0", "--interface=192.168.1.2",
                           "--shared-memory", "--peer=192.168.1.5", "--peer=192.168.1.6:7410",
                           "--discovery-server=192.168.1.7:11811", "--qos-file=/etc/qos file.xml", "--commands",
-                          "--ros2", "--memory-limit-mib=64"));
+                          "--ros2", "--min-period-ms=20", "--memory-limit-mib=64"));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the gateway runs axisgate-dds: it is started, its ends are told apart, it comes back, and nothing of it stays.
 #include <fcntl.h>
 #include <sys/resource.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What goes between the gateway and axisgate-dds: the newest state for a slow reader, a reply for every request, and
 // never more than its share of the loop.
 #include <boost/asio/post.hpp>

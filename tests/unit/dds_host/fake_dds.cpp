@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a DDS server of the gateway may meet instead of axisgate-dds. FAKE_DDS names how this one behaves.
 #include <fcntl.h>
 #include <poll.h>
@@ -143,7 +144,8 @@ const std::map<std::string, std::function<int()>> kBehaviours{
     {"reads nothing", [] { return ready(), sleep_for_ever(), 0; }},
     {"reads late", read_late},
     {"sends garbage", [] { return send_garbage(), 0; }},
-    {"sends a longer packet than there is", [] { return ready(), send_packet(std::vector<Byte>(20000)), read_on(); }},
+    {"sends a longer packet than there is",
+     [] { return ready(), send_packet(std::vector<Byte>(kMaxPacket + 1)), read_on(); }},
     {"sends what only the gateway sends", [] { return ready(), send_record(StateRecord{}), read_on(); }},
     {"asks before it is ready", [] { return send_record(CommandRecord{}), read_on(); }},
     {"closes and goes on", [] { return ready(), close(kLink), sleep_for_ever(), 0; }},

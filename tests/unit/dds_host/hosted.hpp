@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A DDS server over a real loop, a real socket pair and the stand-in program, with everything it tells kept.
 #pragma once
 
@@ -66,9 +67,9 @@ class SkippingRuntime final : public Runtime {
 /// Accepts everything at once.
 class Axes final : public CommandPort {
  public:
-  std::optional<GroupResult> submit(AxisNumber, const Group&, GroupCallback) override {
+  std::optional<BatchResult> submit(AxisNumber, const WriteBatch&, BatchCallback) override {
     ++submitted;
-    return GroupResult{};
+    return BatchResult{};
   }
   void client_gone(ClientId) override {}
   [[nodiscard]] bool holds(AxisNumber, Quantity, std::int64_t) const override { return false; }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When axisgate-dds is started again, and what is told of its ends.
 #include "gateway/upstream/dds_host/restart_plan.hpp"
 

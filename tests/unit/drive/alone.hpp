@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What tests of one part of the drive layer alone share: an instant to begin at, and reads.
 // Never decides what is right: the tests do.
 #pragma once

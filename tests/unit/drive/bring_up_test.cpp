@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bring-up (design 7.7): state first, a running drive is adopted, and nothing is ever enabled by itself.
 #include <gmock/gmock.h>
 
-#include "gateway/drive/bring_up.hpp"
+#include "gateway/drive/device/bring_up.hpp"
 #include "tests/unit/drive/rig.hpp"
 
 namespace axisgate::test {

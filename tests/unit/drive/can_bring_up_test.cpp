@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How CANopen drives come up, are lost and come back: what a client sees, and what reaches the wire.
 #include <gmock/gmock.h>
 
@@ -169,7 +170,7 @@ TEST(CanIdentity, AnotherDriveThanTheConfiguredOneIsReadOnly) {
   EXPECT_EQ(rig.stage.command(1, Command::enable).outcome.code, Errc::identity_mismatch);
   EXPECT_EQ(rig.stage.write(1, Quantity::target_position, 5).outcome.code, Errc::identity_mismatch);
   EXPECT_TRUE(rig.axis()[Quantity::position_actual].valid) << "it is read all the same";
-  Group read;
+  WriteBatch read;
   read.role = Role::engineer;
   read.object = ObjectRequest{.index = 0x1018, .subindex = 1, .size = 4};
   EXPECT_EQ(rig.stage.ask(1, read).object_data, 0x4321U);
@@ -199,14 +200,14 @@ TEST(CanEmergency, AFaultIsShownAndToldWithItsCode) {
   EXPECT_TRUE(rig.told("EMCY 0x3150"));
 }
 
-TEST(CanTwin, IsToldAndForgottenAMinuteAfterItIsGone) {
+TEST(CanDuplicateNode, IsToldAndForgottenAMinuteAfterItIsGone) {
   CanRig rig({CanType::leadshine});
   rig.online();
-  const std::size_t twin = rig.line().add_twin(0);
+  const std::size_t duplicate = rig.line().add_duplicate(0);
   const auto alarmed = [&] { return (rig.axis().alarms & bit(AxisAlarm::duplicate_node)) != 0; };
   ASSERT_TRUE(rig.stage.run_until(alarmed, 30s));
   EXPECT_TRUE(rig.told("two devices answer as node 1"));
-  rig.line().connect(twin, false);
+  rig.line().connect(duplicate, false);
   EXPECT_TRUE(rig.stage.run_until([&] { return !alarmed(); }, 90s));
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CiA 402 on CANopen drives: modes, starts, stops, homing, faults, as a client sees them and as the motor does them.
 #include <gmock/gmock.h>
 
@@ -139,7 +140,7 @@ TEST_P(CanMotion, ARefusedReadOfTheVelocityBringsNoOldVelocityBackWithAnEnable) 
     refused = true;
     link.fate = CanLinkSim::Fate::refused;
   };
-  Group read;
+  WriteBatch read;
   read.object = ObjectRequest{.index = 0x60FF, .size = 4};
   read.role = Role::engineer;
   ASSERT_NE(rig.stage.ask(1, read).outcome.code, Errc::ok);
@@ -160,7 +161,7 @@ TEST_P(CanMotion, IsEnabledWithoutATargetVelocityOnlyWhereTheDriveSaysThatItHasN
       rig.line().faults(0).abort_code = answer;
       rig.line().faults(0).next(DriveFault::exception);
     };
-    Group read;
+    WriteBatch read;
     read.object = ObjectRequest{.index = 0x60FF, .size = 4};
     read.role = Role::engineer;
     ASSERT_EQ(rig.stage.ask(1, read).outcome.code, Errc::refused_by_drive);

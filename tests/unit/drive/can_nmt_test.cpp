@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nodes that are not operational though they were told to be: a start that was lost, a foreign master's commands. What
 // a client sees, and what reaches the node whose motor may be enabled. On every drive that speaks CANopen.
 #include <gmock/gmock.h>

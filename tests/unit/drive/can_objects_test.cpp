@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Objects of CANopen drives by FC 43/13 and mailbox: long ones, refused ones, and what a stop does to one under way.
 #include <gmock/gmock.h>
 
@@ -11,23 +12,23 @@ using testing::ElementsAre;
 
 constexpr simulated::ObjectKey kText{0x2F00, 0};
 
-std::string text_of(const GroupResult& result) {
+std::string text_of(const BatchResult& result) {
   return result.object_bytes ? std::string(result.object_bytes->begin(), result.object_bytes->end()) : std::string();
 }
 
-Group reading(std::uint16_t index, std::uint8_t sub = 0, std::uint8_t size = 0) {
-  Group group;
-  group.client = 7;
-  group.role = Role::engineer;
-  group.object = ObjectRequest{.index = index, .subindex = sub, .size = size};
-  return group;
+WriteBatch reading(std::uint16_t index, std::uint8_t sub = 0, std::uint8_t size = 0) {
+  WriteBatch batch;
+  batch.client = 7;
+  batch.role = Role::engineer;
+  batch.object = ObjectRequest{.index = index, .subindex = sub, .size = size};
+  return batch;
 }
 
-Group writing(std::uint16_t index, const std::string& text) {
-  Group group = reading(index);
-  group.object->write = true;
-  group.object->bytes = std::make_shared<const std::vector<Byte>>(text.begin(), text.end());
-  return group;
+WriteBatch writing(std::uint16_t index, const std::string& text) {
+  WriteBatch batch = reading(index);
+  batch.object->write = true;
+  batch.object->bytes = std::make_shared<const std::vector<Byte>>(text.begin(), text.end());
+  return batch;
 }
 
 /// A drive with a long text in it.
@@ -50,17 +51,17 @@ struct CanObjects : testing::Test {
 };
 
 TEST_F(CanObjects, ANameLongerThanFourBytesIsReadWhole) {
-  const GroupResult result = rig.stage.ask(1, reading(0x1008));
+  const BatchResult result = rig.stage.ask(1, reading(0x1008));
   EXPECT_EQ(result.outcome.code, Errc::ok);
   EXPECT_EQ(text_of(result), "LD2-CAN7010");
   EXPECT_EQ(result.object_size, 0);
 }
 
 TEST_F(CanObjects, AShortOneIsANumberWhateverItsSize) {
-  const GroupResult mode = rig.stage.ask(1, reading(0x6061));
+  const BatchResult mode = rig.stage.ask(1, reading(0x6061));
   EXPECT_EQ(mode.outcome.code, Errc::ok);
   EXPECT_EQ(mode.object_size, 1);
-  const GroupResult vendor = rig.stage.ask(1, reading(0x1018, 1));
+  const BatchResult vendor = rig.stage.ask(1, reading(0x1018, 1));
   EXPECT_EQ(vendor.object_size, 4);
   EXPECT_EQ(vendor.object_data, 0x4321U);
 }
@@ -72,20 +73,20 @@ TEST_F(CanObjects, ALongTextIsWrittenAndReadBack) {
 }
 
 TEST_F(CanObjects, TheMailboxCannotCarryALongOneAndSaysSo) {
-  const GroupResult result = rig.stage.ask(1, reading(kText.index, 0, 4));
+  const BatchResult result = rig.stage.ask(1, reading(kText.index, 0, 4));
   EXPECT_NE(result.outcome.code, Errc::ok);
   EXPECT_EQ(text_of(rig.stage.ask(1, reading(kText.index))), long_text) << "and the next request is served";
 }
 
 TEST_F(CanObjects, WhatTheDriveDoesNotHaveIsToldWithItsAbortCode) {
-  const GroupResult result = rig.stage.ask(1, reading(0x5FFF));
+  const BatchResult result = rig.stage.ask(1, reading(0x5FFF));
   EXPECT_EQ(result.outcome.code, Errc::refused_by_drive);
   EXPECT_EQ(result.abort_code, 0x06020000U);
 }
 
 TEST_F(CanObjects, TooLongAnObjectIsRefusedAndTheDriveIsTold) {
   rig.node().facts().texts[kText] = std::string(kMaxObjectBytes + 1, 'y');
-  const GroupResult result = rig.stage.ask(1, reading(kText.index));
+  const BatchResult result = rig.stage.ask(1, reading(kText.index));
   EXPECT_NE(result.outcome.code, Errc::ok);
   EXPECT_EQ(text_of(rig.stage.ask(1, reading(0x1008))), "LD2-CAN7010");
 }
@@ -111,7 +112,7 @@ TEST_F(CanObjects, AStopEndsALongReadUnderWayAndIsNotDelayedByIt) {
 
 TEST_F(CanObjects, ASecondReaderWaitsForTheFirst) {
   const auto first = rig.stage.begin(1, reading(kText.index));
-  Group other = reading(kText.index);
+  WriteBatch other = reading(kText.index);
   other.client = 8;
   const auto second = rig.stage.begin(1, other);
   ASSERT_TRUE(rig.settles([&] { return *first && *second; }));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simulated drives on one CAN bus behind the shipped core, with the words in which these tests speak.
 // Promises a fresh world per rig. Never decides what is right: the tests do.
 #pragma once

@@ -1,4 +1,5 @@
-// Every conversation with a CANopen drive, with each of its SDO exchanges failing in every way one can fail.
+// SPDX-License-Identifier: Apache-2.0
+// Every command sequence with a CANopen drive, with each of its SDO exchanges failing in every way one can fail.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -19,14 +20,14 @@ struct Talk {
   std::string name;
   bool running = false;  ///< it turns when this is asked
   bool enabled = true;
-  Group group;
+  WriteBatch batch;
   bool may_turn = false;
   bool is_stop = false;
 };
 
 std::vector<Talk> talks() {
   const Setpoint near{Quantity::target_position, 30'000}, slow{Quantity::profile_velocity, 200'000};
-  Group text;
+  WriteBatch text;
   text.object = ObjectRequest{.index = 0x1008};
   return {
       {"enable", false, false, with_command(Command::enable)},
@@ -59,9 +60,9 @@ void bring_to(CanRig& rig, const Talk& talk) {
 std::size_t exchanges_of(CanType type, const Talk& talk) {
   CanRig rig({type});
   bring_to(rig, talk);
-  Group group = talk.group;
-  group.role = Role::engineer;
-  EXPECT_EQ(rig.stage.ask(1, group).outcome.code, Errc::ok) << talk.name;
+  WriteBatch batch = talk.batch;
+  batch.role = Role::engineer;
+  EXPECT_EQ(rig.stage.ask(1, batch).outcome.code, Errc::ok) << talk.name;
   return rig.requests().size();
 }
 
@@ -82,7 +83,7 @@ void expect_no_write_twice(CanRig& rig, const Talk& talk) {
   for (const auto& [what, times] : seen) {
     const auto& [index, sub, data] = what;
     const bool zero = data == 0 && (index == 0x60FF || index == 0x60F6 || index == 0x6071);
-    // A mode change makes what was written before it doubtful: the homing method is written once more.
+    // A mode change invalidates what was written before it: the homing method is written once more.
     const int most = talk.is_stop ? 3 : index == 0x6040 || index == 0x6060 || index == 0x6098 || zero ? 2 : 1;
     EXPECT_LE(times, most) << std::hex << index << " := " << data;
   }
@@ -117,12 +118,12 @@ TEST_P(EachSdoFails, EndsOnceAsTheContractSaysAndRecovers) {
       bring_to(rig, talk);
       fail_at(rig, step, failure);
       int results = 0;
-      std::optional<GroupResult> result;
-      Group group = talk.group;
-      group.role = Role::engineer;
-      group.start_by = rig.stage.runtime().now() + 500ms;
-      group.answer_by = rig.stage.runtime().now() + 900ms;
-      result = rig.stage.gateway().submit(1, group, [&](const GroupResult& r) { ++results, result = r; });
+      std::optional<BatchResult> result;
+      WriteBatch batch = talk.batch;
+      batch.role = Role::engineer;
+      batch.start_by = rig.stage.runtime().now() + 500ms;
+      batch.answer_by = rig.stage.runtime().now() + 900ms;
+      result = rig.stage.gateway().submit(1, batch, [&](const BatchResult& r) { ++results, result = r; });
       if (result) ++results;
       rig.stage.run_until([&] { return results > 0; }, 8s);
       ASSERT_TRUE(result) << "no result";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What names a fault, and when it is read: the words that count, and their place before commands.
 #include <gtest/gtest.h>
 
@@ -5,8 +6,8 @@
 #include <array>
 #include <memory>
 
-#include "gateway/drive/axis_core.hpp"
-#include "gateway/drive/publisher.hpp"
+#include "gateway/drive/axis/publisher.hpp"
+#include "gateway/drive/state/axis_core.hpp"
 #include "tests/unit/drive/rig.hpp"
 
 namespace axisgate::test {
@@ -97,16 +98,16 @@ class Busy {
     constexpr std::array<std::uint16_t, 3> kObjects{0x6081, 0x6083, 0x6084};
     for (std::size_t i = 0; i < kRows.size(); ++i) {
       ask(results_.at(i), setpoints({{kRows.at(i), 100'000 + 1000 * ++count_}}));
-      Group read;
+      WriteBatch read;
       read.object = ObjectRequest{.index = kObjects.at(i), .size = 4};
       ask(reads_.at(i), read);
     }
   }
 
  private:
-  using Result = std::shared_ptr<std::optional<GroupResult>>;
-  void ask(Result& result, const Group& group) {
-    if (!result || *result) result = stage_.begin(axis_, group);
+  using Result = std::shared_ptr<std::optional<BatchResult>>;
+  void ask(Result& result, const WriteBatch& batch) {
+    if (!result || *result) result = stage_.begin(axis_, batch);
   }
   GatewayStage& stage_;
   AxisNumber axis_;

@@ -1,4 +1,5 @@
-// Clients as a face would know them, for tests of ownership.
+// SPDX-License-Identifier: Apache-2.0
+// Clients as a server would know them, for tests of ownership.
 // Promises that two of one name come from one address. Never speaks to anything.
 #pragma once
 

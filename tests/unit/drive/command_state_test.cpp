@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Design 3.3 and 3.4 as one table: each command in each situation, on both drives.
 #include <gmock/gmock.h>
 
@@ -61,12 +62,12 @@ TEST_P(CommandInSituation, EndsAsTheContractSays) {
   Rig rig(type);
   rig.bring_to(row.situation);
   const bool was_enabled = rig.motor_enabled();
-  Group group = with_command(command);
+  WriteBatch batch = with_command(command);
   if (command == Command::move_absolute || command == Command::move_relative)
-    group.setpoints.push_back({Quantity::target_position, 5'000});
-  if (command == Command::run_velocity) group.setpoints.push_back({Quantity::target_velocity, 100'000});
-  if (command == Command::home) group.setpoints.push_back({Quantity::homing_method, 19});
-  const GroupResult result = rig.ask(group);
+    batch.setpoints.push_back({Quantity::target_position, 5'000});
+  if (command == Command::run_velocity) batch.setpoints.push_back({Quantity::target_velocity, 100'000});
+  if (command == Command::home) batch.setpoints.push_back({Quantity::homing_method, 19});
+  const BatchResult result = rig.ask(batch);
   const Errc code = expected(row, command);
   EXPECT_EQ(result.outcome.code, code) << text(result.outcome.code);
 

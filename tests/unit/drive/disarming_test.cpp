@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 // A drive's watch over the gateway at the end on purpose: each step with each outcome, against three entries and two
 // motors.
-#include "gateway/drive/disarming.hpp"
+#include "gateway/drive/device/disarming.hpp"
 
 #include <gtest/gtest.h>
 
@@ -158,7 +159,7 @@ TEST(Disarming, IsTrueWhateverBefallsTwoExchanges) {
               case Disarming::Outcome::unknown:
                 EXPECT_TRUE(played.armed() || a_write_refused);
                 break;
-              case Disarming::Outcome::doubtful:
+              case Disarming::Outcome::uncertain:
               case Disarming::Outcome::nothing_to_do:
               case Disarming::Outcome::disabled:
                 FAIL() << "two failures are no three, and it was not only to look";
@@ -175,7 +176,7 @@ TEST(Disarming, SaysSoWhenWhatItClearedCannotBePutBack) {
   Played played;
   for (int step = 3; step < 20; ++step) played.befalls[step] = Befalls::lost_request;
   played.play();
-  EXPECT_EQ(played.outcome, Disarming::Outcome::doubtful);
+  EXPECT_EQ(played.outcome, Disarming::Outcome::uncertain);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Design 3.3 and 3.4 as a table for every drive and protocol that command_state_test.cpp has not: each command in each
 // situation, what it comes to, and what the motor does of it. What a drive cannot do is refused, whatever its state.
 #include <gmock/gmock.h>
@@ -124,16 +125,16 @@ std::vector<Case> cases() {
 }
 
 /// With the numbers it works on. What a drive does not have is asked for alone.
-Group request(Subject subject, Command command, End end) {
-  Group group = with_command(command);
-  if (end == none) return group;
+WriteBatch request(Subject subject, Command command, End end) {
+  WriteBatch batch = with_command(command);
+  if (end == none) return batch;
   const bool moves = command == Command::move_absolute || command == Command::move_relative;
-  if (moves) group.setpoints.push_back({Quantity::target_position, 5'000});
-  if (command == Command::run_velocity) group.setpoints.push_back({Quantity::target_velocity, 100'000});
-  if (command == Command::run_torque) group.setpoints.push_back({Quantity::max_velocity, 1'000'000});
-  if (command == Command::home) group.setpoints.push_back({Quantity::homing_method, 19});
-  if (moves && !is_keya(subject)) group.setpoints.push_back({Quantity::profile_velocity, 600'000});
-  return group;
+  if (moves) batch.setpoints.push_back({Quantity::target_position, 5'000});
+  if (command == Command::run_velocity) batch.setpoints.push_back({Quantity::target_velocity, 100'000});
+  if (command == Command::run_torque) batch.setpoints.push_back({Quantity::max_velocity, 1'000'000});
+  if (command == Command::home) batch.setpoints.push_back({Quantity::homing_method, 19});
+  if (moves && !is_keya(subject)) batch.setpoints.push_back({Quantity::profile_velocity, 600'000});
+  return batch;
 }
 
 /// One command to one drive in a world of its own.
@@ -158,7 +159,7 @@ class Trial {
   bool completes() {
     return rig.stage.run_until([&] { return rig.axis().motion_state == MotionState::completed; }, 30s);
   }
-  void code_is(const GroupResult& result, End end);
+  void code_is(const BatchResult& result, End end);
   void nothing_changed();
   void enabled_or_stopped();
   void was_reset();
@@ -175,7 +176,7 @@ class Trial {
   std::uint64_t stores = 0;
 };
 
-void Trial::code_is(const GroupResult& result, End end) {
+void Trial::code_is(const BatchResult& result, End end) {
   const Errc code = result.outcome.code;
   switch (end) {
     case End::yes:
@@ -309,7 +310,7 @@ void Trial::did_what_it_says() {
 void Trial::run() {
   const End end = expected(subject, situation, command);
   EXPECT_EQ(was_turning, situation == moving || situation == running);
-  const GroupResult result = rig.ask(request(subject, command, end));
+  const BatchResult result = rig.ask(request(subject, command, end));
   code_is(result, end);
   if (result.outcome.code == Errc::ok) {
     did_what_it_says();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Design 3.5 as a table: what each motor on each protocol does when whoever commands it dies, and that a drive which
 // wants a command each second gets it as long as its owner lives, and no longer.
 #include <gmock/gmock.h>
@@ -19,13 +20,13 @@ struct OwnedDrive {
     rig.online();
   }
 
-  Errc ask(Group group) {
+  Errc ask(WriteBatch batch) {
     owner->last_request = rig.stage.runtime().now();
-    group.client = owner->id;
-    group.role = owner->role;
-    group.life = owner;
-    group.claims = true;
-    return rig.ask(group).outcome.code;
+    batch.client = owner->id;
+    batch.role = owner->role;
+    batch.life = owner;
+    batch.claims = true;
+    return rig.ask(batch).outcome.code;
   }
   Errc command(Command command) { return ask(with_command(command)); }
   /// The owner goes on asking for so long.

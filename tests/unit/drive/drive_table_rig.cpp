@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/drive/drive_table_rig.hpp"
 
 #include <algorithm>
@@ -117,21 +118,21 @@ TableRig::TableRig(Subject subject, std::optional<LeaseRules> lease)
 
 void TableRig::online() { expect(stage.come_online(), "the axis never came online"); }
 
-Group TableRig::far_move() const {
+WriteBatch TableRig::far_move() const {
   // A Keya moves at its rated 1500 rpm; the others are told to be slower.
   if (is_keya(subject_)) return with_command(Command::move_absolute, {{Quantity::target_position, 5'000'000}});
   return with_command(Command::move_absolute,
                       {{Quantity::target_position, 1'000'000}, {Quantity::profile_velocity, 300'000}});
 }
 
-Group TableRig::motion() const {
+WriteBatch TableRig::motion() const {
   if (positions_alone(subject_)) return far_move();
   return with_command(Command::run_velocity, {{Quantity::target_velocity, 300'000}});
 }
 
 void TableRig::bring_to(Situation situation) {
   online();
-  const auto done = [&](const GroupResult& r) {
+  const auto done = [&](const BatchResult& r) {
     expect(r.outcome.code == Errc::ok, "the way to the situation failed");
   };
   const bool starts_enabled = situation != Situation::disabled;

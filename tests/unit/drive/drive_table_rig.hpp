@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One simulated drive of any kind, on any protocol, behind the shipped core, for tables that ask the same of all.
 // Promises a fresh world per rig, and that what the motor does is asked of the simulated drive, never of the gateway.
 // Never decides what is right: the tables do.
@@ -66,8 +67,8 @@ class TableRig {
 
   [[nodiscard]] Subject subject() const { return subject_; }
   [[nodiscard]] const AxisImage& axis() { return stage.axis(1); }
-  GroupResult ask(const Group& group) { return stage.ask(1, group); }
-  GroupResult command(Command command) { return stage.command(1, command); }
+  BatchResult ask(const WriteBatch& batch) { return stage.ask(1, batch); }
+  BatchResult command(Command command) { return stage.command(1, command); }
 
   /// There, and long enough for each poll and keep-alive to have been seen once.
   void bring_to(Situation situation);
@@ -82,9 +83,9 @@ class TableRig {
   void unplug();
   void mend();
   /// What makes it turn for many seconds: a velocity, or a far target where that is all it can.
-  [[nodiscard]] Group motion() const;
+  [[nodiscard]] WriteBatch motion() const;
   /// The same by a far target.
-  [[nodiscard]] Group far_move() const;
+  [[nodiscard]] WriteBatch far_move() const;
 
   // The truth, of the simulated drive.
   [[nodiscard]] bool turns();  ///< within 100 ms

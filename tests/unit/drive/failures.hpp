@@ -1,4 +1,5 @@
-// How one exchange can fail, and what its conversation may come to then.
+// SPDX-License-Identifier: Apache-2.0
+// How one exchange can fail, and what its command sequence may come to then.
 // Promises that only the exchange that is on the wire now is hit.
 #pragma once
 

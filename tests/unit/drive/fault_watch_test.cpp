@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // When a fault is shown, and what is read before: the table of FaultWatch, without a drive.
-#include "gateway/drive/fault_watch.hpp"
+#include "gateway/drive/state/fault_watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/drive/gap_rig.hpp"
 
 #include <gtest/gtest.h>
@@ -42,13 +43,13 @@ void GapRig::run(Duration time, bool lives) {
   }
 }
 
-Errc GapRig::ask(Group group) {
+Errc GapRig::ask(WriteBatch batch) {
   owner->last_request = rig.stage.runtime().now();
-  group.client = owner->id;
-  group.role = owner->role;
-  group.life = owner;
-  group.claims = group.command != Command::jog_end;
-  return rig.ask(group).outcome.code;
+  batch.client = owner->id;
+  batch.role = owner->role;
+  batch.life = owner;
+  batch.claims = batch.command != Command::jog_end;
+  return rig.ask(batch).outcome.code;
 }
 
 void GapRig::set_moving() {
@@ -99,9 +100,9 @@ void GapRig::expect_usable() {
   EXPECT_FALSE(latched());
   EXPECT_TRUE(stays_at_rest(1s)) << "an enable is an enable and nothing else";
   // Not where it was sent before: it may have arrived there.
-  const Group anew = positions_alone(rig.subject())
-                         ? with_command(Command::move_absolute, {{Quantity::target_position, -5'000'000}})
-                         : rig.motion();
+  const WriteBatch anew = positions_alone(rig.subject())
+                              ? with_command(Command::move_absolute, {{Quantity::target_position, -5'000'000}})
+                              : rig.motion();
   EXPECT_EQ(ask(anew), Errc::ok);
   run(500ms);
   EXPECT_TRUE(rig.turns());

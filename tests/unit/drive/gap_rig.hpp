@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A drive of any kind whose wire is cut and mended while its motor runs: for tables of what is owed afterwards.
 // Promises that a cut is either silent (frames are lost, nobody is told) or reported (the adapter is pulled). Never
 // decides what is right: the tables do.
@@ -34,7 +35,7 @@ class GapRig {
 
   /// Its owner gives signs of life each 50 ms, if `lives`.
   void run(Duration time, bool lives = true);
-  [[nodiscard]] Errc ask(Group group);
+  [[nodiscard]] Errc ask(WriteBatch batch);
   [[nodiscard]] Errc command(Command command) { return ask(with_command(command)); }
   /// Enabled, and its motor turns.
   void set_moving();

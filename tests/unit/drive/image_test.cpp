@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an axis shows (design 3.1 and 3.2): one step of the sequence per reply that changes something, and nothing
 // untrue.
 #include <gmock/gmock.h>

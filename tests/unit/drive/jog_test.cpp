@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Design 3.4 "Jog" on an axis that really moves: while its button is held, and not a moment longer.
 #include <gmock/gmock.h>
 
@@ -11,13 +12,13 @@ using namespace std::chrono_literals;
 struct JoggedAxis : LeasedAxis {
   explicit JoggedAxis(const RigOptions& options = leased()) : LeasedAxis(options) {
     EXPECT_EQ(command(plc, Command::enable), Errc::ok);
-    Group speed;
+    WriteBatch speed;
     speed.jog_velocity = 60'000;
     EXPECT_EQ(ask(plc, speed), Errc::ok);
   }
   void hold(Command direction, Duration time) {
     for (Duration done{}; done < time; done += 100ms) {
-      Group again;
+      WriteBatch again;
       again.jog_again = direction;
       // not_new: the jog has ended meanwhile, and the button is held in vain.
       EXPECT_THAT(ask(plc, again), testing::AnyOf(Errc::ok, Errc::not_new));
@@ -63,7 +64,7 @@ TEST(JogOnAnAxis, NeedsAVelocity) {
 
 TEST(JogOnAnAxis, AStopIsCarriedOutWhateverJogVelocityStandsBesideIt) {
   JoggedAxis axis;
-  Group stop = with_command(Command::quick_stop);
+  WriteBatch stop = with_command(Command::quick_stop);
   stop.jog_velocity = 4'000'000'000;
   EXPECT_EQ(axis.ask(axis.plc, stop), Errc::bad_value);
   EXPECT_TRUE(axis.latched());
@@ -87,8 +88,9 @@ TEST(JogOnAnAxis, EndsAtThePositionLimitOfAHomedAxis) {
     if (!of_the_drive) options.axis.position_limits = Range{-30'000, 30'000};
     options.axis.homing_method = 35;
     JoggedAxis axis(options);
-    const Group limits = setpoints({{Quantity::position_limit_min, -30'000}, {Quantity::position_limit_max, 30'000}});
-    EXPECT_EQ(axis.ask(axis.plc, of_the_drive ? limits : Group{}), Errc::ok);
+    const WriteBatch limits =
+        setpoints({{Quantity::position_limit_min, -30'000}, {Quantity::position_limit_max, 30'000}});
+    EXPECT_EQ(axis.ask(axis.plc, of_the_drive ? limits : WriteBatch{}), Errc::ok);
     EXPECT_EQ(axis.command(axis.plc, Command::home), Errc::ok);
     ASSERT_TRUE(axis.rig.stage.run_until([&] {
       axis.plc->last_request = axis.rig.stage.runtime().now();
@@ -130,7 +132,7 @@ TEST(JogOnAnAxis, OfARunThatAFaultHasEndedIsOverAndTheHeldButtonIsToldSo) {
   EXPECT_EQ(axis.command(axis.plc, Command::fault_reset), Errc::ok);
   EXPECT_EQ(axis.command(axis.plc, Command::enable), Errc::ok);
   EXPECT_EQ(axis.rig.axis().level_coils >> 8 & 3U, 0U);
-  Group again;
+  WriteBatch again;
   again.jog_again = Command::jog_forward;
   EXPECT_EQ(axis.ask(axis.plc, again), Errc::not_new);
 }

@@ -1,4 +1,5 @@
-// Clients that ask for one thing at the same time share an order on the bus: what each of them is answered, and when.
+// SPDX-License-Identifier: Apache-2.0
+// Clients that ask for one thing at the same time share a bus job on the bus: what each of them is answered, and when.
 // On every drive and protocol.
 #include <gmock/gmock.h>
 
@@ -13,7 +14,7 @@ using namespace std::chrono_literals;
 constexpr Duration kSlowReply = 80ms;
 constexpr ClientId kPanel = 7, kPlc = 8;
 
-using Answer = std::shared_ptr<std::optional<GroupResult>>;
+using Answer = std::shared_ptr<std::optional<BatchResult>>;
 
 class Joined : public testing::TestWithParam<Subject> {
  protected:
@@ -22,26 +23,26 @@ class Joined : public testing::TestWithParam<Subject> {
     const drive::ObjectId id = model.axes.front().binding(quantity)->object;
     return model.object(id);
   }
-  [[nodiscard]] Group reading(ClientId client, std::uint8_t size) {
+  [[nodiscard]] WriteBatch reading(ClientId client, std::uint8_t size) {
     const drive::ObjectDef& object = object_of(Quantity::position_actual);
-    Group group;
-    group.client = client;
-    group.object = ObjectRequest{.index = object.address.index, .subindex = object.address.sub, .size = size};
-    return group;
+    WriteBatch batch;
+    batch.client = client;
+    batch.object = ObjectRequest{.index = object.address.index, .subindex = object.address.sub, .size = size};
+    return batch;
   }
-  [[nodiscard]] static Group stopping(ClientId client) {
-    Group group = with_command(Command::quick_stop);
-    group.client = client;
-    return group;
+  [[nodiscard]] static WriteBatch stopping(ClientId client) {
+    WriteBatch batch = with_command(Command::quick_stop);
+    batch.client = client;
+    return batch;
   }
   [[nodiscard]] Instant in(Duration time) { return rig.stage.runtime().now() + time; }
-  [[nodiscard]] Group read_by(ClientId client, Duration start, Duration answer) {
-    Group group = reading(client, object_of(Quantity::position_actual).size);
-    group.start_by = in(start);
-    group.answer_by = in(answer);
-    return group;
+  [[nodiscard]] WriteBatch read_by(ClientId client, Duration start, Duration answer) {
+    WriteBatch batch = reading(client, object_of(Quantity::position_actual).size);
+    batch.start_by = in(start);
+    batch.answer_by = in(answer);
+    return batch;
   }
-  Answer begin(const Group& group) { return rig.stage.begin(1, group); }
+  Answer begin(const WriteBatch& batch) { return rig.stage.begin(1, batch); }
   [[nodiscard]] bool comes(const Answer& answer) {
     return rig.stage.run_until([&] { return answer->has_value(); });
   }
@@ -79,7 +80,7 @@ class Joined : public testing::TestWithParam<Subject> {
 TEST_P(Joined, ReadsOfTwoWidthsEachGetTheAnswerToTheirOwn) {
   rig.online();
   for (const auto& [mine, other] : {std::pair{4, 2}, std::pair{2, 4}}) {
-    const GroupResult alone = rig.ask(reading(kPanel, static_cast<std::uint8_t>(other)));
+    const BatchResult alone = rig.ask(reading(kPanel, static_cast<std::uint8_t>(other)));
     const Answer first = begin(reading(kPlc, static_cast<std::uint8_t>(mine)));
     const Answer waits = begin(reading(kPlc, static_cast<std::uint8_t>(mine)));
     const Answer joins = begin(reading(kPanel, static_cast<std::uint8_t>(other)));
@@ -96,10 +97,10 @@ TEST_P(Joined, AReadIsStartedByItsOwnClientsDeadlineWhicheverCameFirst) {
   reply_slowly();
   for (const bool hasty_first : {true, false}) {
     wire_is_taken();
-    const Group hasty_group = read_by(kPlc, 20ms, 900ms), patient_group = read_by(kPanel, 600ms, 900ms);
+    const WriteBatch hasty_batch = read_by(kPlc, 20ms, 900ms), patient_batch = read_by(kPanel, 600ms, 900ms);
     const Instant hasty_end = in(20ms);
-    const Answer first = begin(hasty_first ? hasty_group : patient_group);
-    const Answer second = begin(hasty_first ? patient_group : hasty_group);
+    const Answer first = begin(hasty_first ? hasty_batch : patient_batch);
+    const Answer second = begin(hasty_first ? patient_batch : hasty_batch);
     const Answer &hasty = hasty_first ? first : second, &patient = hasty_first ? second : first;
     ASSERT_TRUE(comes(hasty));
     EXPECT_EQ(code(hasty), Errc::never_started) << hasty_first;
@@ -116,10 +117,10 @@ TEST_P(Joined, AReadUnderWayIsAnsweredToEachByItsOwnDeadline) {
   reply_slowly();
   for (const bool hasty_first : {true, false}) {
     wire_is_taken();
-    const Group hasty_group = read_by(kPlc, 600ms, 120ms), patient_group = read_by(kPanel, 600ms, 900ms);
+    const WriteBatch hasty_batch = read_by(kPlc, 600ms, 120ms), patient_batch = read_by(kPanel, 600ms, 900ms);
     const Instant hasty_end = in(120ms);
-    const Answer first = begin(hasty_first ? hasty_group : patient_group);
-    const Answer second = begin(hasty_first ? patient_group : hasty_group);
+    const Answer first = begin(hasty_first ? hasty_batch : patient_batch);
+    const Answer second = begin(hasty_first ? patient_batch : hasty_batch);
     const Answer &hasty = hasty_first ? first : second, &patient = hasty_first ? second : first;
     ASSERT_TRUE(comes(hasty));
     EXPECT_EQ(code(hasty), Errc::timed_out) << hasty_first;
@@ -152,12 +153,12 @@ TEST_P(Joined, AStopIsAnsweredToEachByItsOwnDeadlineAndCarriedOutAllTheSame) {
     reply_after(moving, kSlowReply);
     wire_is_taken(moving);
     const auto until = [&](Duration time) { return moving.stage.runtime().now() + time; };
-    Group hasty_group = stopping(kPlc), patient_group = stopping(kPanel);
-    hasty_group.answer_by = until(20ms);
-    patient_group.answer_by = until(20s);
+    WriteBatch hasty_batch = stopping(kPlc), patient_batch = stopping(kPanel);
+    hasty_batch.answer_by = until(20ms);
+    patient_batch.answer_by = until(20s);
     const Instant hasty_end = until(20ms);
-    const Answer first = moving.stage.begin(1, hasty_first ? hasty_group : patient_group);
-    const Answer second = moving.stage.begin(1, hasty_first ? patient_group : hasty_group);
+    const Answer first = moving.stage.begin(1, hasty_first ? hasty_batch : patient_batch);
+    const Answer second = moving.stage.begin(1, hasty_first ? patient_batch : hasty_batch);
     const Answer &hasty = hasty_first ? first : second, &patient = hasty_first ? second : first;
     ASSERT_TRUE(moving.stage.run_until([&] { return hasty->has_value(); }));
     EXPECT_EQ(code(hasty), Errc::timed_out) << hasty_first << ": whether it is sent is not known yet";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A drive of two motors without CiA 402, whose set-points move by being written: a client cannot tell its axes from
 // servos, and no write moves or enables what was not asked for.
 #include <gmock/gmock.h>
@@ -93,7 +94,7 @@ TEST_P(KeyaCommands, AStartWritesItsSetPointOnce) {
   positions.enable(0);
   positions.mark();
   ASSERT_EQ(
-      KeyaRig::code(positions.ask(0, KeyaRig::group_of(Command::move_absolute, {{Quantity::target_position, 50'000}}))),
+      KeyaRig::code(positions.ask(0, KeyaRig::batch_of(Command::move_absolute, {{Quantity::target_position, 50'000}}))),
       Errc::ok);
   EXPECT_EQ(positions.writes().size(), 1U);
 }
@@ -131,7 +132,7 @@ TEST_P(KeyaCommands, AMoveUnderWayIsNotCalledFailedBeforeItEnds) {
   rig.online();
   rig.enable(0);
   ASSERT_EQ(
-      KeyaRig::code(rig.ask(0, KeyaRig::group_of(Command::move_absolute, {{Quantity::target_position, 1'500'000}}))),
+      KeyaRig::code(rig.ask(0, KeyaRig::batch_of(Command::move_absolute, {{Quantity::target_position, 1'500'000}}))),
       Errc::ok);
   ASSERT_TRUE(rig.run_until([&] {
     EXPECT_NE(rig.axis(0).motion_state, MotionState::failed);
@@ -226,10 +227,10 @@ TEST_P(KeyaCommands, AModeNeedsADisabledAxisAndTheEnableIsThatOfTheMode) {
   KeyaRig rig({.speech = GetParam(), .modes = {3, 1}});
   rig.online();
   rig.enable(0);
-  Group mode = KeyaRig::group_of(Command::none);
+  WriteBatch mode = KeyaRig::batch_of(Command::none);
   mode.mode = 1;
   EXPECT_EQ(KeyaRig::code(rig.ask(0, mode)), Errc::state_unsuitable);
-  EXPECT_EQ(KeyaRig::code(rig.ask(0, KeyaRig::group_of(Command::move_absolute, {{Quantity::target_position, 5}}))),
+  EXPECT_EQ(KeyaRig::code(rig.ask(0, KeyaRig::batch_of(Command::move_absolute, {{Quantity::target_position, 5}}))),
             Errc::state_unsuitable);
   EXPECT_EQ(rig.axis(0)[Quantity::mode].value, 3);
   ASSERT_EQ(KeyaRig::code(rig.command(0, Command::disable)), Errc::ok);
@@ -246,7 +247,7 @@ TEST_P(KeyaCommands, TheOnlyModeMayBeWrittenAndNoOther) {
   KeyaRig rig(in_mode(3));
   rig.online();
   rig.enable(0);
-  Group mode = KeyaRig::group_of(Command::none);
+  WriteBatch mode = KeyaRig::batch_of(Command::none);
   mode.mode = 3;
   EXPECT_EQ(KeyaRig::code(rig.ask(0, mode)), Errc::ok);
   mode.mode = 1;
@@ -265,7 +266,7 @@ TEST_P(KeyaCommands, ASetPointForAMotorThatHasJustTrippedIsNotCalledDone) {
     rig.motor(0).faults = 0x0040;
   };
   rig.mark();
-  const GroupResult result = rig.write(0, Quantity::target_velocity, 2 * kRpm150);
+  const BatchResult result = rig.write(0, Quantity::target_velocity, 2 * kRpm150);
   EXPECT_EQ(KeyaRig::code(result), Errc::state_unsuitable);
   EXPECT_EQ(result.outcome.detail, kDetailDeviceState);
   EXPECT_GE(rig.reads_of(kFaultQuery), 1U) << "the state decides";
@@ -293,12 +294,12 @@ TEST_P(KeyaCommands, AMotorWhoseWatchdogHasExpiredIsDisabledAndAFreshEnableRunsN
 TEST_P(KeyaCommands, TwoClientsMoveBothMotorsAtOnceAndNeitherDisturbsTheOther) {
   KeyaRig rig(in_mode(3));
   rig.online();
-  const auto one = rig.begin(0, KeyaRig::group_of(Command::enable));
-  const auto two = rig.begin(1, KeyaRig::group_of(Command::enable));
+  const auto one = rig.begin(0, KeyaRig::batch_of(Command::enable));
+  const auto two = rig.begin(1, KeyaRig::batch_of(Command::enable));
   ASSERT_TRUE(rig.run_until([&] { return one->has_value() && two->has_value(); }));
   EXPECT_TRUE(rig.motor(0).enabled && rig.motor(1).enabled);
   const auto run = [](std::int64_t velocity) {
-    return KeyaRig::group_of(Command::run_velocity, {{Quantity::target_velocity, velocity}});
+    return KeyaRig::batch_of(Command::run_velocity, {{Quantity::target_velocity, velocity}});
   };
   for (int i = 1; i <= 20; ++i) {
     const auto a = rig.begin(0, run(i * 15 * kRpm));
@@ -339,7 +340,7 @@ TEST_P(KeyaCommands, EnabledByAnotherMasterItNeedsAnEnableBeforeAStartAndAHaltIs
   rig.run(100ms);
   ASSERT_EQ(rig.axis(0)[Quantity::statusword].value & 0x6F, 0x27);
   const auto start = [&] {
-    return KeyaRig::code(rig.ask(0, KeyaRig::group_of(Command::run_velocity, {{Quantity::target_velocity, kRpm150}})));
+    return KeyaRig::code(rig.ask(0, KeyaRig::batch_of(Command::run_velocity, {{Quantity::target_velocity, kRpm150}})));
   };
   EXPECT_EQ(start(), Errc::state_unsuitable);
   EXPECT_EQ(KeyaRig::code(rig.command(0, Command::halt)), Errc::ok);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One frame commands both motors: what it says of the one that is not meant.
 #include <gmock/gmock.h>
 
@@ -40,12 +41,12 @@ TEST(KeyaFrames, AllFieldsOfAFrameCountAsTold) {
   rig.online();
   rig.enable(0);
   for (const std::string field : {"A.on", "A.velocity", "B.on", "B.velocity"})
-    EXPECT_TRUE(rig.held(field).held) << field;
-  EXPECT_EQ(rig.held("A.on").number, 1);
-  EXPECT_EQ(rig.held("B.on").number, 0);
+    EXPECT_TRUE(rig.stored(field).cached) << field;
+  EXPECT_EQ(rig.stored("A.on").number, 1);
+  EXPECT_EQ(rig.stored("B.on").number, 0);
   rig.run_at(0, kRpm150);
-  EXPECT_EQ(rig.held("A.velocity").number, kRaw150);
-  EXPECT_EQ(rig.held("A.target").number, kRaw150) << "the same place, by another name";
+  EXPECT_EQ(rig.stored("A.velocity").number, kRaw150);
+  EXPECT_EQ(rig.stored("A.target").number, kRaw150) << "the same place, by another name";
 }
 
 TEST(KeyaFrames, AMotorThatHasTrippedIsNeverTurnedOnByItsNeighboursFrame) {
@@ -69,8 +70,8 @@ TEST(KeyaFrames, AMotorThatIsDisabledIsNotTurnedOnByItsNeighboursFrame) {
   KeyaRig rig(composed());
   both_run(rig);
   const int enables = rig.motor(1).enables;
-  const auto stop = rig.begin(1, KeyaRig::group_of(Command::disable));
-  const auto faster = rig.begin(0, KeyaRig::group_of(Command::none, {{Quantity::target_velocity, 2 * kRpm150}}));
+  const auto stop = rig.begin(1, KeyaRig::batch_of(Command::disable));
+  const auto faster = rig.begin(0, KeyaRig::batch_of(Command::none, {{Quantity::target_velocity, 2 * kRpm150}}));
   ASSERT_TRUE(rig.run_until([&] { return stop->has_value() && faster->has_value(); }));
   EXPECT_EQ(KeyaRig::code(**stop), Errc::ok);
   EXPECT_EQ(KeyaRig::code(**faster), Errc::ok);
@@ -91,16 +92,16 @@ TEST(KeyaFrames, AMotorThatIsNoAxisIsOffAndAtZero) {
   }
 }
 
-TEST(KeyaFrames, ADoubtfulNeighbourIsLookedAtBeforeTheFrameAndNotTurnedOffByIt) {
+TEST(KeyaFrames, AnInvalidatedNeighbourIsLookedAtBeforeTheFrameAndNotTurnedOffByIt) {
   KeyaRig rig(composed());
   both_run(rig);
-  // A timeout makes everything doubtful; a frame goes as soon as the fence stands.
+  // A timeout invalidates everything; a frame goes as soon as the resynchronisation read is answered.
   bool once = true;
   rig.wire->fate = [&](const bus::Exchange& e) {
     return e.object.index == kSpeedQuery && std::exchange(once, false) ? Fate::muted : Fate::answered;
   };
   ASSERT_TRUE(rig.run_until([&] { return rig.axis(0).link_state == LinkState::suspect; }));
-  const auto faster = rig.begin(0, KeyaRig::group_of(Command::none, {{Quantity::target_velocity, 2 * kRpm150}}));
+  const auto faster = rig.begin(0, KeyaRig::batch_of(Command::none, {{Quantity::target_velocity, 2 * kRpm150}}));
   ASSERT_TRUE(rig.run_until([&] { return faster->has_value(); }));
   EXPECT_EQ(KeyaRig::code(**faster), Errc::ok);
   EXPECT_TRUE(rig.motor(1).enabled);
@@ -115,7 +116,7 @@ TEST(KeyaFrames, OfASuspectDriveOnlyAStopIsSentAndItTurnsOnNobody) {
   ASSERT_TRUE(rig.run_until([&] { return rig.axis(0).link_state == LinkState::suspect; }));
   rig.motor(1).enabled = false;  // it trips, and nobody can know
   rig.mark();
-  const auto stop = rig.begin(0, KeyaRig::group_of(Command::quick_stop));
+  const auto stop = rig.begin(0, KeyaRig::batch_of(Command::quick_stop));
   rig.run(5ms);
   rig.wire->fate = {};
   ASSERT_TRUE(rig.run_until([&] { return stop->has_value(); }));
@@ -151,7 +152,7 @@ TEST(KeyaFrames, ANeighbourFoundRunningKeepsAllButStopsFromBeingSent) {
   rig.online();
   rig.run(100ms);
   rig.mark();
-  const GroupResult result = rig.command(0, Command::enable);
+  const BatchResult result = rig.command(0, Command::enable);
   EXPECT_EQ(KeyaRig::code(result), Errc::state_unsuitable) << "nobody knows what the other motor was told";
   EXPECT_EQ(result.outcome.detail, kDetailDeviceState);
   EXPECT_TRUE(rig.writes().empty());
@@ -231,7 +232,7 @@ TEST(KeyaFrameRule, AfterALostFrameWhatItAskedForIsAskedForAgain) {
   rule.motors[1].enabled = true;
   rule.told("B.on", 1);
   rule.told("B.velocity", 700);
-  rule.store.doubt_all();
+  rule.store.invalidate_all();
   EXPECT_EQ(KeyaRig::field(*rule.of("A.velocity", 1), kValue, 2), 700);
   rule.store.asked(rule.id("B.velocity"), 0, Instant{} + 2h);
   EXPECT_EQ(KeyaRig::field(*rule.of("A.velocity", 1), kValue, 2), 0) << "a stop that may not have arrived";

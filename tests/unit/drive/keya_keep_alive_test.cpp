@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // A drive that disables itself when it hears no command for a second: it is commanded again and again while somebody
 // answers for its axis, with nothing that could move it anew, and not a moment longer.
 #include <gmock/gmock.h>
 
-#include "gateway/drive/keep_alive.hpp"
+#include "gateway/drive/device/keep_alive.hpp"
 #include "tests/unit/drive/clients.hpp"
 #include "tests/unit/drive/keya_rig.hpp"
 
@@ -64,13 +65,13 @@ TEST_P(KeyaKeepAlive, APositionIsRepeatedWhichMovesNothing) {
   KeyaRig rig(options(1));
   rig.online();
   rig.enable(0);
-  ASSERT_EQ(KeyaRig::code(rig.ask(0, KeyaRig::group_of(Command::move_absolute, {{Quantity::target_position, 30'000}}))),
+  ASSERT_EQ(KeyaRig::code(rig.ask(0, KeyaRig::batch_of(Command::move_absolute, {{Quantity::target_position, 30'000}}))),
             Errc::ok);
   rig.run(3s);
   EXPECT_TRUE(rig.motor(0).enabled);
   EXPECT_EQ(rig.motor(0).position, 30'000);
   ASSERT_EQ(
-      KeyaRig::code(rig.ask(0, KeyaRig::group_of(Command::move_absolute, {{Quantity::target_position, 3'000'000}}))),
+      KeyaRig::code(rig.ask(0, KeyaRig::batch_of(Command::move_absolute, {{Quantity::target_position, 3'000'000}}))),
       Errc::ok);
   rig.run(100ms);
   ASSERT_EQ(KeyaRig::code(rig.command(0, Command::halt)), Errc::ok);
@@ -108,7 +109,7 @@ TEST_P(KeyaKeepAlive, NoResultAndNoOtherTraceOfItIsShownToClients) {
   KeyaRig rig(options());
   rig.online();
   rig.enable(0);
-  Group run = KeyaRig::group_of(Command::run_velocity, {{Quantity::target_velocity, kRpm150}});
+  WriteBatch run = KeyaRig::batch_of(Command::run_velocity, {{Quantity::target_velocity, kRpm150}});
   run.command_id = 77;
   ASSERT_EQ(KeyaRig::code(rig.ask(0, run)), Errc::ok);
   rig.run(300ms);
@@ -130,15 +131,15 @@ TEST_P(KeyaKeepAlive, ItEndsWithTheLeaseAndTheDriveStopsByItself) {
   KeyaRig rig(leased);
   rig.online();
   const auto panel = client(5, "panel");
-  const auto with_life = [&](Group group) {
-    group.client = 5;
-    group.life = panel;
-    group.claims = true;
-    return group;
+  const auto with_life = [&](WriteBatch batch) {
+    batch.client = 5;
+    batch.life = panel;
+    batch.claims = true;
+    return batch;
   };
-  ASSERT_EQ(KeyaRig::code(rig.ask(0, with_life(KeyaRig::group_of(Command::enable)))), Errc::ok);
+  ASSERT_EQ(KeyaRig::code(rig.ask(0, with_life(KeyaRig::batch_of(Command::enable)))), Errc::ok);
   ASSERT_EQ(KeyaRig::code(rig.ask(
-                0, with_life(KeyaRig::group_of(Command::run_velocity, {{Quantity::target_velocity, kRpm150}})))),
+                0, with_life(KeyaRig::batch_of(Command::run_velocity, {{Quantity::target_velocity, kRpm150}})))),
             Errc::ok);
   const Instant last_word = rig.runtime.now();
   rig.run(1900ms);
@@ -209,7 +210,7 @@ TEST_P(KeyaKeepAlive, AStopThatWaitsOrIsUnderWayEndsIt) {
   ASSERT_TRUE(rig.run_until([&] { return rig.motor(0).moves.size() > 6; })) << "repeated some times";
   rig.motor(0).moves.clear();
   rig.run(249ms);
-  const auto stop = rig.begin(0, KeyaRig::group_of(Command::quick_stop));
+  const auto stop = rig.begin(0, KeyaRig::batch_of(Command::quick_stop));
   rig.run(2s);
   ASSERT_TRUE(stop->has_value());
   const auto& moves = rig.motor(0).moves;
@@ -226,7 +227,7 @@ TEST(KeyaKeepAliveSingle, AMotorThatIsSlowToTurnOffIsNotToldItsSpeedWhileItIsTol
     if (e.object.index == kDisable) rig.motor(0).enabled = true;
   };
   rig.motor(0).moves.clear();
-  const auto stop = rig.begin(0, KeyaRig::group_of(Command::disable));
+  const auto stop = rig.begin(0, KeyaRig::batch_of(Command::disable));
   ASSERT_TRUE(rig.run_until([&] { return stop->has_value(); }));
   EXPECT_THAT(rig.motor(0).moves, Each(0));
   rig.run(3s);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keep-alive of one motor while many clients want the wire for everything else.
 #include <gmock/gmock.h>
 
@@ -18,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(Speeches, KeyaUnderLoad, testing::Values(Speech::single
 /// Clients that never rest: each asks anew as soon as it has its answer.
 class Crowd {
  public:
-  Crowd(KeyaRig& rig, int clients, std::function<std::pair<bus::AxisSlot, Group>(int client, int round)> ask)
+  Crowd(KeyaRig& rig, int clients, std::function<std::pair<bus::AxisSlot, WriteBatch>(int client, int round)> ask)
       : rig_(rig), ask_(std::move(ask)), waiting_(static_cast<std::size_t>(clients)) {}
   void run(Duration time) {
     const Instant end = rig_.runtime.now() + time;
@@ -27,9 +28,9 @@ class Crowd {
       ++round;
       for (std::size_t i = 0; i < waiting_.size(); ++i) {
         if (waiting_[i] && !waiting_[i]->has_value()) continue;
-        auto [slot, group] = ask_(static_cast<int>(i), round);
-        group.client = 100 + i;
-        waiting_[i] = rig_.begin(slot, group);
+        auto [slot, batch] = ask_(static_cast<int>(i), round);
+        batch.client = 100 + i;
+        waiting_[i] = rig_.begin(slot, batch);
       }
       rig_.run(1ms);
     }
@@ -37,15 +38,15 @@ class Crowd {
 
  private:
   KeyaRig& rig_;
-  std::function<std::pair<bus::AxisSlot, Group>(int, int)> ask_;
-  std::vector<std::shared_ptr<std::optional<GroupResult>>> waiting_;
+  std::function<std::pair<bus::AxisSlot, WriteBatch>(int, int)> ask_;
+  std::vector<std::shared_ptr<std::optional<BatchResult>>> waiting_;
 };
 
-Group mailbox_read(std::uint16_t index, std::uint8_t size) {
-  Group group;
-  group.role = Role::engineer;
-  group.object = ObjectRequest{false, index, 1, size, 0};
-  return group;
+WriteBatch mailbox_read(std::uint16_t index, std::uint8_t size) {
+  WriteBatch batch;
+  batch.role = Role::engineer;
+  batch.object = ObjectRequest{false, index, 1, size, 0};
+  return batch;
 }
 
 TEST_P(KeyaUnderLoad, ThirtyTwoBusyClientsOfTheOtherMotorDelayItByNothingThatCounts) {
@@ -54,10 +55,10 @@ TEST_P(KeyaUnderLoad, ThirtyTwoBusyClientsOfTheOtherMotorDelayItByNothingThatCou
   rig.enable_and_run(0);
   rig.enable_and_run(1);
   rig.mark();
-  Crowd crowd(rig, 32, [](int client, int round) -> std::pair<bus::AxisSlot, Group> {
+  Crowd crowd(rig, 32, [](int client, int round) -> std::pair<bus::AxisSlot, WriteBatch> {
     if (client % 4 == 0) return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + round % 50), 4)};
     return {bus::AxisSlot{1},
-            KeyaRig::group_of(Command::run_velocity, {{Quantity::target_velocity, (client + round % 10) * 10'000}})};
+            KeyaRig::batch_of(Command::run_velocity, {{Quantity::target_velocity, (client + round % 10) * 10'000}})};
   });
   crowd.run(10s);
   const auto instants = rig.heard(1);
@@ -72,7 +73,7 @@ TEST_P(KeyaUnderLoad, ThirtyTwoBusyReadersDelayItByNothingThatCounts) {
   rig.online();
   rig.enable_and_run(0);
   rig.mark();
-  Crowd crowd(rig, 32, [](int client, int round) -> std::pair<bus::AxisSlot, Group> {
+  Crowd crowd(rig, 32, [](int client, int round) -> std::pair<bus::AxisSlot, WriteBatch> {
     return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + 100 * client + round % 100), 4)};
   });
   crowd.run(10s);
@@ -85,7 +86,7 @@ TEST_P(KeyaUnderLoad, AQueueThatIsFullDoesNotKeepItFromItsTurn) {
   rig.online();
   rig.enable_and_run(0);
   rig.mark();
-  Crowd crowd(rig, 72, [](int client, int round) -> std::pair<bus::AxisSlot, Group> {
+  Crowd crowd(rig, 72, [](int client, int round) -> std::pair<bus::AxisSlot, WriteBatch> {
     return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + client), round % 2 == 0 ? 4 : 2)};
   });
   crowd.run(2s);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The model of the drive that keya_rig plays, made by hand from what its makers print.
 #include "tests/unit/drive/keya_rig.hpp"
 
@@ -38,9 +39,9 @@ struct Maker {
     at(id).writable = at(id).trigger = true;
     return id;
   }
-  ObjectId made(const std::string& name, bus::AxisSlot slot, std::uint8_t size) {
+  ObjectId emulated(const std::string& name, bus::AxisSlot slot, std::uint8_t size) {
     const ObjectId id = add(name, slot, {}, size, size == 1);
-    at(id).made = at(id).writable = true;
+    at(id).emulated = at(id).writable = true;
     return id;
   }
 };
@@ -166,9 +167,9 @@ AxisModel make_axis(Maker& make, bus::AxisSlot slot, const Motor& motor) {
   axis.name = slot == 0 ? "left" : "right";
   axis.lease = make.options.lease;
   const std::string name = slot == 0 ? "A." : "B.";
-  axis.statusword = make.made(name + "statusword", slot, 2);
-  axis.controlword = make.made(name + "controlword", slot, 2);
-  axis.mode = axis.mode_display = make.made(name + "mode", slot, 1);
+  axis.statusword = make.emulated(name + "statusword", slot, 2);
+  axis.controlword = make.emulated(name + "controlword", slot, 2);
+  axis.mode = axis.mode_display = make.emulated(name + "mode", slot, 1);
   axis.cia402.mode_display = false;
   axis.fault_words[0] = motor.fault;
   for (const std::int16_t mode : make.options.modes) axis.modes.emplace_back(mode, mode);
@@ -187,7 +188,7 @@ AxisModel make_axis(Maker& make, bus::AxisSlot slot, const Motor& motor) {
   axis.binding_of.fill(-1);
   for (std::size_t i = 0; i < axis.bindings.size(); ++i)
     axis.binding_of[static_cast<std::size_t>(axis.bindings[i].quantity)] = static_cast<std::int16_t>(i);
-  drive::VirtualFacts facts;
+  drive::VirtualProperties facts;
   facts.enabled = state(motor.fault, 0);
   facts.fault = facts.enabled;
   facts.fault.mask = 0x3FFE;
@@ -221,8 +222,8 @@ drive::DriveModel keya_model(const KeyaOptions& options) {
     model.axes.push_back(std::move(axis));
   }
   model.keep_alive = options.keep_alive;
-  model.fence.candidates = {{motors[0].fault, 0}, {motors[0].speed, 0}, {motors[0].position, 0}};
-  model.fence.worst_reply = 200ms;
+  model.resync.candidates = {{motors[0].fault, 0}, {motors[0].speed, 0}, {motors[0].position, 0}};
+  model.resync.worst_reply = 200ms;
   if (options.unasked) {
     model.unasked.every = options.unasked_every;
     // One motor's temperature comes by itself and by nothing else, the other's in both ways.

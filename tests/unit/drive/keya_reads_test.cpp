@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // One answer of the drive holds values of both motors: it is asked for once, and each value goes its own way.
 #include <gmock/gmock.h>
 
 #include <map>
 
-#include "gateway/drive/fence.hpp"
-#include "gateway/drive/poll_plan.hpp"
-#include "gateway/drive/read_blocks.hpp"
+#include "gateway/drive/device/poll_plan.hpp"
+#include "gateway/drive/device/read_blocks.hpp"
+#include "gateway/drive/device/resync.hpp"
 #include "tests/unit/drive/keya_rig.hpp"
 
 namespace axisgate::test {
@@ -24,7 +25,7 @@ TEST_P(KeyaReads, OneQueryShowsTheValuesOfBothAxes) {
   rig.motor(1).faults = 0x0800;
   rig.mark();
   ASSERT_TRUE(
-      rig.run_until([&] { return rig.held("A.fault").number == 0x0011 && rig.held("B.fault").number == 0x0801; }));
+      rig.run_until([&] { return rig.stored("A.fault").number == 0x0011 && rig.stored("B.fault").number == 0x0801; }));
   EXPECT_LE(rig.reads_of(kFaultQuery), 2U);
   // This model has no alarm table: a fault that nothing names is shown after half a second.
   EXPECT_TRUE(rig.run_until([&] { return rig.axis(0).has(AxisInput::fault) && rig.axis(1).has(AxisInput::fault); }));
@@ -92,7 +93,7 @@ TEST(KeyaReading, AMailboxReadInAWidthOfItsOwnSpoilsNoValue) {
   KeyaRig rig;
   rig.online();
   rig.motor(1).faults = 0x0020;
-  const GroupResult read = rig.mailbox(0, false, kFaultQuery, 1, 4);
+  const BatchResult read = rig.mailbox(0, false, kFaultQuery, 1, 4);
   EXPECT_EQ(KeyaRig::code(read), Errc::ok);
   EXPECT_EQ(read.object_size, 4);
   rig.run(600ms);
@@ -133,29 +134,29 @@ TEST(KeyaReading, AQueryThatIsNotAnsweredIsAskedForWholeAgain) {
   EXPECT_TRUE(rig.axis(1)[Quantity::motor_temperature].valid);
 }
 
-TEST(KeyaFence, ALostQueryOfOneMotorIsNotFencedByTheSameQueryOfTheOther) {
+TEST(KeyaResync, ALostQueryOfOneMotorIsNotResolvedByTheSameQueryOfTheOther) {
   const drive::DriveModel model = keya_model({});
-  drive::FenceFacts facts;
+  drive::ResyncProperties facts;
   const auto find = [&](const std::string& name) {
     const auto at =
         std::find_if(model.objects.begin(), model.objects.end(), [&](const auto& o) { return o.name == name; });
     return static_cast<drive::ObjectId>(at - model.objects.begin());
   };
   facts.candidates = {{find("A.fault"), 0}, {find("B.speed"), 0}};
-  drive::Fence fence(facts, model.objects);
-  fence.lost({1, bus::Access::read, {kFaultQuery, 1, 2}, 2, 0}, Instant{} + 1h);
-  ASSERT_TRUE(fence.candidate());
-  EXPECT_EQ(fence.candidate()->object, find("B.speed")) << "the reply to A.fault could be the one that was lost";
-  fence.lost({1, bus::Access::read, {kSpeedQuery, 1, 0}, 2, 0}, Instant{} + 1h);
-  EXPECT_FALSE(fence.candidate());
+  drive::Resync resync(facts, model.objects);
+  resync.lost({1, bus::Access::read, {kFaultQuery, 1, 2}, 2, 0}, Instant{} + 1h);
+  ASSERT_TRUE(resync.candidate());
+  EXPECT_EQ(resync.candidate()->object, find("B.speed")) << "the reply to A.fault could be the one that was lost";
+  resync.lost({1, bus::Access::read, {kSpeedQuery, 1, 0}, 2, 0}, Instant{} + 1h);
+  EXPECT_FALSE(resync.candidate());
 }
 
 // --- Unasked values --------------------------------------------------------------------------------------------------
 
-bus::Notice values(std::initializer_list<bus::ReplyField> fields) {
-  bus::Notice notice{.kind = bus::Notice::Kind::values, .node = 1};
-  for (const auto& field : fields) notice.fields.push_back(field);
-  return notice;
+bus::UnsolicitedEvent values(std::initializer_list<bus::ReplyField> fields) {
+  bus::UnsolicitedEvent unsolicited{.kind = bus::UnsolicitedEvent::Kind::values, .node = 1};
+  for (const auto& field : fields) unsolicited.fields.push_back(field);
+  return unsolicited;
 }
 
 TEST(KeyaUnasked, WhatComesInAKnownBeatIsNeverPolledButTheStateIs) {
@@ -201,7 +202,7 @@ TEST(KeyaUnasked, ASignOfLifeBringsTheProbeOfAnOfflineDriveForward) {
   rig.run(20s);
   rig.wire->fate = {};
   rig.mark();
-  rig.wire->tell({.kind = bus::Notice::Kind::present, .node = 1});
+  rig.wire->tell({.kind = bus::UnsolicitedEvent::Kind::present, .node = 1});
   rig.run(50ms);
   EXPECT_TRUE(rig.axis(0).reachable()) << "not after its next back-off step";
 }

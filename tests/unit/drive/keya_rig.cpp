@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/drive/keya_rig.hpp"
 
 #include <algorithm>
@@ -219,34 +220,34 @@ void KeyaRig::online() {
   if (!run_until([&] { return axis(0).link_state == LinkState::online; })) throw std::runtime_error("never online");
 }
 
-std::shared_ptr<std::optional<GroupResult>> KeyaRig::begin(bus::AxisSlot slot, const Group& group) {
-  auto result = std::make_shared<std::optional<GroupResult>>();
-  Group asked = group;
+std::shared_ptr<std::optional<BatchResult>> KeyaRig::begin(bus::AxisSlot slot, const WriteBatch& batch) {
+  auto result = std::make_shared<std::optional<BatchResult>>();
+  WriteBatch asked = batch;
   if (asked.start_by == kNever) asked.start_by = runtime.now() + 500ms;
   if (asked.answer_by == kNever) asked.answer_by = runtime.now() + 900ms;
-  const auto at_once = drive->submit(slot, asked, [result](const GroupResult& r) { *result = r; });
+  const auto at_once = drive->submit(slot, asked, [result](const BatchResult& r) { *result = r; });
   if (at_once) *result = *at_once;
   return result;
 }
 
-GroupResult KeyaRig::ask(bus::AxisSlot slot, const Group& group) {
-  const auto result = begin(slot, group);
+BatchResult KeyaRig::ask(bus::AxisSlot slot, const WriteBatch& batch) {
+  const auto result = begin(slot, batch);
   if (!run_until([&] { return result->has_value(); }, 10s)) throw std::runtime_error("no result");
   return **result;
 }
 
-GroupResult KeyaRig::word(bus::AxisSlot slot, std::uint16_t controlword) {
-  Group group = group_of(Command::none);
-  group.controlword = controlword;
-  group.single_controlword = true;
-  return ask(slot, group);
+BatchResult KeyaRig::word(bus::AxisSlot slot, std::uint16_t controlword) {
+  WriteBatch batch = batch_of(Command::none);
+  batch.controlword = controlword;
+  batch.single_controlword = true;
+  return ask(slot, batch);
 }
 
-GroupResult KeyaRig::mailbox(bus::AxisSlot slot, bool write, std::uint16_t index, std::uint8_t sub, std::uint8_t size,
+BatchResult KeyaRig::mailbox(bus::AxisSlot slot, bool write, std::uint16_t index, std::uint8_t sub, std::uint8_t size,
                              std::uint32_t data) {
-  Group group = group_of(Command::none);
-  group.object = ObjectRequest{write, index, sub, size, data};
-  return ask(slot, group);
+  WriteBatch batch = batch_of(Command::none);
+  batch.object = ObjectRequest{write, index, sub, size, data};
+  return ask(slot, batch);
 }
 
 void KeyaRig::enable(bus::AxisSlot slot) {
@@ -255,7 +256,7 @@ void KeyaRig::enable(bus::AxisSlot slot) {
 }
 
 void KeyaRig::run_at(bus::AxisSlot slot, std::int64_t velocity) {
-  if (code(ask(slot, group_of(Command::run_velocity, {{Quantity::target_velocity, velocity}}))) != Errc::ok)
+  if (code(ask(slot, batch_of(Command::run_velocity, {{Quantity::target_velocity, velocity}}))) != Errc::ok)
     throw std::runtime_error("does not run");
 }
 
@@ -302,13 +303,13 @@ std::optional<std::int64_t> KeyaRig::field(const bus::Exchange& exchange, std::u
   return std::nullopt;
 }
 
-Group KeyaRig::group_of(Command command, std::initializer_list<Setpoint> setpoints) {
-  Group group;
-  group.client = 7;
-  group.role = Role::engineer;
-  group.command = command;
-  for (const Setpoint& sp : setpoints) group.setpoints.push_back(sp);
-  return group;
+WriteBatch KeyaRig::batch_of(Command command, std::initializer_list<Setpoint> setpoints) {
+  WriteBatch batch;
+  batch.client = 7;
+  batch.role = Role::engineer;
+  batch.command = command;
+  for (const Setpoint& sp : setpoints) batch.setpoints.push_back(sp);
+  return batch;
 }
 
 drive::ObjectId KeyaRig::id(const std::string& object) const {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A drive of two motors without CiA 402, as a Keya is, behind the drive layer alone: its model made by hand, its wire
 // and its motors played here, in the words of the exchange. Promises a fresh world per rig, a clock that stands still
 // until a test moves it, and a journal of all that was sent. Never decides what is right: the tests do.
@@ -11,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/drive/drive.hpp"
+#include "gateway/drive/device/drive.hpp"
 #include "tests/unit/support/manual_runtime.hpp"
 
 namespace axisgate::test {
@@ -76,7 +77,7 @@ class FakeKeya final : public bus::Wire {
   void cut();
   /// Motion and watchdog up to now.
   void settle();
-  void tell(const bus::Notice& notice) { events_->on_notice(notice); }
+  void tell(const bus::UnsolicitedEvent& unsolicited) { events_->on_unsolicited(unsolicited); }
 
   std::array<FakeMotor, 2> motors;
   std::vector<Sent> sent;
@@ -109,13 +110,13 @@ class KeyaRig {
   explicit KeyaRig(KeyaOptions options = {});
 
   void online();
-  GroupResult ask(bus::AxisSlot slot, const Group& group);
-  GroupResult command(bus::AxisSlot slot, Command command) { return ask(slot, group_of(command)); }
-  GroupResult write(bus::AxisSlot slot, Quantity quantity, std::int64_t value) {
-    return ask(slot, group_of(Command::none, {{quantity, value}}));
+  BatchResult ask(bus::AxisSlot slot, const WriteBatch& batch);
+  BatchResult command(bus::AxisSlot slot, Command command) { return ask(slot, batch_of(command)); }
+  BatchResult write(bus::AxisSlot slot, Quantity quantity, std::int64_t value) {
+    return ask(slot, batch_of(Command::none, {{quantity, value}}));
   }
-  GroupResult word(bus::AxisSlot slot, std::uint16_t controlword);
-  GroupResult mailbox(bus::AxisSlot slot, bool write, std::uint16_t index, std::uint8_t sub, std::uint8_t size,
+  BatchResult word(bus::AxisSlot slot, std::uint16_t controlword);
+  BatchResult mailbox(bus::AxisSlot slot, bool write, std::uint16_t index, std::uint8_t sub, std::uint8_t size,
                       std::uint32_t data = 0);
   /// Enabled, and, with a velocity, running at it (0.001 rpm).
   void enable(bus::AxisSlot slot);
@@ -124,7 +125,7 @@ class KeyaRig {
   void run(Duration time);
   bool run_until(const std::function<bool()>& condition, Duration limit = std::chrono::seconds(5));
   /// What the drive is given to do, without waiting for it.
-  std::shared_ptr<std::optional<GroupResult>> begin(bus::AxisSlot slot, const Group& group);
+  std::shared_ptr<std::optional<BatchResult>> begin(bus::AxisSlot slot, const WriteBatch& batch);
 
   void mark() { marked_ = wire->sent.size(); }
   [[nodiscard]] std::vector<Sent> since_mark() const;
@@ -136,13 +137,13 @@ class KeyaRig {
   [[nodiscard]] static std::optional<std::int64_t> field(const bus::Exchange& exchange, std::uint16_t index,
                                                          std::uint8_t motor);
 
-  [[nodiscard]] static Group group_of(Command command, std::initializer_list<Setpoint> setpoints = {});
-  [[nodiscard]] static Errc code(const GroupResult& result) { return result.outcome.code; }
+  [[nodiscard]] static WriteBatch batch_of(Command command, std::initializer_list<Setpoint> setpoints = {});
+  [[nodiscard]] static Errc code(const BatchResult& result) { return result.outcome.code; }
   [[nodiscard]] const AxisImage& axis(bus::AxisSlot slot) const { return images_[slot]; }
   [[nodiscard]] FakeMotor& motor(std::size_t slot) { return wire->motors.at(slot); }
   [[nodiscard]] bool enabled(bus::AxisSlot slot) const { return axis(slot).has(AxisInput::enabled); }
   [[nodiscard]] drive::ObjectId id(const std::string& object) const;
-  [[nodiscard]] const drive::ObjectState& held(const std::string& object) const { return drive->store()[id(object)]; }
+  [[nodiscard]] const drive::ObjectState& stored(const std::string& object) const { return drive->store()[id(object)]; }
 
   ManualRuntime runtime;
   EventRing events;

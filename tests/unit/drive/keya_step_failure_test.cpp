@@ -1,4 +1,6 @@
-// Every conversation with a drive of two motors, with each of its exchanges failing in every way an exchange can fail.
+// SPDX-License-Identifier: Apache-2.0
+// Every command sequence with a drive of two motors, with each of its exchanges failing in every way an exchange can
+// fail.
 #include <gmock/gmock.h>
 
 #include "tests/unit/drive/keya_rig.hpp"
@@ -13,43 +15,43 @@ enum class Start : std::uint8_t { disabled, enabled, running };
 struct Talk {
   std::string name;
   Start from;
-  Group group;
+  WriteBatch batch;
   bool is_stop = false;
   bool may_enable = false;
   bool may_run = false;
 };
 
-Group word(std::uint16_t controlword) {
-  Group group = KeyaRig::group_of(Command::none);
-  group.controlword = controlword;
-  group.single_controlword = true;
-  return group;
+WriteBatch word(std::uint16_t controlword) {
+  WriteBatch batch = KeyaRig::batch_of(Command::none);
+  batch.controlword = controlword;
+  batch.single_controlword = true;
+  return batch;
 }
 
 std::vector<Talk> talks(std::int16_t mode) {
   const Setpoint target =
       mode == 1 ? Setpoint{Quantity::target_position, 20'000} : Setpoint{Quantity::target_velocity, kRpm150};
-  Group read = KeyaRig::group_of(Command::none);
+  WriteBatch read = KeyaRig::batch_of(Command::none);
   read.object = ObjectRequest{false, kFaultQuery, 1, 2, 0};
   std::vector<Talk> out{
-      {"enable", Start::disabled, KeyaRig::group_of(Command::enable), false, true},
-      {"disable", Start::running, KeyaRig::group_of(Command::disable), true, false, true},
-      {"quick stop", Start::running, KeyaRig::group_of(Command::quick_stop), true, false, true},
-      {"halt", Start::running, KeyaRig::group_of(Command::halt), true, false, true},
+      {"enable", Start::disabled, KeyaRig::batch_of(Command::enable), false, true},
+      {"disable", Start::running, KeyaRig::batch_of(Command::disable), true, false, true},
+      {"quick stop", Start::running, KeyaRig::batch_of(Command::quick_stop), true, false, true},
+      {"halt", Start::running, KeyaRig::batch_of(Command::halt), true, false, true},
       {"raw stop", Start::running, word(6), true, false, true},
-      {"set-point", Start::running, KeyaRig::group_of(Command::none, {target}), false, false, true},
+      {"set-point", Start::running, KeyaRig::batch_of(Command::none, {target}), false, false, true},
       {"mailbox read", Start::enabled, read},
   };
   if (mode == 1)
-    out.push_back({"move", Start::enabled, KeyaRig::group_of(Command::move_absolute, {target}), false, false, true});
+    out.push_back({"move", Start::enabled, KeyaRig::batch_of(Command::move_absolute, {target}), false, false, true});
   else
-    out.push_back({"run", Start::enabled, KeyaRig::group_of(Command::run_velocity, {target}), false, false, true});
+    out.push_back({"run", Start::enabled, KeyaRig::batch_of(Command::run_velocity, {target}), false, false, true});
   return out;
 }
 
 KeyaOptions options(Speech speech, std::int16_t mode) { return {.speech = speech, .modes = {mode}}; }
 
-/// Motor B runs through all of it; A is where the conversation begins.
+/// Motor B runs through all of it; A is where the command sequence begins.
 void bring_to(KeyaRig& rig, Start start, std::int16_t mode) {
   rig.online();
   rig.enable(1);
@@ -57,8 +59,9 @@ void bring_to(KeyaRig& rig, Start start, std::int16_t mode) {
   if (start == Start::disabled) return;
   rig.enable(0);
   if (start != Start::running) return;
-  const Group go = mode == 1 ? KeyaRig::group_of(Command::move_absolute, {{Quantity::target_position, 5'000'000}})
-                             : KeyaRig::group_of(Command::run_velocity, {{Quantity::target_velocity, 2 * kRpm150}});
+  const WriteBatch go = mode == 1
+                            ? KeyaRig::batch_of(Command::move_absolute, {{Quantity::target_position, 5'000'000}})
+                            : KeyaRig::batch_of(Command::run_velocity, {{Quantity::target_velocity, 2 * kRpm150}});
   if (KeyaRig::code(rig.ask(0, go)) != Errc::ok) throw std::runtime_error("does not run");
   rig.run(50ms);
 }
@@ -101,7 +104,7 @@ void KeyaEachStepFails::fail_one(const Talk& talk, std::size_t step) {
     return left-- == 0 ? fate : Fate::answered;
   };
   rig.mark();
-  const auto result = rig.begin(0, talk.group);
+  const auto result = rig.begin(0, talk.batch);
   ASSERT_TRUE(rig.run_until([&] { return result->has_value(); }, 10s)) << "no result";
   EXPECT_TRUE(allowed(fate, KeyaRig::code(**result), talk)) << text(KeyaRig::code(**result));
   rig.run(700ms);
@@ -130,7 +133,7 @@ TEST_P(KeyaEachStepFails, EndsOnceAsTheContractSaysAndRecovers) {
     KeyaRig whole(options(speech, mode));
     bring_to(whole, talk.from, mode);
     whole.mark();
-    ASSERT_EQ(KeyaRig::code(whole.ask(0, talk.group)), Errc::ok) << talk.name;
+    ASSERT_EQ(KeyaRig::code(whole.ask(0, talk.batch)), Errc::ok) << talk.name;
     const std::size_t steps = whole.since_mark().size() + 1;
     for (std::size_t step = 0; step < steps; ++step) {
       SCOPED_TRACE(talk.name + ", " + name(fate) + " at exchange " + std::to_string(step));

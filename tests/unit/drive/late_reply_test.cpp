@@ -1,4 +1,6 @@
-// Late replies meet a fence (design 7.4), and a mute drive costs its neighbours little (7.3, P3).
+// SPDX-License-Identifier: Apache-2.0
+// Late replies meet a resynchronisation read (design 7.4), and an unresponsive drive costs its neighbours little (7.3,
+// P3).
 #include <gmock/gmock.h>
 
 #include "gateway/image/shown.hpp"
@@ -11,18 +13,18 @@ using namespace std::chrono_literals;
 using simulated::DriveFault;
 using enum Situation;
 
-TEST(LateReply, TheNextExchangeIsAFenceThatNoLostReplyCanPassFor) {
+TEST(LateReply, TheNextExchangeIsAResynchronisationReadThatNoLostReplyCanPassFor) {
   Rig rig(KincoType::jd);
   rig.bring_to(disabled);
   rig.faults().next(DriveFault::mute, 2);
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().link_state == LinkState::suspect; }));
   const auto lost = decoded(kLongAgo, rig.stage.link(0).sent.end()[-2].bytes);
-  const auto fence = decoded(kLongAgo, rig.stage.link(0).sent.back().bytes);
-  EXPECT_FALSE(fence.write);
-  EXPECT_NE(fence.index, lost.index);
+  const auto resync = decoded(kLongAgo, rig.stage.link(0).sent.back().bytes);
+  EXPECT_FALSE(resync.write);
+  EXPECT_NE(resync.index, lost.index);
   rig.stage.run(101ms);
   const auto second = decoded(kLongAgo, rig.stage.link(0).sent.back().bytes);
-  EXPECT_NE(second.index, fence.index);
+  EXPECT_NE(second.index, resync.index);
   EXPECT_NE(second.index, lost.index);
   EXPECT_TRUE(rig.stage.run_until([&] { return rig.axis().link_state == LinkState::online; }, 50ms));
 }
@@ -36,7 +38,7 @@ TEST(LateReply, NoValueOfASuspectDriveIsShown) {
   const auto before = rig.axis()[Quantity::position_actual].at;
   rig.stage.run_until([&] { return rig.axis().link_state == LinkState::online; }, 2s);
   const Instant online = rig.stage.runtime().now();
-  // What is shown from now on was asked for after the fence was answered.
+  // What is shown from now on was asked for after the resynchronisation read was answered.
   rig.stage.run(100ms);
   const auto after = rig.axis()[Quantity::position_actual].at;
   EXPECT_TRUE(after == before || after >= online - 5ms);
@@ -44,7 +46,7 @@ TEST(LateReply, NoValueOfASuspectDriveIsShown) {
               static_cast<double>(rig.motor().position()), 2'000);
 }
 
-TEST(LateReply, TwoFencesAndTheDriveIsOffline) {
+TEST(LateReply, TwoResynchronisationReadsAndTheDriveIsOffline) {
   Rig rig(KincoType::jd);
   rig.bring_to(disabled);
   rig.faults().set_rate(DriveFault::mute, 1);
@@ -52,12 +54,12 @@ TEST(LateReply, TwoFencesAndTheDriveIsOffline) {
   rig.mark();
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().link_state == LinkState::offline; }, 250ms));
   rig.stage.run(400ms);
-  EXPECT_LE(rig.requests().size(), 2U) << "the second fence, then silence until the first probe";
+  EXPECT_LE(rig.requests().size(), 2U) << "the second resynchronisation read, then silence until the first probe";
   EXPECT_EQ(shown_value(rig.axis(), Quantity::statusword), 0);
   EXPECT_EQ(rig.axis().valid_bits(), 0U);
 }
 
-TEST(LateReply, AnErrorAnswerIsNoAnsweredFence) {
+TEST(LateReply, AnErrorAnswerIsNoAnsweredResynchronisationRead) {
   Rig rig(KincoType::jd);
   rig.bring_to(disabled);
   rig.faults().next(DriveFault::mute);
@@ -77,7 +79,7 @@ TEST(LateReply, AnErrorAnswerIsNoAnsweredFence) {
   EXPECT_NE(after.front().index, first.index) << "another candidate";
 }
 
-TEST(LateReply, AGroupWaitsBehindTheFenceAndIsThenCarriedOut) {
+TEST(LateReply, ABatchWaitsBehindTheResynchronisationReadAndIsThenCarriedOut) {
   Rig rig(KincoType::jd);
   rig.bring_to(suspect);
   const auto place = rig.stage.begin(1, setpoints({{Quantity::profile_velocity, 111'000}}));
@@ -85,11 +87,11 @@ TEST(LateReply, AGroupWaitsBehindTheFenceAndIsThenCarriedOut) {
   EXPECT_EQ((*place)->outcome.code, Errc::ok);
   for (const WireRequest& r : rig.requests()) {
     if (r.write) break;
-    EXPECT_NE(r.index, kStatusword) << "no plain read before the fence is answered";
+    EXPECT_NE(r.index, kStatusword) << "no plain read before the resynchronisation read is answered";
   }
 }
 
-TEST(Mute, AGroupThatWasNeverSentGetsOfflineAndOneThatWasGetsUnknown) {
+TEST(UnresponsiveDrive, ABatchThatWasNeverSentGetsOfflineAndOneThatWasGetsUnknown) {
   Rig rig(KincoType::jd);
   rig.bring_to(enabled);
   const auto sent = rig.stage.begin(1, setpoints({{Quantity::profile_velocity, 111'000}}));
@@ -102,13 +104,13 @@ TEST(Mute, AGroupThatWasNeverSentGetsOfflineAndOneThatWasGetsUnknown) {
   EXPECT_EQ((*waiting)->outcome.code, Errc::offline);
 }
 
-TEST(Link, ALossAnswersEveryGroupAtOnce) {
+TEST(Link, ALossAnswersEveryBatchAtOnce) {
   Rig rig(KincoType::jd);
   rig.bring_to(enabled);
   const auto sent = rig.stage.begin(1, setpoints({{Quantity::profile_velocity, 111'000}}));
   const auto waiting = rig.stage.begin(1, with_command(Command::enable));
   const auto read_only = rig.stage.begin(1, [] {
-    Group g;
+    WriteBatch g;
     g.object = ObjectRequest{false, 0x2601, 0, 2, 0};
     return g;
   }());
@@ -123,7 +125,7 @@ TEST(Link, ALossAnswersEveryGroupAtOnce) {
   EXPECT_TRUE(rig.stage.run_until([&] { return rig.axis().link_state == LinkState::online; }, 5s));
 }
 
-TEST(Mute, CostsItsNeighbourOneTimeoutPerBackOffStep) {
+TEST(UnresponsiveDrive, CostsItsNeighbourOneTimeoutPerBackOffStep) {
   GatewayStage::Line line;
   line.name = "rs485";
   line.options.wiring = simulated::Wiring::rs485;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Design 3.5 on an axis that really moves: what its motor does when whoever commands it falls silent, goes, or comes
 // back.
 #include <gmock/gmock.h>
@@ -145,7 +146,7 @@ TEST(Lease, APlcThatComesBackTooLateFindsTheMotorStoppedAndMustEnableAnew) {
 
 TEST(Lease, APlcInStopWhoseScannerGoesOnIsDeadWhereHeartbeatsRenew) {
   LeasedAxis axis(leased(LeaseAction::quick_stop, LeaseRenewal::heartbeat));
-  Group beat;
+  WriteBatch beat;
   beat.beats = true;
   EXPECT_EQ(axis.command(axis.plc, Command::enable), Errc::ok);
   EXPECT_EQ(axis.ask(axis.plc, with_command(Command::run_velocity, {{Quantity::target_velocity, 100'000}})), Errc::ok);
@@ -155,7 +156,7 @@ TEST(Lease, APlcInStopWhoseScannerGoesOnIsDeadWhereHeartbeatsRenew) {
   }
   EXPECT_TRUE(axis.rig.turns());
   for (int i = 0; i < 40; ++i) {
-    static_cast<void>(axis.ask(axis.plc, Group{}));
+    static_cast<void>(axis.ask(axis.plc, WriteBatch{}));
     axis.rig.stage.run(200ms);
   }
   EXPECT_FALSE(axis.rig.turns());
@@ -205,7 +206,7 @@ TEST(Lease, AnAxisFoundEnabledIsStoppedUnlessAClientWritesToIt) {
     EXPECT_TRUE(axis.event("found enabled, and nobody owns it"));
     axis.rig.mark();
     if (taken) {
-      EXPECT_EQ(axis.ask(axis.panel, Group{}), Errc::ok);
+      EXPECT_EQ(axis.ask(axis.panel, WriteBatch{}), Errc::ok);
       axis.keep(axis.panel, 4s);
       EXPECT_TRUE(axis.rig.writes().empty());
       EXPECT_TRUE(axis.enabled());
@@ -220,7 +221,7 @@ TEST(Lease, AnAxisFoundEnabledIsStoppedUnlessAClientWritesToIt) {
 TEST(Lease, AnOwnersSixInABlockIsAStop) {
   LeasedAxis axis;
   axis.run(axis.plc);
-  Group block = setpoints({{Quantity::target_velocity, 100'000}});
+  WriteBatch block = setpoints({{Quantity::target_velocity, 100'000}});
   block.controlword = 0x0006;
   EXPECT_EQ(axis.ask(axis.panel, block), Errc::not_owner);
   EXPECT_TRUE(axis.rig.turns());

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An axis with a lease, its owner and a second client, and the words in which tests of leases and jogs speak.
 // Promises that a client asks for nothing by itself. Never decides what is right: the tests do.
 #pragma once
@@ -30,16 +31,16 @@ struct LeasedAxis {
   std::shared_ptr<ClientLife> plc = client(1, "10.0.0.1");
   std::shared_ptr<ClientLife> panel = client(2, "10.0.0.2");
 
-  Group from(const std::shared_ptr<ClientLife>& who, Group group, bool claims = true) {
+  WriteBatch from(const std::shared_ptr<ClientLife>& who, WriteBatch batch, bool claims = true) {
     who->last_request = rig.stage.runtime().now();
-    group.client = who->id;
-    group.role = who->role;
-    group.life = who;
-    group.claims = claims;
-    return group;
+    batch.client = who->id;
+    batch.role = who->role;
+    batch.life = who;
+    batch.claims = claims;
+    return batch;
   }
-  Errc ask(const std::shared_ptr<ClientLife>& who, Group group, bool claims = true) {
-    return rig.ask(from(who, std::move(group), claims)).outcome.code;
+  Errc ask(const std::shared_ptr<ClientLife>& who, WriteBatch batch, bool claims = true) {
+    return rig.ask(from(who, std::move(batch), claims)).outcome.code;
   }
   Errc command(const std::shared_ptr<ClientLife>& who, Command command) {
     return ask(who, with_command(command), !is_stop(command) && command < Command::release);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limits whatever the way in, the object mailbox's raw units, homing and set_position (design 3.1, 3.3, 3.4).
 #include <gmock/gmock.h>
 
@@ -106,13 +107,13 @@ TEST(Mailbox, AControlwordObeysTheLatch) {
 TEST(Mailbox, AReadGivesTheDrivesBytesAndARefusalItsCode) {
   Rig rig(KincoType::jd);
   rig.bring_to(disabled);
-  Group group;
-  group.object = ObjectRequest{false, 0x6063, 0, 4, 0};
-  GroupResult result = rig.ask(group);
+  WriteBatch batch;
+  batch.object = ObjectRequest{false, 0x6063, 0, 4, 0};
+  BatchResult result = rig.ask(batch);
   EXPECT_EQ(result.outcome.code, Errc::ok);
   EXPECT_EQ(result.object_size, 4);
-  group.object = ObjectRequest{false, 0x5F00, 0, 4, 0};
-  result = rig.ask(group);
+  batch.object = ObjectRequest{false, 0x5F00, 0, 4, 0};
+  result = rig.ask(batch);
   EXPECT_EQ(result.outcome.code, Errc::refused_by_drive);
   EXPECT_EQ(result.outcome.detail, 0x06020000U);
 }
@@ -175,11 +176,11 @@ TEST(SetPosition, IsZeroOnlyAndPutsEverythingBack) {
   rig.bring_to(enabled);
   ASSERT_EQ(rig.ask(setpoints({{Quantity::homing_method, 19}, {Quantity::homing_offset, 700}})).outcome.code, Errc::ok);
   const auto offset = rig.object(0x607C);
-  Group group = with_command(Command::set_position);
-  group.set_position_value = 500;
-  EXPECT_EQ(rig.ask(group).outcome.code, Errc::bad_value);
-  group.set_position_value = 0;
-  EXPECT_EQ(rig.ask(group).outcome.code, Errc::ok);
+  WriteBatch batch = with_command(Command::set_position);
+  batch.set_position_value = 500;
+  EXPECT_EQ(rig.ask(batch).outcome.code, Errc::bad_value);
+  batch.set_position_value = 0;
+  EXPECT_EQ(rig.ask(batch).outcome.code, Errc::ok);
   EXPECT_NEAR(static_cast<double>(rig.axis()[Quantity::position_actual].value), 0, 5);
   EXPECT_EQ(rig.object(0x6098), 19);
   EXPECT_EQ(rig.object(0x607C), offset);

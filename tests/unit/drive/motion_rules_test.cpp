@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // The motion rules alone, beside design 3.4: no drive, no wire, only samples and instants.
 #include <gmock/gmock.h>
 
-#include "gateway/drive/motion.hpp"
+#include "gateway/drive/motion/motion.hpp"
 #include "gateway/image/endings.hpp"
 #include "tests/unit/drive/alone.hpp"
 
@@ -12,7 +13,7 @@ using namespace std::chrono_literals;
 constexpr Duration kTimeout = 60s;
 
 struct Stage {
-  Motion motion;
+  Motion motion{std::chrono::milliseconds(300)};
   AxisFacts facts;
   Stage() {
     facts.at = kStart;
@@ -157,11 +158,16 @@ TEST(MotionRules, WhatIsFoundRunningFollowsTheTargetOfItsModeUntilAnythingEndsIt
     return s;
   };
   const auto acts = [](Stage& s, Quantity target) { return s.motion.target_acts_now(target, s.facts, false); };
-  for (const int mode : {3, 9, -3}) {
+  for (const int mode : {3, 9}) {
     Stage s = found(mode);
     EXPECT_TRUE(acts(s, kVelocity)) << mode;
     EXPECT_FALSE(acts(s, kTorque)) << mode;
   }
+  Stage own = found(-3);
+  EXPECT_FALSE(acts(own, kVelocity)) << "what a drive's own mode does is not known";
+  own.facts.own_velocity_mode = true;
+  EXPECT_TRUE(acts(own, kVelocity)) << "but by its profile";
+  EXPECT_FALSE(acts(own, kTorque));
   for (const int mode : {4, 10}) {
     Stage s = found(mode);
     EXPECT_TRUE(acts(s, kTorque)) << mode;

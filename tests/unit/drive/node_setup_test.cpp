@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a CANopen node is mapped and started, against a small object dictionary that refuses what it is told to refuse.
-#include "gateway/drive/node_setup.hpp"
+#include "gateway/drive/device/node_setup.hpp"
 
 #include <gmock/gmock.h>
 
 #include <map>
 #include <set>
 
-#include "gateway/drive/bring_up.hpp"
+#include "gateway/drive/device/bring_up.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -19,7 +20,7 @@ using testing::IsEmpty;
 constexpr std::uint8_t kNode = 3;
 constexpr ObjectId kStatusword = 0, kPosition = 1, kTorque = 2;
 
-DriveModel model_with(std::vector<TpdoFacts> tpdos, std::vector<std::uint8_t> unused = {}) {
+DriveModel model_with(std::vector<TpdoProperties> tpdos, std::vector<std::uint8_t> unused = {}) {
   DriveModel model;
   model.protocol = "canopen";
   model.node = kNode;
@@ -38,8 +39,8 @@ DriveModel model_with(std::vector<TpdoFacts> tpdos, std::vector<std::uint8_t> un
   return model;
 }
 
-TpdoFacts tpdo(std::uint8_t number, std::vector<ObjectId> map) {
-  TpdoFacts facts;
+TpdoProperties tpdo(std::uint8_t number, std::vector<ObjectId> map) {
+  TpdoProperties facts;
   facts.number = number;
   facts.map = std::move(map);
   facts.inhibit = 50;

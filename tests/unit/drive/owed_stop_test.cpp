@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stop that an axis owes, alone: what was accepted, sent and read goes in, and what is to be sent comes out.
-#include "gateway/drive/owed_stop.hpp"
+#include "gateway/drive/motion/owed_stop.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What each motor on each protocol does with a stop that was asked for while its wire was cut, with a jog whose button
 // was let go meanwhile, and with a lease that ran out: it stands, and stays where it is until it is enabled anew.
 #include <gmock/gmock.h>
@@ -160,7 +161,7 @@ class JogInAGap : public testing::TestWithParam<std::tuple<Subject, Cut, bool>> 
   static constexpr Duration kGap = 800ms;  // jog_timeout is 500 ms
   JogInAGap() : axis(std::get<Subject>(GetParam()), lease()) {
     EXPECT_EQ(axis.command(Command::enable), Errc::ok);
-    Group speed;
+    WriteBatch speed;
     speed.jog_velocity = 300'000;
     EXPECT_EQ(axis.ask(speed), Errc::ok);
     EXPECT_EQ(axis.command(Command::jog_forward), Errc::ok);
@@ -174,7 +175,7 @@ class JogInAGap : public testing::TestWithParam<std::tuple<Subject, Cut, bool>> 
   /// The panel goes on writing 1.
   void hold(Duration time) {
     for (Duration done{}; done < time; done += 100ms) {
-      Group again;
+      WriteBatch again;
       again.jog_again = Command::jog_forward;
       // not_new: the drive's own watchdog has ended the jog, and the button is held in vain.
       EXPECT_THAT(axis.ask(again), testing::AnyOf(Errc::ok, Errc::not_new));
@@ -198,7 +199,7 @@ TEST_P(JogInAGap, APanelThatFellSilentHasLetGo) {
 TEST_P(JogInAGap, AButtonLetGoInItStopsTheMotorAfterIt) {
   hold(300ms);
   static_cast<void>(axis.rig.stage.begin(1, [this] {
-    Group end = with_command(Command::jog_end);
+    WriteBatch end = with_command(Command::jog_end);
     end.client = axis.owner->id;
     end.life = axis.owner;
     return end;

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // Design 3.5 as rules: who owns an axis, who may take it, and when its lease runs out.
 #include <gtest/gtest.h>
 
-#include "gateway/drive/jog.hpp"
-#include "gateway/drive/ownership.hpp"
+#include "gateway/drive/motion/jog.hpp"
+#include "gateway/drive/motion/ownership.hpp"
 #include "tests/unit/drive/alone.hpp"
 #include "tests/unit/drive/clients.hpp"
 

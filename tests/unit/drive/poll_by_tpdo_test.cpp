@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the poll plan makes of values that come by TPDO.
 #include <gtest/gtest.h>
 
-#include "gateway/drive/poll_plan.hpp"
+#include "gateway/drive/device/poll_plan.hpp"
 #include "tests/unit/drive/alone.hpp"
 
 namespace axisgate::drive {

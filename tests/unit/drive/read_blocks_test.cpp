@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which registers go into one request, what a refusal leaves of it; and the budget of writes that wear memory out.
 #include <gmock/gmock.h>
 
-#include "gateway/drive/nvm_budget.hpp"
-#include "gateway/drive/read_blocks.hpp"
+#include "gateway/drive/device/read_blocks.hpp"
+#include "gateway/drive/state/nvm_budget.hpp"
 #include "tests/unit/drive/alone.hpp"
 
 namespace axisgate::drive {

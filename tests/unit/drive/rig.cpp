@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/drive/rig.hpp"
 
 #include <algorithm>
@@ -58,7 +59,7 @@ void Rig::bring_to(Situation situation) {
     return;
   }
   online();
-  const auto done = [&](const GroupResult& r) {
+  const auto done = [&](const BatchResult& r) {
     expect(r.outcome.code == Errc::ok, "the way to the situation failed");
   };
   const auto enable = [&] { done(command(Command::enable)); };
@@ -104,7 +105,7 @@ void Rig::bring_to(Situation situation) {
       break;
     case Situation::suspect:
       enable();
-      faults().next(simulated::DriveFault::mute, 2);  // the first fence as well
+      faults().next(simulated::DriveFault::mute, 2);  // the first resynchronisation read as well
       expect(stage.run_until([&] { return axis().link_state == LinkState::suspect; }), "never suspect");
       break;
     case Situation::offline:
@@ -121,10 +122,10 @@ void Rig::bring_to(Situation situation) {
   mark();
 }
 
-GroupResult Rig::mailbox_write(std::uint16_t index, std::uint8_t sub, std::uint8_t size, std::uint32_t data) {
-  Group group;
-  group.object = ObjectRequest{true, index, sub, size, data};
-  return ask(group);
+BatchResult Rig::mailbox_write(std::uint16_t index, std::uint8_t sub, std::uint8_t size, std::uint32_t data) {
+  WriteBatch batch;
+  batch.object = ObjectRequest{true, index, sub, size, data};
+  return ask(batch);
 }
 
 std::vector<WireRequest> Rig::requests() {
@@ -163,22 +164,22 @@ bool Rig::has_event(EventKind kind, const std::string& part) {
                      [&](const Event& e) { return e.kind == kind && e.text.find(part) != std::string::npos; });
 }
 
-Group setpoints(std::initializer_list<Setpoint> list) { return with_command(Command::none, list); }
+WriteBatch setpoints(std::initializer_list<Setpoint> list) { return with_command(Command::none, list); }
 
-Group with_command(Command command, std::initializer_list<Setpoint> list) {
-  Group group;
-  group.client = 7;
-  for (const Setpoint& sp : list) group.setpoints.push_back(sp);
-  group.command = command;
-  return group;
+WriteBatch with_command(Command command, std::initializer_list<Setpoint> list) {
+  WriteBatch batch;
+  batch.client = 7;
+  for (const Setpoint& sp : list) batch.setpoints.push_back(sp);
+  batch.command = command;
+  return batch;
 }
 
-Group with_controlword(std::uint16_t word, bool single) {
-  Group group;
-  group.client = 7;
-  group.controlword = word;
-  group.single_controlword = single;
-  return group;
+WriteBatch with_controlword(std::uint16_t word, bool single) {
+  WriteBatch batch;
+  batch.client = 7;
+  batch.controlword = word;
+  batch.single_controlword = single;
+  return batch;
 }
 
 }  // namespace axisgate::test

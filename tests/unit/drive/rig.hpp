@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One simulated Kinco drive behind the shipped core, with the words in which these tests speak: bring it to a state,
 // ask, look at what reached the wire and what the motor does. Promises a fresh world per rig. Never decides what is
 // right: the tests do.
@@ -69,10 +70,10 @@ class Rig {
   void bring_to(Situation situation);
   void online();
 
-  GroupResult command(Command command) { return stage.command(1, command); }
-  GroupResult write(Quantity quantity, std::int64_t value) { return stage.write(1, quantity, value); }
-  GroupResult ask(const Group& group) { return stage.ask(1, group); }
-  GroupResult mailbox_write(std::uint16_t index, std::uint8_t sub, std::uint8_t size, std::uint32_t data);
+  BatchResult command(Command command) { return stage.command(1, command); }
+  BatchResult write(Quantity quantity, std::int64_t value) { return stage.write(1, quantity, value); }
+  BatchResult ask(const WriteBatch& batch) { return stage.ask(1, batch); }
+  BatchResult mailbox_write(std::uint16_t index, std::uint8_t sub, std::uint8_t size, std::uint32_t data);
 
   /// Writes sent since the last mark().
   void mark() { marked_ = stage.link(0).sent.size(); }
@@ -97,11 +98,11 @@ inline void expect(bool what, const char* why) {
   if (!what) throw std::runtime_error(why);
 }
 
-/// A group of set-points alone.
-[[nodiscard]] Group setpoints(std::initializer_list<Setpoint> list);
-/// A group with a command and set-points.
-[[nodiscard]] Group with_command(Command command, std::initializer_list<Setpoint> list = {});
+/// A write batch of set-points alone.
+[[nodiscard]] WriteBatch setpoints(std::initializer_list<Setpoint> list);
+/// A write batch with a command and set-points.
+[[nodiscard]] WriteBatch with_command(Command command, std::initializer_list<Setpoint> list = {});
 /// A raw controlword; `single`: in a write of its own.
-[[nodiscard]] Group with_controlword(std::uint16_t word, bool single = true);
+[[nodiscard]] WriteBatch with_controlword(std::uint16_t word, bool single = true);
 
 }  // namespace axisgate::test

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exceptions of Modbus drives (application protocol V1.1b3, 7): which make an object unsupported until the next
 // bring-up, which only put it off, and that both error functions of Kinco's reads are understood.
 #include <gmock/gmock.h>
@@ -77,7 +78,7 @@ TEST_P(RtuException, OnAWriteIsTheAnswerWithItsCodeAndNothingIsTakenAsWritten) {
     ++writes;
     rig.faults().next(DriveFault::exception);
   };
-  const GroupResult result = rig.stage.write(1, Quantity::profile_velocity, 123'000);
+  const BatchResult result = rig.stage.write(1, Quantity::profile_velocity, 123'000);
   end(rig);
   EXPECT_EQ(result.outcome.code, Errc::refused_by_drive);
   EXPECT_EQ(result.outcome.detail, static_cast<std::uint32_t>(code()));
@@ -102,9 +103,9 @@ TEST(RtuErrorFunction, OfAKincosReadIsUnderstoodAsPrintedAndAsTheStandardHasIt) 
       RtuRig rig(kind, {.kinco = {.read_error_function = function}, .neighbours = false});
       rig.come_up_running();
       const std::uint32_t timeouts = rig.stage.gateway().bus(0).statistics().timeouts;
-      Group look;
+      WriteBatch look;
       look.object = ObjectRequest{false, 0x0123, 0, 2, 0};
-      const GroupResult result = rig.stage.ask(1, look);
+      const BatchResult result = rig.stage.ask(1, look);
       EXPECT_EQ(result.outcome.code, Errc::refused_by_drive);
       EXPECT_EQ(result.outcome.detail, 2U) << "illegal data address";
       rig.run(2s);

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 // Late replies on Modbus RTU, whose replies to a read name nothing but their length: the whole core against simulated
-// lines, over the lateness that was measured to give wrong values without a fence (210 to 900 ms after a timeout of
-// 200 ms). Positions move all the time, so that a reply to another request is another number.
+// lines, over the lateness that was measured to give wrong values without a resynchronisation read (210 to 900 ms after
+// a timeout of 200 ms). Positions move all the time, so that a reply to another request is another number.
 #include <gmock/gmock.h>
 
 #include "adapters/bus/arbiter.hpp"
@@ -92,16 +93,17 @@ INSTANTIATE_TEST_SUITE_P(WithinWorstReply, RtuLateReply,
                                           testing::Values(210, 260, 300, 400, 500)),
                          case_name);
 
-// Beyond the profile's worst_reply of 500 ms: a single late reply is met by the fence, which is answered in order, or
-// by the silence, which counts from the last fence given up.
+// Beyond the profile's worst_reply of 500 ms: a single late reply is met by the resynchronisation read, which is
+// answered in order, or by the silence, which counts from the last resynchronisation read given up.
 INSTANTIATE_TEST_SUITE_P(ASingleOneBeyond, RtuLateReply,
                          testing::Combine(testing::ValuesIn(kRtuKinds), testing::Values(Late::one),
                                           testing::Values(700, 900)),
                          case_name);
 
 // Several of them queue up in the drive. What is promised then is bounded: the gateway gives a reply up after its
-// timeout and, with no fence left, keeps silent for worst_reply after the last one given up. A reply that comes later
-// than both together after its request may be taken for that of a plain read; none that comes earlier is.
+// timeout and, with no resynchronisation read left, keeps silent for worst_reply after the last one given up. A reply
+// that comes later than both together after its request may be taken for that of a plain read; none that comes earlier
+// is.
 class RtuVeryLateReply : public testing::TestWithParam<Case> {};
 
 TEST_P(RtuVeryLateReply, ShowsNoWrongValueUnlessOneWasOwedForLongerThanTimeoutAndWorstReply) {

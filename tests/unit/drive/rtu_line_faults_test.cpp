@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a Modbus RTU line does to replies: noise, halves, glued and flipped frames, wrong units and lengths, drives that
-// babble or are mute. Never a wrong value, and everything comes back.
+// babble or are unresponsive. Never a wrong value, and everything comes back.
 #include <gmock/gmock.h>
 
 #include "tests/unit/drive/rtu_rig.hpp"
@@ -55,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 class RtuNeighbours : public testing::TestWithParam<RtuKind> {};
 
-TEST_P(RtuNeighbours, OfAMuteDriveKeepTheirCycleAfterTheFirstMinute) {
+TEST_P(RtuNeighbours, OfAnUnresponsiveDriveKeepTheirCycleAfterTheFirstMinute) {
   RtuRig rig(GetParam());
   rig.come_up_running();
   rig.run(3s);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/drive/rtu_rig.hpp"
 
 #include <algorithm>
@@ -90,7 +91,7 @@ Duration RtuRig::longest_owed() {
 
 void RtuRig::come_up_running() {
   if (!stage.come_online()) throw std::runtime_error("the axes never came online");
-  const auto must = [&](const GroupResult& result) {
+  const auto must = [&](const BatchResult& result) {
     if (result.outcome.code != Errc::ok) throw std::runtime_error("the axis does not run");
   };
   must(stage.command(1, Command::enable));
@@ -115,7 +116,7 @@ bool RtuRig::run_until(const std::function<bool()>& done, Duration limit) {
 
 void RtuRig::ask_something() {
   static_cast<void>(stage.begin(1, setpoints({{Quantity::profile_velocity, next_value_ += 600}})));
-  Group look;
+  WriteBatch look;
   look.object = ObjectRequest{false, static_cast<std::uint16_t>(kind_ == RtuKind::stepper ? 101 : 0x3200), 0, 2, 0};
   static_cast<void>(stage.begin(1, look));
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Three simulated drives on one Modbus RTU line behind the shipped core: the one under test as axis 1, and one of each
 // other kind beside it. Promises that every step is watched: no value that its drive did not send for it, no write but
 // a stop to a drive that is suspect or gone, and neighbours that stay online. Never decides which faults there are.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stops of several clients at once, of a drive whose gate is the gateway's: whatever their order, none undoes another.
 #include <gmock/gmock.h>
 
@@ -8,10 +9,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Group from(ClientId client, Command command) {
-  Group group = with_command(command);
-  group.client = client;
-  return group;
+WriteBatch from(ClientId client, Command command) {
+  WriteBatch batch = with_command(command);
+  batch.client = client;
+  return batch;
 }
 
 TEST(RtuStops, AHaltBesideADisableOrAQuickStopNeverEnables) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/drive/rtu_truth.hpp"
 
 #include <algorithm>
@@ -54,7 +55,7 @@ std::optional<std::string> RtuTruth::lie() {
   std::optional<std::string> found;
   for (std::size_t id = 0; id < seen_.size(); ++id) {
     const drive::ObjectState& state = drive_.store()[static_cast<drive::ObjectId>(id)];
-    if (!state.known || state.made || state.exchange == seen_[id]) continue;
+    if (!state.known || state.emulated || state.exchange == seen_[id]) continue;
     seen_[id] = state.exchange;
     ++looked_at_;
     const drive::ObjectDef& object = drive_.model().object(static_cast<drive::ObjectId>(id));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the drives of a simulated Modbus RTU line really answered, held against what the gateway stores of one of them.
 // Promises to judge by the line's journal alone, with a reader of frames of its own: a stored number is true only if
 // the drive sent it for that object in answer to the very request that asked. Never changes anything it looks at.
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/app/gateway.hpp"
+#include "gateway/compose/gateway.hpp"
 #include "tests/stage/rtu_link_sim.hpp"
 
 namespace axisgate::test {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A profile of one's own whose set_position writes the controlword, on a CiA 402 drive that stands in mode 1 with an
 // old target in it: what would be sent.
 #include <gtest/gtest.h>
@@ -7,8 +8,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "gateway/drive/planner.hpp"
-#include "gateway/drive/profile_loader.hpp"
+#include "gateway/drive/plan/planner.hpp"
+#include "gateway/profile/resolve/profile_resolve.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -17,14 +18,17 @@ constexpr const char* kName = "kinco-jd";
 
 /// The shipped profile, but for the steps of set_position.
 DriveModel foreign(const char* steps) {
-  std::ifstream shipped(std::string(AXISGATE_SOURCE_DIR "/schemas/drives/") + kName + ".json");
-  nlohmann::json profile = nlohmann::json::parse(shipped);
-  profile["commands"]["set_position"] = {{"steps", nlohmann::json::parse(steps)}};
+  // It extends the shipped one of its own name, which lies in another folder.
+  const nlohmann::json profile{
+      {"profile", 1},
+      {"name", kName},
+      {"extends", kName},
+      {"commands", {{"set_position", {{"steps", nlohmann::json::parse(steps)}, {"zero_only", nullptr}}}}}};
   const auto folder = std::filesystem::path(testing::TempDir()) / "set_position_plan_test";
   std::filesystem::create_directories(folder);
   const std::string path = (folder / (std::string(kName) + ".json")).string();
   std::ofstream(path) << profile;
-  const LoadedProfile loaded = load_profile(path);
+  const LoadedProfile loaded = load_profile(path, {AXISGATE_SOURCE_DIR "/schemas/drives"});
   if (!loaded.faults.empty()) throw std::runtime_error(text(loaded.faults.front()));
   ResolveInput input;
   input.protocol = "canopen";

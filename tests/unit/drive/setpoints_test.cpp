@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Set-points are not starts, and what is not sent (design 3.3 and 3.4).
 #include <gmock/gmock.h>
 
@@ -15,7 +16,7 @@ constexpr std::uint16_t kProfileVelocity = 0x6081;
 TEST(Unchanged, IsNotSentAgainAndAnsweredAtOnce) {
   Rig rig(KincoType::jd);
   rig.bring_to(enabled);
-  const Group block = setpoints({{Quantity::profile_velocity, 150'000}, {Quantity::profile_acceleration, 5'000}});
+  const WriteBatch block = setpoints({{Quantity::profile_velocity, 150'000}, {Quantity::profile_acceleration, 5'000}});
   ASSERT_EQ(rig.ask(block).outcome.code, Errc::ok);
   rig.mark();
   for (int i = 0; i < 5; ++i) {
@@ -34,13 +35,13 @@ TEST(Unchanged, AModeInForceIsNotSentAgain) {
   EXPECT_TRUE(rig.writes().empty());
 }
 
-struct Doubt {
+struct Invalidation {
   const char* what;
   std::function<void(Rig&)> happen;
 };
 
 TEST(Unchanged, IsSentAgainAfterAnythingThatMayHaveChangedIt) {
-  const std::vector<Doubt> doubts{
+  const std::vector<Invalidation> invalidations{
       {"timeout",
        [](Rig& rig) {
          rig.faults().next(DriveFault::mute);
@@ -59,14 +60,14 @@ TEST(Unchanged, IsSentAgainAfterAnythingThatMayHaveChangedIt) {
        }},
       {"set_position", [](Rig& rig) { ASSERT_EQ(rig.command(Command::set_position).outcome.code, Errc::ok); }},
   };
-  for (const Doubt& doubt : doubts) {
-    SCOPED_TRACE(doubt.what);
+  for (const Invalidation& invalidation : invalidations) {
+    SCOPED_TRACE(invalidation.what);
     Rig rig(KincoType::jd);
     rig.bring_to(enabled);
-    const Group block = setpoints({{Quantity::profile_velocity, 150'000}});
+    const WriteBatch block = setpoints({{Quantity::profile_velocity, 150'000}});
     ASSERT_EQ(rig.ask(block).outcome.code, Errc::ok);
     rig.stage.run(300ms);
-    doubt.happen(rig);
+    invalidation.happen(rig);
     rig.mark();
     EXPECT_EQ(rig.ask(block).outcome.code, Errc::ok);
     EXPECT_EQ(rig.writes_of(kProfileVelocity).size(), 1U);
@@ -78,7 +79,7 @@ TEST(Unchanged, IsSentAgainAfterAnythingThatMayHaveChangedIt) {
   }
 }
 
-TEST(Waiting, ANewerGroupOfTheSameSetpointsSupersedesAWaitingOne) {
+TEST(Waiting, ANewerBatchOfTheSameSetpointsSupersedesAWaitingOne) {
   Rig rig(KincoType::jd);
   rig.bring_to(disabled);
   const auto enable = rig.stage.begin(1, with_command(Command::enable));
@@ -89,7 +90,7 @@ TEST(Waiting, ANewerGroupOfTheSameSetpointsSupersedesAWaitingOne) {
   const auto newest = rig.stage.begin(1, setpoints({{Quantity::profile_velocity, 300'000}}));
   rig.stage.run(900ms);
   EXPECT_EQ((*old)->outcome.code, Errc::superseded);
-  EXPECT_EQ((*newer)->outcome.code, Errc::ok) << "a group of the axis was accepted between";
+  EXPECT_EQ((*newer)->outcome.code, Errc::ok) << "a write batch of the axis was accepted between";
   EXPECT_EQ((*newest)->outcome.code, Errc::ok);
   EXPECT_EQ((*other)->outcome.code, Errc::ok) << "a command is more than its set-points";
   EXPECT_EQ(rig.writes_of(kProfileVelocity).size(), 3U);
@@ -149,7 +150,7 @@ TEST(TargetVelocity, ActsAtOnceOnlyWhileItRuns) {
 }
 
 TEST(TargetVelocity, IsNeededAnewAfterAnythingThatEndsTheMotionForGood) {
-  const std::vector<Doubt> ends{
+  const std::vector<Invalidation> ends{
       {"stop", [](Rig& rig) { ASSERT_EQ(rig.command(Command::quick_stop).outcome.code, Errc::ok); }},
       {"disable", [](Rig& rig) { ASSERT_EQ(rig.command(Command::disable).outcome.code, Errc::ok); }},
       {"fault",
@@ -172,7 +173,7 @@ TEST(TargetVelocity, IsNeededAnewAfterAnythingThatEndsTheMotionForGood) {
          ASSERT_TRUE(rig.stage.run_until([&] { return !rig.axis().has(AxisInput::enabled); }));
        }},
   };
-  for (const Doubt& end : ends) {
+  for (const Invalidation& end : ends) {
     for (const KincoType type : {KincoType::jd, KincoType::md}) {
       SCOPED_TRACE(std::string(end.what) + " " + name(type));
       Rig rig(type);

@@ -1,4 +1,5 @@
-// Every conversation with each of its exchanges failing, one after another, in every way an exchange can fail.
+// SPDX-License-Identifier: Apache-2.0
+// Every command sequence with each of its exchanges failing, one after another, in every way an exchange can fail.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -15,26 +16,26 @@ using enum Situation;
 constexpr std::array kSerialFailures{Failure::muted,      Failure::reply_lost, Failure::reply_late, Failure::refused,
                                      Failure::cut_before, Failure::cut_after,  Failure::restarted};
 
-struct Conversation {
+struct Commanded {
   std::string name;
   Situation from;
-  Group group;
+  WriteBatch batch;
   bool may_turn = false;    ///< the motor may turn whatever fails: it turned before, or a start was asked for
   bool may_enable = false;  ///< an enable was asked for
   bool is_stop = false;
 };
 
-std::vector<Conversation> conversations() {
-  Group raw_enable;
+std::vector<Commanded> all_commanded() {
+  WriteBatch raw_enable;
   raw_enable.controlword = 0x000F;
   raw_enable.single_controlword = true;
-  Group raw_stop = raw_enable;
+  WriteBatch raw_stop = raw_enable;
   raw_stop.controlword = 0x0006;
-  Group mode;
+  WriteBatch mode;
   mode.mode = 3;
-  Group read;
+  WriteBatch read;
   read.object = ObjectRequest{false, 0x2601, 0, 2, 0};
-  Group write;
+  WriteBatch write;
   write.object = ObjectRequest{true, 0x2010, 0x0F, 2, 4};
   const Setpoint near{Quantity::target_position, 30'000}, slow{Quantity::profile_velocity, 200'000};
   return {
@@ -62,11 +63,11 @@ std::vector<Conversation> conversations() {
   };
 }
 
-/// Frames that the conversation takes when nothing fails, polls between them included.
-std::size_t exchanges_of(KincoType type, const Conversation& talk) {
+/// Frames that the command sequence takes when nothing fails, polls between them included.
+std::size_t exchanges_of(KincoType type, const Commanded& talk) {
   Rig rig(type);
   rig.bring_to(talk.from);
-  const GroupResult result = rig.ask(talk.group);
+  const BatchResult result = rig.ask(talk.batch);
   EXPECT_EQ(result.outcome.code, Errc::ok) << talk.name;
   return rig.requests().size();
 }
@@ -80,7 +81,7 @@ void fail_at(Rig& rig, std::size_t step, Failure failure) {
   };
 }
 
-void expect_no_write_twice(Rig& rig, const Conversation& talk) {
+void expect_no_write_twice(Rig& rig, const Commanded& talk) {
   std::map<std::tuple<int, int, std::uint32_t>, std::size_t> seen;
   for (const WireRequest& w : rig.writes()) ++seen[{w.index, w.sub, w.data}];
   for (const auto& [what, times] : seen) {
@@ -117,7 +118,7 @@ class EachStepFails : public testing::TestWithParam<std::tuple<KincoType, Failur
 
 TEST_P(EachStepFails, EndsOnceAsTheContractSaysAndRecovers) {
   const auto& [type, failure] = GetParam();
-  for (const Conversation& talk : conversations()) {
+  for (const Commanded& talk : all_commanded()) {
     const std::size_t steps = exchanges_of(type, talk);
     for (std::size_t step = 0; step < steps; ++step) {
       SCOPED_TRACE(talk.name + ", " + text_of(failure) + " at exchange " + std::to_string(step));
@@ -126,12 +127,12 @@ TEST_P(EachStepFails, EndsOnceAsTheContractSaysAndRecovers) {
       const bool was_enabled = rig.motor_enabled();
       fail_at(rig, step, failure);
       int results = 0;
-      std::optional<GroupResult> result;
-      Group group = talk.group;
-      group.role = Role::engineer;
-      group.start_by = rig.stage.runtime().now() + 500ms;
-      group.answer_by = rig.stage.runtime().now() + 900ms;
-      result = rig.stage.gateway().submit(1, group, [&](const GroupResult& r) { ++results, result = r; });
+      std::optional<BatchResult> result;
+      WriteBatch batch = talk.batch;
+      batch.role = Role::engineer;
+      batch.start_by = rig.stage.runtime().now() + 500ms;
+      batch.answer_by = rig.stage.runtime().now() + 900ms;
+      result = rig.stage.gateway().submit(1, batch, [&](const BatchResult& r) { ++results, result = r; });
       if (result) ++results;
       rig.stage.run_until([&] { return results > 0; }, 4s);
       rig.stage.run(20ms);

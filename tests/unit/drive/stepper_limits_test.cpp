@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The iD286pro: what only this drive needs. Its gate, its memory, its runs of registers, and a client that goes away.
 #include <gmock/gmock.h>
 
@@ -41,7 +42,7 @@ TEST(Stepper, StopsWhenTheClientThatCommandedItsMotionIsGone) {
   StepperRig rig;
   rig.online();
   rig.enable();
-  Group run = with_command(Command::run_velocity, {{Quantity::target_velocity, 300'000}});
+  WriteBatch run = with_command(Command::run_velocity, {{Quantity::target_velocity, 300'000}});
   run.client = 5;
   ASSERT_EQ(rig.code(rig.ask(run)), Errc::ok);
   rig.stage.run(500ms);
@@ -58,7 +59,7 @@ TEST(Stepper, AClientThatGoesBeforeItsCommandWasSentLeavesNothingRunning) {
   StepperRig rig;
   rig.online();
   rig.enable();
-  Group run = with_command(Command::run_velocity, {{Quantity::target_velocity, 300'000}});
+  WriteBatch run = with_command(Command::run_velocity, {{Quantity::target_velocity, 300'000}});
   run.client = 5;
   const auto place = rig.stage.begin(1, run);
   rig.stage.gateway().client_gone(5);
@@ -71,7 +72,7 @@ TEST(Stepper, AClientWhoseMotionIsOverMayGo) {
   StepperRig rig;
   rig.online();
   rig.enable();
-  Group move = with_command(Command::move_absolute, {{Quantity::target_position, 10'000}});
+  WriteBatch move = with_command(Command::move_absolute, {{Quantity::target_position, 10'000}});
   move.client = 5;
   ASSERT_EQ(rig.code(rig.ask(move)), Errc::ok);
   ASSERT_TRUE(rig.motion_ends());
@@ -124,7 +125,7 @@ TEST(Stepper, TheMailboxCannotWriteHalfATargetBehindTheLimits) {
 
 // EEPROM -------------------------------------------------------------------------------------------------------------
 
-Group block(std::int64_t method) {
+WriteBatch block(std::int64_t method) {
   return setpoints({{Quantity::target_position, 5'000},
                     {Quantity::profile_velocity, 300'000},
                     {Quantity::profile_acceleration, 60'000},
@@ -168,7 +169,7 @@ TEST(Eeprom, AValueThatChangesWithEachWriteIsHeldBackWithAnAlarmAndStopsAreNot) 
   rig.enable();
   int busy = 0;
   for (int i = 0; i < 600; ++i) {
-    const GroupResult result = rig.write(Quantity::homing_method, i % 2 == 0 ? 19 : 21);
+    const BatchResult result = rig.write(Quantity::homing_method, i % 2 == 0 ? 19 : 21);
     if (result.outcome.code == Errc::busy) ++busy;
     rig.stage.run(100ms);
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/drive/stepper_rig.hpp"
 
 #include <algorithm>
@@ -19,10 +20,10 @@ std::vector<GatewayStage::Line> lines(const StepperOptions& options) {
   return out;
 }
 
-GroupResult object(GatewayStage& stage, bool write, std::uint16_t address, std::uint8_t size, std::uint32_t data) {
-  Group group;
-  group.object = ObjectRequest{write, address, 0, size, data};
-  return stage.ask(1, group);
+BatchResult object(GatewayStage& stage, bool write, std::uint16_t address, std::uint8_t size, std::uint32_t data) {
+  WriteBatch batch;
+  batch.object = ObjectRequest{write, address, 0, size, data};
+  return stage.ask(1, batch);
 }
 
 }  // namespace
@@ -38,25 +39,25 @@ void StepperRig::online() { expect(stage.come_online(), "the axis never came onl
 void StepperRig::enable() { expect(code(command(Command::enable)) == Errc::ok, "not enabled"); }
 
 void StepperRig::run_at(std::int64_t velocity) {
-  const GroupResult result = ask(with_command(Command::run_velocity, {{Quantity::target_velocity, velocity}}));
+  const BatchResult result = ask(with_command(Command::run_velocity, {{Quantity::target_velocity, velocity}}));
   expect(code(result) == Errc::ok, "does not run");
   const auto there = [&] { return std::abs(axis()[Quantity::velocity_actual].value - velocity) < 2'000; };
   expect(stage.run_until(there), "never at its velocity");
 }
 
-GroupResult StepperRig::move_to(std::int64_t position) {
+BatchResult StepperRig::move_to(std::int64_t position) {
   return ask(with_command(Command::move_absolute, {{Quantity::target_position, position}}));
 }
 
-GroupResult StepperRig::move_by(std::int64_t distance) {
+BatchResult StepperRig::move_by(std::int64_t distance) {
   return ask(with_command(Command::move_relative, {{Quantity::target_position, distance}}));
 }
 
-GroupResult StepperRig::mailbox_write(std::uint16_t address, std::uint8_t size, std::uint32_t data) {
+BatchResult StepperRig::mailbox_write(std::uint16_t address, std::uint8_t size, std::uint32_t data) {
   return object(stage, true, address, size, data);
 }
 
-GroupResult StepperRig::mailbox_read(std::uint16_t address, std::uint8_t size) {
+BatchResult StepperRig::mailbox_read(std::uint16_t address, std::uint8_t size) {
   return object(stage, false, address, size, 0);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One simulated iD286pro behind the shipped core, with the words in which these tests speak. Promises a fresh world per
 // rig. Never decides what is right: the tests do.
 #pragma once
@@ -30,14 +31,14 @@ class StepperRig {
   void enable();
   /// Runs at this velocity (0.001 rpm), and has reached it.
   void run_at(std::int64_t velocity);
-  [[nodiscard]] static Errc code(const GroupResult& result) { return result.outcome.code; }
-  GroupResult command(Command command) { return stage.command(1, command); }
-  GroupResult write(Quantity quantity, std::int64_t value) { return stage.write(1, quantity, value); }
-  GroupResult ask(const Group& group) { return stage.ask(1, group); }
-  GroupResult move_to(std::int64_t position);
-  GroupResult move_by(std::int64_t distance);
-  GroupResult mailbox_write(std::uint16_t address, std::uint8_t size, std::uint32_t data);
-  GroupResult mailbox_read(std::uint16_t address, std::uint8_t size);
+  [[nodiscard]] static Errc code(const BatchResult& result) { return result.outcome.code; }
+  BatchResult command(Command command) { return stage.command(1, command); }
+  BatchResult write(Quantity quantity, std::int64_t value) { return stage.write(1, quantity, value); }
+  BatchResult ask(const WriteBatch& batch) { return stage.ask(1, batch); }
+  BatchResult move_to(std::int64_t position);
+  BatchResult move_by(std::int64_t distance);
+  BatchResult mailbox_write(std::uint16_t address, std::uint8_t size, std::uint32_t data);
+  BatchResult mailbox_read(std::uint16_t address, std::uint8_t size);
 
   /// The motion ends within a minute, however.
   bool motion_ends();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The iD286pro behind the shipped core: a drive without CiA 402 that a client cannot tell from a servo, where it can be
 // told at all, and that says so where it cannot.
 #include <gmock/gmock.h>
@@ -86,9 +87,9 @@ TEST(Stepper, AMoveRunsToItsTargetAndIsReportedCompletedThereAndNotBefore) {
   StepperRig rig;
   rig.online();
   rig.enable();
-  Group group = with_command(Command::move_absolute, {{Quantity::target_position, 100'000}});
-  group.command_id = 7;
-  ASSERT_EQ(rig.code(rig.ask(group)), Errc::ok);
+  WriteBatch batch = with_command(Command::move_absolute, {{Quantity::target_position, 100'000}});
+  batch.command_id = 7;
+  ASSERT_EQ(rig.code(rig.ask(batch)), Errc::ok);
   EXPECT_FALSE(rig.axis().has(AxisInput::target_reached));
   EXPECT_EQ(rig.axis().motion_state, MotionState::active);
   EXPECT_EQ(rig.axis().axis_state, AxisState::discrete_motion);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The iD286pro: homing, and the raw words of a servo.
 #include <gmock/gmock.h>
 
@@ -36,7 +37,7 @@ TEST(Stepper, HomingIsAttainedWhereItsPositionSaysSo) {
     rig.online();
     EXPECT_FALSE(rig.axis().has(AxisInput::homed));
     rig.enable();
-    const GroupResult asked = rig.ask(with_command(Command::home, {{Quantity::homing_method, method}}));
+    const BatchResult asked = rig.ask(with_command(Command::home, {{Quantity::homing_method, method}}));
     ASSERT_EQ(rig.code(asked), Errc::ok) << method;
     EXPECT_EQ(rig.axis().axis_state, AxisState::homing);
     rig.stage.run_until([&] { return rig.axis().motion_state != MotionState::active; }, 70s);
@@ -66,7 +67,7 @@ TEST(Stepper, SetPositionTakesAnyValueAtStandstill) {
   rig.online();
   rig.enable();
   ASSERT_EQ(rig.code(rig.move_to(10'000)), Errc::ok);
-  Group set = with_command(Command::set_position);
+  WriteBatch set = with_command(Command::set_position);
   set.set_position_value = -77'000;
   EXPECT_EQ(rig.code(rig.ask(set)), Errc::busy);
   ASSERT_TRUE(rig.motion_ends());

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stops and the stop latch (design 3.4): next on the wire, idempotent, repeated until they show, and never an enable.
 #include <gmock/gmock.h>
 
@@ -10,9 +11,9 @@ using namespace std::chrono_literals;
 using simulated::DriveFault;
 using enum Situation;
 
-Group of(ClientId client, Group group) {
-  group.client = client;
-  return group;
+WriteBatch of(ClientId client, WriteBatch batch) {
+  batch.client = client;
+  return batch;
 }
 
 TEST(Stops, GoesNextOnTheWireBehindFullQueues) {
@@ -32,7 +33,7 @@ TEST(Stops, GoesNextOnTheWireBehindFullQueues) {
   ASSERT_TRUE(stage.come_online());
   ASSERT_EQ(stage.command(8, Command::enable).outcome.code, Errc::ok);
   for (int round = 0; round < 20; ++round) {
-    std::vector<std::shared_ptr<std::optional<GroupResult>>> places;
+    std::vector<std::shared_ptr<std::optional<BatchResult>>> places;
     for (ClientId client = 1; client <= 32; ++client) {
       const Quantity quantity = client % 2 == 0 ? Quantity::profile_velocity : Quantity::profile_acceleration;
       const std::int64_t value = 100'000 + 17 * static_cast<std::int64_t>(client) + round;
@@ -49,7 +50,7 @@ TEST(Stops, GoesNextOnTheWireBehindFullQueues) {
     EXPECT_EQ(next.index, kControlword);
     EXPECT_EQ(next.data, 0x000BU);
     stage.run(2s);
-    for (const auto& place : places) EXPECT_TRUE(place->has_value()) << "each group gets its result";
+    for (const auto& place : places) EXPECT_TRUE(place->has_value()) << "each write batch gets its result";
     ASSERT_EQ(stage.command(8, Command::enable).outcome.code, Errc::ok);
   }
 }
@@ -139,9 +140,9 @@ TEST(Stops, KeepTheirThreeTriesAtADriveThatWasSilentBefore) {
   rig.bring_to(running);
   rig.faults().next(DriveFault::mute, 5);
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().link_state == LinkState::suspect; }));
-  rig.stage.run(150ms);  // the first fence is out
+  rig.stage.run(150ms);  // the first resynchronisation read is out
   rig.mark();
-  const GroupResult result = rig.command(Command::quick_stop);
+  const BatchResult result = rig.command(Command::quick_stop);
   EXPECT_EQ(result.outcome.code, Errc::ok) << text(result.outcome.code);
   EXPECT_LE(rig.count(kControlword, 0x0B), 3U);
   EXPECT_TRUE(rig.stage.run_until([&] { return !rig.motor_enabled(); }, 2s));
@@ -166,7 +167,7 @@ TEST(Stops, DropWhatWaitsAndAbortWhatHasStarted) {
   EXPECT_TRUE(rig.has_event(EventKind::command, "stopped by another client"));
 }
 
-TEST(Stops, OfTheSameClientAbortItsOwnGroupAsDropped) {
+TEST(Stops, OfTheSameClientAbortItsOwnBatchAsDropped) {
   Rig rig(KincoType::jd);
   rig.bring_to(disabled);
   const auto started = rig.stage.begin(1, of(1, with_command(Command::enable)));
@@ -177,12 +178,12 @@ TEST(Stops, OfTheSameClientAbortItsOwnGroupAsDropped) {
   EXPECT_EQ((*stop)->outcome.code, Errc::ok);
 }
 
-TEST(Stops, AGroupThatHoldsOneStopsFirstAndWritesTheRestAfterwards) {
+TEST(Stops, ABatchThatHoldsOneStopsFirstAndWritesTheRestAfterwards) {
   Rig rig(KincoType::md);
   rig.bring_to(running);
-  const Group group =
+  const WriteBatch batch =
       with_command(Command::halt, {{Quantity::target_velocity, 50'000}, {Quantity::profile_velocity, 70'000}});
-  EXPECT_EQ(rig.ask(group).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.ask(batch).outcome.code, Errc::ok);
   const auto writes = rig.writes();
   ASSERT_GE(writes.size(), 2U);
   EXPECT_EQ(writes.front().data, 0x010FU);
@@ -194,9 +195,9 @@ TEST(Stops, AControlwordBesideAStopCommandCannotUndoIt) {
   for (const Command stop : {Command::disable, Command::quick_stop, Command::halt}) {
     Rig rig(KincoType::md);
     rig.bring_to(moving);
-    Group group = with_command(stop);
-    group.controlword = 0x003F;
-    EXPECT_EQ(rig.ask(group).outcome.code, Errc::ok);
+    WriteBatch batch = with_command(stop);
+    batch.controlword = 0x003F;
+    EXPECT_EQ(rig.ask(batch).outcome.code, Errc::ok);
     EXPECT_EQ(rig.count(kControlword, 0x3F), 0U);
     rig.stage.run(2s);
     EXPECT_FALSE(rig.turns());
@@ -206,7 +207,7 @@ TEST(Stops, AControlwordBesideAStopCommandCannotUndoIt) {
 TEST(Stops, BesideAnImpossibleValueIsCarriedOutAndTheAnswerTellsOfTheValue) {
   Rig rig(KincoType::jd);
   rig.bring_to(running);
-  const GroupResult result = rig.ask(with_command(Command::quick_stop, {{Quantity::homing_method, 99}}));
+  const BatchResult result = rig.ask(with_command(Command::quick_stop, {{Quantity::homing_method, 99}}));
   EXPECT_EQ(result.outcome.code, Errc::bad_value);
   EXPECT_EQ(rig.count(kControlword, 0x0B), 1U);
   EXPECT_FALSE(rig.motor_enabled() && rig.turns());
@@ -248,9 +249,9 @@ TEST(Stops, GoOnAfterTheirClientHasItsAnswer) {
   Rig rig(KincoType::jd);
   rig.bring_to(running);
   rig.faults().next(DriveFault::mute, 1);
-  Group group = with_command(Command::quick_stop);
-  group.answer_by = rig.stage.runtime().now() + 20ms;
-  EXPECT_EQ(rig.ask(group).outcome.code, Errc::timed_out);
+  WriteBatch batch = with_command(Command::quick_stop);
+  batch.answer_by = rig.stage.runtime().now() + 20ms;
+  EXPECT_EQ(rig.ask(batch).outcome.code, Errc::timed_out);
   EXPECT_TRUE(rig.stage.run_until([&] { return !rig.motor_enabled(); }, 2s));
 }
 

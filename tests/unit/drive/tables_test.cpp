@@ -1,9 +1,10 @@
-// The pure deciders alone: CiA 402 tables, fence, poll plan, admission.
+// SPDX-License-Identifier: Apache-2.0
+// The pure deciders alone: CiA 402 tables, resynchronisation read, poll plan, admission.
 #include <gmock/gmock.h>
 
-#include "gateway/drive/admission.hpp"
-#include "gateway/drive/fence.hpp"
-#include "gateway/drive/poll_plan.hpp"
+#include "gateway/drive/device/poll_plan.hpp"
+#include "gateway/drive/device/resync.hpp"
+#include "gateway/drive/plan/admission.hpp"
 #include "tests/unit/drive/alone.hpp"
 
 namespace axisgate::drive {
@@ -60,78 +61,78 @@ DriveModel five_objects() {
     object.address = {static_cast<std::uint16_t>(0x2000 + i), 0};
     model.objects.push_back(object);
   }
-  model.fence.candidates = {{1}, {2}, {3}};
+  model.resync.candidates = {{1}, {2}, {3}};
   return model;
 }
 
-TEST(Fence, NeverUsesAnObjectWhoseReplyMayStillCome) {
+TEST(Resync, NeverUsesAnObjectWhoseReplyMayStillCome) {
   const DriveModel model = five_objects();
-  Fence fence(model.fence, model.objects);
-  EXPECT_FALSE(fence.suspect());
-  fence.lost(reading(0x2001), kStart);
-  EXPECT_TRUE(fence.suspect());
-  EXPECT_EQ(fence.candidate().value().object, 2);
-  fence.fence_sent();
-  fence.lost(reading(0x2002), kStart + 100ms);
-  EXPECT_EQ(fence.candidate().value().object, 3);
-  EXPECT_FALSE(fence.exhausted());
-  fence.fence_sent();
-  EXPECT_TRUE(fence.exhausted());
-  fence.lost(reading(0x2003), kStart + 200ms);
-  EXPECT_FALSE(fence.candidate().has_value());
-  EXPECT_EQ(fence.silent_until(), kStart + 200ms + model.fence.worst_reply);
-  fence.waited_out();
-  EXPECT_FALSE(fence.suspect());
-  EXPECT_FALSE(fence.exhausted());
+  Resync resync(model.resync, model.objects);
+  EXPECT_FALSE(resync.suspect());
+  resync.lost(reading(0x2001), kStart);
+  EXPECT_TRUE(resync.suspect());
+  EXPECT_EQ(resync.candidate().value().object, 2);
+  resync.resync_sent();
+  resync.lost(reading(0x2002), kStart + 100ms);
+  EXPECT_EQ(resync.candidate().value().object, 3);
+  EXPECT_FALSE(resync.exhausted());
+  resync.resync_sent();
+  EXPECT_TRUE(resync.exhausted());
+  resync.lost(reading(0x2003), kStart + 200ms);
+  EXPECT_FALSE(resync.candidate().has_value());
+  EXPECT_EQ(resync.silent_until(), kStart + 200ms + model.resync.worst_reply);
+  resync.waited_out();
+  EXPECT_FALSE(resync.suspect());
+  EXPECT_FALSE(resync.exhausted());
 }
 
-TEST(Fence, AnAnsweredOneProvesThatNothingOlderIsLeft) {
+TEST(Resync, AnAnsweredOneProvesThatNothingOlderIsLeft) {
   const DriveModel model = five_objects();
-  Fence fence(model.fence, model.objects);
-  fence.lost(reading(0x2001), kStart);
-  fence.lost(reading(0x2004), kStart);
-  fence.fence_sent();
-  fence.answered();
-  EXPECT_FALSE(fence.suspect());
-  fence.lost(reading(0x2000), kStart + 1s);
-  EXPECT_EQ(fence.candidate().value().object, 1);
+  Resync resync(model.resync, model.objects);
+  resync.lost(reading(0x2001), kStart);
+  resync.lost(reading(0x2004), kStart);
+  resync.resync_sent();
+  resync.answered();
+  EXPECT_FALSE(resync.suspect());
+  resync.lost(reading(0x2000), kStart + 1s);
+  EXPECT_EQ(resync.candidate().value().object, 1);
 }
 
 // Modbus RTU: a reply to a read tells how long it is, and nothing else.
-TEST(Fence, TellsRepliesByTheirLengthWhereTheyNameNoObject) {
+TEST(Resync, TellsRepliesByTheirLengthWhereTheyNameNoObject) {
   DriveModel model = five_objects();
-  model.fence = {{{1, 1}, {1, 2}, {1, 3}, {1, 4}}, true, 500ms};
-  Fence fence(model.fence, model.objects);
-  fence.lost(reading(0x2000), kStart);  // one register, of whatever object
-  EXPECT_EQ(fence.candidate().value().registers, 2);
-  fence.lost(reading(0x2004, 4), kStart);
-  EXPECT_EQ(fence.candidate().value().registers, 3);
+  model.resync = {{{1, 1}, {1, 2}, {1, 3}, {1, 4}}, true, 500ms};
+  Resync resync(model.resync, model.objects);
+  resync.lost(reading(0x2000), kStart);  // one register, of whatever object
+  EXPECT_EQ(resync.candidate().value().registers, 2);
+  resync.lost(reading(0x2004, 4), kStart);
+  EXPECT_EQ(resync.candidate().value().registers, 3);
   bus::Exchange run = reading(0x2000);
   run.more = {{{0x2001, 0}, 2}, {{0x2002, 0}, 2}};
-  fence.lost(run, kStart);
-  EXPECT_EQ(fence.candidate().value().registers, 4);
-  fence.answered();
-  EXPECT_EQ(fence.candidate().value().registers, 1);
+  resync.lost(run, kStart);
+  EXPECT_EQ(resync.candidate().value().registers, 4);
+  resync.answered();
+  EXPECT_EQ(resync.candidate().value().registers, 1);
 }
 
-TEST(Fence, AWriteGivenUpMakesTheDriveSuspectThoughItsReplyIsLikeNoRead) {
+TEST(Resync, AWriteGivenUpMakesTheDriveSuspectThoughItsReplyIsLikeNoRead) {
   DriveModel model = five_objects();
-  model.fence = {{{1, 1}, {1, 2}}, true, 500ms};
-  Fence fence(model.fence, model.objects);
-  fence.lost({1, bus::Access::write, {0x2000, 0}, 2, 7}, kStart);
-  EXPECT_TRUE(fence.suspect());
-  EXPECT_EQ(fence.candidate().value().registers, 1);
+  model.resync = {{{1, 1}, {1, 2}}, true, 500ms};
+  Resync resync(model.resync, model.objects);
+  resync.lost({1, bus::Access::write, {0x2000, 0}, 2, 7}, kStart);
+  EXPECT_TRUE(resync.suspect());
+  EXPECT_EQ(resync.candidate().value().registers, 1);
 }
 
 // Kinco documents counts 1 and 2 and no other.
-TEST(Fence, WithBothLengthsLostOnlySilenceHelps) {
+TEST(Resync, WithBothLengthsLostOnlySilenceHelps) {
   DriveModel model = five_objects();
-  model.fence = {{{1, 2}, {1, 1}}, true, 500ms};
-  Fence fence(model.fence, model.objects);
-  fence.lost(reading(0x2000, 2), kStart);
-  fence.lost(reading(0x2000, 4), kStart + 1ms);
-  EXPECT_FALSE(fence.candidate().has_value());
-  EXPECT_EQ(fence.silent_until(), kStart + 501ms);
+  model.resync = {{{1, 2}, {1, 1}}, true, 500ms};
+  Resync resync(model.resync, model.objects);
+  resync.lost(reading(0x2000, 2), kStart);
+  resync.lost(reading(0x2000, 4), kStart + 1ms);
+  EXPECT_FALSE(resync.candidate().has_value());
+  EXPECT_EQ(resync.silent_until(), kStart + 501ms);
 }
 
 DriveModel polled() {
@@ -186,7 +187,7 @@ TEST(PollPlan, KeepsItsBeatButNeverCatchesUp) {
   EXPECT_EQ(plan.next_due(), kStart + 117ms) << "read early by somebody else";
 }
 
-TEST(PollPlan, OnceMeansOnceAndAgainAfterAWriteOrADoubt) {
+TEST(PollPlan, OnceMeansOnceAndAgainAfterAWriteOrAnInvalidation) {
   const DriveModel model = polled();
   PollPlan plan(model);
   plan.restart(kStart);
@@ -217,40 +218,40 @@ TEST(PollPlan, WhatTheDriveRefusesIsNotAskedForUntilTheNextBringUp) {
 }
 
 TEST(Admission, KnowsAStopWhereverItStands) {
-  Group group;
-  EXPECT_FALSE(holds_stop(group));
-  group.command = Command::halt;
-  EXPECT_TRUE(holds_stop(group));
-  group.command = Command::enable;
-  group.controlword = 0x0006;
-  EXPECT_FALSE(holds_stop(group)) << "in a block write 6 is a step of the state machine";
-  group.single_controlword = true;
-  EXPECT_TRUE(holds_stop(group));
-  group.setpoints.push_back({Quantity::profile_velocity, 1});
-  group.mode = 3;
-  const Group alone = stop_alone(group);
+  WriteBatch batch;
+  EXPECT_FALSE(holds_stop(batch));
+  batch.command = Command::halt;
+  EXPECT_TRUE(holds_stop(batch));
+  batch.command = Command::enable;
+  batch.controlword = 0x0006;
+  EXPECT_FALSE(holds_stop(batch)) << "in a block write 6 is a step of the state machine";
+  batch.single_controlword = true;
+  EXPECT_TRUE(holds_stop(batch));
+  batch.setpoints.push_back({Quantity::profile_velocity, 1});
+  batch.mode = 3;
+  const WriteBatch alone = stop_alone(batch);
   EXPECT_TRUE(alone.setpoints.empty() && !alone.mode && alone.command == Command::none);
   EXPECT_EQ(alone.controlword, std::optional<std::uint16_t>(6));
 }
 
-TEST(Admission, TellsTheArbiterWhatAGroupIs) {
+TEST(Admission, TellsTheArbiterWhatABatchIs) {
   const DriveModel model = polled();
   ObjectStore store(model.objects.size());
   AxisCore core{model, model.axes[0], store};
-  Group group;
-  group.start_by = kStart;
-  group.object = ObjectRequest{false, 0x2001, 0, 2, 0};
-  bus::Order order = order_for(core, group, false);
-  EXPECT_EQ(order.priority, bus::Priority::interactive);
-  EXPECT_TRUE(order.read.has_value() && order.survives_stop);
-  group.object.reset();
-  group.command = Command::enable;
-  order = order_for(core, group, false);
-  EXPECT_EQ(order.priority, bus::Priority::command);
-  EXPECT_FALSE(order.setpoints_only || order.survives_stop);
-  order = order_for(core, group, true);
-  EXPECT_EQ(order.priority, bus::Priority::stop);
-  EXPECT_EQ(order.start_by, kNever) << "a stop is never given up for being late";
+  WriteBatch batch;
+  batch.start_by = kStart;
+  batch.object = ObjectRequest{false, 0x2001, 0, 2, 0};
+  bus::BusJob job = job_for(core, batch, false);
+  EXPECT_EQ(job.priority, bus::Priority::interactive);
+  EXPECT_TRUE(job.read.has_value() && job.survives_stop);
+  batch.object.reset();
+  batch.command = Command::enable;
+  job = job_for(core, batch, false);
+  EXPECT_EQ(job.priority, bus::Priority::command);
+  EXPECT_FALSE(job.setpoints_only || job.survives_stop);
+  job = job_for(core, batch, true);
+  EXPECT_EQ(job.priority, bus::Priority::stop);
+  EXPECT_EQ(job.start_by, kNever) << "a stop is never given up for being late";
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which requests are told: each command, a stream when it begins, and never more than the bounds.
-#include "gateway/drive/telling.hpp"
+#include "gateway/drive/axis/telling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,23 +9,23 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Group command_of(ClientId client, Command command) {
-  Group group;
-  group.client = client;
-  group.command = command;
-  return group;
+WriteBatch command_of(ClientId client, Command command) {
+  WriteBatch batch;
+  batch.client = client;
+  batch.command = command;
+  return batch;
 }
 
-Group value_of(ClientId client, Quantity quantity, std::int64_t value = 0) {
-  Group group;
-  group.client = client;
-  group.setpoints.push_back({quantity, value});
-  return group;
+WriteBatch value_of(ClientId client, Quantity quantity, std::int64_t value = 0) {
+  WriteBatch batch;
+  batch.client = client;
+  batch.setpoints.push_back({quantity, value});
+  return batch;
 }
 
 class TellingTest : public testing::Test {
  protected:
-  [[nodiscard]] bool told(const Group& group) { return telling_.asked(group, now_).has_value(); }
+  [[nodiscard]] bool told(const WriteBatch& batch) { return telling_.asked(batch, now_).has_value(); }
   Telling telling_;
   Instant now_ = Instant{} + 1h;
 };
@@ -55,7 +56,7 @@ TEST_F(TellingTest, AnotherClientAndAnotherValueAreOtherStreams) {
     EXPECT_EQ(told(value_of(1, Quantity::target_velocity)), first);
     EXPECT_EQ(told(value_of(2, Quantity::target_velocity)), first);
     EXPECT_EQ(told(value_of(1, Quantity::target_torque)), first);
-    Group run = value_of(1, Quantity::target_velocity);
+    WriteBatch run = value_of(1, Quantity::target_velocity);
     run.command = Command::run_velocity;
     EXPECT_EQ(told(run), first) << "a DDS writer commands with each sample";
     now_ += 10ms;

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // The built-in CiA 402 machine alone: states by controlword, and how a motion's end is worked out.
 #include <gmock/gmock.h>
 
-#include "gateway/drive/virtual_axis.hpp"
+#include "gateway/drive/motion/virtual_axis.hpp"
 #include "tests/unit/drive/alone.hpp"
 
 namespace axisgate::drive {
@@ -52,7 +53,7 @@ class Machine {
 
   VirtualAxis axis;
   Seen seen;
-  VirtualFacts facts_;
+  VirtualProperties facts_;
 };
 
 TEST(VirtualAxis, GoesThroughTheStatesOfTheStandardByControlword) {

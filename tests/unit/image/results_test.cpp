@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The numbers by which clients are told how a request has ended (register 25, CommandReply.result).
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Property: whatever frames come, a reply is told once, and only for a frame that says all that was asked for.
 #include "gateway/core/random.hpp"
 #include "tests/unit/keya/keya_frames.hpp"

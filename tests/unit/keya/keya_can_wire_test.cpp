@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exchanges on Keya's CAN. What the wire shares with others is in tests/unit/bus/wire_rules_test.cpp.
 #include "tests/unit/keya/keya_frames.hpp"
 

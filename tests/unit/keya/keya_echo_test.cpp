@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a line that brings back our frames must show before an answer of zeros is believed.
 #include "adapters/keya/keya_echo.hpp"
 

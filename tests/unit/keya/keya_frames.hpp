@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keya's frames in the notation of the manual, exchanges, and stages with a Keya wire on them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Properties of the receiver over random streams: what is heard as an answer was asked for, stood in the stream as it
 // is told, and began after the request; nothing gets lost uncounted; the cut of the stream changes nothing.
 #include <algorithm>

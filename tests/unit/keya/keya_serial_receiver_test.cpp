@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which of several possible frames is meant: RS232 has no sum, so only the form of a frame and what follows it tell.
 #include "adapters/keya/keya_serial_receiver.hpp"
 

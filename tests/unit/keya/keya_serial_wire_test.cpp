@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exchanges on Keya's serial lines. What the wire shares with others is in tests/unit/bus/wire_rules_test.cpp.
 #include "tests/unit/keya/keya_frames.hpp"
 
@@ -7,7 +8,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
-using Kind = bus::Notice::Kind;
+using Kind = bus::UnsolicitedEvent::Kind;
 
 using KeyaSerialWireTest = KeyaSerialStage;
 
@@ -184,8 +185,8 @@ TEST_F(KeyaSerialWireTest, the_first_heartbeat_says_that_the_drive_is_there_and_
   begin(KeyaLine::rs232);
   for (int i = 0; i < 5; ++i, runtime.advance_by(1s)) bring(kBeat232);
   EXPECT_THAT(kinds(), ElementsAre(Kind::present));
-  EXPECT_EQ(notices[0].node, keya::kRs232Node);
-  EXPECT_EQ(notices[0].state, bus::NodeState::operational);
+  EXPECT_EQ(unsolicited_events[0].node, keya::kRs232Node);
+  EXPECT_EQ(unsolicited_events[0].state, bus::NodeState::operational);
   runtime.advance_by(keya::kSerialHeartbeatSilence);
   bring(kBeat232);
   link->events->on_link_down("pulled");
@@ -204,7 +205,7 @@ TEST_F(KeyaSerialWireTest, a_heartbeat_of_another_sum_is_accepted_and_counted_an
   begin(KeyaLine::rs485);
   bring(kBeat232);
   runtime.advance_by(1s);
-  EXPECT_THAT(notices, IsEmpty());
+  EXPECT_THAT(unsolicited_events, IsEmpty());
   EXPECT_EQ(wire->statistics().dropped_bytes, 12u);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames in words, as an engineer reads them in the decode log.
 #include "adapters/keya/keya_text.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every frame of Keya's own protocols in the drive sheet: forth and back, cut at every byte, glued to heartbeats and
 // noise.
 #include <set>
@@ -205,7 +206,7 @@ TEST_P(KeyaSerialAnswer, is_heard_among_heartbeats_wherever_the_stream_is_cut_an
         link->bring(Bytes(stream).subspan(cut));
         expect_the_answer_once();
         EXPECT_EQ(wire->statistics().dropped_bytes, 0u);
-        EXPECT_EQ(notices.size(), 1u);
+        EXPECT_EQ(unsolicited_events.size(), 1u);
       }
     }
   }

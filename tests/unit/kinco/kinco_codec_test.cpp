@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames forth and back, exchanges as frames, frames in words. The sheets' frames: kinco_vectors_test.cpp.
 #include "gateway/core/random.hpp"
 #include "tests/unit/kinco/kinco_frames.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames as the manuals print them, and exchanges.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Property: the answer is found after any noise that does not itself contain a full answer, however the bytes are cut.
 // Noise is drawn to be nasty: pieces of true frames, well-summed strangers, echoes, and bytes chosen so that a window
 // across the start of the answer adds up to 0.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the receiver hears in a stream, told by example. Streams at random: kinco_receiver_property_test.cpp.
 #include "adapters/kinco/kinco_receiver.hpp"
 

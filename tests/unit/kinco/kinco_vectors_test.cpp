@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every RS232 frame of both Kinco manuals, forth and back, cut at every byte and glued to its neighbours.
 #include "adapters/kinco/kinco_receiver.hpp"
 #include "tests/unit/bus/sheet_vectors.hpp"

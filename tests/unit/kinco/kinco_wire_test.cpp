@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinco's wire: what it says in its own way. What it shares with other wires is in tests/unit/bus/wire_rules_test.cpp.
 #include "adapters/kinco/kinco_wire.hpp"
 

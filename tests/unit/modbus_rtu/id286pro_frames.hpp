@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Modbus RTU frames of the iD286pro's manual (section "communication examples"), and frames built from its register
 // table. The last CRC that it prints belongs to another frame, 01 10 01 33 00 02: here it stands corrected.
 #pragma once

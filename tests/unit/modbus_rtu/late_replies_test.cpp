@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replies that come too late, over wire, link, libmodbus and a pty: three reads of one register each, the first one's
 // answer late. The wire by itself keeps apart what was heard before a request from what was heard after it; a late
 // answer of the right unit, function and length that comes after the next request cannot be told from that one's, and
-// is why a drive that was late gets a fence before anything it says counts. And a line that babbles, over the same
-// road.
+// is why a drive that was late gets a resynchronisation read before anything it says counts. And a line that babbles,
+// over the same road.
 #include "adapters/modbus_rtu/rtu_wire.hpp"
 #include "tests/unit/modbus_rtu/libmodbus_link_stage.hpp"
 
@@ -79,7 +80,7 @@ TEST_F(LateReplies, after_the_next_request_are_taken_for_its_answer_by_a_wire_al
 }
 
 TEST_F(LateReplies, of_another_length_than_the_next_request_asks_for_do_not_answer_it) {
-  // What a fence does.
+  // What a resynchronisation read does.
   ask_and_give_up(100);
   ask(200, 4);
   answer(pty, kHundred);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Descriptors of 1024 and more, on which libmodbus's select() would abort the process: the link is down and says why.
 #include <sys/resource.h>
 #include <sys/select.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames over libmodbus on a pty: whole ones with their number, and everything that is none.
 #include <poll.h>
 

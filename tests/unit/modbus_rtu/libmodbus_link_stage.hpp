@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A link over libmodbus whose clock stands still and whose far end is a pty: only what the test does makes time or
 // bytes move. Its patience with a frame that has begun is far beyond what any machine needs, so that a slow one breaks
 // no test; what ends a half frame is then tested by itself.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Up, loss in each state and return, on a pty; the clock moves by hand, so "at once" and "after a second" can be told
 // apart.
 #include "tests/unit/modbus_rtu/libmodbus_link_stage.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The link against a slave that is libmodbus itself, in a thread of its own.
 #include <modbus/modbus.h>
 

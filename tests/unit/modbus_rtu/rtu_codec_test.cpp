@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests built from exchanges, the values found in replies, frames in words, times on the line.
 #include "adapters/modbus_rtu/rtu_codec.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A frame is the answer only if everything in it fits: what differs in one byte, or is shorter or longer, is not.
 #include "tests/unit/modbus_rtu/rtu_frames.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every Modbus RTU frame of the sheets: both Kincos' from tests/vectors, the iD286pro's from id286pro_frames.hpp.
 #include "tests/unit/bus/sheet_vectors.hpp"
 #include "tests/unit/modbus_rtu/id286pro_frames.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Modbus RTU's wire. What it shares with others is in tests/unit/bus/wire_rules_test.cpp.
 #include "adapters/modbus_rtu/rtu_wire.hpp"
 

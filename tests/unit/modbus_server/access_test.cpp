@@ -1,4 +1,5 @@
-#include "gateway/upstream/modbus_tcp/access.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/modbus_tcp/server/access.hpp"
 
 #include <gtest/gtest.h>
 
@@ -80,11 +81,11 @@ TEST(ClientCounts, ReleasedRoomIsRoomAgain) {
   ListenerSettings settings;
   settings.max_clients = 2;
   ClientCounts counts;
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, kManyDescriptors), Admission::admitted);
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 2), Role::viewer, kManyDescriptors), Admission::admitted);
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 3), Role::viewer, kManyDescriptors), Admission::listener_full);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, kManyDescriptors), ConnectionVerdict::admitted);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 2), Role::viewer, kManyDescriptors), ConnectionVerdict::admitted);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 3), Role::viewer, kManyDescriptors), ConnectionVerdict::listener_full);
   counts.release(v4(1, 1, 1, 1));
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 3), Role::viewer, kManyDescriptors), Admission::admitted);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 3), Role::viewer, kManyDescriptors), ConnectionVerdict::admitted);
   EXPECT_EQ(counts.total(), 2U);
 }
 
@@ -104,10 +105,10 @@ TEST(ClientCounts, OneAddressCannotTakeAllRoom) {
   settings.max_clients_per_address = 3;
   ClientCounts counts;
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, kManyDescriptors), Admission::admitted);
+    EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, kManyDescriptors), ConnectionVerdict::admitted);
   }
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, kManyDescriptors), Admission::address_full);
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 2), Role::viewer, kManyDescriptors), Admission::admitted);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, kManyDescriptors), ConnectionVerdict::address_full);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 2), Role::viewer, kManyDescriptors), ConnectionVerdict::admitted);
 }
 
 TEST(ClientCounts, ZeroPerAddressIsNoLimit) {
@@ -115,9 +116,9 @@ TEST(ClientCounts, ZeroPerAddressIsNoLimit) {
   settings.max_clients_per_address = 0;
   ClientCounts counts;
   for (int i = 0; i < 1000; ++i) {
-    ASSERT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, kManyDescriptors), Admission::admitted);
+    ASSERT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, kManyDescriptors), ConnectionVerdict::admitted);
   }
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, kManyDescriptors), Admission::listener_full);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, kManyDescriptors), ConnectionVerdict::listener_full);
 }
 
 TEST(ClientCounts, ViewersLeaveATenthToOperatorsWhereAllowNamesSome) {
@@ -125,12 +126,14 @@ TEST(ClientCounts, ViewersLeaveATenthToOperatorsWhereAllowNamesSome) {
   settings.max_clients = 20;
   ClientCounts counts;
   for (std::uint8_t i = 0; i < 18; ++i) {
-    ASSERT_EQ(counts.admit(settings, v4(2, 2, 2, i), Role::viewer, kManyDescriptors), Admission::admitted);
+    ASSERT_EQ(counts.admit(settings, v4(2, 2, 2, i), Role::viewer, kManyDescriptors), ConnectionVerdict::admitted);
   }
-  EXPECT_EQ(counts.admit(settings, v4(2, 2, 2, 99), Role::viewer, kManyDescriptors), Admission::kept_for_operators);
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::operator_, kManyDescriptors), Admission::admitted);
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::operator_, kManyDescriptors), Admission::admitted);
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::operator_, kManyDescriptors), Admission::listener_full);
+  EXPECT_EQ(counts.admit(settings, v4(2, 2, 2, 99), Role::viewer, kManyDescriptors),
+            ConnectionVerdict::kept_for_operators);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::operator_, kManyDescriptors), ConnectionVerdict::admitted);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::operator_, kManyDescriptors), ConnectionVerdict::admitted);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::operator_, kManyDescriptors),
+            ConnectionVerdict::listener_full);
 }
 
 TEST(ClientCounts, NothingIsKeptWhereNobodyIsNamed) {
@@ -141,15 +144,15 @@ TEST(ClientCounts, NothingIsKeptWhereNobodyIsNamed) {
 TEST(ClientCounts, TheDescriptorRuleLimitsWhateverTheSettingsSay) {
   const ListenerSettings settings;
   ClientCounts counts;
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, 1), Admission::admitted);
-  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 2), Role::viewer, 1), Admission::no_descriptor);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 1), Role::viewer, 1), ConnectionVerdict::admitted);
+  EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 2), Role::viewer, 1), ConnectionVerdict::no_descriptor);
 }
 
 TEST(ClientCounts, RefusalsNameTheLimitAndItsValue) {
   ListenerSettings settings = with_allow({entry(v4(1, 1, 1, 1), 128, Role::operator_)});
-  EXPECT_EQ(text(Admission::listener_full, settings), "max_clients (1000) is reached");
-  EXPECT_EQ(text(Admission::address_full, settings), "max_clients_per_address (64) is reached");
-  EXPECT_EQ(text(Admission::kept_for_operators, settings),
+  EXPECT_EQ(text(ConnectionVerdict::listener_full, settings), "max_clients (1000) is reached");
+  EXPECT_EQ(text(ConnectionVerdict::address_full, settings), "max_clients_per_address (64) is reached");
+  EXPECT_EQ(text(ConnectionVerdict::kept_for_operators, settings),
             "the last 100 of max_clients (1000) are kept for operators and engineers");
 }
 

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // The descriptor rule as a table: limits and what the configuration asks in, plan out.
-#include "gateway/upstream/modbus_tcp/descriptor_plan.hpp"
+#include "gateway/upstream/modbus_tcp/server/descriptor_plan.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // The numbers that accepted sockets get, and what happens when there is none.
-#include "gateway/upstream/modbus_tcp/descriptors.hpp"
+#include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -10,7 +11,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "gateway/upstream/modbus_tcp/listener.hpp"
+#include "gateway/upstream/modbus_tcp/server/listener.hpp"
 #include "tests/unit/modbus_server/few_descriptors.hpp"
 #include "tests/unit/modbus_server/served.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lowers the number of descriptors this process may have, for a scope.
 // Promises the limit from before at its end. Never touches the hard limit, which nobody could raise again.
 #pragma once

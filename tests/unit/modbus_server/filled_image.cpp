@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/modbus_server/filled_image.hpp"
 
 namespace axisgate::test {

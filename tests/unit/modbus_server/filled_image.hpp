@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process image filled by hand and a command port that remembers: what the server is tested, measured and shown with.
 // Promises the same numbers in every run, each register different from its neighbours. Never reaches a drive.
 #pragma once
@@ -18,14 +19,14 @@ class RememberingPort final : public CommandPort {
  public:
   struct Submission {
     AxisNumber axis;
-    Group group;
-    GroupCallback on_result;
+    WriteBatch batch;
+    BatchCallback on_result;
   };
 
-  [[nodiscard]] std::optional<GroupResult> submit(AxisNumber axis, const Group& group,
-                                                  GroupCallback on_result) override {
-    submitted.push_back({axis, group, std::move(on_result)});
-    if (answers_at_once) return GroupResult{};
+  [[nodiscard]] std::optional<BatchResult> submit(AxisNumber axis, const WriteBatch& batch,
+                                                  BatchCallback on_result) override {
+    submitted.push_back({axis, batch, std::move(on_result)});
+    if (answers_at_once) return BatchResult{};
     return std::nullopt;
   }
   void client_gone(ClientId client) override { gone.push_back(client); }

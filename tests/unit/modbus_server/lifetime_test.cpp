@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the server starts and how it ends.
 #include <gmock/gmock.h>
 
@@ -96,7 +97,7 @@ TEST(ModbusServerStop, NothingOfItRunsOnceItIsGone) {
   ASSERT_TRUE(served.await([&] { return served.port.submitted.size() == 1; }));
   served.server.reset();
   served.settle();  // handlers of closed sockets are still to run: they must find nothing to touch
-  served.port.submitted[0].on_result(GroupResult{});
+  served.port.submitted[0].on_result(BatchResult{});
   served.pass(std::chrono::hours(1));
   EXPECT_TRUE(writer.closed_by_server());
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What happens to clients that are too many, not allowed, too slow, gone or not speaking Modbus.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/modbus_server/served.hpp"
 
 #include <arpa/inet.h>
@@ -10,7 +11,7 @@
 #include <array>
 #include <cerrno>
 
-#include "gateway/upstream/modbus_tcp/descriptors.hpp"
+#include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
 
 namespace axisgate::test {
 

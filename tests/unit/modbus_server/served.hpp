@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A server on loopback ports with a clock that stands still, and clients on real sockets, all on the test's own thread.
 // Promises that a test waits for events only: what it awaits and does not see within kPatience fails it.
 // Never sleeps: virtual time moves when the test says so.
@@ -12,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "gateway/upstream/modbus_tcp/client_registry.hpp"
-#include "gateway/upstream/modbus_tcp/server.hpp"
+#include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/server/server.hpp"
 #include "tests/unit/modbus_server/filled_image.hpp"
 #include "tests/unit/support/manual_runtime.hpp"
 

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // What clients get from the server when all goes well, and that no client costs another its turn.
-#include "gateway/upstream/modbus_tcp/session.hpp"
+#include "gateway/upstream/modbus_tcp/session/session.hpp"
 #include "tests/unit/modbus_server/served.hpp"
 
 namespace axisgate::test {
@@ -110,7 +111,7 @@ TEST(ModbusServer, AReadOfAnotherClientDoesNotWaitForAWriteThatWaitsForTheBus) {
   EXPECT_EQ(reader.receive(13), position_reply(2));
   EXPECT_EQ(writer.received_so_far(), 0U);
 
-  served.port.submitted[0].on_result(GroupResult{});
+  served.port.submitted[0].on_result(BatchResult{});
   EXPECT_EQ(writer.receive(12), write_request(1, kTargetTorqueOfAxis1, 100));
 }
 
@@ -126,8 +127,8 @@ TEST(ModbusServer, RequestsBehindASlowWriteAreStartedOnArrivalUpToTheBound) {
 
   for (std::size_t i = 0; i < 6; ++i) {
     ASSERT_TRUE(served.await([&] { return served.port.submitted.size() > i; }));
-    const GroupCallback on_result = served.port.submitted[i].on_result;
-    on_result(GroupResult{});
+    const BatchCallback on_result = served.port.submitted[i].on_result;
+    on_result(BatchResult{});
   }
   for (std::uint16_t i = 0; i < 6; ++i) EXPECT_EQ(client.receive(12), write_request(i, kTargetTorqueOfAxis1, i));
 }
@@ -144,7 +145,7 @@ TEST(ModbusServer, ServesAnObjectInPartsWhenItsDriveHasSentIt) {
   served.settle();
   EXPECT_EQ(client.received_so_far(), 0U);
 
-  GroupResult result;
+  BatchResult result;
   result.object_bytes = std::make_shared<const std::vector<Byte>>(243, Byte{'x'});
   served.port.submitted[0].on_result(result);
   std::vector<Byte> first{0, 1, 0, 0, 0, 254, 0xFF, 0x2B, 0x0D, 0x80, 0, 1, 0x10, 0x08, 0, 0, 0, 0, 0xF1};
@@ -163,7 +164,7 @@ TEST(ModbusServer, AResultThatComesAfterItsClientLeftReachesNobody) {
   ASSERT_TRUE(served.await([&] { return served.port.submitted.size() == 1; }));
   client.reset();
   ASSERT_TRUE(served.await([&] { return served.server->counters().open == 0; }));
-  served.port.submitted[0].on_result(GroupResult{});
+  served.port.submitted[0].on_result(BatchResult{});
   served.settle();
   EXPECT_EQ(served.server->counters().closed_by_peer, 1U);
 }
@@ -195,7 +196,7 @@ TEST(ModbusServer, AClientHasRoleRankAndNameByItsEntryOfTheAllowList) {
   TestClient plc(served);
   plc.send(write_request(1, kTargetTorqueOfAxis1, 1));
   ASSERT_TRUE(served.await([&] { return served.port.submitted.size() == 1; }));
-  const auto life = served.port.submitted[0].group.life;
+  const auto life = served.port.submitted[0].batch.life;
   ASSERT_NE(life, nullptr);
   EXPECT_EQ(life->role, Role::operator_);
   EXPECT_EQ(life->rank, 7);

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // What makes a client the owner of an axis, row by row, coil by coil and function by function (design 3.5).
-#include "gateway/upstream/modbus_tcp/claims.hpp"
+#include "gateway/upstream/modbus_tcp/write/claims.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +9,8 @@
 namespace axisgate::modbus_tcp::test {
 namespace {
 
-/// One request on a desk of its own, after those that make its memory; which of the groups that it led to claim, in
-/// words between commas: "claims, no".
+/// One request on a desk of its own, after those that make its memory; which of the write batches that it led to claim,
+/// in words between commas: "claims, no".
 std::string asked_by(const std::string& pdu, const std::vector<std::string>& before = {}) {
   Desk desk;
   Line plc(desk);
@@ -17,8 +18,8 @@ std::string asked_by(const std::string& pdu, const std::vector<std::string>& bef
   static_cast<void>(desk.port.taken());
   EXPECT_TRUE(is_done(plc.ask(pdu))) << pdu;
   std::string out;
-  for (const auto& [axis, group] : desk.port.taken())
-    out += (out.empty() ? "" : ", ") + std::string(group.claims ? "claims" : "no");
+  for (const auto& [axis, batch] : desk.port.taken())
+    out += (out.empty() ? "" : ", ") + std::string(batch.claims ? "claims" : "no");
   return out;
 }
 std::string word_of(bool claims) { return claims ? "claims" : "no"; }
@@ -72,7 +73,7 @@ TEST(Claims, what_acts_in_a_request_and_nothing_where_nothing_does) {
     const char* what;
     std::vector<std::string> before;
     std::string pdu;
-    const char* groups;
+    const char* batches;
   };
   const Case cases[] = {
       {"reset, quick stop and halt", {zeros}, "0F 00 64 00 04 01 0E", "no, no, no"},
@@ -98,7 +99,7 @@ TEST(Claims, what_acts_in_a_request_and_nothing_where_nothing_does) {
       {"function 23: no last write counts as one that differed", {}, "17 00 64 00 01 00 92 00 01 02 00 07", "claims"},
       {"function 23 with a stop", {}, "17 00 64 00 01 00 9A 00 01 02 00 03", "no"},
   };
-  for (const Case& each : cases) EXPECT_EQ(asked_by(each.pdu, each.before), each.groups) << each.what;
+  for (const Case& each : cases) EXPECT_EQ(asked_by(each.pdu, each.before), each.batches) << each.what;
 }
 
 TEST(Claims, nothing_by_a_scanner_whose_block_has_its_release_but_with_what_is_new) {
@@ -107,7 +108,7 @@ TEST(Claims, nothing_by_a_scanner_whose_block_has_its_release_but_with_what_is_n
   bool claims = false;
   const auto scan = [&](const std::string& registers) {
     EXPECT_TRUE(is_done(plc.write_block(152, registers)));
-    claims = desk.port.submitted.back().group.claims;
+    claims = desk.port.submitted.back().batch.claims;
     return desk.asked();
   };
   EXPECT_EQ(scan("00 00 00 07 00 00 00 00 00 01"), "nothing") << "a first block is only remembered";
@@ -133,27 +134,27 @@ TEST(Claims, nothing_by_a_request_that_is_refused_before) {
     EXPECT_FALSE(is_done(plc.ask(pdu))) << pdu;
   }
   EXPECT_EQ(desk.asked(), "-");
-  desk.port.held = {{1, Quantity::target_torque, 7}, {1, Quantity::max_torque, 8}};
+  desk.port.cached = {{1, Quantity::target_torque, 7}, {1, Quantity::max_torque, 8}};
   EXPECT_TRUE(is_done(viewer.write_block(146, "00 07 00 08")));
-  EXPECT_FALSE(desk.port.submitted.back().group.claims) << "nor by a viewer whose block the drive has already";
+  EXPECT_FALSE(desk.port.submitted.back().batch.claims) << "nor by a viewer whose block the drive has already";
 }
 
-TEST(Claims, every_group_names_the_life_of_its_client) {
+TEST(Claims, every_batch_names_the_life_of_its_client) {
   for (const char* pdu : {"06 00 92 00 01", "06 00 9C 00 01", "06 00 9A 00 00", "05 00 64 FF 00", "05 00 66 FF 00",
                           "10 00 B4 00 04 08 00 01 60 64 00 00 00 04", "2B 0D 00 00 01 60 64 00 00 00 00 00"}) {
     SCOPED_TRACE(pdu);
     Desk desk;
     Line plc(desk, Peer{kPlc, 50000, Role::engineer, 4});
     EXPECT_TRUE(is_done(plc.ask(pdu)));
-    const Group& group = desk.port.submitted.back().group;
-    ASSERT_NE(group.life, nullptr);
-    EXPECT_EQ(group.life->id, group.client);
-    EXPECT_EQ(group.life->role, Role::engineer);
-    EXPECT_EQ(group.life->rank, 4);
-    EXPECT_EQ(group.life->origin, kPlc);
-    EXPECT_EQ(group.life->name, "192.168.1.7:50000");
-    EXPECT_TRUE(group.life->connected);
-    EXPECT_TRUE(group.is_write || group.object) << "a sign of life, and what an orphan lease waits for";
+    const WriteBatch& batch = desk.port.submitted.back().batch;
+    ASSERT_NE(batch.life, nullptr);
+    EXPECT_EQ(batch.life->id, batch.client);
+    EXPECT_EQ(batch.life->role, Role::engineer);
+    EXPECT_EQ(batch.life->rank, 4);
+    EXPECT_EQ(batch.life->origin, kPlc);
+    EXPECT_EQ(batch.life->name, "192.168.1.7:50000");
+    EXPECT_TRUE(batch.life->connected);
+    EXPECT_TRUE(batch.is_write || batch.object) << "a sign of life, and what an orphan lease waits for";
   }
 }
 

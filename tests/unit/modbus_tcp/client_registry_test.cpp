@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who is one client, what outlives its connections, and for how long.
-#include "gateway/upstream/modbus_tcp/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
 
 #include <gtest/gtest.h>
 

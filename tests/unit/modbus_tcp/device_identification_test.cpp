@@ -1,4 +1,5 @@
-#include "gateway/upstream/modbus_tcp/device_identification.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/modbus_tcp/session/device_identification.hpp"
 
 #include <gtest/gtest.h>
 

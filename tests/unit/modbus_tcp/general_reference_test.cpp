@@ -1,8 +1,9 @@
-#include "gateway/upstream/modbus_tcp/general_reference.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/modbus_tcp/wire/general_reference.hpp"
 
 #include <gtest/gtest.h>
 
-#include "gateway/upstream/modbus_tcp/pdu.hpp"
+#include "gateway/upstream/modbus_tcp/wire/pdu.hpp"
 #include "tests/unit/modbus_tcp/support/hex.hpp"
 
 namespace axisgate::modbus_tcp::test {

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Function 43/13 with objects that do not fit a PDU: read in parts from one fetch, written in parts as one download.
 #include <gtest/gtest.h>
 
-#include "gateway/upstream/modbus_tcp/object_buffers.hpp"
+#include "gateway/upstream/modbus_tcp/client/object_buffers.hpp"
 #include "tests/unit/modbus_tcp/support/desk.hpp"
 
 namespace axisgate::modbus_tcp::test {
@@ -23,8 +24,8 @@ class LongObjects : public AtTheDesk {
     return "2B 0D" + control + "00 01" + object + word(static_cast<std::int64_t>(start)) +
            word(static_cast<std::int64_t>(data.size())) + hex_text(data);
   }
-  static GroupResult holds(const std::vector<Byte>& content) {
-    GroupResult result;
+  static BatchResult holds(const std::vector<Byte>& content) {
+    BatchResult result;
     result.object_bytes = std::make_shared<const std::vector<Byte>>(content);
     return result;
   }

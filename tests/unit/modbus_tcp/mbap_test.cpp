@@ -1,4 +1,5 @@
-#include "gateway/upstream/modbus_tcp/mbap.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/modbus_tcp/wire/mbap.hpp"
 
 #include <gtest/gtest.h>
 

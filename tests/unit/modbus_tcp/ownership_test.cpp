@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a client sees of an axis's owner, and what its life tells of it.
 #include <gtest/gtest.h>
 
@@ -125,7 +126,7 @@ TEST_F(Life, EndsWithTheConnectionBeforeThePortIsTold) {
   const SessionContext context{desk.settings, desk.image, port, desk.registry, desk.log, &desk.runtime};
   Session session(context, Peer{kPanel, 1, Role::operator_, 0}, desk.runtime.now(), [] {});
   session.on_bytes(frame(1, 1, bytes("06 00 92 00 01")), desk.runtime.now());
-  port.life = port.submitted.back().group.life;
+  port.life = port.submitted.back().batch.life;
   EXPECT_TRUE(port.life->connected);
   session.on_closed(desk.runtime.now());
   EXPECT_EQ(port.connected_when_told, false);

@@ -1,4 +1,5 @@
-#include "gateway/upstream/modbus_tcp/pdu.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/modbus_tcp/wire/pdu.hpp"
 
 #include <gtest/gtest.h>
 

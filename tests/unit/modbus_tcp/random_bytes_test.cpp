@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -85,8 +86,8 @@ Outcome any_outcome(Random& random) {
   return {static_cast<Errc>(random.below(kErrcCount)), static_cast<std::uint32_t>(random.next())};
 }
 
-GroupResult any_result(Random& random) {
-  GroupResult result{any_outcome(random), static_cast<std::uint32_t>(random.next()),
+BatchResult any_result(Random& random) {
+  BatchResult result{any_outcome(random), static_cast<std::uint32_t>(random.next()),
                      static_cast<std::uint8_t>(random.below(5))};
   if (result.object_size == 0 && random.chance(3, 4)) {
     result.object_bytes = std::make_shared<const std::vector<Byte>>(random.below(kMaxObjectBytes + 1));

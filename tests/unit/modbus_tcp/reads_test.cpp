@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // What registers show of the image, block by block.
-#include "gateway/upstream/modbus_tcp/reads.hpp"
+#include "gateway/upstream/modbus_tcp/read/reads.hpp"
 
 #include <gtest/gtest.h>
 

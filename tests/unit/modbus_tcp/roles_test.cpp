@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include "tests/unit/modbus_tcp/support/desk.hpp"
@@ -72,7 +73,7 @@ TEST(Roles, a_block_skips_a_row_that_the_drive_has_without_asking_the_role) {
   Line panel(desk, Role::operator_, kPanel);
   const std::string rows = words(7) + words(100);  // 68 homing_offset, 70 quick_stop_deceleration
   EXPECT_EQ(panel.write_block(168, rows), "90 01");
-  desk.port.held = {{1, Quantity::quick_stop_deceleration, 100}};
+  desk.port.cached = {{1, Quantity::quick_stop_deceleration, 100}};
   EXPECT_TRUE(is_done(panel.write_block(168, rows)));
   EXPECT_EQ(desk.asked(), "homing_offset=7");
   EXPECT_EQ(panel.write_block(170, words(100)), "90 01") << "a row alone is no block";

@@ -1,4 +1,5 @@
-#include "gateway/upstream/modbus_tcp/session.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/modbus_tcp/session/session.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ class Sessions : public AtTheDesk {
     desk.runtime.advance_by(time);
     if (plc.session().next_deadline() <= desk.runtime.now()) plc.session().on_deadline(desk.runtime.now());
   }
-  std::string why() { return plc.session().finished() ? plc.session().why_finished() : "open"; }
+  std::string why() { return plc.session().finished() ? std::string(text(plc.session().why_finished())) : "open"; }
 };
 
 TEST_F(Sessions, AnswerWhatIsGluedToAMalformedFrameAndClose) {

@@ -1,4 +1,5 @@
-// What of writes is no conversation: each row of the map, each outcome, and what a group carries beside what it asks.
+// SPDX-License-Identifier: Apache-2.0
+// What of writes is no dialogue: each row of the map, each outcome, and what a write batch carries beside what it asks.
 #include <gtest/gtest.h>
 
 #include "tests/unit/modbus_tcp/support/desk.hpp"
@@ -33,7 +34,7 @@ TEST_F(Writes, read_only_rows_are_no_address) {
     EXPECT_EQ(plc.write(static_cast<std::uint16_t>(address), 0), "86 02") << address;
 }
 
-TEST_F(Writes, a_group_carries_who_asks_and_until_when) {
+TEST_F(Writes, a_batch_carries_who_asks_and_until_when) {
   Line panel(desk, Role::operator_, kPanel);
   for (const char* pdu : {"06 00 92 00 01", "2B 0D 00 00 01 60 41 00 00 00 00 00"}) {
     EXPECT_TRUE(is_done(panel.ask(pdu)));
@@ -121,7 +122,7 @@ TEST(Outcomes, are_answered_as_the_table_says_at_once_and_later) {
       SCOPED_TRACE(std::string(text(row.code)) + (slow ? ", later" : ", at once"));
       Desk desk;
       Line plc(desk);
-      const GroupResult result{{row.code, 0x08000022}, 0, 0};
+      const BatchResult result{{row.code, 0x08000022}, 0, 0};
       desk.port.slow = slow;
       if (!slow) desk.port.at_once = {result};
       std::string reply = plc.write(146, 1);

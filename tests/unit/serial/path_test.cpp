@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When a device is tried again: what is seen of its path, and what follows from it.
 #include <gtest/gtest.h>
 #include <fstream>

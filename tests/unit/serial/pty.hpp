@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The far end of a serial line, and a folder of its own in which the device's path comes and goes.
 #pragma once
 

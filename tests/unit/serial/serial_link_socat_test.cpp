@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two links joined by socat, with the clock of the product: everything as on a machine, but for the cable.
 #include <spawn.h>
 #include <sys/wait.h>

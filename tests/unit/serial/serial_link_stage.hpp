@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A serial link whose clock stands still and whose far end is a pty: only what the test does makes time or bytes move.
 #pragma once
 

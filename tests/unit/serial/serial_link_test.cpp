@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Up, bytes, loss and return, on a pty; the clock moves by hand, so "at once" and "after a second" can be told apart.
 #include "tests/unit/serial/serial_link_stage.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the driver is told, read back from the other side of a pty. <termios.h> must stay out of this file.
 #include "adapters/serial/serial_port.hpp"
 

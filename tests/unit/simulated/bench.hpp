@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A simulated line for tests: send, let time pass, see everything that came back.
 // Promises that time only moves when a test says so, or as far as an answer takes.
 // Never checks anything by itself.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every SDO, NMT and heartbeat frame of the sheets of drives on CANopen against the simulated nodes, and every object
 // of the Leadshine's. The PDOs are in scripts/canopen.txt and scripts/keya.txt.
 #include <set>

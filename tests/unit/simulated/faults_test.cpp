@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fault switches: their names, and that the same seed gives the same run. What each of them does:
 // scripts/faults.txt.
 #include <set>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every frame and register of the iD286pro's sheet against the simulated drive.
 #include <charconv>
 

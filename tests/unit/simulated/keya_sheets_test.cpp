@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every frame of Keya's own protocols in the sheet against the simulated drive on each of its interfaces.
 #include "tests/unit/simulated/sheets.hpp"
 

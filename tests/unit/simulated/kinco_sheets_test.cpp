@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every frame, object, register and conversion of the two Kinco sheets against the simulated drives, on their own
 // protocol and on Modbus RTU. What needs a motion is in scripts/kinco.txt.
 #include <regex>

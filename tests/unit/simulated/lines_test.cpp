@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the rest of the tests build on in a line itself: where frames end, how long they take, who goes first.
 #include "tests/unit/simulated/bench.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // axisgate-sim, started as a user would by a shell: its pty, its end, and what it leaves alone. What its control socket
 // does is in the stories of tests/integration.
 #include <gmock/gmock.h>

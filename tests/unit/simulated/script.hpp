@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scripts for simulated drives (scripts/*.txt): what is done to them and what is then true, in manual time. A name at
 // the margin begins a script; behind it stand the lines it plays on, as `--line` has them. The steps, behind a colon or
 // below, one a line or with ';' between them, are played on each:

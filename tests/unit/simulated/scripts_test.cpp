@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plays the scripts: what the makers' manuals say of their drives and no vector states, and the few behaviours that the
 // rest of the tests build on.
 #include "tests/unit/simulated/script.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The makers' sheets as tests read them: every vector and row of tests/vectors.
 // Promises to skip nothing but what a sheet itself calls malformed. Never knows a drive.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Runtime whose clock stands still until a test moves it.
 // Promises that timers fire in order of deadline, then of arming, each seeing now() at its own deadline, and that a
 // timer's callback may arm, disarm or destroy any timer, itself included. Never fires inside expires_at().

@@ -1,4 +1,5 @@
-#include "gateway/app/explain_command.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/commands/explain_command.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // The watchdog of a service: who stalls is not told to be alive.
-#include "gateway/app/service.hpp"
+#include "gateway/process/service.hpp"
 
 #include <gtest/gtest.h>
 #include <poll.h>

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // `axisgate top` against a real server on loopback, in a thread of its own.
-#include "gateway/app/top_command.hpp"
+#include "gateway/commands/top_command.hpp"
 
 #include <gmock/gmock.h>
 
@@ -9,9 +10,9 @@
 #include <thread>
 
 #include "adapters/asio/asio_runtime.hpp"
-#include "gateway/upstream/modbus_tcp/client_registry.hpp"
-#include "gateway/upstream/modbus_tcp/descriptors.hpp"
-#include "gateway/upstream/modbus_tcp/server.hpp"
+#include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
+#include "gateway/upstream/modbus_tcp/server/server.hpp"
 #include "tests/unit/modbus_server/filled_image.hpp"
 
 namespace axisgate::app {

@@ -1,10 +1,11 @@
-#include "gateway/app/top_table.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/commands/hand/top_table.hpp"
 
 #include <gmock/gmock.h>
 
 #include <sstream>
 
-#include "gateway/app/top_screen.hpp"
+#include "gateway/commands/top_screen.hpp"
 #include "gateway/core/words.hpp"
 #include "gateway/image/process_image.hpp"
 
@@ -215,9 +216,9 @@ TEST(TopTable, StaysOneLineAnAxisWhereThereIsRoom) {
 TEST(TopScreen, ColoursLinesThatAskForAttentionWithoutCuttingTheirColour) {
   AxisReading failed = good_axis(2);
   failed.registers[31] = 6;
-  AxisReading doubtful = good_axis(3);
-  doubtful.registers[18] = 3;
-  const std::string table = render_table(reading_of({good_axis(1), failed, doubtful}));
+  AxisReading uncertain = good_axis(3);
+  uncertain.registers[18] = 3;
+  const std::string table = render_table(reading_of({good_axis(1), failed, uncertain}));
   const std::string frame = terminal_frame(table, 60, 50, true);
   EXPECT_THAT(frame, HasSubstr("\x1b[31m   2  online     error stop"));
   EXPECT_THAT(frame, HasSubstr("\x1b[33m   3  suspect"));

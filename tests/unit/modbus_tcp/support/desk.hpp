@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // A test's desk: an image with axes 1, 2 and 5, a fake command port and clients with connections, all in one thread.
-// Promises that a conversation reads as a transcript: plc.ask("03 00 64 00 02") gives "03 04 00 00 00 00".
+// Promises that a dialogue reads as a transcript: plc.ask("03 00 64 00 02") gives "03 04 00 00 00 00".
 // Never advances time by itself.
 #pragma once
 
@@ -10,8 +11,8 @@
 #include <sstream>
 #include <string>
 
-#include "gateway/upstream/modbus_tcp/client_registry.hpp"
-#include "gateway/upstream/modbus_tcp/session.hpp"
+#include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/session/session.hpp"
 #include "tests/unit/modbus_tcp/support/fake_command_port.hpp"
 #include "tests/unit/modbus_tcp/support/hex.hpp"
 #include "tests/unit/support/manual_runtime.hpp"
@@ -39,13 +40,14 @@ class Desk {
   }
 
   AxisImage& axis(AxisNumber n) { return *image.find(n); }
-  /// What the port was given since the last time, a group between commas: "target_torque=7 mode=1, axis 5: enable
-  /// id=2", "target_position=7+" where it asks only beside the command, "nothing" for a group that asks for nothing,
-  /// "-" for no group at all.
+  /// What the port was given since the last time, a write batch between commas: "target_torque=7 mode=1, axis 5: enable
+  /// id=2", "target_position=7+" where it asks only beside the command, "nothing" for a write batch that asks for
+  /// nothing,
+  /// "-" for no write batch at all.
   std::string asked() {
     std::string out;
-    for (const auto& [number, group] : port.taken())
-      out += (out.empty() ? "" : ", ") + (number == 1 ? "" : "axis " + std::to_string(number) + ": ") + told(group);
+    for (const auto& [number, batch] : port.taken())
+      out += (out.empty() ? "" : ", ") + (number == 1 ? "" : "axis " + std::to_string(number) + ": ") + told(batch);
     return out.empty() ? "-" : out;
   }
   /// What was logged since the last time, lines between " | "; "-" for nothing.
@@ -56,27 +58,27 @@ class Desk {
   }
   SessionContext context() { return {settings, image, port, registry, log, &runtime}; }
 
-  static std::string told(const Group& group) {
+  static std::string told(const WriteBatch& batch) {
     std::string out;
     const auto add = [&out](const auto&... parts) {
       std::ostringstream text;
       ((text << (out.empty() ? "" : " ")) << ... << parts);
       out += text.str();
     };
-    for (const Setpoint& each : group.setpoints)
+    for (const Setpoint& each : batch.setpoints)
       add(quantity_table()[static_cast<std::size_t>(each.quantity)].name, '=', each.value,
           each.with_command ? "+" : "");
-    if (group.mode) add("mode=", *group.mode);
-    if (group.controlword) {
-      add("controlword=", std::uppercase, std::hex, *group.controlword, group.single_controlword ? " alone" : "");
+    if (batch.mode) add("mode=", *batch.mode);
+    if (batch.controlword) {
+      add("controlword=", std::uppercase, std::hex, *batch.controlword, batch.single_controlword ? " alone" : "");
     }
-    if (group.set_position_value) add("set_position_value=", *group.set_position_value);
-    if (group.jog_velocity) add("jog_velocity=", *group.jog_velocity);
-    if (group.command != Command::none) add(text(group.command));
-    if (group.command != Command::none && group.command_id != 0) add("id=", group.command_id);
-    if (group.jog_again) add("again ", text(*group.jog_again));
-    if (group.object) add(told(*group.object));
-    return out.empty() && asks_nothing(group) ? "nothing" : out;
+    if (batch.set_position_value) add("set_position_value=", *batch.set_position_value);
+    if (batch.jog_velocity) add("jog_velocity=", *batch.jog_velocity);
+    if (batch.command != Command::none) add(text(batch.command));
+    if (batch.command != Command::none && batch.command_id != 0) add("id=", batch.command_id);
+    if (batch.jog_again) add("again ", text(*batch.jog_again));
+    if (batch.object) add(told(*batch.object));
+    return out.empty() && asks_nothing(batch) ? "nothing" : out;
   }
   /// "reads 6064.00", "reads 6064.00/4", "writes 6040.00/2=F", "writes 2000.07: 01 02 03".
   static std::string told(const ObjectRequest& object) {
@@ -147,10 +149,10 @@ class Line {
     return "10" + word(address) + word(static_cast<std::int64_t>(count)) + hex_text(size) + registers;
   }
   Session& session() { return session_; }
-  /// The client that speaks here, as its last group named it.
+  /// The client that speaks here, as its last write batch named it.
   std::shared_ptr<const ClientLife> life() {
     static_cast<void>(ask("06 00 B6 00 00"));  // a row of the mailbox: claims and starts nothing
-    return desk_.port.submitted.back().group.life;
+    return desk_.port.submitted.back().batch.life;
   }
 
   int told = 0;
@@ -172,14 +174,14 @@ inline bool is_done(const std::string& reply) { return reply.size() > 5 && bytes
 inline std::vector<Command> commands(Desk& desk) {
   std::vector<Command> out;
   for (const auto& each : desk.port.taken())
-    if (each.group.command != Command::none) out.push_back(each.group.command);
+    if (each.batch.command != Command::none) out.push_back(each.batch.command);
   return out;
 }
 
 /// A desk with one engineer's connection.
 class AtTheDesk : public ::testing::Test {
  protected:
-  const Group& last() { return desk.port.submitted.back().group; }
+  const WriteBatch& last() { return desk.port.submitted.back().batch; }
   Desk desk;
   Line plc{desk};
 };

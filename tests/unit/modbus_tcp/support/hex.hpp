@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes as tests write and read them: "03 00 64 00 02".
 // Promises that what is printed can be pasted back. Never used outside tests.
 #pragma once

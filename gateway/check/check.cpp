@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/check/check.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gateway/check/check_can.hpp"
+#include "gateway/check/check_dds.hpp"
+#include "gateway/check/check_lines.hpp"
+#include "gateway/check/check_masters.hpp"
+#include "gateway/config/adapter_names.hpp"
+#include "gateway/config/bus_budget.hpp"
+
+namespace axisgate::app {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::array<std::string_view, 3> kClassNames{"fast", "normal", "slow"};
+/// Largest position a register shows.
+constexpr double kRegisterReach = 2147483647;
+constexpr double kFloatNumbers = 16777216;  // 2^24
+
+std::string polls_text(const BusBudget& budget) {
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < budget.classes.size(); ++i) {
+    parts.push_back(
+        fmt::format("{} {} each {:.0f} ms", kClassNames[i], budget.classes[i].reads, in_ms(budget.classes[i].period)));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string suggestion(const BusBudget& budget) {
+  const auto periods = comfortable_periods(budget);
+  return fmt::format("\"poll\": {{\"fast\": {:.0f}, \"normal\": {:.0f}, \"slow\": {:.0f}}}", in_ms(periods[0]),
+                     in_ms(periods[1]), in_ms(periods[2]));
+}
+
+/// "5 ms", or "5 to 20 ms" where some drives state a longer time than is assumed of the others.
+std::string answers_text(const std::vector<drive::DriveModel>& drives) {
+  if (drives.empty()) return fmt::format("{:.0f} ms", in_ms(kAssumedAnswer));
+  const auto [quickest, slowest] =
+      std::minmax_element(drives.begin(), drives.end(),
+                          [](const auto& one, const auto& other) { return answer_of(one) < answer_of(other); });
+  if (answer_of(*quickest) == answer_of(*slowest)) return fmt::format("{:.0f} ms", in_ms(answer_of(*slowest)));
+  return fmt::format("{:.0f} to {:.0f} ms", in_ms(answer_of(*quickest)), in_ms(answer_of(*slowest)));
+}
+
+void add_load(std::string& out, const BusBudget& budget, const std::vector<drive::DriveModel>& drives) {
+  add_line(out, "planned load",
+           fmt::format("{:.1f} % with drives that answer after {}, {:.1f} % on the wire alone",
+                       budget.load_answered / 10.0, answers_text(drives), budget.load_on_wire / 10.0));
+  if (budget.overloaded()) {
+    add_line(
+        out, "OVERLOADED",
+        fmt::format("more than the line carries: the polls would stretch, fast values come each {:.0f} ms; write {}",
+                    in_ms(budget.cycle), suggestion(budget)));
+  } else if (budget.load_answered > kComfortablePermille) {
+    add_line(out, "note", fmt::format("commands have little room beside the polls; better: {}", suggestion(budget)));
+  }
+}
+
+/// Keya: what goes over the line beside the polls.
+void add_keya(std::string& out, const BusConfig& bus, const BusBudget& budget) {
+  if (budget.kept_alive.reads > 0)
+    add_line(out, "keep-alive",
+             fmt::format("{} writes each {:.0f} ms, with every axis enabled", budget.kept_alive.reads,
+                         in_ms(budget.kept_alive.period)));
+  if (adapter::keya(bus.adapter) && budget.load_unasked > 0)
+    add_line(out, "unasked", fmt::format("heartbeats of the drives: {:.1f} % of the line", budget.load_unasked / 10.0));
+}
+
+void add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::DriveModel>& drives,
+             const BusBudget& budget) {
+  const bool can = bus.adapter == adapter::kCanopen;
+  const std::string speed = adapter::on_can(bus.adapter) ? bitrate_text(bus) : fmt::format("{} baud", bus.baud);
+  out += fmt::format("\nBus {}: {} on {}, {}{}\n", bus.name, bus.adapter, bus.device, speed,
+                     bus.cascade ? ", drives in a chain" : "");
+  std::vector<std::string> names;
+  names.reserve(drives.size());
+  for (const auto& model : drives) names.push_back(fmt::format("{} at node {}", model.title, model.node));
+  add_line(out, "drives", fmt::format("{}", fmt::join(names, ", ")));
+  add_line(out, "polls", polls_text(budget));
+  if (can) add_lines(out, can_lines(bus, drives, budget));
+  if (bus.adapter == adapter::kKeyaCan) add_line(out, "interface", interface_text(bus));
+  add_keya(out, bus, budget);
+  add_load(out, budget, drives);
+  add_line(out, "cycle",
+           fmt::format("fast values are {} each {:.0f} ms", can ? "polled, where no TPDO brings them," : "read",
+                       in_ms(budget.cycle)));
+  add_line(out, "command waits",
+           fmt::format("at most {:.1f} ms; beside an unresponsive drive at most {:.1f} ms", in_ms(budget.command_wait),
+                       in_ms(budget.command_wait_unresponsive)));
+  add_line(out, "stop waits",
+           fmt::format("at most {:.1f} ms; beside an unresponsive drive at most {:.1f} ms", in_ms(budget.stop_wait),
+                       in_ms(budget.stop_wait_unresponsive)));
+}
+
+std::string missing_quantities(const drive::AxisModel& axis) {
+  std::vector<std::string_view> names;
+  for (const QuantityRow& quantity : quantity_table()) {
+    if ((axis.supported & bit(quantity.quantity)) == 0) names.push_back(quantity.name);
+  }
+  return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string missing_commands(const drive::AxisModel& axis) {
+  std::vector<std::string_view> names;
+  for (auto number = static_cast<std::uint8_t>(Command::enable);
+       number <= static_cast<std::uint8_t>(Command::save_parameters); ++number) {
+    if ((axis.supported_commands >> number & 1U) == 0) names.push_back(axisgate::text(static_cast<Command>(number)));
+  }
+  return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// How far the drive's own counter reaches before it wraps.
+std::string counter_text(const AxisConfig& config, const drive::AxisModel& axis, const drive::DriveModel& drive) {
+  const drive::Binding* position = axis.binding(Quantity::position_actual);
+  if (position == nullptr || position->object == drive::kNoObject) return "";
+  const auto reach = position->to_register(drive.object(position->object).range().max);
+  if (!reach) return "";
+  return fmt::format(", the drive's counter ±{:.1f}",
+                     std::abs(static_cast<double>(*reach) / config.units_per_rev.to_double()));
+}
+
+std::string units_text(const AxisConfig& config) {
+  const Rational& units = config.units_per_rev;
+  const std::string number = units.denominator() == 1 ? fmt::format("{}", units.numerator())
+                                                      : fmt::format("{}/{}", units.numerator(), units.denominator());
+  return fmt::format("{} per motor turn{}; in turns, a register reaches ±{:.1f}", number,
+                     config.inverted ? ", inverted" : "", kRegisterReach / units.to_double());
+}
+
+/// A binary32 has 24 bits: below a power of two turns each position unit has a number of its own.
+std::string float_text(const AxisConfig& config) {
+  const double turns = std::exp2(std::floor(std::log2(kFloatNumbers / config.units_per_rev.to_double())));
+  return fmt::format("on listeners with \"numbers\": \"float\" each unit has its own number up to ±{:g} turns", turns);
+}
+
+void add_axis(std::string& out, const MasteredAxis& whole, bool floats) {
+  const auto& [config, axis, drive, budget, dds] = whole;
+  out += fmt::format("\nAxis {} \"{}\": {}, registers {} to {}\n", config.number, config.name, drive.title,
+                     config.number * 100, config.number * 100 + 99);
+  add_line(out, "units", units_text(config) + counter_text(config, axis, drive));
+  if (floats) add_line(out, "", float_text(config));
+  if (config.limits.position) {
+    const double units = config.units_per_rev.to_double();
+    add_line(out, "position limits",
+             fmt::format("{} to {} ({:.2f} to {:.2f} turns)", config.limits.position->min, config.limits.position->max,
+                         static_cast<double>(config.limits.position->min) / units,
+                         static_cast<double>(config.limits.position->max) / units));
+  }
+  add_line(out, "not on it", fmt::format("quantities: {}", missing_quantities(axis)));
+  add_line(out, "", fmt::format("commands: {}", missing_commands(axis)));
+  if (config.inverted && axis.command(Command::home)) {
+    add_line(out, "note", "homing methods are not translated for the inverted direction: they mean the drive's own");
+  }
+  add_lines(out, master_lines(whole));
+}
+
+}  // namespace
+
+CheckReport check(const LoadedConfig& loaded) {
+  const Config& config = loaded.config;
+  CheckReport report;
+  std::string& out = report.text;
+  out = fmt::format("{} is valid.\n", config.file);
+  std::vector<BusBudget> budgets;
+  const bool floats = std::any_of(config.modbus_tcp.begin(), config.modbus_tcp.end(),
+                                  [](const auto& listener) { return listener.float_numbers; });
+  for (std::size_t b = 0; b < config.buses.size(); ++b) {
+    const BusConfig& bus = config.buses[b];
+    budgets.push_back(plan_bus(timing_of(bus), loaded.models[b]));
+    report.overloaded |= budgets[b].overloaded();
+    add_bus(out, bus, loaded.models[b], budgets[b]);
+    for (std::size_t d = 0; d < bus.drives.size(); ++d) {
+      const drive::DriveModel& model = loaded.models[b][d];
+      for (std::size_t a = 0; a < model.axes.size(); ++a)
+        add_axis(out, {bus.drives[d].axes[a], model.axes[a], model, budgets[b], config.dds}, floats);
+    }
+  }
+  if (config.dds) {
+    out += fmt::format("\n{}\n", dds_title(*config.dds));
+    add_lines(out, dds_lines(*config.dds));
+  }
+  out += "\nNo function of this gateway is a safety function: emergency stop and STO are wired.\n";
+  for (const std::string& warning : lease_warnings(loaded, budgets)) out += "warning: " + warning + "\n";
+  for (const std::string& warning : loaded.warnings) out += "warning: " + warning + "\n";
+  return report;
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands that move an axis by hand, as the command line has them: enable, move, jog and stop.
+// Promises that every option says its unit. Never does a command's work itself.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "gateway/commands/hand_command.hpp"
+
+namespace axisgate::app {
+
+/// One set of options for each command, for each is filled while the line is parsed.
+struct HandCommands {
+  HandOptions enable, move, jog, stop;
+};
+
+/// `commands` and `exit_code` outlive the parsing.
+void add_hand_commands(CLI::App& app, HandCommands& commands, int& exit_code);
+
+}  // namespace axisgate::app

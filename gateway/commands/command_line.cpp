@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/commands/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "gateway/commands/check_command.hpp"
+#include "gateway/commands/command_hand.hpp"
+#include "gateway/commands/command_words.hpp"
+#include "gateway/commands/commission_command.hpp"
+#include "gateway/commands/explain_command.hpp"
+#include "gateway/commands/map_command.hpp"
+#include "gateway/commands/profile_command.hpp"
+#include "gateway/commands/profile_folders.hpp"
+#include "gateway/commands/reload_command.hpp"
+#include "gateway/commands/run_command.hpp"
+#include "gateway/commands/scan_command.hpp"
+#include "gateway/commands/top_command.hpp"
+#include "gateway/commands/topics_command.hpp"
+#include "gateway/manual/generate.hpp"
+
+namespace axisgate::app {
+namespace {
+
+/// Everything that options are read into; commands copy from it when they run.
+struct Parsed {
+  std::string profiles;
+  RunOptions run;
+  CheckOptions check;
+  MapOptions map;
+  TopOptions top;
+  TopicsOptions topics;
+  ProfileCheckOptions profile;
+  CommissionOptions commission;
+  ScanOptions scan;
+  ExplainOptions explain;
+  ReloadOptions reload;
+  HandCommands hand;
+  std::string scan_nodes;
+  std::string scan_stations;
+  int exit_code = 0;
+};
+
+/// A command that reads a configuration.
+CLI::App* add_config_command(CLI::App& app, Parsed& parsed, const std::string& name, const std::string& what,
+                             std::string& config) {
+  CLI::App* command = app.add_subcommand(name, what);
+  command->add_option("CONFIG", config, "configuration file (JSON)")->required();
+  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
+      ->type_name("DIR");
+  return command;
+}
+
+template <typename Options>
+void run_with_folders(Parsed& parsed, Options& options) {
+  options.profile_folders = profile_folders(parsed.profiles);
+  parsed.exit_code = run(options);
+}
+
+void add_run(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = add_config_command(app, parsed, "run", "Run the gateway", parsed.run.config);
+  const auto number = [](LogLevel level) { return static_cast<int>(level); };
+  command->add_option("--log-level", parsed.run.log_level, "error, warning, info or debug")
+      ->transform(number_of_one({{"error", number(LogLevel::error)},
+                                 {"warning", number(LogLevel::warning)},
+                                 {"info", number(LogLevel::info)},
+                                 {"debug", number(LogLevel::debug)}}))
+      ->type_name("LEVEL")
+      ->default_str("info");
+  command->add_option("--decode", parsed.run.decode, "log every frame of this bus; may be given more than once")
+      ->type_name("BUS");
+  command->footer("Example: axisgate run /etc/axisgate/gateway.json --decode lift-serial");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.run); });
+}
+
+void add_check(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = add_config_command(
+      app, parsed, "check", "Validate a configuration and print the plan of each bus", parsed.check.config);
+  command->footer(
+      "Exit code 1: mistakes (each with file and JSON pointer), or a bus planned over 100 %.\n"
+      "Example: axisgate check /etc/axisgate/gateway.json");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.check); });
+}
+
+void add_map(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = add_config_command(app, parsed, "map", "Print every register, coil and input", parsed.map.config);
+  command->add_option("--format", parsed.map.format, "table, md, csv, json or st (IEC 61131-3)")
+      ->check(one_of({"table", "md", "csv", "json", "st"}))
+      ->type_name("FORMAT")
+      ->capture_default_str();
+  command->footer("Example: axisgate map /etc/axisgate/gateway.json --format csv > registers.csv");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.map); });
+}
+
+void add_top(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = app.add_subcommand("top", "Live table of all axes of a running gateway");
+  command->add_option("HOST:PORT", parsed.top.endpoint, "the gateway's Modbus-TCP listener")->required();
+  command->add_option("CONFIG", parsed.top.config, "its configuration file: axes are shown with their names");
+  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
+      ->type_name("DIR");
+  command->add_option("--interval", parsed.top.interval_ms, "milliseconds between two tables")
+      ->check(CLI::Range(50, 60000).description(""))
+      ->type_name("MS")
+      ->capture_default_str();
+  command->add_option("--seconds", parsed.top.seconds, "end after so long; 0: until Ctrl-C")
+      ->check(CLI::Range(0, 86400).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--count", parsed.top.count, "end after so many tables; 0: no such end")
+      ->check(CLI::Range(0, 1000000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_flag("--plain", parsed.top.plain, "print one table after the other, for pipes and logs");
+  command->add_flag_callback(
+      "--once", [&parsed] { parsed.top.count = 1; },
+      "one table, then the end; exit code 1: the gateway does not answer (for health checks)");
+  command->footer(
+      "A terminal of 80 columns is enough. Lines in red and yellow ask for attention; NO_COLOR=1 leaves colours out.\n"
+      "Example: axisgate top 127.0.0.1:1502");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.top); });
+}
+
+void add_topics(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = app.add_subcommand("topics", "Show all axes live, as DDS subscribers see them");
+  command->add_option("CONFIG", parsed.topics.config, "the gateway's configuration file: where it publishes");
+  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
+      ->type_name("DIR");
+  command->add_option("--domain", parsed.topics.domain, "DDS domain; goes before that of CONFIG")
+      ->check(CLI::Range(0, 232).description(""))
+      ->type_name("N");
+  command
+      ->add_option("--interface", parsed.topics.interfaces,
+                   "network interface, by name or IPv4 address; may be given more than once")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command->add_flag("--all", parsed.topics.all,
+                    "every gateway of the domain, with a table of them; else that of CONFIG alone");
+  command->add_flag("--once", parsed.topics.once, "print what is there and end");
+  command->add_flag("--json", parsed.topics.json, "one JSON object a line for each sample");
+  command->footer("Example: axisgate topics /etc/axisgate/gateway.json");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.topics); });
+}
+
+void add_profile(CLI::App& app, Parsed& parsed) {
+  CLI::App* group = app.add_subcommand("profile", "Work with drive profiles");
+  group->require_subcommand(1);
+  CLI::App* command = group->add_subcommand("check", "Validate a profile and say what it gives on each protocol");
+  command->add_option("FILE", parsed.profile.file, "profile (JSON)")->required();
+  command->add_option("--eds", parsed.profile.eds, "compare its CANopen objects with the maker's EDS file")
+      ->type_name("FILE");
+  command->add_option("--profiles", parsed.profiles, "folder where profiles that it extends may lie, beside its own")
+      ->type_name("DIR");
+  command->footer(
+      "Exit code 1: mistakes, or something in which profile and EDS cannot both be right.\n"
+      "Example: axisgate profile check schemas/drives/kinco-jd.json");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.profile); });
+}
+
+void add_commission(CLI::App& app, Parsed& parsed) {
+  CLI::App* command =
+      add_config_command(app, parsed, "commission",
+                         "Show settings of a drive that a person must decide, ask about each, and apply its remedy",
+                         parsed.commission.config);
+  command->add_option("AXIS", parsed.commission.axis, "axis number")
+      ->required()
+      ->check(CLI::Range(1, 499).description(""));
+  command->add_flag("--yes", parsed.commission.yes,
+                    "answer yes to every question, also to those that take the limit inputs away");
+  command->footer(
+      "The gateway must not be running: the command needs the bus for itself. It never enables or moves an axis.\n"
+      "One question for each setting that is bad: only 'yes' writes what the question names, the end of the input is a "
+      "no.\nBefore a write the drive is read again: what changed since the question, or has torque, is not written.\n"
+      "Exit code 1: something was left as it is, or the drive cannot be reached.\n"
+      "Example: axisgate commission /etc/axisgate/gateway.json 1");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.commission); });
+}
+
+std::string station_range_mistake(const std::string& text) {
+  return parse_scan_range(text, kLastRtuStation)
+             ? ""
+             : "'" + text + "' is no station and no range of them: 1 to 247, such as 5 or 1-32";
+}
+
+std::string scan_range_mistake(const std::string& text) {
+  return parse_scan_range(text) ? "" : "'" + text + "' is no node-ID and no range of them: 1 to 127, such as 5 or 1-10";
+}
+
+void add_scan(CLI::App& app, Parsed& parsed) {
+  CLI::App* command =
+      app.add_subcommand("scan", "Ask a CANopen bus or a serial line which drives are there and what they are");
+  command
+      ->add_option("DEVICE", parsed.scan.device,
+                   "CAN interface (can0), slcan:PATH for a serial CAN adapter, or a serial port (/dev/ttyUSB0)")
+      ->required();
+  command
+      ->add_option("--bitrate", parsed.scan.bitrate,
+                   "bits per second, as set in the drives; a serial adapter is opened with it")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
+      ->type_name("DIR");
+  command->add_option("--timeout-ms", parsed.scan.timeout_ms, "how long each answer is waited for")
+      ->check(CLI::Range(2, 10000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--nodes", parsed.scan_nodes, "node-IDs to ask")
+      ->check(CLI::Validator(scan_range_mistake, ""))
+      ->type_name("A-B")
+      ->default_str("1-127");
+  command
+      ->add_option("--baud", parsed.scan.serial.bauds, "serial port: rates to try, one after the other, as 38400,19200")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(1200, 1000000).description(""))
+      ->type_name("N,...")
+      ->default_str("38400,19200,9600,115200");
+  command->add_option("--stations", parsed.scan_stations, "serial port: stations to ask")
+      ->check(CLI::Validator(station_range_mistake, ""))
+      ->type_name("A-B")
+      ->default_str("1-32");
+  command->add_option("--protocol", parsed.scan.serial.protocols, "serial port: kinco-serial, modbus-rtu, or both")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(one_of({"kinco-serial", "modbus-rtu"}))
+      ->type_name("P,...")
+      ->default_str("kinco-serial,modbus-rtu");
+  command->add_option("--parity", parsed.scan.parity, "serial port: none, even or odd")
+      ->check(one_of({"none", "even", "odd"}))
+      ->type_name("P")
+      ->capture_default_str();
+  command->footer(
+      "On CAN CANopen alone: drives that speak another protocol, Keya's own on CAN among them, are not found by it.\n"
+      "On a serial port Kinco's own protocol and Modbus RTU; Keya's drives are not asked there: what they answer is no "
+      "reply\nto a station. How long it takes at most is said before. A line that is in use, at another rate than the "
+      "one tried, hears\nnoise: scan one whose motors stand without torque. A port that a gateway has is refused.\n"
+      "It reads (SDO, Kinco's read frame, function 3), and writes, starts and resets nothing. Exit code 1: nobody "
+      "answered, or the bus cannot be "
+      "used.\n"
+      "A gateway that runs on the same bus is another SDO client: the drives answer both under one number, so stop it\n"
+      "first. A serial adapter opened with a wrong bit rate disturbs a bus that is in use.\n"
+      "Makers do not print their identity numbers: a profile fits as far as the node has the profile's objects.\n"
+      "Example: axisgate scan can0; axisgate scan /dev/ttyUSB0 --baud 38400 --stations 1-8");
+  command->callback([&parsed] {
+    if (const auto range = parse_scan_range(parsed.scan_nodes)) parsed.scan.nodes = *range;
+    if (const auto range = parse_scan_range(parsed.scan_stations, kLastRtuStation))
+      parsed.scan.serial.stations = *range;
+    run_with_folders(parsed, parsed.scan);
+  });
+}
+
+void add_reload(CLI::App& app, Parsed& parsed) {
+  CLI::App* command = app.add_subcommand("reload", "Have the running gateway read its configuration anew");
+  command->add_option("CONFIG", parsed.reload.config, "the file that the gateway was started with")->required();
+  command->footer(
+      "Only buses and listeners that change are restarted, and only while the axes of these buses are online and "
+      "disabled; else\n"
+      "nothing is changed and the reasons are told (exit code 1).\n"
+      "Example: axisgate check /etc/axisgate/gateway.json && axisgate reload /etc/axisgate/gateway.json");
+  command->callback([&parsed] { parsed.exit_code = run(parsed.reload); });
+}
+
+void add_explain(CLI::App& app, Parsed& parsed) {
+  CLI::App* command =
+      app.add_subcommand("explain", "Say what a state, alarm, result, exception or fault code means, and what to do");
+  command->add_option("WORD", parsed.explain.words, "a name, a kind and a number, or a code; none: everything");
+  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
+      ->type_name("DIR");
+  command->add_flag("--page", parsed.explain.page, "print docs/troubleshooting.md");
+  command->footer(
+      "Exit code 1: nothing is called so.\n"
+      "Example: axisgate explain stop_latched; axisgate explain result 9; axisgate explain 0x3130");
+  command->callback([&parsed] { run_with_folders(parsed, parsed.explain); });
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  CLI::App app("axisgate: motor drives on fieldbuses as one Modbus-TCP register map", "axisgate");
+  app.set_version_flag("--version", "axisgate " AXISGATE_VERSION);
+  app.require_subcommand(1);
+  app.footer("Example: axisgate check CONFIG && axisgate run CONFIG\nEvery command has --help.");
+  Parsed parsed;
+  add_run(app, parsed);
+  add_check(app, parsed);
+  add_map(app, parsed);
+  add_top(app, parsed);
+  add_hand_commands(app, parsed.hand, parsed.exit_code);
+  add_topics(app, parsed);
+  add_profile(app, parsed);
+  add_commission(app, parsed);
+  add_scan(app, parsed);
+  add_explain(app, parsed);
+  add_reload(app, parsed);
+  if (const auto text = manual::generated(app, argc, argv)) {
+    std::cout << *text;
+    return 0;
+  }
+  // CLI11 says of an unknown word only that a command is missing.
+  if (const std::string wrong = wrong_command(app, argc, argv); !wrong.empty()) {
+    std::cerr << wrong << "\n";
+    return kWrongCommandLine;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for_help = app.exit(error) == 0;
+    if (!asked_for_help) std::cerr << nearest_options(app);
+    return asked_for_help ? 0 : kWrongCommandLine;
+  }
+  return parsed.exit_code;
+}
+
+}  // namespace axisgate::app

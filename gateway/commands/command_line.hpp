@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line: which command is meant, with which options.
+// Promises that every command has --help with an example, and that a wrong option is named.
+// Never does a command's work itself.
+#pragma once
+
+namespace axisgate::app {
+
+/// The exit code where an option or its value is wrong.
+inline constexpr int kWrongCommandLine = 2;
+
+/// Parses and runs; the exit code of the process. 0: done. 1: the command says no. 2: the command line is wrong.
+[[nodiscard]] int run_command_line(int argc, const char* const* argv);
+
+}  // namespace axisgate::app

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The signals that end the gateway: SIGTERM and SIGINT; SIGHUP where the process was started from a terminal, which is
+// then gone. Promises that the first one begins the end on purpose, and a second one ends the process at once; that a
+// SIGHUP to a service asks for a reload, and one that whoever started the process has it ignore (nohup) is ignored.
+// Never decides what becomes of the drives.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <functional>
+
+#include "gateway/core/log.hpp"
+
+namespace axisgate::app {
+
+/// Whoever started the process wants it to outlive its terminal (nohup).
+[[nodiscard]] bool hangups_are_ignored();
+
+class EndSignals {
+ public:
+  /// `on_end(at_once)` and `on_reload()` run on the loop.
+  EndSignals(boost::asio::io_context& io, const Log& log, std::function<void(bool at_once)> on_end,
+             std::function<void()> on_reload);
+
+ private:
+  void wait();
+  void on_signal(int signal);
+
+  const Log& log_;
+  std::function<void(bool)> on_end_;
+  std::function<void()> on_reload_;
+  bool has_terminal_;
+  bool ending_ = false;
+  boost::asio::signal_set signals_;
+};
+
+}  // namespace axisgate::app

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/commands/profile_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <variant>
+
+#include "gateway/commands/faults_told.hpp"
+#include "gateway/profile/eds/eds_compare.hpp"
+#include "gateway/profile/read/profile_loader.hpp"
+
+namespace axisgate::app {
+namespace {
+
+using drive::Profile;
+
+bool has_place(const Profile& profile, const std::string& object, std::string_view protocol) {
+  for (std::size_t slot = 0; slot < profile.axes.size(); ++slot) {
+    const drive::Object* found = profile.find(object, static_cast<bus::AxisSlot>(slot));
+    if (found != nullptr && found->places.contains(protocol)) return true;
+  }
+  return false;
+}
+
+/// Some object gives it on this protocol. What constants decide (torque in percent needs a rated current) is `axisgate
+/// check`'s to say: it knows the configured drive.
+bool given(const Profile& profile, const QuantityRow& row, std::string_view protocol) {
+  if (row.quantity == Quantity::error_code) return !profile.alarms.empty();  // made from the alarm table
+  constexpr std::array kEmulated{Quantity::statusword, Quantity::mode_display, Quantity::controlword, Quantity::mode};
+  if (profile.state.is_virtual && std::find(kEmulated.begin(), kEmulated.end(), row.quantity) != kEmulated.end())
+    return true;
+  const drive::QuantitySpec* quantity = profile.find(row.quantity);
+  if (quantity == nullptr) return false;
+  const auto place = [&](const std::string& object) { return has_place(profile, object, protocol); };
+  return std::any_of(quantity->objects.begin(), quantity->objects.end(), place) ||
+         std::any_of(quantity->bits.begin(), quantity->bits.end(),
+                     [&](const drive::BitsSpec& bits) { return place(bits.object); });
+}
+
+void print_protocol(const Profile& profile, const std::string& protocol, const drive::ProtocolSpec& facts) {
+  std::vector<std::string_view> missing;
+  std::size_t count = 0;
+  for (const QuantityRow& quantity : quantity_table()) {
+    if (given(profile, quantity, protocol)) {
+      ++count;
+    } else {
+      missing.push_back(quantity.name);
+    }
+  }
+  const auto objects = std::count_if(profile.objects.begin(), profile.objects.end(),
+                                     [&](const drive::Object& object) { return object.places.contains(protocol); });
+  fmt::print("  {:<14}{} objects, {} of {} quantities; {}\n", protocol, objects, count, kQuantityCount,
+             facts.stops_by_itself() ? "stops by itself when the gateway dies"
+                                     : "does not stop by itself when the gateway dies");
+  if (!missing.empty()) fmt::print("  {:<14}without {}\n", "", fmt::join(missing, ", "));
+}
+
+/// The content; a fault where there is none to be had.
+std::variant<std::string, ConfigFault> content_of(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string text(drive::kMaxEdsBytes + 1, '\0');
+  if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad() || (!stream && stream.gcount() == 0 && !stream.eof()))
+    return ConfigFault{file, "", std::string("cannot be read: ") + std::strerror(errno)};
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+std::vector<ConfigFault> faults_of(const std::string& file, const drive::Eds& eds) {
+  std::vector<ConfigFault> out;
+  for (const drive::EdsFault& fault : eds.faults)
+    out.push_back({file, "", fault.line == 0 ? fault.message : fmt::format("line {}: {}", fault.line, fault.message)});
+  return out;
+}
+
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
+  return text;
+}
+
+std::string identity_text(const drive::Eds& eds) {
+  std::string out = fmt::format("{} {}", printable(eds.vendor_name), printable(eds.product_name));
+  if (eds.vendor) out += fmt::format(", vendor {:#x}", *eds.vendor);
+  if (eds.product) out += fmt::format(", product {:#x}", *eds.product);
+  if (eds.revision) out += fmt::format(", revision {:#x}", *eds.revision);
+  return out;
+}
+
+int compare(const ProfileCheckOptions& options, const drive::LoadedProfile& loaded) {
+  const Profile& profile = loaded.profile;
+  const auto text = content_of(options.eds);
+  if (const auto* fault = std::get_if<ConfigFault>(&text)) return tell({*fault});
+  const drive::Eds eds = drive::parse_eds(std::get<std::string>(text));
+  if (!eds.faults.empty()) return tell(faults_of(options.eds, eds));
+  if (!profile.protocols.contains("canopen"))
+    return tell({{options.file, "/protocols", "has no canopen, and an EDS describes nothing else"}});
+  fmt::print("  {:<14}{}: {}, {} objects\n", "EDS", options.eds, identity_text(eds), eds.objects.size());
+  std::vector<ConfigFault> faults;
+  for (const drive::EdsContradiction& found : drive::contradictions(profile, eds)) {
+    const drive::Written written = drive::written_at(loaded.written, found.pointer);
+    faults.push_back({written.file, written.pointer,
+                      fmt::format("{} [{}]: {}", options.eds, printable(found.section), printable(found.message))});
+  }
+  if (faults.empty()) fmt::print("  {:<14}nothing in it contradicts the profile\n", "");
+  std::fflush(stdout);
+  return faults.empty() ? 0 : tell(faults);
+}
+
+}  // namespace
+
+int run(const ProfileCheckOptions& options) {
+  const drive::LoadedProfile loaded = drive::load_profile(options.file, options.profile_folders);
+  std::vector<ConfigFault> faults;
+  for (const drive::Fault& fault : loaded.faults)
+    faults.push_back(ConfigFault{fault.file, fault.pointer, fault.message});
+  if (!faults.empty()) return tell(faults);
+
+  const Profile& profile = loaded.profile;
+  fmt::print("{} is valid: {}, {} motor{}, {} alarms, {} checks\n", options.file, profile.title, profile.axes.size(),
+             profile.axes.size() == 1 ? "" : "s", profile.alarms.size(), profile.checks.size());
+  for (const auto& [protocol, facts] : profile.protocols) print_protocol(profile, protocol, facts);
+  return options.eds.empty() ? 0 : compare(options, loaded);
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/commands/run_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adapters/asio/asio_runtime.hpp"
+#include "gateway/commands/end_signals.hpp"
+#include "gateway/commands/faults_told.hpp"
+#include "gateway/compose/gateway.hpp"
+#include "gateway/compose/start_lines.hpp"
+#include "gateway/config/config_loader.hpp"
+#include "gateway/process/control_socket.hpp"
+#include "gateway/process/descriptor_needs.hpp"
+#include "gateway/process/device_wires.hpp"
+#include "gateway/process/file_watch.hpp"
+#include "gateway/process/loop_watch.hpp"
+#include "gateway/process/reload.hpp"
+#include "gateway/process/service.hpp"
+#include "gateway/process/stderr_log.hpp"
+#include "gateway/upstream/dds_host/dds_server.hpp"
+#include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
+#include "gateway/upstream/modbus_tcp/server/server.hpp"
+
+namespace axisgate::app {
+namespace {
+
+/// When all drives are done, what their clients are told still has to leave this process.
+constexpr Duration kLastAnswers = std::chrono::milliseconds(50);
+
+/// Names given with --decode; one that no bus has is a mistake of the command line, not passed over.
+std::optional<ConfigFault> switch_decode_on(Config& config, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const auto bus =
+        std::find_if(config.buses.begin(), config.buses.end(), [&](const auto& b) { return b.name == name; });
+    if (bus == config.buses.end())
+      return ConfigFault{config.file, "/buses", fmt::format("no bus has the name {}, which --decode gives", name)};
+    bus->decode = true;
+  }
+  return std::nullopt;
+}
+
+/// As the gateway runs with it: what the command line adds is in it.
+LoadResult load(const RunOptions& options) {
+  LoadResult result = load_config(options.config, options.profile_folders);
+  if (auto* loaded = std::get_if<LoadedConfig>(&result))
+    if (auto fault = switch_decode_on(loaded->config, options.decode))
+      return std::vector<ConfigFault>{std::move(*fault)};
+  return result;
+}
+
+std::string status_of(const ProcessImage& image) {
+  return fmt::format("{} axes on {} buses", image.axes().size(), image.buses.size());
+}
+
+int serve(LoadedConfig loaded, const RunOptions& options) {
+  Log log = stderr_log(options.decode.empty() ? options.log_level : std::max(options.log_level, LogLevel::debug));
+  for (const StartLine& line : start_lines(loaded, AXISGATE_VERSION)) log.write(LogLevel::info, line.source, line.text);
+  boost::asio::io_context io(1);
+  AsioRuntime runtime(io);
+  std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not
+  std::signal(SIGCHLD, SIG_DFL);  // inherited as ignored, it would hide how axisgate-dds ends
+  const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(descriptor_needs(loaded.config));
+  modbus_tcp::ClientRegistry clients;
+  Gateway gateway(loaded.config, loaded.models, runtime, log, device_wires(io, runtime, log));
+  modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log);
+  std::optional<dds::DdsServer> dds;
+  if (loaded.config.dds) {
+    dds.emplace(io, runtime, *loaded.config.dds, gateway.image(), gateway.events(), gateway, log,
+                dds::DdsReports{[&](EventKind kind, std::string text) { gateway.report(kind, std::move(text)); },
+                                [&](bool down) { gateway.report_dds_down(down); },
+                                [&](bool taken) { gateway.report_name_taken(taken); }});
+  }
+  try {
+    server.start(descriptors);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", options.config, error.what());
+    return 1;
+  }
+  if (descriptors.limited()) gateway.report(EventKind::warning, modbus_tcp::text(descriptors));
+  gateway.start();
+  if (dds) dds->start();
+  FileWatch file_watch(io, runtime, files_of(loaded.config),
+                       [&](const std::string& file) { gateway.report_file_changed(file); });
+  LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
+  Service service(runtime, [&](Duration slack) { return gateway.all_turn(slack); });
+  Reload reload(io, std::move(loaded.config), [&options] { return load(options); },
+                {gateway, server, dds ? &*dds : nullptr, file_watch, log});
+  const auto begin_reload = [&](const Reload::Done& done) {
+    service.reloading();
+    reload.begin([&, done](const ReloadResult& result) {
+      service.ready(status_of(gateway.image()));
+      done(result);
+    });
+  };
+  const auto end = [&] {
+    gateway.stop();
+    server.stop();
+    io.stop();
+  };
+  const std::unique_ptr<Timer> last_answers = runtime.make_timer(end);
+  EndSignals signals(
+      io, log,
+      [&](bool at_once) {
+        service.stopping();
+        if (at_once) return end();
+        gateway.close([&] { last_answers->expires_at(runtime.now() + kLastAnswers); });
+      },
+      [&] { begin_reload([](const ReloadResult&) {}); });
+  const ControlSocket control(io, runtime, log, options.config, begin_reload);
+  service.ready(status_of(gateway.image()));
+  io.run();
+  if (dds) dds->stop();
+  return 0;
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  LoadResult result = load(options);
+  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
+  auto& loaded = std::get<LoadedConfig>(result);
+  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "{}\n", warning);
+  return serve(std::move(loaded), options);
+}
+
+}  // namespace axisgate::app

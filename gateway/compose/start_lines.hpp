@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the log says first: version and configuration, then one line for each bus, axis, listener and the DDS server.
+// Promises that a log says by itself what was running, and which name and drive an axis number stands for.
+// Never opens or asks anything: it is what was configured, not what is there.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gateway/config/config_loader.hpp"
+
+namespace axisgate::app {
+
+struct StartLine {
+  std::string source;  ///< as Log::write() takes it
+  std::string text;
+};
+
+[[nodiscard]] std::vector<StartLine> start_lines(const LoadedConfig& loaded, std::string_view version);
+
+}  // namespace axisgate::app

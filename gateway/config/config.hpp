@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// The configuration as the gateway uses it: design section 5, checked and with defaults filled in.
+// Promises that every value is within its documented range and that names and numbers are unique.
+// Never holds JSON: config_loader makes it from a file.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/core/clock.hpp"
+#include "gateway/core/rational.hpp"
+#include "gateway/image/axis_image.hpp"
+#include "gateway/image/command.hpp"
+#include "gateway/upstream/dds/dds_settings.hpp"
+#include "gateway/upstream/modbus_tcp/client/listener_settings.hpp"
+
+namespace axisgate::app {
+
+struct AxisLimits {
+  std::optional<Range> position;                            ///< register units
+  std::optional<std::int64_t> velocity;                     ///< 0.001 rpm
+  std::optional<std::int64_t> acceleration;                 ///< 0.1 rpm/s
+  std::optional<std::int64_t> torque;                       ///< 0.1 % of rated
+  std::optional<std::int64_t> quick_stop_deceleration_min;  ///< 0.1 rpm/s
+  friend bool operator==(const AxisLimits&, const AxisLimits&) = default;
+};
+
+struct AxisConfig {
+  AxisNumber number = 0;
+  std::string name;  ///< "axis 3" where none was given
+  Rational units_per_rev{10000};
+  bool inverted = false;
+  AxisLimits limits;
+  std::int64_t standstill_velocity = 1000;  ///< 0.001 rpm
+  std::optional<std::int16_t> homing_method;
+  Duration homing_timeout = std::chrono::seconds(60);
+  LeaseRules lease;
+  Duration jog_timeout = std::chrono::milliseconds(500);
+  std::string motor;  ///< "A", "B": which of the drive's motors; empty: as many as stand before it in the list
+  std::optional<Rational> metres_per_rev{};  ///< what DDS shows it in; none: rad
+  bool vertical = false;                     ///< the load falls where the torque is taken away
+  std::string pointer;                       ///< JSON pointer of the entry, for messages
+  /// Not in the file: its profile says that a quick stop ends without torque.
+  bool stop_without_torque = false;
+  friend bool operator==(const AxisConfig&, const AxisConfig&) = default;
+};
+
+struct DriveConfig {
+  std::string profile;  ///< a name in schemas/drives, or a path
+  std::uint8_t node = 1;
+  std::map<std::string, Rational> constants;
+  std::array<std::optional<std::uint32_t>, 4> identity{};  ///< canopen: vendor, product, revision, serial (1018h)
+  std::vector<AxisConfig> axes;
+  std::string pointer;
+  std::string profile_text{};  ///< what the profile's file says, without spaces: its models are made from it
+  friend bool operator==(const DriveConfig&, const DriveConfig&) = default;
+};
+
+struct BusConfig {
+  std::string name;
+  std::string adapter;
+  std::string device;          ///< on CAN: an interface, or slcan:PATH (adapters/can/can_device.hpp)
+  std::uint32_t baud = 38400;  ///< by default: modbus-rtu 19200, Keya's serial protocols 115200
+  std::string parity = "none";
+  std::string rs485 = "auto";  ///< auto: direction control where the port offers it; off
+  bool cascade = false;        ///< Kinco 6510:0B = 1: every request comes back before its reply
+  /// On CAN; keya-can 250000 by default. An interface is set by whoever brings it up: what it is taken for then.
+  std::uint32_t bitrate = 500000;
+  bool bitrate_given = false;
+  Duration timeout{};  ///< where none is given: what its drives need (settle_..._buses())
+  Duration min_gap{};
+  Duration settle{};
+  std::array<Duration, 3> poll{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
+                               std::chrono::milliseconds(1000)};  ///< fast, normal, slow
+  bool poll_given = true;                                         ///< false: the periods are what the line carries
+  bool decode = false;
+  std::vector<DriveConfig> drives;
+  std::string pointer;
+  friend bool operator==(const BusConfig&, const BusConfig&) = default;
+};
+
+struct Config {
+  std::string file;
+  std::vector<std::string> profile_files{};  ///< read for it, each once
+  std::vector<modbus_tcp::ListenerSettings> modbus_tcp;
+  std::optional<dds::DdsSettings> dds;
+  std::vector<BusConfig> buses;
+};
+
+}  // namespace axisgate::app

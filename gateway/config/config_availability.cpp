@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/config/config_sections.hpp"
+
+namespace axisgate::app {
+namespace {
+
+void warn_at_first_use(const ConfigNode& root, std::string_view key, ConfigFaults& faults) {
+  for (const ConfigNode& bus : root.items("buses")) {
+    for (const ConfigNode& drive : bus.items("drives")) {
+      for (const ConfigNode& axis : drive.items("axes")) {
+        if (!axis.has(key)) continue;
+        faults.warn(axis.pointer(key), "without the key \"dds\" this has no effect");
+        return;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults) {
+  if (root.has("http")) faults.add(root.pointer("http"), "http is not available in this version: remove the key");
+}
+
+void warn_without_effect(const ConfigNode& root, ConfigFaults& faults) {
+  if (root.has("dds")) return;
+  for (const std::string_view key : {"dds_unit", "metres_per_rev"}) warn_at_first_use(root, key, faults);
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/config/config_fault.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace axisgate::app {
+
+std::string text(const ConfigFault& fault) {
+  if (fault.pointer.empty()) return fmt::format("{}: {}", fault.file, fault.message);
+  return fmt::format("{}: {}: {}", fault.file, fault.pointer, fault.message);
+}
+
+void ConfigFaults::add(std::string_view pointer, std::string_view message) {
+  add(ConfigFault{file_, std::string(pointer), std::string(message)});
+}
+
+void ConfigFaults::add(ConfigFault fault) {
+  // Two drives with the same bad profile would otherwise tell each of its mistakes twice.
+  if (std::find(faults_.begin(), faults_.end(), fault) == faults_.end()) faults_.push_back(std::move(fault));
+}
+
+void ConfigFaults::warn(std::string_view pointer, std::string_view message) {
+  warnings_.push_back(text(ConfigFault{file_, std::string(pointer), std::string(message)}));
+}
+
+bool ConfigFaults::within(std::string_view pointer) const {
+  return std::any_of(faults_.begin(), faults_.end(), [&](const ConfigFault& fault) {
+    if (fault.file != file_ || !std::string_view(fault.pointer).starts_with(pointer)) return false;
+    return fault.pointer.size() == pointer.size() || fault.pointer[pointer.size()] == '/';
+  });
+}
+
+}  // namespace axisgate::app

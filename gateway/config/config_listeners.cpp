@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gateway/config/config_endpoint.hpp"
+#include "gateway/config/config_sections.hpp"
+
+namespace axisgate::app {
+namespace {
+
+using modbus_tcp::AllowEntry;
+using modbus_tcp::ListenerSettings;
+
+AllowEntry read_allow_entry(const ConfigNode& node, ConfigFaults& faults) {
+  AllowEntry entry;
+  entry.role = role_named(node.string("role").value_or(""));
+  entry.rank = static_cast<std::uint8_t>(node.integer("rank").value_or(0));
+  const auto from = node.string("from");
+  if (!from || faults.within(node.pointer("from"))) return entry;
+
+  const auto network = parse_network(*from);
+  if (!network) {
+    faults.add(
+        node.pointer("from"),
+        fmt::format("'{}' is no address or network: write \"192.168.1.7\", \"192.168.1.0/24\" or \"fd00::/8\"", *from));
+    return entry;
+  }
+  if (!network->host_bits_clear) {
+    faults.add(node.pointer("from"),
+               fmt::format("'{}' has address bits behind its prefix: write the network's own address, "
+                           "or leave the prefix out to name one host",
+                           *from));
+  }
+  entry.network = network->address;
+  entry.prefix = network->prefix;
+  return entry;
+}
+
+void read_allow(const ConfigNode& node, ListenerSettings& settings, ConfigFaults& faults) {
+  settings.has_allow = node.has("allow");
+  std::vector<std::string> pointers;
+  for (const ConfigNode& item : node.items("allow")) {
+    const AllowEntry entry = read_allow_entry(item, faults);
+    const auto same = std::find_if(settings.allow.begin(), settings.allow.end(), [&](const AllowEntry& other) {
+      return other.network == entry.network && other.prefix == entry.prefix;
+    });
+    if (same != settings.allow.end() && !faults.within(item.pointer())) {
+      const auto first = pointers[static_cast<std::size_t>(same - settings.allow.begin())];
+      faults.add(item.pointer("from"), fmt::format("the same network as in {}: remove one of the two", first));
+    }
+    settings.allow.push_back(entry);
+    pointers.push_back(item.pointer());
+  }
+}
+
+void warn_about_reach(const ConfigNode& node, const ListenerSettings& settings, ConfigFaults& faults) {
+  if (is_loopback(settings.host)) return;
+  if (!settings.has_allow) {
+    faults.warn(
+        node.pointer("listen"),
+        "without `allow`, every host that reaches this address may read all axes; clients on other hosts cannot write");
+  }
+  if (settings.client_is_address) {
+    faults.warn(
+        node.pointer("client"),
+        "all connections from one address are one client: behind a NAT or a container's proxy, that is everybody");
+  }
+}
+
+ListenerSettings read_listener(const ConfigNode& node, ConfigFaults& faults) {
+  ListenerSettings settings;
+  settings.port = 0;  // until it is known: two listeners that both lack it do not collide
+  settings.low_word_first = node.string("word_order") == "low-first";
+  settings.float_numbers = node.string("numbers") == "float";
+  settings.staged_halves = node.string("halves") == "staged";
+  settings.per_axis_units = node.string("unit_ids") == "per-axis";
+  settings.client_is_address = node.string("client") == "address";
+  settings.posted_writes = node.string("writes") == "posted";
+  settings.offline_reads_fail = node.string("offline_reads") == "exception";
+  settings.rearm = node.milliseconds("rearm_ms", settings.rearm);
+  settings.start_deadline = node.milliseconds("start_deadline_ms", settings.start_deadline);
+  settings.reply_deadline = node.milliseconds("reply_deadline_ms", settings.reply_deadline);
+  settings.max_clients = static_cast<std::uint32_t>(node.integer("max_clients").value_or(settings.max_clients));
+  settings.max_clients_per_address =
+      static_cast<std::uint32_t>(node.integer("max_clients_per_address").value_or(settings.max_clients_per_address));
+  read_allow(node, settings, faults);
+
+  const auto listen = node.string("listen");
+  if (!listen || faults.within(node.pointer("listen"))) return settings;
+  const auto endpoint = parse_endpoint(*listen);
+  if (!endpoint) {
+    faults.add(node.pointer("listen"),
+               fmt::format("'{}' is no address and port: write \"127.0.0.1:1502\", \"0.0.0.0:1502\" or \"[::]:1502\"",
+                           *listen));
+    return settings;
+  }
+  settings.host = endpoint->host;
+  settings.port = endpoint->port;
+  warn_about_reach(node, settings, faults);
+  return settings;
+}
+
+bool collide(const ListenerSettings& a, const ListenerSettings& b) {
+  return a.port != 0 && a.port == b.port && (a.host == b.host || is_any_address(a.host) || is_any_address(b.host));
+}
+
+}  // namespace
+
+Role role_named(std::string_view name) {
+  for (const Role role : {Role::viewer, Role::operator_, Role::engineer}) {
+    if (name == axisgate::text(role)) return role;
+  }
+  return Role::none;
+}
+
+std::vector<ListenerSettings> read_listeners(const ConfigNode& root, ConfigFaults& faults) {
+  std::vector<ListenerSettings> listeners;
+  if (!root.has("modbus_tcp")) {
+    faults.add("/modbus_tcp",
+               "there is no listener, so nobody could reach the gateway: add [{\"listen\": \"127.0.0.1:1502\"}]");
+  }
+  std::vector<std::string> pointers;
+  for (const ConfigNode& node : root.items("modbus_tcp")) {
+    const ListenerSettings settings = read_listener(node, faults);
+    for (std::size_t i = 0; i < listeners.size(); ++i) {
+      if (!collide(listeners[i], settings)) continue;
+      faults.add(node.pointer("listen"), fmt::format("port {} is taken by {}: give each listener a port of its own",
+                                                     settings.port, pointers[i]));
+      break;
+    }
+    listeners.push_back(settings);
+    pointers.push_back(node.pointer());
+  }
+  return listeners;
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/config/config_loader.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "gateway/config/config_schema.hpp"
+#include "gateway/config/config_sections.hpp"
+#include "gateway/profile/json/json_schema.hpp"
+
+namespace axisgate::app {
+namespace {
+
+void check_schema(const nlohmann::json& document, ConfigFaults& faults) {
+  const auto schema = nlohmann::json::parse(gateway_schema_text());
+  for (const drive::SchemaFault& fault : drive::validate(document, schema)) faults.add(fault.pointer, fault.message);
+}
+
+/// Per-axis unit ids have room for 254 axes.
+void warn_about_unit_ids(const Config& config, ConfigFaults& faults) {
+  constexpr AxisNumber kLastUnit = 254;
+  for (std::size_t i = 0; i < config.modbus_tcp.size(); ++i) {
+    if (!config.modbus_tcp[i].per_axis_units) continue;
+    for (const BusConfig& bus : config.buses) {
+      for (const DriveConfig& drive : bus.drives) {
+        for (const AxisConfig& axis : drive.axes) {
+          if (axis.number <= kLastUnit) continue;
+          faults.warn(
+              axis.pointer + "/axis",
+              fmt::format(
+                  "/modbus_tcp/{} gives each axis a unit id, which reach axes 1 to 254: axis {} is seen through "
+                  "unit 255 only",
+                  i, axis.number));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders) {
+  ConfigFaults faults(file);
+  auto read = drive::load_json(file);
+  if (const auto* fault = std::get_if<drive::SchemaFault>(&read)) {
+    faults.add(fault->pointer, fault->message);
+    return faults.faults();
+  }
+  const auto& document = std::get<nlohmann::json>(read);
+  check_schema(document, faults);
+
+  const ConfigNode root(document, "");
+  LoadedConfig loaded;
+  loaded.config.file = file;
+  if (root.is_object()) {
+    refuse_unavailable(root, faults);
+    loaded.config.modbus_tcp = read_listeners(root, faults);
+    loaded.config.buses = read_buses(root, faults);
+    loaded.config.dds = read_dds(root, loaded.config.buses, faults);
+    check_unique(loaded.config, faults);
+    warn_without_effect(root, faults);
+    warn_about_unit_ids(loaded.config, faults);
+    loaded.models = load_models(loaded.config, profile_folders, faults);
+    if (faults.faults().empty()) {
+      settle_rtu_buses(loaded.config, loaded.models, faults);
+      settle_can_buses(loaded.config, loaded.models, faults);
+      settle_keya_buses(loaded.config, loaded.models, faults);
+    }
+  }
+  if (!faults.faults().empty()) return faults.faults();
+  loaded.warnings = faults.warnings();
+  return loaded;
+}
+
+}  // namespace axisgate::app

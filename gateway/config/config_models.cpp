@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "gateway/config/config_sections.hpp"
+#include "gateway/core/nearest.hpp"
+#include "gateway/profile/resolve/profile_resolve.hpp"
+
+namespace axisgate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Largest position a register can show, design 3.1; the other end is its negative.
+constexpr std::int64_t kLargestPosition = 2147483647;
+
+drive::ResolveInput input_of(const BusConfig& bus, const DriveConfig& config) {
+  drive::ResolveInput input;
+  input.protocol = bus.adapter;
+  input.node = config.node;
+  input.constants = config.constants;
+  input.identity = config.identity;
+  input.poll = bus.poll;
+  for (const AxisConfig& axis : config.axes) {
+    drive::ResolveAxis resolved;
+    resolved.number = axis.number;
+    resolved.name = axis.name;
+    resolved.units_per_rev = axis.units_per_rev;
+    resolved.inverted = axis.inverted;
+    resolved.position_limits = axis.limits.position;
+    resolved.velocity_limit = axis.limits.velocity;
+    resolved.acceleration_limit = axis.limits.acceleration;
+    resolved.torque_limit = axis.limits.torque;
+    resolved.quick_stop_deceleration_min = axis.limits.quick_stop_deceleration_min;
+    resolved.standstill_velocity = axis.standstill_velocity;
+    resolved.homing_method = axis.homing_method;
+    resolved.homing_timeout = axis.homing_timeout;
+    resolved.lease = axis.lease;
+    resolved.jog_timeout = axis.jog_timeout;
+    resolved.motor = axis.motor;
+    input.axes.push_back(std::move(resolved));
+  }
+  return input;
+}
+
+bool is_path(const std::string& profile) {
+  return profile.find('/') != std::string::npos || profile.ends_with(".json");
+}
+
+/// The names by which profiles of these folders are called.
+std::vector<std::string> names_in(const std::vector<std::string>& folders) {
+  std::vector<std::string> out;
+  std::error_code error;
+  for (const std::string& folder : folders)
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (entry.path().extension() == ".json") out.push_back(entry.path().stem().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// Reads each profile once, however many drives use it.
+class Profiles {
+ public:
+  /// A path counts from the folder of `config_file`.
+  Profiles(const std::string& config_file, const std::vector<std::string>& folders, ConfigFaults& faults)
+      : base_(fs::path(config_file).parent_path()), folders_(folders), faults_(faults) {}
+
+  /// Null where it is missing or wrong; the mistakes are told.
+  const drive::LoadedProfile* find(const DriveConfig& config) {
+    const std::string pointer = config.pointer + "/profile";
+    const std::string name = is_path(config.profile) ? (base_ / config.profile).string() : config.profile;
+    const auto file = drive::find_profile(name, folders_);
+    if (!file) {
+      faults_.add(pointer, missing(config.profile, name));
+      return nullptr;
+    }
+    auto known = loaded_.find(*file);
+    if (known == loaded_.end()) known = loaded_.emplace(*file, drive::load_profile(*file, folders_)).first;
+    const drive::LoadedProfile& profile = known->second;
+    if (profile.faults.empty()) return &profile;
+    for (const drive::Fault& fault : profile.faults) faults_.add(ConfigFault{fault.file, fault.pointer, fault.message});
+    faults_.add(pointer, fmt::format("profile {} is wrong, see its own mistakes: correct it", *file));
+    return nullptr;
+  }
+
+  /// Of all that were read, with those that they extend.
+  [[nodiscard]] std::vector<std::string> files() const {
+    std::vector<std::string> out;
+    for (const auto& [file, profile] : loaded_)
+      for (const std::string& read : profile.files)
+        if (std::find(out.begin(), out.end(), read) == out.end()) out.push_back(read);
+    return out;
+  }
+
+ private:
+  [[nodiscard]] std::string missing(const std::string& profile, const std::string& path) const {
+    if (is_path(profile))
+      return fmt::format("there is no file {}: a path that does not begin with / counts from this file", path);
+    return fmt::format("there is no {}.json in {}: correct the name, or name its folder with --profiles{}", profile,
+                       folders_.empty() ? "any folder" : fmt::format("{}", fmt::join(folders_, ", ")),
+                       did_you_mean(profile, names_in(folders_)));
+  }
+
+  fs::path base_;
+  const std::vector<std::string>& folders_;
+  ConfigFaults& faults_;
+  std::map<std::string, drive::LoadedProfile> loaded_;
+};
+
+/// Without limits, an axis that can travel further than a register can count would one day show no position at all.
+void check_travel(const drive::AxisModel& model, const drive::DriveModel& drive, const AxisConfig& axis,
+                  ConfigFaults& faults) {
+  const drive::Binding* position = model.binding(Quantity::position_actual);
+  if (position == nullptr || position->object == drive::kNoObject || axis.limits.position) return;
+  if (position->recipe.waits()) return;  // how it counts is read from the drive: its values are judged one by one
+  const auto travel = position->to_register(drive.object(position->object).range().max);
+  if (travel && *travel <= kLargestPosition && *travel >= -kLargestPosition) return;
+  faults.add(
+      axis.pointer + "/units_per_rev",
+      fmt::format(
+          "the drive can travel further than a register can count in these units (±{:.1f} turns): write fewer units "
+          "per turn, or \"limits\": {{\"position\": [min, max]}}",
+          static_cast<double>(kLargestPosition) / axis.units_per_rev.to_double()));
+}
+
+void check_lease(const drive::AxisModel& model, const AxisConfig& axis, ConfigFaults& faults) {
+  const Command action = command_of(axis.lease.on_expiry);
+  if (!axis.lease.on || action == Command::none || model.command(action)) return;
+  faults.add(axis.pointer + "/lease/on_expiry",
+             fmt::format("this drive has no {} on its protocol: write quick_stop, halt or disable, whichever it has",
+                         axisgate::text(action)));
+}
+
+std::optional<drive::DriveModel> load_model(const BusConfig& bus, DriveConfig& config, Profiles& profiles,
+                                            ConfigFaults& faults) {
+  const drive::LoadedProfile* profile = profiles.find(config);
+  if (profile == nullptr || faults.within(config.pointer)) return std::nullopt;
+  config.profile_text = profile->text;
+  const std::size_t motors = profile->profile.axes.size();
+  if (config.axes.size() > motors) {
+    faults.add(config.pointer + "/axes",
+               fmt::format("the {} drives {} motor{}, and {} axes are given: remove what is too many",
+                           profile->profile.title, motors, motors == 1 ? "" : "s", config.axes.size()));
+    return std::nullopt;
+  }
+  auto resolved = drive::resolve(*profile, input_of(bus, config));
+  if (const auto* wrong = std::get_if<std::vector<drive::Fault>>(&resolved)) {
+    for (const drive::Fault& fault : *wrong) faults.add(config.pointer + fault.pointer, fault.message);
+    return std::nullopt;
+  }
+  auto& model = std::get<drive::DriveModel>(resolved);
+  for (std::size_t i = 0; i < model.axes.size(); ++i) {
+    check_travel(model.axes[i], model, config.axes[i], faults);
+    check_lease(model.axes[i], config.axes[i], faults);
+    config.axes[i].stop_without_torque = !profile->profile.state.quick_stop_energised;
+  }
+  return std::move(model);
+}
+
+}  // namespace
+
+std::vector<std::vector<drive::DriveModel>> load_models(Config& config, const std::vector<std::string>& profile_folders,
+                                                        ConfigFaults& faults) {
+  std::vector<std::vector<drive::DriveModel>> models;
+  Profiles profiles(config.file, profile_folders, faults);
+  for (BusConfig& bus : config.buses) {
+    auto& drives = models.emplace_back();
+    if (faults.within(bus.pointer + "/adapter")) continue;  // no protocol to resolve for
+    for (DriveConfig& drive : bus.drives) {
+      if (faults.within(drive.pointer + "/profile") || drive.profile.empty()) continue;
+      if (auto model = load_model(bus, drive, profiles, faults)) drives.push_back(std::move(*model));
+    }
+  }
+  config.profile_files = profiles.files();
+  return models;
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sections of a configuration file, each read and checked by a function of its own; config_loader calls them in
+// order. Promises that each finds every mistake of its section and reads on after it. Never looks at a section that is
+// not its own.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/config/config.hpp"
+#include "gateway/config/config_fault.hpp"
+#include "gateway/config/config_node.hpp"
+#include "gateway/model/model.hpp"
+
+namespace axisgate::app {
+
+/// What the schema knows and this version has not: refused by name, never ignored.
+void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults);
+
+/// none: no role has this name.
+[[nodiscard]] Role role_named(std::string_view name);
+[[nodiscard]] std::vector<modbus_tcp::ListenerSettings> read_listeners(const ConfigNode& root, ConfigFaults& faults);
+[[nodiscard]] std::vector<BusConfig> read_buses(const ConfigNode& root, ConfigFaults& faults);
+[[nodiscard]] DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
+[[nodiscard]] AxisConfig read_axis(const ConfigNode& node, ConfigFaults& faults);
+/// The section "dds", with the units of all axes.
+[[nodiscard]] std::optional<dds::DdsSettings> read_dds(const ConfigNode& root, const std::vector<BusConfig>& buses,
+                                                       ConfigFaults& faults);
+/// An axis's keys "dds_unit" and "metres_per_rev"; no value: rad.
+[[nodiscard]] std::optional<Rational> read_metres_per_rev(const ConfigNode& axis, ConfigFaults& faults);
+
+/// Names, numbers, devices and stations that may be there once only, over the whole file.
+void check_unique(const Config& config, ConfigFaults& faults);
+/// Keys that are right and have no effect as things stand: one warning for each.
+void warn_without_effect(const ConfigNode& root, ConfigFaults& faults);
+
+/// The profiles of all drives, resolved for their axes. Drives with mistakes of their own are left out.
+[[nodiscard]] std::vector<std::vector<drive::DriveModel>> load_models(Config& config,
+                                                                      const std::vector<std::string>& profile_folders,
+                                                                      ConfigFaults& faults);
+
+/// A timeout that nobody has given is what the longest exchange and the slowest drive need; one that is given must be
+/// longer than the exchange. `takes`: what `on_wire` is the time of, for the message.
+void settle_timeout(BusConfig& bus, const std::vector<drive::DriveModel>& drives, Duration on_wire,
+                    const std::string& takes, ConfigFaults& faults);
+/// Poll periods that nobody has given are what the line carries.
+void settle_poll(BusConfig& bus, std::vector<drive::DriveModel>& drives);
+/// modbus-rtu: timeouts and poll periods that nobody has given follow from the drives on the line.
+void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
+
+/// What a bus on CAN may not have, and what its device must be.
+void check_can_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
+/// canopen: the same for timeouts and periods; and inhibit and confirmation times that leave the line to requests,
+/// however many drives share it.
+void settle_can_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
+
+/// Keya's protocols: rates as the drives leave their factory.
+void default_keya_bus(BusConfig& bus);
+/// The silence that is kept between two frames of its serial protocols where the configuration names none.
+[[nodiscard]] Duration keya_gap(std::uint32_t baud);
+/// Rates, parity and number of drives of a bus that speaks one of Keya's protocols.
+void check_keya_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
+/// Keya's protocols: the same for timeouts and periods.
+void settle_keya_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
+
+}  // namespace axisgate::app

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// One axis at work: takes write batches, queues them with the bus, carries them out one after another and shows the
+// axis's image. Promises each write batch one result; a stop taken at any time, ahead of everything; callbacks only
+// after the image shows what they tell. Never enables or moves the axis by itself: it stops one whose owner has fallen
+// silent, a jog whose button is let go, and a homing out of time, nothing else.
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "gateway/drive/axis/telling.hpp"
+#include "gateway/drive/command_sequence/command_sequence.hpp"
+#include "gateway/drive/motion/accepted.hpp"
+#include "gateway/drive/motion/jog.hpp"
+#include "gateway/drive/motion/owed_stop.hpp"
+#include "gateway/drive/motion/ownership.hpp"
+#include "gateway/image/command_port.hpp"
+#include "gateway/image/events.hpp"
+
+namespace axisgate::drive {
+
+/// What an axis needs of its drive.
+class AxisHost {
+ public:
+  AxisHost() = default;
+  AxisHost(const AxisHost&) = delete;
+  AxisHost& operator=(const AxisHost&) = delete;
+  virtual ~AxisHost() = default;
+  [[nodiscard]] virtual Instant now() const = 0;
+  [[nodiscard]] virtual LinkState link_state() const = 0;
+  struct Queued {
+    Errc code = Errc::ok;  ///< ok or queue_full
+    bus::JobId id = 0;
+    bool joined = false;
+  };
+  [[nodiscard]] virtual Queued queue(bus::BusJob job) = 0;
+  virtual void job_waits(bus::JobId id, Instant until) = 0;
+  virtual void job_done(bus::JobId id) = 0;
+  /// A stop's bus job goes on as another: the rest of its write batch. False: there is no room for it.
+  [[nodiscard]] virtual bool job_goes_on_as(bus::JobId id, const bus::BusJob& rest) = 0;
+  virtual void event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) = 0;
+};
+
+/// So long after its answer an enable may come late.
+inline constexpr Duration kWatched = std::chrono::seconds(5);
+
+/// Clients that may wait for one and the same read or stop.
+inline constexpr std::size_t kMaxJoined = 64;
+
+class Axis {
+ public:
+  Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, AxisImage& image, AxisHost& host);
+
+  [[nodiscard]] std::optional<BatchResult> submit(const WriteBatch& batch, BatchCallback on_result);
+  [[nodiscard]] bool holds(Quantity quantity, std::int64_t value) const;
+  /// A row that a block repeats asks all the same: its client owns the axis, and another value was accepted last.
+  [[nodiscard]] bool owner_asks(ClientId client, Quantity quantity, std::int64_t value) const;
+  [[nodiscard]] std::int32_t set_position_value() const { return core_.set_position_value; }
+
+  /// The drive comes up anew: nothing is known, nothing survives.
+  void on_bring_up();
+  /// The drive has sent an emergency code; 0: what it told of is over.
+  void on_emergency(std::uint16_t code, Instant now) { core_.fault.emergency(code, now, core_.store.exchange()); }
+  /// What is to be read next so that a fault can be shown with its cause; and it goes on the wire.
+  [[nodiscard]] std::optional<ObjectId> cause_to_read(Instant now) const { return core_.fault.next(now); }
+  void cause_asked(Instant now) { core_.fault.asked(now); }
+  /// What came by itself shows the end of the motion, and a read must settle it.
+  [[nodiscard]] bool end_wants_sample() const { return core_.motion.end_wants_sample(core_.facts()); }
+  /// The axis has shown a fault until now; told once.
+  [[nodiscard]] bool fault_is_over() { return core_.fault.take_over(); }
+  /// It says that it has started anew: no motor of it has torque.
+  void on_restarted();
+  /// It was suspect: it may have restarted unseen.
+  void on_invalidated() { reference_invalidated_ = true; }
+  void set_alarm(AxisAlarm alarm, bool on);
+  /// New samples are in the store: what is made from them is made anew.
+  void on_samples();
+  /// The drive's own constants were read: scales and limits have changed.
+  void on_scale();
+  /// This client will never speak again: its lease is an orphan. Where leases are off, a motion that it commanded is
+  /// stopped if nothing else would stop it.
+  void on_client_gone(ClientId client);
+  /// The gateway ends: from now on only stops are accepted. What waits ends as never started; what has begun ends after
+  /// its exchange; stops, owed ones too, go on to their end.
+  void close();
+  /// It does not end after all.
+  void reopen() { closing_ = false; }
+  [[nodiscard]] const AxisImage& image() const { return image_; }
+  /// Nothing of it waits for the wire or is on it.
+  [[nodiscard]] bool idle() const { return pending_.empty(); }
+  /// Bring-up has found the axis enabled: it is open to every operator, until its lease runs out (design 3.5).
+  void on_adopted();
+  /// Somebody answers for what the axis does: its owner's lease runs, or leases are off. What must be commanded again
+  /// and again (profile key "keepalive") is commanded only so long.
+  [[nodiscard]] bool commands_live() const { return ownership_.live(host_.now()); }
+
+  /// A stop of it waits for the wire or is under way.
+  [[nodiscard]] bool stopping() const;
+  /// A stop was accepted, and the drive has not shown it yet.
+  [[nodiscard]] bool owes_stop() const { return owed_.owed(); }
+  /// An enable is under way.
+  [[nodiscard]] bool enabling() const { return enable_is_asked(true); }
+  /// The same, or (not `begun`) one waits for the wire.
+  [[nodiscard]] bool enable_is_asked(bool begun = false) const;
+  /// A disable waits for the wire.
+  [[nodiscard]] bool disable_waits() const;
+
+  /// The bus job's next exchange; none: it waits or has just ended.
+  [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::JobId id);
+  [[nodiscard]] bool passes_resync(bus::JobId id);
+  /// A stop that has not been sent yet, or, of the bus job on the wire, one that will be sent once more.
+  [[nodiscard]] bool insists(bus::JobId id) const;
+  void on_result(bus::JobId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted);
+  void on_job_ended(bus::JobId id, Errc code);
+  [[nodiscard]] bool has(bus::JobId id) const { return find(id) != nullptr; }
+  /// The bus job whose long object is under way; 0: none.
+  [[nodiscard]] bus::JobId chain_job() const;
+
+  /// Deadlines of write batches.
+  void on_time(Instant now);
+  /// New samples, or time has passed: what runs, what has ended.
+  void observe(Instant now);
+  [[nodiscard]] Instant next_deadline() const;
+
+  /// Brings the image up to date; then calls what is due to be called.
+  void publish(Instant now);
+  void call_back();
+  [[nodiscard]] bool has_due() const { return !due_.empty() && !core_.fault.withheld(); }
+
+  [[nodiscard]] const AxisCore& core() const { return core_; }
+  /// Between the last two samples of the statusword: the poll cycle as it really is.
+  [[nodiscard]] Duration cycle() const { return cycle_; }
+
+ private:
+  /// A client that waits for a result. Those that share a bus job keep a deadline each.
+  struct Waiting {
+    BatchCallback tell;
+    Instant start_by = kNever;   ///< nothing sent by then: never_started; of a stop: kNever
+    Instant answer_by = kNever;  ///< no result by then: timed_out
+  };
+  struct Pending {
+    bus::JobId id = 0;
+    std::unique_ptr<CommandSequence> command_sequence;
+    std::vector<Waiting> callbacks;
+    Instant start_by = kNever;  ///< the latest of theirs: the bus ends the bus job then
+    bool starts_motion = false;
+    bool by_mailbox = false;
+    bool jogs = false;                        ///< it starts a jog
+    std::optional<Endings::Point> acts_at{};  ///< of a command or controlword that the servers do not know to act yet
+    std::uint64_t ends_jog = 0;               ///< once it has started what it starts, this jog is over
+    Errc refusal = Errc::ok;                  ///< of what stood beside the stop; the answer once the stop is done
+    std::optional<ClientId> stopped_by{};     ///< whose stop came first after it
+    std::string stopped_by_name{};            ///< for log and events
+    /// What the refusal is of.
+    std::optional<std::uint16_t> refused_row{};
+  };
+  struct Due {
+    BatchResult result;
+    std::vector<Waiting> callbacks;
+  };
+  // What comes before a write batch is carried out: who asks, and for what besides (axis_ownership.cpp).
+  [[nodiscard]] Errc judge_owner(const WriteBatch& batch) const;
+  void claim(const WriteBatch& batch);
+  [[nodiscard]] BatchResult nothing_asked(const WriteBatch& batch);
+  [[nodiscard]] bool may_run() const;
+  [[nodiscard]] bool may_be_jog() const;
+  void accept(const WriteBatch& batch);
+  void note_commanded(Pending& pending);
+  void forget_accepted(const WriteBatch& batch);
+  [[nodiscard]] std::optional<BatchResult> release(const WriteBatch& batch, BatchCallback on_result);
+  [[nodiscard]] BatchResult released(const WriteBatch& batch);
+  [[nodiscard]] std::optional<BatchResult> take_over(const WriteBatch& batch, BatchCallback on_result);
+  [[nodiscard]] std::optional<BatchResult> taken_over(const WriteBatch& batch, BatchCallback on_result);
+  void end_expired_lease();
+  void on_lease_action(const BatchResult& result);
+  [[nodiscard]] Errc begin_jog(WriteBatch& batch);
+  [[nodiscard]] bool jog_must_stop(Command direction, std::int64_t velocity) const;
+  void observe_jog();
+  void stop_by_itself(Command command, bool latches, BatchCallback on_result);
+  // What is owed until the drive shows it (axis_owed.cpp).
+  void owe(const WriteBatch& stop);
+  void observe_owed();
+  void watch_enable(const CommandSequence& unknown);
+  void take_back_enable(State402 state);
+  void lose_sight();
+  void send_owed(StopKind stop);
+  void note_stop(const Pending& pending, bool ended);
+  void note_accepted(const WriteBatch& batch);
+  void tell_end(OwedStop::End end);
+  void note_jog(const Pending& pending, Errc code);
+  [[nodiscard]] bool waits_for_stop(const Pending& pending) const;
+  void end_jog();
+  void halt_jog(std::string why);
+  [[nodiscard]] bool stop_comes_first(const WriteBatch& batch) const;
+  [[nodiscard]] bool may_be_enabled() const;
+  /// `refusal`: of what stood beside the stop that the write batch is.
+  [[nodiscard]] std::optional<BatchResult> carry_out(const WriteBatch& asked, Errc refusal, BatchCallback on_result);
+
+  [[nodiscard]] Errc link_admits(bool stop, bool reads_alone) const;
+  [[nodiscard]] static Instant deadline_of(const Pending& pending, const Waiting& client);
+  [[nodiscard]] bool join_stop(const WriteBatch& batch, BatchCallback& on_result);
+  void accept_stop(const WriteBatch& batch);
+  [[nodiscard]] BatchResult refuse(const WriteBatch& batch, Errc code);
+  void show_latest(const WriteBatch& batch, const Outcome& outcome);
+  void enqueue(Pending pending, bool stop, std::optional<BatchResult>& refused);
+  void carry_on(Pending& pending);
+  [[nodiscard]] bool ends_with_gateway(const Pending& pending) const;
+  void end_begun(Pending& pending);
+  void complete(bus::JobId id, const BatchResult& result);
+  void watch_fault();
+  // A state that did not come in time (axis_time.cpp).
+  [[nodiscard]] static Instant decide_by(const WriteBatch& batch, Instant now);
+  void tell_not_reached(const Pending& pending);
+  void withdraw(const WriteBatch& asked, Command stop, const BatchResult& told, std::vector<Waiting> waiting);
+  // Who asked for what, and what became of it (axis_told.cpp).
+  void tell_asked(const WriteBatch& asked, const WriteBatch& carried_out);
+  void tell_owner(const std::string& what);
+  void tell_refused(const WriteBatch& asked, const Outcome& outcome);
+  void tell_ended(const Pending& pending, const Outcome& outcome);
+  void tell_fault(const AxisImage& before);
+  void tell_endings();
+  void tell_changes(const AxisImage& before);
+  [[nodiscard]] Pending* find(bus::JobId id);
+  [[nodiscard]] const Pending* find(bus::JobId id) const { return const_cast<Axis*>(this)->find(id); }
+  [[nodiscard]] bool motion_pending() const;
+
+  AxisHost& host_;
+  AxisImage& image_;
+  bus::AxisSlot slot_;
+  AxisCore core_;
+  std::vector<Pending> pending_;
+  std::vector<Due> due_;
+  bool reference_invalidated_ = false;
+  Duration cycle_{};
+  Instant last_statusword_ = kLongAgo;
+  std::optional<ClientId> motion_by_{};  ///< who commanded the motion that runs
+  std::shared_ptr<const ClientLife> motion_by_life_{};
+  Ownership ownership_;
+  Accepted accepted_;
+  std::uint64_t faults_told_ = 0;
+  std::uint64_t losses_told_ = 0;
+  Jog jog_;
+  OwedStop owed_;
+  bool owed_told_ = false;  ///< an event has told of it: its end is told as well
+  Telling telling_;
+  struct ShownFault {
+    Instant since = kLongAgo;  ///< kLongAgo: there is none
+    std::uint32_t code = 0;
+    std::string reset_by{};  ///< who has asked for a reset of it last; empty: nobody
+  } shown_fault_;
+  bool closing_ = false;                ///< the gateway ends, or lets go of the drive
+  Instant withdrawn_until_ = kLongAgo;  ///< an enable was withdrawn: until then one that comes late is taken back
+  Instant unknown_until_ = kLongAgo;    ///< the same of one whose outcome nobody knows, while the drive stays in sight
+};
+
+}  // namespace axisgate::drive

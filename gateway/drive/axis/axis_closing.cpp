@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// An axis when the gateway ends on purpose, or lets go of its drive (design 7).
+#include "gateway/drive/axis/axis.hpp"
+#include "gateway/drive/plan/admission.hpp"
+
+namespace axisgate::drive {
+
+void Axis::close() {
+  core_.now = host_.now();
+  core_.link = host_.link_state();
+  closing_ = true;
+  std::vector<bus::JobId> waiting;
+  std::vector<bus::JobId> begun;
+  for (const Pending& pending : pending_)
+    if (ends_with_gateway(pending)) (pending.command_sequence->begun() ? begun : waiting).push_back(pending.id);
+  for (const bus::JobId id : waiting) on_job_ended(id, Errc::never_started);
+  // Those that wait for their next step have their turn at once; of one on the wire the reply is awaited.
+  for (const bus::JobId id : begun) host_.job_waits(id, core_.now);
+}
+
+// Of a stop, what stands beside it ends with the gateway; the stop does not.
+bool Axis::ends_with_gateway(const Pending& pending) const {
+  return closing_ && (!pending.command_sequence->is_stop() || pending.command_sequence->stop_is_over());
+}
+
+// Some of its steps were sent, and nobody will see what comes of them.
+void Axis::end_begun(Pending& pending) {
+  pending.command_sequence->abort(refusal(Errc::timed_out));
+  complete(pending.id, pending.command_sequence->result());
+}
+
+}  // namespace axisgate::drive

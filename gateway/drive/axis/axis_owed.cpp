@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// A stop is owed by the axis until the drive has shown it, through every loss of it (design 3.4, "Owed stops"); and a
+// jog needs its button, also while nobody can see whether it runs.
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "gateway/drive/axis/axis.hpp"
+#include "gateway/drive/plan/admission.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+std::optional<StopKind> kind_of(const WriteBatch& batch) {
+  std::optional<StopKind> kind;
+  if (batch.command == Command::halt) kind = StopKind::halt;
+  if (batch.command == Command::quick_stop) kind = StopKind::quick_stop;
+  if (batch.command == Command::disable) kind = StopKind::disable;
+  if (!batch.controlword || !is_stop(*batch.controlword, batch.single_controlword)) return kind;
+  const bool quick = request_of(*batch.controlword) == Request402::quick_stop;
+  return std::max(kind.value_or(StopKind::halt), quick ? StopKind::quick_stop : StopKind::disable);
+}
+
+Command command_of(StopKind stop) {
+  switch (stop) {
+    case StopKind::halt:
+      return Command::halt;
+    case StopKind::quick_stop:
+      return Command::quick_stop;
+    case StopKind::disable:
+      break;
+  }
+  return Command::disable;
+}
+
+bool outcome_unknown(Errc code) { return command_result(code) == CommandResult::outcome_unknown; }
+
+}  // namespace
+
+// --- What is owed
+// ------------------------------------------------------------------------------------------------------
+
+void Axis::owe(const WriteBatch& stop) {
+  const auto kind = kind_of(stop);
+  if (!kind) return;
+  owed_.accepted(*kind, core_.store.exchange());
+  observe_owed();
+}
+
+// Whatever was asked while a stop is owed by a loss would act on an axis of which nobody knows what it does.
+bool Axis::stop_comes_first(const WriteBatch& batch) const {
+  const LinkState link = host_.link_state();
+  const bool back = link != LinkState::offline && link != LinkState::link_down;
+  return owed_.gates() && back && !reads_alone(batch) && !stops_alone(batch) && batch.command != Command::jog_end;
+}
+
+// What is not surely read disabled counts as enabled: the motor of a cut cable may be running.
+bool Axis::may_be_enabled() const { return host_.link_state() != LinkState::online || core_.facts().enabled(); }
+
+void Axis::on_restarted() {
+  core_.begin_mode();
+  end_jog();
+  owed_.restarted();
+}
+
+void Axis::lose_sight() {
+  unknown_until_ = kLongAgo;  // what is enabled when it comes back is adopted
+  owed_.link_lost(last_statusword_, core_.store.exchange());
+  if (owed_.gates() && !std::exchange(owed_told_, true))
+    host_.event(image_.number, EventKind::command, 0, "the drive is out of reach: a stop is owed until it is back");
+}
+
+void Axis::observe_owed() {
+  const LinkState link = host_.link_state();
+  const ObjectState& status = core_.store[core_.model.statusword];
+  const bool gone = link == LinkState::unknown || link == LinkState::offline || link == LinkState::link_down;
+  if (gone) {
+    lose_sight();
+    return;
+  }
+  if (!status.known) return;
+  core_.link = link;
+  owed_.link_back(host_.now());
+  const auto state = state_of(static_cast<std::uint16_t>(status.number));
+  take_back_enable(state);
+  if (!owed_.owed() || stopping()) return;
+  tell_end(owed_.state_read(state, status.exchange));
+  if (const auto stop = owed_.due(host_.now())) send_owed(*stop);
+}
+
+// Its acknowledgement was lost, and its client was told that nobody knows. A set-point that was lost beside it, on an
+// axis that was enabled all the time, is no enable.
+void Axis::watch_enable(const CommandSequence& unknown) {
+  if (unknown.batch().command == Command::enable && unknown.commanded()) unknown_until_ = core_.now + kWatched;
+}
+
+// Its client was told that it has failed, or that nobody knows: torque that comes after that, and that nobody has asked
+// for since, is taken away again.
+void Axis::take_back_enable(State402 state) {
+  const bool unknown = core_.now < unknown_until_;
+  if (state != State402::operation_enabled || (!unknown && core_.now >= withdrawn_until_)) return;
+  if (enable_is_asked() || owed_.owed() || stopping()) return;
+  if (unknown)
+    host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(Command::enable),
+                "the enable whose outcome was unknown has happened, and is taken back");
+  unknown_until_ = kLongAgo;
+  owed_.accepted(StopKind::disable, core_.store.exchange());
+}
+
+void Axis::tell_end(OwedStop::End end) {
+  if (end == OwedStop::End::none || !std::exchange(owed_told_, false)) return;
+  std::string how = "the drive has shown it";
+  if (end == OwedStop::End::disabled) how = "the axis is read disabled";
+  if (end == OwedStop::End::enabled) how = "an enable came later";
+  host_.event(image_.number, EventKind::command, 0, "the stop is owed no more: " + how);
+}
+
+// Its client has its answer; the latch was set when it was accepted. Planned anew from what is known by now.
+void Axis::send_owed(StopKind stop) {
+  const ObjectState& status = core_.store[core_.model.statusword];
+  const ObjectState& word = core_.store[core_.model.controlword];
+  const bool certain = core_.is_virtual() || (core_.link == LinkState::online && status.known && word.known);
+  if (stop == StopKind::halt && !certain) stop = StopKind::quick_stop;
+  WriteBatch batch;
+  batch.role = Role::engineer;
+  batch.command = command_of(stop);
+  owed_.sending();
+  Pending pending;
+  pending.by_mailbox = true;  // it shows in no client's result
+  pending.command_sequence = std::make_unique<CommandSequence>(core_, batch, true);
+  bus::BusJob job = job_for(core_, batch, true);
+  job.axis = slot_;
+  const AxisHost::Queued queued = host_.queue(std::move(job));
+  if (queued.code != Errc::ok) {
+    tell_end(owed_.attempted(stop, false, core_.store.exchange(), host_.now()));
+    return;
+  }
+  host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(batch.command),
+              "found enabled, and a stop is owed: " + std::string(text(batch.command)));
+  pending.id = queued.id;
+  pending_.push_back(std::move(pending));
+}
+
+// --- What becomes of it
+// ------------------------------------------------------------------------------------------------
+
+void Axis::note_stop(const Pending& pending, bool ended) {
+  const CommandSequence& command_sequence = *pending.command_sequence;
+  const auto kind = kind_of(command_sequence.batch());
+  if (!command_sequence.is_stop() || !kind) return;
+  if (command_sequence.begun()) owed_.sending();
+  if (ended || command_sequence.stop_confirmed())
+    tell_end(owed_.attempted(*kind, command_sequence.stop_confirmed(), core_.store.exchange(), host_.now()));
+}
+
+void Axis::note_accepted(const WriteBatch& batch) {
+  if (asks_to_enable(batch)) {
+    withdrawn_until_ = unknown_until_ = kLongAgo;
+    tell_end(owed_.enable_accepted());
+  }
+  if (batch.command >= Command::move_absolute && batch.command <= Command::home) tell_end(owed_.start_accepted());
+}
+
+// --- Jog
+// ---------------------------------------------------------------------------------------------------------------
+
+void Axis::note_jog(const Pending& pending, Errc code) {
+  if (pending.jogs && outcome_unknown(code))
+    jog_.carry();
+  else if (pending.jogs && code != Errc::ok && !pending.command_sequence->begun() && !core_.reachable())
+    end_jog();
+  if (code == Errc::ok && pending.ends_jog != 0 && pending.ends_jog == jog_.press()) end_jog();
+}
+
+// What a client has asked for before or beside the jog is the target again; a stop has left none.
+void Axis::end_jog() {
+  jog_.end();
+  if (core_.velocity_beside_jog && core_.motion.wanted(Quantity::target_velocity))
+    core_.motion.want(Quantity::target_velocity, *core_.velocity_beside_jog);
+  core_.velocity_beside_jog.reset();
+}
+
+// Its motor has no other dead man.
+void Axis::halt_jog(std::string why) {
+  if (!jog_.active()) return;
+  end_jog();
+  host_.event(image_.number, EventKind::warning, 0, "jog: " + why + ": halted");
+  stop_by_itself(Command::halt, false, [](const BatchResult&) {});
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an axis asks before it carries anything out: who owns it, whether its owner is still there, and whether a button
+// is still held (design 3.4 "Jog", 3.5).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "gateway/drive/axis/axis.hpp"
+#include "gateway/drive/plan/admission.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+/// It has no connection that could end.
+bool is_dds(const ClientLife& client) { return client.strength.has_value(); }
+
+bool is_jog(Command command) { return command == Command::jog_forward || command == Command::jog_reverse; }
+
+std::string named_before(const Ownership::ClientPtr& owner) {
+  return owner ? " (before: " + owner->name + ")" : std::string();
+}
+
+/// Why this lease has run out, and what helps by the rules that it has: what stands in the configuration already is no
+/// advice.
+std::string silence(const ClientLife& owner, const LeaseRules& rules, Duration timeout) {
+  if (!owner.connected && !is_dds(owner))
+    return owner.is_address
+               ? " (a host that writes so seldom needs a longer \"timeout_ms\" of the lease, or \"lease\": null)"
+               : " (one-shot tools need \"lease\": null or \"client\": \"address\")";
+  std::string_view missed = owner.is_address ? "has written nothing" : "has asked nothing";
+  if (rules.renew == LeaseRenewal::write) missed = "has written nothing to the axis";
+  if (rules.renew == LeaseRenewal::heartbeat) missed = "has shown no heartbeat";
+  return fmt::format(" (it {} for {} ms)", missed, timeout / std::chrono::milliseconds(1));
+}
+
+std::string in_words(Command stop) { return stop == Command::quick_stop ? "quick stop" : std::string(text(stop)); }
+
+}  // namespace
+
+// --- Who asks ------------------------------------------------------------------------------------------------------
+
+// Reads are free, and stops are open to every operator, without taking the lease.
+Errc Axis::judge_owner(const WriteBatch& batch) const {
+  if (reads_alone(batch)) return Errc::ok;
+  const bool stops_alone = holds_stop(batch) && !batch.claims;
+  if (stops_alone || batch.command == Command::jog_end) return Errc::ok;
+  if (batch.command == Command::take_over) return ownership_.may_take_over(batch.life);
+  if (asks_nothing(batch) && !batch.jog_again) return Errc::ok;
+  return ownership_.judge(batch.life, batch.claims);
+}
+
+// What was accepted from a client makes it the owner; so does any write where the axis waits for this client.
+void Axis::claim(const WriteBatch& batch) {
+  if (batch.jog_velocity) image_.jog_velocity = *batch.jog_velocity;
+  if (!batch.claims && !(batch.is_write && ownership_.waits_for(batch.life, batch.all_zero))) return;
+  const auto before = ownership_.owner();
+  const Ownership::Taken taken = ownership_.take(batch.life, core_.now);
+  if (taken == Ownership::Taken::nothing) return;
+  if (jog_.client() != batch.client) halt_jog("another client has taken the axis");
+  tell_owner(drive::text(taken, *batch.life) + named_before(before));
+}
+
+std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback on_result) {
+  core_.now = host_.now();
+  core_.link = host_.link_state();
+  end_expired_lease();
+  WriteBatch batch = asked;
+  // Bits 0..3 = 6 or 7 are a stop of the owner's in a block of registers as well.
+  if (batch.controlword && ownership_.is_owner(batch.client)) batch.single_controlword = true;
+  // A coil that is held although its jog has ended asks for nothing until it was 0.
+  const bool holds_in_vain = batch.jog_again && !jog_.again(*batch.jog_again, batch.client, core_.now);
+  if (holds_in_vain) batch.jog_again.reset();
+  // While something may run, the end of a run is a stop, and so open to every operator.
+  if (batch.command == Command::end_run && may_run()) batch.command = Command::halt;
+  Errc refusal = judge_owner(batch);
+  // An object that is read is no write: a monitor on the PLC's computer keeps no dead PLC's motor running.
+  if (!reads_alone(batch))
+    ownership_.wrote(batch.renews ? batch.life : nullptr, batch.beats, !asks_nothing(batch) || batch.jog_again,
+                     core_.now);
+  if (refusal == Errc::ok && !asks_nothing(batch) && stop_comes_first(batch)) refusal = Errc::stop_owed;
+  if (refusal == Errc::ok && closing_ && !asks_nothing(batch) && !stops_alone(batch) &&
+      batch.command != Command::jog_end)
+    refusal = Errc::never_started;
+  if (refusal != Errc::ok) {
+    if (!holds_stop(batch)) return refuse(asked, refusal);
+    batch = stop_alone(batch);
+    batch.claims = false;
+  }
+  const Jog before = jog_;
+  switch (batch.command) {
+    case Command::release:
+      return release(batch, std::move(on_result));
+    case Command::take_over:
+      return take_over(batch, std::move(on_result));
+    case Command::jog_forward:
+    case Command::jog_reverse:
+      if (const Errc code = begin_jog(batch); code != Errc::ok) return refuse(asked, code);
+      break;
+    case Command::jog_end:
+      if (!may_be_jog() && (!jog_.active() || jog_.client() != batch.client)) return nothing_asked(batch);
+      batch.command = Command::halt;
+      break;
+    case Command::end_run:
+      return nothing_asked(batch);
+    default:
+      break;
+  }
+  if (asks_nothing(batch)) {
+    const BatchResult result = nothing_asked(batch);
+    return holds_in_vain ? BatchResult{{Errc::not_new, 0}} : result;
+  }
+  // A stop is accepted in every state, also where it cannot be sent.
+  const bool stop = holds_stop(batch);
+  const WriteBatch& told = refusal == Errc::ok ? asked : batch;
+  if (stop) tell_asked(told, batch);
+  auto result = carry_out(batch, refusal, std::move(on_result));
+  if (!stop && (!result || result->outcome.code == Errc::ok)) tell_asked(told, batch);
+  if (result && is_jog(asked.command)) jog_ = before;  // what ran before needs its button as before
+  if (!jog_.active()) end_jog();
+  return result;
+}
+
+// It may take over an axis that waits for its client all the same.
+BatchResult Axis::nothing_asked(const WriteBatch& batch) {
+  claim(batch);
+  publish(core_.now);
+  return {};
+}
+
+// Out of sight, or found running, nobody knows whether it is a run of ours that goes on: a stop too many is the smaller
+// harm.
+bool Axis::may_run() const {
+  const bool waits = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
+    return p.command_sequence->batch().command == Command::run_velocity;
+  });
+  if (waits || core_.motion.running() == MotionKind::velocity || core_.motion.runs_raw()) return true;
+  const AxisFacts facts = core_.facts();
+  const bool continuous = facts.mode == 0 || is_continuous(facts);  // 0: it is not known
+  return core_.reachable() ? facts.enabled() && facts.moving && continuous : may_be_enabled();
+}
+
+// A gateway that died has told nobody that a button was held. What runs since before may be its jog: whoever lets a
+// button go then means it. The iD286pro does not tell in which mode it runs, nor does a Keya on CANopen.
+bool Axis::may_be_jog() const {
+  const AxisFacts facts = core_.facts();
+  if (!core_.motion.found_at_start() || !facts.enabled()) return false;
+  const bool tells_mode = !core_.is_virtual() || (!core_.model.virtual_axis->gate_only && facts.mode != 0);
+  return tells_mode ? core_.motion.goes_on(Quantity::target_velocity, facts) : facts.moving;
+}
+
+// --- What was accepted last ------------------------------------------------------------------------------------------
+
+void Axis::accept(const WriteBatch& batch) {
+  if (!batch.jogs)
+    for (const Setpoint& sp : batch.setpoints) accepted_.note(sp.quantity, sp.value, core_.motion.ends());
+  if (batch.mode) accepted_.note(Quantity::mode, *batch.mode, core_.motion.ends());
+}
+
+// Whoever commanded before must know that it is over: but what was refused, or asked for what is so, has ended nothing.
+void Axis::note_commanded(Pending& pending) {
+  if (!pending.acts_at || !pending.command_sequence->commanded()) return;
+  image_.endings.commanded(pending.command_sequence->batch().client, *std::exchange(pending.acts_at, std::nullopt));
+}
+
+// It was dropped before anything of it was begun: a scanner that goes on writing it asks for it anew.
+void Axis::forget_accepted(const WriteBatch& batch) {
+  for (const Setpoint& sp : batch.setpoints) accepted_.forget(sp.quantity);
+  if (batch.mode) accepted_.forget(Quantity::mode);
+}
+
+bool Axis::owner_asks(ClientId client, Quantity quantity, std::int64_t value) const {
+  if (!ownership_.rules().on || !ownership_.is_owner(client) || !image_.reachable()) return false;
+  const auto last = accepted_.value(quantity, core_.motion.ends());
+  if (last) return *last != value;
+  // Nobody has asked for anything since the drive came up: what it holds is what counts; but a velocity or torque that
+  // has lapsed is needed anew.
+  const bool lapses = quantity == Quantity::target_velocity || quantity == Quantity::target_torque;
+  return lapses || !holds(quantity, value);
+}
+
+// Command 13. What else stands in the request comes before it. It takes no lease for that, nor the time of one that is
+// open to all: whoever gives it back must not be left with it where something fails.
+std::optional<BatchResult> Axis::release(const WriteBatch& batch, BatchCallback on_result) {
+  // What its own ended connection has left is its own.
+  if (ownership_.owner() && ownership_.waits_for(batch.life, batch.all_zero)) claim(batch);
+  WriteBatch rest = batch;
+  rest.command = Command::none;
+  if (!ownership_.is_owner(batch.client)) rest.claims = rest.is_write = false;
+  if (asks_nothing(rest)) return released(batch);
+  auto done = submit(rest, [this, batch, on_result](const BatchResult& result) {
+    on_result(result.outcome.code == Errc::ok ? released(batch) : result);
+  });
+  return done && done->outcome.code == Errc::ok ? std::optional(released(batch)) : done;
+}
+
+BatchResult Axis::released(const WriteBatch& batch) {
+  core_.now = host_.now();
+  const auto owner = ownership_.owner();
+  const Errc code = ownership_.release(batch.life, may_be_enabled() || enable_is_asked(), core_.now);
+  if (code != Errc::ok) return refuse(batch, code);
+  halt_jog("its owner has released the axis");
+  if (owner) {
+    const bool enabled = ownership_.until() != kNever;
+    tell_owner(owner->name + (enabled ? " has released the axis, which is enabled: open to every operator for now"
+                                      : " has released the axis"));
+  }
+  show_latest(batch, {});
+  publish(core_.now);
+  return {};
+}
+
+// Command 14: from a lower rank, after a halt. What else stands in the request comes after it, as the new owner's.
+std::optional<BatchResult> Axis::take_over(const WriteBatch& batch, BatchCallback on_result) {
+  const auto owner = ownership_.owner();
+  const bool from_another = owner && batch.life && owner->id != batch.life->id;
+  if (!from_another || !may_be_enabled()) return taken_over(batch, std::move(on_result));
+  WriteBatch halt;
+  halt.client = batch.client;
+  halt.role = batch.role;
+  halt.life = batch.life;
+  halt.command = Command::halt;
+  halt.command_id = batch.command_id;
+  halt.start_by = batch.start_by;
+  halt.answer_by = batch.answer_by;
+  auto halted = carry_out(halt, Errc::ok, [this, batch, on_result](const BatchResult& result) {
+    if (result.outcome.code != Errc::ok) {
+      on_result(result);
+    } else if (const auto done = taken_over(batch, on_result)) {
+      on_result(*done);
+    }
+  });
+  if (halted && halted->outcome.code == Errc::ok) return taken_over(batch, std::move(on_result));
+  return halted;
+}
+
+std::optional<BatchResult> Axis::taken_over(const WriteBatch& batch, BatchCallback on_result) {
+  core_.now = host_.now();
+  const auto before = ownership_.owner();
+  if (const Ownership::Taken taken = ownership_.take(batch.life, core_.now); taken != Ownership::Taken::nothing) {
+    halt_jog("another client has taken the axis");
+    tell_owner(drive::text(taken, *batch.life) + named_before(before));
+  }
+  WriteBatch rest = batch;
+  rest.command = Command::none;
+  if (!asks_nothing(rest)) return submit(rest, std::move(on_result));
+  show_latest(batch, {});
+  publish(core_.now);
+  return BatchResult{};
+}
+
+// --- When nobody is there any more -----------------------------------------------------------------------------------
+
+void Axis::stop_by_itself(Command command, bool latches, BatchCallback on_result) {
+  WriteBatch stop;
+  stop.role = Role::engineer;
+  stop.command = command;
+  stop.latches = latches;
+  if (const auto result = carry_out(stop, Errc::ok, on_result)) on_result(*result);
+}
+
+void Axis::end_expired_lease() {
+  const auto expired = ownership_.take_expired(core_.now);
+  if (!expired) return;
+  const bool writes_wait = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
+    return !p.command_sequence->is_stop() && !reads_alone(p.command_sequence->batch());
+  });
+  const Command action = command_of(ownership_.rules().on_expiry);
+  std::string what = "nobody has taken over the enabled axis";
+  if (expired->owner) {
+    what = "the lease of " + expired->owner->name + " has run out";
+    if (!expired->owner->connected)
+      what += is_dds(*expired->owner)      ? " after it had gone"
+              : expired->owner->is_address ? " after its connections had ended"
+                                           : " after its connection had ended";
+  }
+  const bool acts = may_be_enabled() || writes_wait;
+  if (!acts || action == Command::none) {
+    halt_jog("its owner's lease has run out");
+    host_.event(image_.number, EventKind::lease, 0, what + (acts ? ": nothing is done (on_expiry none)" : ""));
+    return;
+  }
+  what += fmt::format(": {}, axis in state \"{}\"", in_words(action), text(image_.axis_state));
+  if (expired->owner) what += silence(*expired->owner, ownership_.rules(), expired->timeout);
+  host_.event(image_.number, EventKind::lease, static_cast<std::uint32_t>(action), std::move(what));
+  stop_by_itself(action, true, [this](const BatchResult& result) { on_lease_action(result); });
+}
+
+// It is owed on: what the drive shows decides when it is sent again.
+void Axis::on_lease_action(const BatchResult& result) {
+  if (result.outcome.code == Errc::ok || !core_.facts().enabled()) return;
+  host_.event(image_.number, EventKind::lease, 0, "the stop that the lease asked for has failed: it is tried again");
+}
+
+void Axis::on_adopted() {
+  core_.now = host_.now();
+  core_.link = host_.link_state();
+  if (!core_.facts().enabled() || ownership_.owner() || !ownership_.rules().on) return;
+  ownership_.open(core_.now);
+  const Command action = command_of(ownership_.rules().on_expiry);
+  host_.event(image_.number, EventKind::lease, 0,
+              fmt::format("found enabled, and nobody owns it: {} unless a client writes to it within {} ms",
+                          action == Command::none ? "nothing is done" : in_words(action),
+                          ownership_.rules().timeout / std::chrono::milliseconds(1)));
+}
+
+void Axis::on_client_gone(ClientId client) {
+  core_.now = host_.now();
+  core_.link = host_.link_state();
+  if (ownership_.rules().on) {
+    if (ownership_.is_owner(client))
+      tell_owner(ownership_.owner()->name + (is_dds(*ownership_.owner()) ? " is gone" : " has closed its connection") +
+                 ": its lease goes on until it runs out");
+    return;
+  }
+  // Leases are off: others go on with what they were told. But where neither the drive nor anybody else would ever stop
+  // the motor, it is not left running.
+  const bool nothing_else_would = core_.is_virtual() && !core_.drive.stops_by_itself;
+  if (!nothing_else_would || motion_by_ != client) return;
+  if (core_.motion.running() == MotionKind::none && !core_.facts().moving && !motion_pending()) return;
+  host_.event(image_.number, EventKind::command, 0,
+              "the client that commanded the motion is gone: quick stop" +
+                  (motion_by_life_ ? " (" + motion_by_life_->name + ")" : std::string()));
+  stop_by_itself(Command::quick_stop, false, [](const BatchResult&) {});
+}
+
+// --- Jog -------------------------------------------------------------------------------------------------------------
+
+// A jog is a run at the jog velocity that needs its button: what the drive is told is the same.
+Errc Axis::begin_jog(WriteBatch& batch) {
+  const Binding* velocity = core_.model.binding(Quantity::target_velocity);
+  if (velocity == nullptr || !core_.model.command(Command::run_velocity)) return Errc::not_supported;
+  const Command direction = batch.command;
+  const auto speed = static_cast<std::int64_t>(image_.jog_velocity);
+  const std::int64_t signed_speed = direction == Command::jog_forward ? speed : -speed;
+  if (speed == 0 || !velocity->limits.holds(signed_speed)) return Errc::bad_value;
+  if (jog_must_stop(direction, 0)) return Errc::state_unsuitable;
+  // The speed is the button's: refused with it, and no target that a later start could use.
+  batch.setpoints.push_back({.quantity = Quantity::target_velocity, .value = signed_speed, .with_command = true});
+  batch.command = Command::run_velocity;
+  batch.jogs = true;
+  if (!jog_.active()) core_.velocity_beside_jog = core_.motion.wanted(Quantity::target_velocity).value_or(Wanted{});
+  jog_.start(direction, batch.client, core_.now, core_.model.jog_timeout);
+  return Errc::ok;
+}
+
+bool Axis::jog_must_stop(Command direction, std::int64_t velocity) const {
+  const Binding* target = core_.model.binding(Quantity::target_position);
+  const auto position = core_.value(Quantity::position_actual);
+  if (!core_.homed || target == nullptr || !position) return false;
+  JogTravel travel;
+  travel.position = *position;
+  travel.velocity = velocity;
+  travel.deceleration = core_.value(Quantity::profile_deceleration);
+  travel.units_per_rev = core_.model.units_per_rev;
+  travel.latency = 2 * cycle_;  // the sample is as old as one, and the halt waits for one exchange
+  travel.limits = target->limits;
+  // The drive's own count where they are a range: 0 and 0 is how drives are told to have none.
+  const auto low = core_.value(Quantity::position_limit_min);
+  const auto high = core_.value(Quantity::position_limit_max);
+  if (low && high && *low < *high)
+    travel.limits = {std::max(travel.limits.min, *low), std::min(travel.limits.max, *high)};
+  return must_stop(travel, direction);
+}
+
+void Axis::observe_jog() {
+  if (!jog_.active()) return;
+  if (!core_.reachable()) {
+    jog_.carry();
+    return;
+  }
+  const bool starting = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) { return p.jogs; });
+  const bool goes_on = jog_.carried() && core_.facts().enabled();
+  if (!starting && !goes_on && core_.motion.running() != MotionKind::velocity) {
+    end_jog();  // a fault, a stop, or another command: only a new press jogs again
+    return;
+  }
+  const std::int64_t shown = std::llabs(core_.value(Quantity::velocity_actual).value_or(0));
+  const std::int64_t speed = std::max<std::int64_t>(shown, image_.jog_velocity);
+  if (starting || !jog_must_stop(jog_.direction(), speed)) return;
+  host_.event(image_.number, EventKind::warning, 0, "jog: halted at the position limit");
+  stop_by_itself(Command::halt, false, [](const BatchResult&) {});
+}
+
+}  // namespace axisgate::drive

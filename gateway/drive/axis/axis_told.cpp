@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who asked an axis for what, what was refused and why, and how faults end: for log and events.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "gateway/core/words.hpp"
+#include "gateway/drive/axis/axis.hpp"
+#include "gateway/drive/axis/command_text.hpp"
+#include "gateway/drive/plan/admission.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+std::string outcome_text(const WriteBatch& batch, const Outcome& outcome) {
+  return batch.life && batch.life->strength ? dds_text(outcome) : modbus_text(outcome);
+}
+
+/// What is wrong with a Modbus request itself its server tells, which knows the rows.
+bool told_by_its_server(const WriteBatch& batch, Errc code) {
+  const bool modbus = batch.life && !batch.life->strength;
+  return modbus && (code == Errc::bad_value || code == Errc::not_supported || code == Errc::role_forbidden);
+}
+
+bool resets(const WriteBatch& batch) {
+  return batch.command == Command::fault_reset ||
+         (batch.controlword && (*batch.controlword & controlword::kFaultReset) != 0);
+}
+
+}  // namespace
+
+// --- What was asked --------------------------------------------------------------------------------------------------
+
+// `carried_out`: what has become of a coil that ends a run, or of a stop beside which something was refused. A stop is
+// everybody's: whoever owns the axis must see who has used that.
+void Axis::tell_asked(const WriteBatch& asked, const WriteBatch& carried_out) {
+  if (!asked.life || reads_alone(asked)) return;
+  if (resets(asked) && shown_fault_.since != kLongAgo) shown_fault_.reset_by = asked.life->name;
+  const auto left_out = telling_.asked(carried_out, core_.now);
+  if (!left_out) return;
+  WriteBatch shown = asked;
+  // A target that was accepted and waits for the wire is the one that the start will use.
+  const auto target = target_of(asked.command);
+  const auto value = target ? accepted_.value(*target, core_.motion.ends()) : std::nullopt;
+  if (value && !sets(asked, *target)) shown.setpoints.push_back({*target, *value});
+  const bool ends_run = asked.command != carried_out.command && is_stop(carried_out.command);
+  const bool foreign = holds_stop(carried_out) && ownership_.owner() && !ownership_.is_owner(asked.client);
+  const std::string who =
+      foreign ? "stopped by " + asked.life->name + ", which does not own the axis" : asked.life->name;
+  const std::string how = ends_run ? fmt::format(" ({})", text(carried_out.command)) : std::string();
+  host_.event(
+      image_.number, EventKind::command, static_cast<std::uint32_t>(asked.command),
+      fmt::format("{}: {}{}{}", who, command_text(core_, shown, image_.jog_velocity), how, left_out_text(*left_out)));
+}
+
+void Axis::tell_owner(const std::string& what) {
+  if (const auto left_out = telling_.owner(core_.now))
+    host_.event(image_.number, EventKind::lease, 0, what + left_out_text(*left_out));
+}
+
+// --- What became of it -----------------------------------------------------------------------------------------------
+
+void Axis::tell_refused(const WriteBatch& asked, const Outcome& outcome) {
+  if (!asked.life || reads_alone(asked) || told_by_its_server(asked, outcome.code)) return;
+  const auto left_out = telling_.refused(asked, outcome.code, core_.now);
+  if (!left_out) return;
+  const auto owner = ownership_.owner();
+  const std::string whose = outcome.code == Errc::not_owner && owner ? "; its owner is " + owner->name : std::string();
+  host_.event(
+      image_.number, EventKind::command, static_cast<std::uint32_t>(asked.command),
+      fmt::format("{}: {} is refused: {}{}{}", asked.life->name, command_text(core_, asked, image_.jog_velocity),
+                  outcome_text(asked, outcome), whose, left_out_text(*left_out)));
+}
+
+// A set-point in whose place a newer one was sent is no news; what was not reached is told with what was awaited.
+void Axis::tell_ended(const Pending& pending, const Outcome& outcome) {
+  const WriteBatch& batch = pending.command_sequence->batch();
+  if (outcome.code != Errc::ok && resets(batch)) shown_fault_.reset_by.clear();
+  if (outcome.code == Errc::ok || outcome.code == Errc::superseded || outcome.code == Errc::not_reached) return;
+  if (batch.client == 0 || reads_alone(batch)) return;
+  if (pending.refusal == Errc::ok && told_by_its_server(batch, outcome.code)) return;
+  const auto left_out = telling_.refused(batch, outcome.code, core_.now);
+  if (!left_out) return;
+  const bool beside = pending.refusal != Errc::ok && outcome.code == pending.refusal;
+  const bool stopped = outcome.code == Errc::stopped_by_other || outcome.code == Errc::dropped_by_stop;
+  const std::string by = stopped && !pending.stopped_by_name.empty() ? ", " + pending.stopped_by_name : std::string();
+  const std::string what = batch.jogs ? std::string("jog") : command_text(core_, batch, image_.jog_velocity);
+  host_.event(
+      image_.number, EventKind::command, static_cast<std::uint32_t>(batch.command),
+      fmt::format("{}: {}{}: {}{}{}", batch.life ? batch.life->name : "a client", beside ? "what stood beside " : "",
+                  what, outcome_text(batch, outcome), by, left_out_text(*left_out)));
+}
+
+// --- Faults ----------------------------------------------------------------------------------------------------------
+
+void Axis::tell_fault(const AxisImage& before) {
+  const bool fault = image_.has(AxisInput::fault);
+  if (fault && !before.has(AxisInput::fault)) {
+    const auto code = static_cast<std::uint32_t>(image_[Quantity::error_code].value);
+    if (shown_fault_.since == kLongAgo) shown_fault_ = {core_.now, code, {}};
+    shown_fault_.code = code;
+    host_.event(image_.number, EventKind::fault, code, fault_text(core_));
+  }
+  if (fault || shown_fault_.since == kLongAgo) return;
+  const ShownFault over = std::exchange(shown_fault_, {});
+  constexpr double kNsPerSecond = 1e9;
+  const double seconds = static_cast<double>((core_.now - over.since).count()) / kNsPerSecond;
+  const std::string how = over.reset_by.empty() ? "without a reset by a client" : "reset by " + over.reset_by;
+  host_.event(image_.number, EventKind::warning, 0,
+              fmt::format("fault 0x{:04X} is over after {:.1f} s, {}", over.code, seconds, how));
+}
+
+}  // namespace axisgate::drive

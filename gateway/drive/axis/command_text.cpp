@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/axis/command_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "gateway/core/words.hpp"
+#include "gateway/model/cia402.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+/// A register's number in the unit that people speak in; empty for codes.
+std::string in_words(const AxisCore& core, Kind kind, std::int64_t value) {
+  const auto number = static_cast<double>(value);
+  constexpr double kMilli = 1000, kDeci = 10, kCenti = 100;
+  switch (kind) {
+    case Kind::code:
+      return {};
+    case Kind::position:
+      return fmt::format(" ({:.6g} rev)", number / core.model.units_per_rev.to_double());
+    case Kind::velocity:
+      return fmt::format(" ({:.6g} rpm)", number / kMilli);
+    case Kind::acceleration:
+      return fmt::format(" ({:.6g} rpm/s)", number / kDeci);
+    case Kind::torque:
+      return fmt::format(" ({:.6g} %)", number / kDeci);
+    case Kind::current:
+      return fmt::format(" ({:.6g} A)", number / kCenti);
+    case Kind::temperature:
+      return fmt::format(" ({:.6g} degC)", number / kDeci);
+    case Kind::voltage:
+      return fmt::format(" ({:.6g} V)", number / kDeci);
+  }
+  return {};
+}
+
+std::string_view asked_by(std::uint16_t word) {
+  switch (request_of(word)) {
+    case Request402::disable_voltage:
+      return "disable voltage";
+    case Request402::quick_stop:
+      return "quick stop";
+    case Request402::shutdown:
+      return "shutdown";
+    case Request402::switch_on:
+      return "switch on";
+    case Request402::enable_operation:
+      return "enable operation";
+    case Request402::other:
+      break;
+  }
+  return "bits 0 to 3 = 14";
+}
+
+std::string controlword_text(std::uint16_t word) {
+  std::string out = fmt::format("controlword 0x{:04X} ({}", word, asked_by(word));
+  if ((word & controlword::kFaultReset) != 0) out += ", fault reset";
+  if ((word & controlword::kHalt) != 0) out += ", halt";
+  if ((word & controlword::kStart) != 0) out += ", bit 4 start";
+  return out + ")";
+}
+
+std::string mode_text(std::int16_t mode) {
+  const Word* word = mode < 0 ? nullptr : find_word(WordKind::mode, static_cast<std::uint32_t>(mode));
+  return word == nullptr ? fmt::format("mode {}", mode) : fmt::format("mode {} ({})", mode, word->name);
+}
+
+std::string object_text(const ObjectRequest& object) {
+  std::string out =
+      fmt::format("{} object 0x{:04X}:{:02X}", object.write ? "write of" : "read of", object.index, object.subindex);
+  if (!object.write) return out;
+  if (object.size == 0) return out + fmt::format(", {} bytes", object.bytes ? object.bytes->size() : std::size_t{0});
+  return out + fmt::format(" = 0x{:0{}X}", object.data, 2 * object.size);
+}
+
+/// What it uses where the request itself names none.
+std::optional<std::int64_t> target_before(const AxisCore& core, Quantity target) {
+  if (target != Quantity::target_position) return core.running_target(target).value;
+  const auto wanted = core.target_position();
+  return wanted ? std::optional(wanted->value) : std::nullopt;
+}
+
+/// "target_velocity 60000 (60 rpm)"
+std::string value_text(const AxisCore& core, Quantity quantity, std::int64_t value) {
+  return fmt::format("{} {}{}", row(quantity).name, value, in_words(core, row(quantity).kind, value));
+}
+
+}  // namespace
+
+std::optional<Quantity> target_of(Command command) {
+  switch (command) {
+    case Command::move_absolute:
+    case Command::move_relative:
+      return Quantity::target_position;
+    case Command::run_velocity:
+      return Quantity::target_velocity;
+    case Command::run_torque:
+      return Quantity::target_torque;
+    default:
+      return std::nullopt;
+  }
+}
+
+bool sets(const WriteBatch& batch, Quantity quantity) {
+  return std::any_of(batch.setpoints.begin(), batch.setpoints.end(),
+                     [quantity](const Setpoint& sp) { return sp.quantity == quantity; });
+}
+
+std::string command_text(const AxisCore& core, const WriteBatch& batch, std::uint32_t jog_velocity) {
+  std::string out;
+  const auto add = [&out](const std::string& part) { out += (out.empty() ? "" : ", ") + part; };
+  if (batch.command != Command::none) add(std::string(text(batch.command)));
+  if (batch.controlword) add(controlword_text(*batch.controlword));
+  if (batch.mode) add(mode_text(*batch.mode));
+  const bool jogs = batch.command == Command::jog_forward || batch.command == Command::jog_reverse;
+  if (jogs || batch.jog_velocity)
+    add(fmt::format("jog_velocity {}{}", batch.jog_velocity.value_or(jog_velocity),
+                    in_words(core, Kind::velocity, batch.jog_velocity.value_or(jog_velocity))));
+  if (batch.command == Command::set_position || batch.set_position_value) {
+    const std::int64_t position = batch.set_position_value.value_or(core.set_position_value);
+    add(fmt::format("set_position_value {}{}", position, in_words(core, Kind::position, position)));
+  }
+  const auto target = target_of(batch.command);
+  if (target && !sets(batch, *target))
+    if (const auto value = target_before(core, *target)) add(value_text(core, *target, *value));
+  const std::size_t shown = std::min(batch.setpoints.size(), kMaxToldValues);
+  for (std::size_t i = 0; i < shown; ++i) add(value_text(core, batch.setpoints[i].quantity, batch.setpoints[i].value));
+  if (batch.setpoints.size() > shown) add(fmt::format("{} values more", batch.setpoints.size() - shown));
+  if (batch.object) add(object_text(*batch.object));
+  return out;
+}
+
+}  // namespace axisgate::drive

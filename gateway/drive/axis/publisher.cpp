@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/axis/publisher.hpp"
+
+#include <algorithm>
+
+#include "gateway/drive/plan/planner.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+Instant confirmed_statusword(const AxisCore& core) {
+  const ObjectState& status = core.store[core.model.statusword];
+  return status.known ? status.sent_at : kLongAgo;
+}
+
+// When the quantity was last confirmed: the oldest of its objects. kLongAgo where one of them never was.
+Instant confirmed_at(const AxisCore& core, const Binding& binding) {
+  Instant oldest = kNever;
+  const auto look = [&](ObjectId id) {
+    // The gateway's own words are as good as what they are made from.
+    if (id != kNoObject && core.store[id].emulated) id = core.model.statusword;
+    if (id == kNoObject || core.store[id].refused) return;
+    oldest = std::min(oldest, core.store[id].known ? core.store[id].sent_at : kLongAgo);
+  };
+  const bool of_error = binding.quantity == Quantity::error_code;
+  const Instant status = confirmed_statusword(core);
+  // In a fault it is what this fault was named, as long as the statusword shows the fault.
+  if (of_error && core.facts().faulted()) return status;
+  if (of_error)
+    for (const ObjectId word : core.model.fault_words) look(word);
+  look(binding.object);
+  for (const BitField& field : binding.bits) look(field.object);
+  // A drive that has no word of its faults shows by its statusword that it has none.
+  if (of_error && oldest == kNever) return status;
+  return oldest == kNever ? kLongAgo : oldest;
+}
+
+bool refused(const AxisCore& core, const Binding& binding) {
+  // What a fault is named does not hang on one object.
+  if (binding.quantity == Quantity::error_code) return false;
+  return binding.object != kNoObject && core.store[binding.object].refused;
+}
+
+// The drive never says what it holds: what it was told is all that can be shown, and no younger than that.
+bool is_told_alone(const AxisCore& core, const Binding& binding) {
+  if (binding.object == kNoObject) return false;
+  const ObjectDef& object = core.object(binding.object);
+  return !object.readable && !object.emulated && core.store.period(binding.object) == Duration{};
+}
+
+Duration stale_after(const AxisCore& core, const Binding& binding) {
+  if (binding.poll == PollClass::once || is_told_alone(core, binding)) return Duration::max();
+  Duration period = core.drive.poll_period[static_cast<std::size_t>(binding.poll)];
+  const auto mapped = [&](ObjectId id) {
+    if (id != kNoObject) period = std::max(period, core.store.period(id));
+  };
+  mapped(binding.object);
+  for (const BitField& field : binding.bits) mapped(field.object);
+  if (binding.quantity == Quantity::error_code) {
+    mapped(core.model.statusword);
+    for (const ObjectId word : core.model.fault_words) mapped(word);
+  }
+  return std::max(kStaleAtLeast, 3 * period);
+}
+
+std::int64_t error_code(const AxisCore& core, const AxisFacts& facts) {
+  if (const std::uint16_t named = named_code(core); named != 0) return named;
+  constexpr std::int64_t kGenericError = 0x1000;  // CiA 402-2 error codes: generic error
+  const std::uint16_t cause = core.fault.code();
+  return facts.faulted() ? (cause != 0 ? cause : kGenericError) : 0;
+}
+
+// Where the set-points of several modes lie in one object (Keya: 6081h), it holds that of the mode in force alone.
+bool is_of_another_mode(const AxisCore& core, const AxisFacts& facts, const Binding& binding) {
+  if (binding.object == kNoObject || core.object(binding.object).aliases.empty()) return false;
+  return is_target(binding.quantity) && setpoint_of_mode(facts.mode) != binding.quantity;
+}
+
+bool tells_cause(Quantity quantity) { return quantity == Quantity::error_code || quantity == Quantity::vendor_error; }
+
+/// A10: what tells of a fault appears in one step. Until then it stays as it was shown.
+bool held_back(const AxisCore& core, Quantity quantity) {
+  if (core.fault.withheld()) return tells_cause(quantity) || quantity == Quantity::statusword;
+  return core.fault.words_ahead() && tells_cause(quantity);
+}
+
+/// The words of the fault before are no value of this one.
+bool of_fault_before(const AxisCore& core, const Binding& binding) {
+  const auto old = [&](const BitField& field) {
+    return !core.store[field.object].refused && !core.names_cause(field.object);
+  };
+  return binding.quantity == Quantity::vendor_error && std::any_of(binding.bits.begin(), binding.bits.end(), old);
+}
+
+std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& facts, const Binding& binding) {
+  switch (binding.quantity) {
+    case Quantity::error_code:
+      return error_code(core, facts);
+    case Quantity::mode_display:
+      return facts.mode;
+    case Quantity::mode: {
+      const ObjectState& state = core.store[binding.object];
+      if (!state.known) return std::nullopt;
+      for (const auto& [unified, raw] : core.model.modes)
+        if (raw == state.number) return unified;
+      return state.number;
+    }
+    case Quantity::statusword: {
+      const auto value = core.value(Quantity::statusword);
+      if (!value || !core.motion.target_reached_masked()) return value;
+      return *value & ~static_cast<std::int64_t>(statusword::kTargetReached);
+    }
+    default:
+      if (is_of_another_mode(core, facts, binding) || of_fault_before(core, binding)) return std::nullopt;
+      return core.value(binding.quantity);
+  }
+}
+
+std::uint16_t inputs_of(const AxisCore& core, const AxisImage& image, const AxisFacts& facts) {
+  const std::int64_t word = image[Quantity::statusword].value;
+  const auto has = [&](std::uint16_t mask) { return (word & mask) != 0; };
+  const std::int64_t digital = image[Quantity::digital_inputs].value;
+  const bool limits_valid = image[Quantity::digital_inputs].valid;
+  constexpr std::int64_t kLimitInputs = 0x3;
+  const bool ready = !facts.faulted() && !core.alarm(AxisAlarm::local_control) &&
+                     !core.alarm(AxisAlarm::identity_mismatch) && !core.alarm(AxisAlarm::profile_mismatch);
+  std::uint16_t out = 0;
+  const auto set = [&](AxisInput input, bool on) { out = on ? static_cast<std::uint16_t>(out | bit(input)) : out; };
+  set(AxisInput::stop_latched, core.motion.latched());
+  if (!image.reachable()) return out;
+  set(AxisInput::online, true);
+  set(AxisInput::ready, ready);
+  set(AxisInput::enabled, facts.enabled());
+  set(AxisInput::fault, facts.faulted());
+  set(AxisInput::warning, has(statusword::kWarning) || image.alarms != 0);
+  set(AxisInput::target_reached, facts.target_reached && !core.motion.target_reached_masked());
+  set(AxisInput::homed, core.homed);
+  set(AxisInput::moving, facts.moving);
+  set(AxisInput::limit_active, has(statusword::kInternalLimit) || (limits_valid && (digital & kLimitInputs) != 0));
+  set(AxisInput::quick_stop_active, facts.state == State402::quick_stop_active || core.motion.latched());
+  // Bit 13 is the following error in position modes alone; in homing it means that homing failed.
+  set(AxisInput::following_error, has(statusword::kFollowingError) && facts.mode == 1);
+  return out;
+}
+
+std::uint32_t alarms_of(const AxisCore& core) {
+  std::uint32_t alarms = core.alarms;
+  const auto set = [&](AxisAlarm alarm, bool on) { alarms = on ? alarms | bit(alarm) : alarms; };
+  set(AxisAlarm::stop_latched, core.motion.latched());
+  set(AxisAlarm::not_homed, core.model.command(Command::home).has_value() && !core.homed);
+  set(AxisAlarm::cannot_deenergise, core.cannot_deenergise());
+  set(AxisAlarm::nvm_budget, core.nvm.alarm(core.now));
+  return alarms;
+}
+
+}  // namespace
+
+void show_model(const AxisModel& model, AxisImage& image) {
+  image.supported = model.supported;
+  image.writable = model.writable;
+  image.supported_commands = model.supported_commands;
+  if (model.lease.on)
+    for (const Command command : {Command::release, Command::take_over})
+      image.supported_commands |= 1U << static_cast<unsigned>(command);
+  image.supported_modes = model.supported_modes;
+  image.units_per_rev = model.units_per_rev;
+  image.rated_speed = model.rated_speed;
+  for (const QuantityRow& row : quantity_table())
+    image.limits[static_cast<std::size_t>(row.quantity)] = range_of(row.type);
+  for (const Binding& binding : model.bindings)
+    image.limits[static_cast<std::size_t>(binding.quantity)] = binding.limits;
+}
+
+void show_state(const AxisCore& core, AxisImage& image, Instant now) {
+  const AxisFacts facts = core.facts();
+  image.oldest_cyclic = kNever;
+  for (const Binding& binding : core.model.bindings) {
+    Sample& sample = image[binding.quantity];
+    // What the drive refused is not supported; a drive changed for another may have it again.
+    const std::uint32_t mask = bit(binding.quantity);
+    image.supported =
+        refused(core, binding) ? image.supported & ~mask : image.supported | (core.model.supported & mask);
+    const bool held = image.reachable() && held_back(core, binding.quantity);
+    const Instant at = held ? sample.at : confirmed_at(core, binding);
+    const auto value = at == kLongAgo ? std::nullopt : shown_value(core, facts, binding);
+    const Range fits = range_of(row(binding.quantity).type);
+    const bool good = held ? sample.received && sample.valid : value && fits.holds(*value);
+    if (held) {
+      // As it was, and as old as it is.
+    } else if (good) {
+      sample.value = *value;
+      sample.received = true;
+      sample.at = at;
+    } else if (at != kLongAgo && !is_of_another_mode(core, facts, binding)) {
+      sample.received = false;  // there is a number, and no register for it: the last one that fitted is not it
+    }
+    const Duration limit = stale_after(core, binding);
+    sample.valid = good && image.reachable() && (limit == Duration::max() || now - at <= limit);
+    const bool cyclic = binding.poll == PollClass::fast || binding.poll == PollClass::normal;
+    if (cyclic && !refused(core, binding) && !is_told_alone(core, binding))
+      image.oldest_cyclic = std::min(image.oldest_cyclic, at);
+  }
+  if (image.oldest_cyclic == kNever) image.oldest_cyclic = kLongAgo;
+  image.alarms = alarms_of(core);
+  if (image.reachable() && core.fault.withheld()) return;
+  image.axis_state = core.motion.axis_state(facts);
+  image.motion_state = core.motion.state();
+  image.motion_id = core.motion.id();
+  image.inputs = inputs_of(core, image, facts);
+  const bool halted = (core.controlword() & controlword::kHalt) != 0;
+  image.level_coils = static_cast<std::uint16_t>((facts.enabled() ? 1 : 0) | (halted ? 1 << 3 : 0) |
+                                                 (core.motion.running() == MotionKind::velocity ? 1 << 7 : 0));
+}
+
+Instant stale_deadline(const AxisCore& core, Instant now) {
+  Instant next = kNever;
+  for (const Binding& binding : core.model.bindings) {
+    const Duration limit = stale_after(core, binding);
+    const Instant at = confirmed_at(core, binding);
+    if (limit == Duration::max() || at == kLongAgo || now - at > limit) continue;
+    next = std::min(next, at + limit + Duration{1});
+  }
+  return next;
+}
+
+std::string alarm_text(const AxisCore& core, AxisAlarm alarm) {
+  for (const Check& check : core.drive.checks) {
+    const ObjectState& s = core.store[check.bad.object];
+    const bool found = s.known && check.bad.holds(core.object(check.bad.object), static_cast<std::uint32_t>(s.number));
+    if (check.alarm == alarm && found && !check.text.empty()) return std::string(text(alarm)) + ": " + check.text;
+  }
+  return std::string(text(alarm));
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// A command sequence: one write batch carried out, exchange by exchange (design 3.3). Pure: results and instants in,
+// the next move out. Promises the fixed order set-points, mode, controlword, command, object; an end at the first
+// failure; a statusword sampled after the last acknowledgement before it is done, and not done where that shows an axis
+// which could not have obeyed; no write repeated but a stop, three times at most. Never decides whose turn the wire is,
+// and never calls anybody.
+#pragma once
+
+#include <string>
+
+#include "adapters/bus/exchange.hpp"
+#include "gateway/drive/plan/planner.hpp"
+
+namespace axisgate::drive {
+
+class CommandSequence {
+ public:
+  /// `core` outlives it. `stop`: the write batch is a stop by design 3.4; its stop is carried out before everything
+  /// else in it. `by_mailbox`: after its writes nothing else counts as cached (design 3.3).
+  CommandSequence(AxisCore& core, const WriteBatch& batch, bool stop, bool by_mailbox = false);
+
+  struct Move {
+    enum class Kind : std::uint8_t {
+      exchange,  ///< put this on the wire, then call on_result()
+      wait,      ///< nothing before `until`
+      finished,  ///< see outcome()
+    };
+    Kind kind = Kind::finished;
+    bus::Exchange exchange;
+    Instant until = kLongAgo;
+  };
+  /// Goes as far as it can without the wire. The exchange of the answer is only for looking ahead.
+  [[nodiscard]] Move advance(Instant now);
+  /// As advance(), and its exchange goes on the wire now: what is only planned is planned anew, with what is known by
+  /// now.
+  [[nodiscard]] Move granted(Instant now);
+  /// The result of the exchange given last. `sent_at`: when it was sent. `trusted`: the drive was not suspect; else an
+  /// acknowledgement proves no write, and the object is read back.
+  void on_result(const bus::ExchangeResult& result, Instant sent_at, bool trusted);
+  /// It ends here: stopped, drive or link lost. What was sent stays sent.
+  void abort(Outcome outcome);
+  /// It ends here: its client's time is over.
+  void expire() { abort(outcome_if_late()); }
+  /// Where the drive has acknowledged all that was sent, the state asked for was not reached; else the outcome is
+  /// unknown.
+  [[nodiscard]] Outcome outcome_if_late() const;
+  /// Of an end with not_reached, for the log: the step, what was awaited, what was read.
+  [[nodiscard]] std::string missed() const;
+  /// What might still happen after such an end must be withdrawn by this stop; none: nothing might.
+  [[nodiscard]] Command withdrawn_by() const;
+
+  [[nodiscard]] bool finished() const { return phase_ == Phase::finished; }
+  [[nodiscard]] bool begun() const { return begun_; }  ///< something was sent
+  /// Its command or controlword was carried out, at least in part: it was neither refused nor asked for what was so.
+  [[nodiscard]] bool commanded() const { return acted_; }
+  /// A stop that would be sent once more if the exchange on the wire stays without an answer.
+  [[nodiscard]] bool would_repeat() const { return phase_ == Phase::stop && attempts_ + 1 < kStopAttempts; }
+  /// A long object is under way: another exchange with this drive would end it.
+  [[nodiscard]] bool chain_open() const { return chain_open_ && !finished(); }
+  /// The stop itself is over: what is left of the write batch has no claim to go first.
+  [[nodiscard]] bool stop_is_over() const { return stop_ && !handed_over_ && phase_ > Phase::settle_stop; }
+  /// A state read after the stop's last sending has confirmed it.
+  [[nodiscard]] bool stop_confirmed() const { return stop_confirmed_; }
+  /// The rest of the write batch was queued anew, without the stop's precedence.
+  void stop_was_handed_over() { handed_over_ = true; }
+  [[nodiscard]] const WriteBatch& batch() const { return batch_; }
+  [[nodiscard]] const BatchResult& result() const { return result_; }
+  [[nodiscard]] bool is_stop() const { return stop_; }
+  /// The next move is a write that belongs to the stop: it passes a suspect drive's resynchronisation read.
+  [[nodiscard]] bool passes_resync();
+
+ private:
+  enum class Phase : std::uint8_t {
+    stop,
+    settle_stop,
+    setpoints,
+    mode,
+    controlword,
+    preparation,
+    command,
+    object,
+    settle,
+    finished,
+  };
+  static constexpr int kStopAttempts = 3;  // design 3.4
+
+  void drop_setpoints_of_a_refused_command();
+  void plan_phase();
+  void next_phase();
+  [[nodiscard]] Plan plan_of(Phase phase);
+  [[nodiscard]] Move exchange_for(const Action& action) const;
+  [[nodiscard]] std::optional<Move> advance_wait(const Action& action, Instant now);
+  [[nodiscard]] bool has_come(const Action& action, const ObjectState& looked_at);
+  [[nodiscard]] std::optional<Move> advance_settle() const;
+  [[nodiscard]] Move advance_object() const;
+  [[nodiscard]] bool object_is_cached() const;
+  [[nodiscard]] bool in_command() const {
+    return phase_ == Phase::controlword || phase_ == Phase::preparation || phase_ == Phase::command;
+  }
+  [[nodiscard]] bool would_enable(const Action& action) const;
+  [[nodiscard]] bool is_command_of_motion(ObjectId object) const;
+  [[nodiscard]] bool has_lost_torque() const;
+  [[nodiscard]] bool within_nvm_budget(const bus::Exchange& exchange, Instant now);
+  void reach(const Action& action, Instant now);
+  [[nodiscard]] bool overtaken_by_stop(Mark mark) const;
+  void pop();
+  void fail(Errc code, std::uint32_t detail = 0);
+  [[nodiscard]] bool repeat_stop();
+  void on_write(const Action& action, const bus::ExchangeResult& result, Instant sent_at, bool trusted);
+  void on_lost_write(const Action& action);
+  void on_read(ObjectId object, const bus::ExchangeResult& result);
+  void on_object(const bus::ExchangeResult& result);
+  [[nodiscard]] std::uint32_t abort_code(std::uint32_t detail) const;
+  [[nodiscard]] std::int64_t number_of(const Action& action) const;
+
+  AxisCore& core_;
+  WriteBatch batch_;
+  BatchResult result_;
+  bool stop_;
+  bool by_mailbox_;
+  std::uint64_t stops_before_;  ///< stops accepted by then: what a later one overtakes starts and enables nothing
+  Phase phase_;
+  bool planned_ = false;
+  bool sent_of_plan_ = false;  ///< something of this plan was sent: it is carried to its end
+  bool begun_ = false;
+  bool acted_ = false;
+  bool handed_over_ = false;
+  bool stop_confirmed_ = false;
+  bool stop_withheld_ = false;      ///< not sent, as it could have enabled, or not seen to act
+  bool verifying_ = false;          ///< a write was not acknowledged: its object is read back
+  int attempts_ = 0;                ///< of a stop, beyond the first
+  std::optional<int> mode_before_;  ///< in force before the first preparation
+  std::vector<Action> todo_;
+  std::size_t at_ = 0;
+  bool commanded_ = false;               ///< a set-point that moves by being written went to an enabled axis
+  std::uint64_t last_acknowledged_ = 0;  ///< exchange of the last write: samples asked for earlier are too old
+  std::uint32_t step_ = 0;               ///< writes sent so far
+  std::optional<Action> last_write_{};
+  bool write_under_way_ = false;   ///< not answered yet
+  bool preparation_sent_ = false;  ///< the preparation of the command was more than a judgement
+  Instant wait_until_ = kNever;    ///< of the wait under way; kNever: not begun
+  Instant stop_until_ = kNever;    ///< of the stop's waits together, however often it is repeated
+  Instant effect_until_ = kNever;  ///< and of those that the motor alone shows the end of
+  Instant repeat_at_ = kNever;     ///< of a stop: sent once more if it has not shown by then
+  EffectWatch effect_{};
+  std::uint64_t looked_at_ = 0;  ///< exchange of the sample that the wait under way has judged last
+  Instant look_after_ = kLongAgo;
+  Duration look_pause_{};
+  bool object_done_ = false;
+  bool chain_open_ = false;
+};
+
+}  // namespace axisgate::drive

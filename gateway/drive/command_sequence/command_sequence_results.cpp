@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a command sequence makes of an answer, and what it tells the motion rules at its turning points.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gateway/drive/command_sequence/command_sequence.hpp"
+#include "gateway/drive/plan/admission.hpp"
+
+namespace axisgate::drive {
+
+namespace {
+
+constexpr std::uint32_t kNoSuchObject = 0x06020000,
+                        kNoSuchSubindex = 0x06090011;  // CiA 301 table 22; Kinco's serial too
+constexpr std::uint32_t kModbusIllegalAddress = 2;
+
+bool is_not_there(std::uint32_t detail) {
+  return detail == kNoSuchObject || detail == kNoSuchSubindex || detail == kModbusIllegalAddress;
+}
+
+}  // namespace
+
+// --- Results -------------------------------------------------------------------------------------------------------
+
+void CommandSequence::on_result(const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
+  write_under_way_ = false;
+  if (finished()) return;
+  if (result.code == Errc::link_lost) {
+    fail(Errc::link_lost);
+  } else if (phase_ == Phase::object) {
+    on_object(result);
+  } else if (phase_ == Phase::settle || phase_ == Phase::settle_stop) {
+    if (result.code == Errc::refused_by_drive) next_phase();  // what a drive never shows nothing can confirm
+  } else if (at_ < todo_.size()) {
+    const Action& action = todo_[at_];
+    if (action.kind == Action::Kind::write && !verifying_) {
+      on_write(action, result, sent_at, trusted);
+    } else {
+      on_read(action.kind == Action::Kind::wait ? action.until.object : action.object, result);
+    }
+  }
+}
+
+bool CommandSequence::is_command_of_motion(ObjectId object) const {
+  const auto& bindings = core_.model.bindings;
+  return moves_by_write(core_, object) && std::any_of(bindings.begin(), bindings.end(), [&](const Binding& b) {
+           return b.object == object && b.writable;
+         });
+}
+
+void CommandSequence::on_write(const Action& action, const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
+  // Anything sampled from the next request on has seen this write, if it was one.
+  last_acknowledged_ = core_.store.exchange();
+  switch (result.code) {
+    case Errc::ok:
+      // What a trigger object reads as proves nothing; whether the stop was seen, its wait tells.
+      if (!trusted && core_.object(action.object).readable && !core_.object(action.object).trigger) {
+        core_.store.invalidate(action.object);
+        verifying_ = true;
+        return;
+      }
+      core_.store.acknowledged(action.object, number_of(action), sent_at);
+      commanded_ =
+          commanded_ || (phase_ != Phase::stop && is_command_of_motion(action.object) && core_.facts().enabled());
+      if (by_mailbox_) core_.store.invalidate_all(action.object);
+      pop();
+      return;
+    case Errc::refused_by_drive:
+      if (action.optional && is_not_there(result.detail)) {
+        pop();
+        return;
+      }
+      if (!repeat_stop()) fail(Errc::refused_by_drive, result.detail);
+      return;
+    default:
+      on_lost_write(action);
+  }
+}
+
+// Unknown, and never sent again blindly: read back before it is reported. A stop is sent again, unless it is a halt
+// that could enable a drive which has meanwhile restarted: that one is looked at first.
+void CommandSequence::on_lost_write(const Action& action) {
+  const ObjectDef& object = core_.object(action.object);
+  const bool could_enable = action.object == core_.model.controlword &&
+                            request_of(static_cast<std::uint16_t>(number_of(action))) == Request402::enable_operation;
+  core_.store.invalidate(action.object);
+  if (!could_enable && repeat_stop()) return;
+  if (object.trigger || !object.readable || (phase_ == Phase::stop && !could_enable)) {
+    fail(Errc::timed_out);
+  } else {
+    verifying_ = true;
+  }
+}
+
+void CommandSequence::on_read(ObjectId object, const bus::ExchangeResult& result) {
+  const Action& action = todo_[at_];
+  if (result.code == Errc::refused_by_drive) {
+    // What a drive never shows nothing can confirm.
+    if (action.kind == Action::Kind::wait && (action.optional || action.effect != Effect::none)) {
+      pop();
+    } else {
+      fail(verifying_ ? Errc::timed_out : Errc::refused_by_drive, result.detail);
+    }
+    return;
+  }
+  // A read that was not answered is asked again once the resynchronisation read is answered: it changes nothing. The
+  // drive goes offline first.
+  if (result.code != Errc::ok) return;
+  if (verifying_) {
+    const ObjectDef& def = core_.object(object);
+    if (core_.store[object].number == def.number(wire_bits(number_of(action), def.size))) {
+      pop();
+    } else if (!repeat_stop()) {
+      fail(Errc::timed_out);
+    }
+  } else if (action.kind == Action::Kind::read && (!core_.object(object).emulated || core_.store[object].cached)) {
+    pop();  // a virtual axis's statusword may need more than one request
+  }
+}
+
+// What the drive said, as CiA 301 would have said it (design 3.1, FC 43/13).
+std::uint32_t CommandSequence::abort_code(std::uint32_t detail) const {
+  constexpr std::uint32_t kGeneral = 0x08000000;
+  if (is_canopen(core_.drive) || detail == kNoSuchObject) return detail;
+  return core_.drive.resync.by_length && detail == kModbusIllegalAddress ? kNoSuchObject : kGeneral;
+}
+
+void CommandSequence::on_object(const bus::ExchangeResult& result) {
+  if (result.code != Errc::ok) {
+    if (result.code == Errc::refused_by_drive) result_.abort_code = abort_code(result.detail);
+    fail(result.code, result.detail);
+    return;
+  }
+  chain_open_ = result.more;
+  if (chain_open_) return;
+  object_done_ = true;
+  if (batch_.object->write) {
+    last_acknowledged_ = core_.store.exchange();
+    core_.store.invalidate_all();
+  } else if (result.bytes) {
+    result_.object_bytes = result.bytes;
+  } else {
+    // Neighbours may have been read in the same request.
+    const bus::ObjectAddress asked{batch_.object->index, batch_.object->subindex};
+    const auto field = std::find_if(result.fields.begin(), result.fields.end(),
+                                    [&](const bus::ReplyField& f) { return f.object == asked; });
+    if (field == result.fields.end()) return fail(Errc::bad_reply);
+    result_.object_data = field->raw;
+    result_.object_size = field->size;
+  }
+}
+
+// --- Not reached ---------------------------------------------------------------------------------------------------
+
+Outcome CommandSequence::outcome_if_late() const {
+  if (!begun_) return {stop_ ? Errc::timed_out : Errc::never_started, 0};
+  const bool asks_for_a_state = phase_ == Phase::stop || phase_ == Phase::mode || in_command();
+  // That a look was lost since, and the drive is suspect, takes back no acknowledgement.
+  const bool acknowledged = !write_under_way_ && !verifying_;
+  return asks_for_a_state && acknowledged ? Outcome{Errc::not_reached, step_} : Outcome{Errc::timed_out, 0};
+}
+
+std::string CommandSequence::missed() const {
+  std::string out = step_ == 0 ? "nothing was sent" : fmt::format("step {}", step_);
+  const auto hex = [&](ObjectId id, std::int64_t number) {
+    const std::uint8_t size = core_.object(id).size;
+    return fmt::format("0x{:0{}X}", wire_bits(number, size), 2 * size);
+  };
+  if (last_write_)
+    out += fmt::format(" ({} = {})", core_.object(last_write_->object).name,
+                       hex(last_write_->object, last_write_->number));
+  if (at_ >= todo_.size() || todo_[at_].kind != Action::Kind::wait) return out + ": what follows was not sent in time";
+  if (todo_[at_].effect == Effect::homing) return out + ": awaited a motion or a change of its bits, read none";
+  if (todo_[at_].effect == Effect::halt) {
+    const auto speed = core_.value(Quantity::velocity_actual);
+    return out + ": awaited that it slows down, read " +
+           (speed ? fmt::format("velocity_actual {}", *speed) : std::string("nothing"));
+  }
+  const Condition& until = todo_[at_].until;
+  const bool negated = until.test == Condition::Test::not_equals || until.test == Condition::Test::not_in;
+  out += ": awaited " + core_.object(until.object).name;
+  if (until.mask != 0) out += fmt::format(" & {}", hex(until.object, until.mask));
+  out += negated ? " other than" : " =";
+  constexpr std::size_t kMostNamed = 4;  // of a window of values the first tell enough
+  for (std::size_t i = 0; i < std::min(until.values.size(), kMostNamed); ++i)
+    out += (i == 0 ? " " : " or ") + hex(until.object, until.values[i]);
+  const ObjectState& state = core_.store[until.object];
+  return out + ", read " + (state.known ? hex(until.object, state.number) : std::string("nothing"));
+}
+
+// A start waits for its drive no longer, and the drive must not come back to it; nor may a mode that comes late make
+// the motor follow what it did not follow before.
+Command CommandSequence::withdrawn_by() const {
+  if (stop_ || step_ == 0) return Command::none;
+  const bool enabled = core_.facts().enabled();
+  if (batch_.command == Command::enable || (asks_to_enable(batch_) && !enabled)) return Command::disable;
+  const bool starts = batch_.command >= Command::move_absolute && batch_.command <= Command::set_position;
+  const bool follows = batch_.mode && enabled;
+  return starts || follows ? Command::halt : Command::none;
+}
+
+// --- Turning points ------------------------------------------------------------------------------------------------
+
+// A stop accepted after this write batch ends what it would begin: nothing that it reaches late counts as a start or an
+// enable.
+bool CommandSequence::overtaken_by_stop(Mark mark) const {
+  switch (mark) {
+    case Mark::enabled:
+    case Mark::found_enabled:
+    case Mark::start_discrete:
+    case Mark::start_velocity:
+    case Mark::start_torque:
+    case Mark::start_homing:
+    case Mark::controlword_passed:
+    case Mark::run_raw:
+      return core_.motion.stops() != stops_before_;
+    default:
+      return false;
+  }
+}
+
+void CommandSequence::reach(const Action& action, Instant now) {
+  if (overtaken_by_stop(action.mark)) return;
+  Motion& motion = core_.motion;
+  const auto start = [&](MotionKind kind) {
+    // A set-point that changes what runs is no new motion.
+    const bool goes_on = batch_.command == Command::none && !batch_.controlword;
+    motion.start(kind, goes_on ? motion.id() : batch_.command_id, now, core_.store.exchange());
+    core_.started(kind, action.number != 0);
+  };
+  switch (action.mark) {
+    case Mark::enabled:
+      motion.enabled();
+      break;
+    case Mark::found_enabled:
+      motion.unlatch();
+      break;
+    case Mark::start_discrete:
+      start(MotionKind::discrete);
+      break;
+    case Mark::start_velocity:
+      start(MotionKind::velocity);
+      break;
+    case Mark::start_torque:
+      start(MotionKind::torque);
+      break;
+    case Mark::start_homing:
+      start(MotionKind::homing);
+      break;
+    case Mark::controlword_passed:
+      motion.passed(request_of(*batch_.controlword));
+      break;
+    case Mark::quick_stopped:
+      if (!motion.latched()) motion.stop(true, now);
+      motion.disarm();
+      stops_before_ = motion.stops();
+      break;
+    case Mark::halted:
+      motion.stop(false, now);
+      stops_before_ = motion.stops();
+      break;
+    case Mark::run_raw:
+      motion.run_raw();
+      break;
+    case Mark::mode_changed:
+      motion.mode_changed();
+      if (phase_ == Phase::mode && core_.facts().enabled() && core_.is_continuous(core_.mode_in_force()))
+        motion.run_raw();
+      break;
+    case Mark::values_invalidated:
+      core_.store.invalidate_all(action.object);
+      break;
+    case Mark::not_homed:
+      core_.homed = false;
+      break;
+    case Mark::borrow_homing:
+      if (!core_.offset_owed) core_.offset_owed = core_.value(Quantity::homing_offset);
+      break;
+    case Mark::return_homing:
+      core_.offset_owed.reset();
+      break;
+    case Mark::look_again:
+      planned_ = false;
+      break;
+  }
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/device/bring_up.hpp"
+
+#include <algorithm>
+
+#include "gateway/model/cia402.hpp"
+
+namespace axisgate::drive {
+
+BringUp::BringUp(const DriveModel& model) : model_(model), identity_(model), node_(model) {
+  const auto add = [&](ObjectId id) {
+    if (id != kNoObject && std::find(reads_.begin(), reads_.end(), id) == reads_.end()) reads_.push_back(id);
+  };
+  for (const AxisModel& axis : model.axes)
+    for (const ObjectId id : axis.state_sources) add(id);  // the state comes before everything
+  for (const ObjectWrite& setup : model.setup)
+    if (model.object(setup.object).readable) add(setup.object);
+  for (const FactoryWrite& setup : model.factory_writes) add(setup.object);
+  // What changes fastest is read last: the drive goes online with values that are still good.
+  std::vector<PollItem> items = poll_items(model);
+  std::stable_sort(items.begin(), items.end(),
+                   [](const PollItem& a, const PollItem& b) { return a.poll_class > b.poll_class; });
+  for (const PollItem& item : items) {
+    add(item.object);
+    if (item.poll_class == PollClass::fast) confirmed_.push_back(item.object);
+  }
+}
+
+void BringUp::begin() {
+  read_at_ = setup_at_ = 0;
+  setup_written_ = read_back_ = adopted_ = false;
+  confirm_after_.reset();
+  unheld_.clear();
+  setup_.reset();
+  identity_.begin();
+  node_.begin();
+}
+
+bool BringUp::any_enabled(const ObjectStore& store) const {
+  return std::any_of(model_.axes.begin(), model_.axes.end(), [&](const AxisModel& axis) {
+    const ObjectState& s = store[axis.statusword];
+    if (!s.known) return false;
+    const State402 state = state_of(static_cast<std::uint16_t>(s.number));
+    return holds_motor(state);
+  });
+}
+
+std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
+  while (read_at_ < reads_.size()) {
+    const ObjectState& s = store[reads_[read_at_]];
+    // The state is asked for ever: without it there is no axis.
+    if (!s.known && (!s.refused || model_.needs_for_state(reads_[read_at_]))) return Next{reads_[read_at_], false, 0};
+    ++read_at_;
+  }
+  if (is_node())
+    if (const auto identity = identity_.next()) return Next{kNoObject, false, 0, identity};
+  // Everything else was read meanwhile: somebody may have enabled it since its state was read, and on a busy line what
+  // was read first has grown stale.
+  if (!confirm_after_) confirm_after_ = store.exchange();
+  for (const ObjectId id : confirmed_)
+    if (!store[id].refused && store[id].exchange <= *confirm_after_) return Next{id, false, 0};
+  adopted_ = any_enabled(store);
+  if (adopted_ || !identity_.mismatch().empty() || lacks_needed(store)) return std::nullopt;
+  if (const auto setup = next_setup(store)) return setup;
+  if (is_node())
+    if (const auto node = node_.next()) return Next{kNoObject, false, 0, node};
+  return std::nullopt;
+}
+
+// It is not what its profile says: nothing of that profile is written to it.
+bool BringUp::lacks_needed(const ObjectStore& store) const {
+  for (std::size_t i = 0; i < model_.objects.size(); ++i)
+    if (const auto id = static_cast<ObjectId>(i); store[id].refused && model_.needs(id)) return true;
+  return false;
+}
+
+std::optional<BringUp::Next> BringUp::next_setup(const ObjectStore& store) {
+  // Judged once: what is written here must not make its own reason go away.
+  if (!setup_)
+    setup_ = setup_writes(
+        model_, [&](ObjectId id) { return store[id].known ? std::optional(store[id].number) : std::nullopt; });
+  while (setup_at_ < setup_->size()) {
+    const ObjectWrite& setup = (*setup_)[setup_at_];
+    if (read_back_) return Next{setup.object, false, 0};
+    const bool holds = store[setup.object].known && store[setup.object].number == setup.raw;
+    if (holds || setup_written_) {
+      if (!holds && model_.object(setup.object).readable) unheld_.push_back(setup.object);
+      ++setup_at_;
+      setup_written_ = false;
+      continue;
+    }
+    return Next{setup.object, true, setup.raw};
+  }
+  return std::nullopt;
+}
+
+void BringUp::answered(const bus::ExchangeResult& result) {
+  if (identity_.next())
+    identity_.on_result(result);
+  else
+    node_.on_result(result);
+}
+
+void BringUp::written() {
+  setup_written_ = true;
+  read_back_ = setup_ && setup_at_ < setup_->size() && model_.object((*setup_)[setup_at_].object).readable;
+}
+
+void BringUp::write_refused() {
+  setup_written_ = true;
+  read_back_ = false;
+}
+
+}  // namespace axisgate::drive

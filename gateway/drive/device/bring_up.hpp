@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bring-up of a drive (design 7, points 6 and 7): its state is read first; then everything the image needs, the checks,
+// its identity; then the setup is written, and a CANopen node mapped and started. Promises that a drive found enabled
+// is adopted, and one that is not the configured one left alone: nothing is written to either; and that a setup value
+// is written only where the drive holds another, and read back. Never enables, moves or stops anything.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/drive/device/node_setup.hpp"
+#include "gateway/drive/device/poll_plan.hpp"
+#include "gateway/drive/state/object_store.hpp"
+
+namespace axisgate::drive {
+
+class BringUp {
+ public:
+  explicit BringUp(const DriveModel& model);
+
+  void begin();
+  struct Next {
+    ObjectId object = kNoObject;
+    bool write = false;
+    std::int64_t number = 0;
+    std::optional<bus::Exchange> exchange{};  ///< instead of an object of the model: identity, mapping, NMT
+  };
+  /// The next exchange; none: bring-up is over. The same answer until the store shows its effect.
+  [[nodiscard]] std::optional<Next> next(const ObjectStore& store);
+  /// The write given by next() was acknowledged, or its outcome is unknown: it is read back next.
+  void written();
+  /// The drive refused the write given by next().
+  void write_refused();
+  /// The read given by next() was a read-back, and it was answered.
+  void read_back_answered() { read_back_ = false; }
+  /// A Next::exchange was answered or refused.
+  void answered(const bus::ExchangeResult& result);
+  /// Some axis was found enabled.
+  [[nodiscard]] bool adopted() const { return adopted_; }
+  /// Setup values that the drive does not hold although they were written: they are named in an event.
+  [[nodiscard]] const std::vector<ObjectId>& unheld() const { return unheld_; }
+  [[nodiscard]] bool has_setup() const { return !model_.setup.empty() || !model_.factory_writes.empty() || is_node(); }
+  /// How the drive differs from the configured one; empty: it does not.
+  [[nodiscard]] const std::string& mismatch() const { return identity_.mismatch(); }
+  /// What a CANopen node sends by itself now, and what it would not.
+  [[nodiscard]] const NodeSetup& node() const { return node_; }
+
+ private:
+  [[nodiscard]] bool any_enabled(const ObjectStore& store) const;
+  [[nodiscard]] bool is_node() const { return is_canopen(model_); }
+  [[nodiscard]] bool lacks_needed(const ObjectStore& store) const;
+  [[nodiscard]] std::optional<Next> next_setup(const ObjectStore& store);
+  const DriveModel& model_;
+  IdentityCheck identity_;
+  NodeSetup node_;
+  std::vector<ObjectId> reads_;
+  std::vector<ObjectId> confirmed_;  ///< class fast, the statuswords among them: read once more at the end
+  std::size_t read_at_ = 0;
+  std::optional<std::uint64_t> confirm_after_;  ///< exchange: the state is read once more before the first setup write
+  std::optional<std::vector<ObjectWrite>> setup_;  ///< as it is due by what was read; none: not judged yet
+  std::size_t setup_at_ = 0;
+  bool setup_written_ = false;
+  bool read_back_ = false;
+  bool adopted_ = false;
+  std::vector<ObjectId> unheld_;
+};
+
+}  // namespace axisgate::drive

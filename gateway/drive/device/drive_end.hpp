@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// A drive when the gateway ends on purpose, or lets go of it (design 7). Pure. Promises that what makes the drive miss
+// the gateway is asked about only once its stops are at their end, that it is over once, and that where nothing was
+// read before nothing is asked. Never sends; what may be cleared is Disarming's to decide.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "gateway/drive/device/disarming.hpp"
+
+namespace axisgate::drive {
+
+/// Why a drive is closed.
+enum class Closing : std::uint8_t {
+  gateway_ends,  ///< where no motor has torque, the drive is told not to miss the gateway; any other one stops as if
+                 ///< the gateway had died
+  look,          ///< to be taken away, if no motor has torque: that is read, and nothing is written
+  taken_away     ///< as gateway_ends, while the gateway goes on
+};
+
+class DriveEnd {
+ public:
+  /// Its stops are looked at again after so long.
+  static constexpr Duration kStopsFirst = std::chrono::milliseconds(10);
+
+  explicit DriveEnd(const DriveModel& model) : disarming_(model) {}
+
+  /// `known`: the drive is online, and `store` holds what it holds. True: there is something to be asked of it.
+  bool begin(Closing why, bool known, const ObjectStore& store, std::function<void()> closed);
+  [[nodiscard]] bool begun() const { return why_.has_value(); }
+  /// It stays after all: true where what makes it miss the gateway may have been cleared.
+  bool take_back();
+
+  /// The next exchange; none: there is none left.
+  [[nodiscard]] std::optional<Disarming::Next> next() const { return disarming_.next(); }
+  void on_result(const bus::ExchangeResult& result, bool trusted, const ObjectStore& store) {
+    disarming_.on_result(result, trusted, store);
+  }
+  [[nodiscard]] Disarming::Outcome outcome() const { return disarming_.outcome(); }
+  /// What the log says at its end; empty: nothing.
+  [[nodiscard]] std::string told() const;
+  /// Nothing of the drive is on the wire or waits for it: whom to tell, once; none: nobody, or he was told.
+  [[nodiscard]] std::function<void()> take_closed();
+
+ private:
+  Disarming disarming_;
+  std::optional<Closing> why_{};
+  std::function<void()> closed_{};
+};
+
+}  // namespace axisgate::drive

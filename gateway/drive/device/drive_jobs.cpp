@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a drive asks of its bus for itself, beside bring-up: what names a fault, its keep-alive, its end.
+#include <algorithm>
+#include <utility>
+
+#include "gateway/drive/device/drive.hpp"
+#include "gateway/drive/device/requests.hpp"
+
+namespace axisgate::drive {
+
+/// It neither waits for its axes' bus jobs nor is joined or superseded by one.
+bus::JobId Drive::queue_own(bus::Priority priority) {
+  bus::BusJob job;
+  job.priority = priority;
+  job.axis = bus::kNoAxis;
+  const Queued queued = queue(std::move(job));
+  return queued.code == Errc::ok ? queued.id : 0;
+}
+
+// --- What names a fault is read next, before anything but stops ----------------------------------------------------
+
+std::optional<ObjectId> Drive::cause_to_read() {
+  for (auto& axis : axes_)
+    if (const auto object = axis->cause_to_read(now())) return object;
+  return std::nullopt;
+}
+
+std::optional<bus::Exchange> Drive::next_of_causes() {
+  const auto object = cause_to_read();
+  if (!object) {
+    bus_.finish(std::exchange(jobs_.cause, 0));
+    return std::nullopt;
+  }
+  for (auto& axis : axes_)
+    if (axis->cause_to_read(now()) == object) axis->cause_asked(now());
+  return read_of(model_, *object);
+}
+
+bool Drive::causes_are_open() const {
+  return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->core().fault.withheld(); });
+}
+
+// A drive that comes up reads them in its bring-up's own bus job; out of sight nothing is shown of them.
+void Drive::schedule_causes() {
+  for (auto& axis : axes_)
+    if (axis->fault_is_over())
+      for (const ObjectId word : axis->core().causes)
+        if (!tells_state(word)) plan_.hurry(word, now());
+  if (!brought_up() || !cause_to_read() || jobs_.cause != 0) return;
+  jobs_.cause = queue_own(bus::Priority::cause);
+}
+
+// --- Keep-alive and control frames ---------------------------------------------------------------------------------
+
+DriveControl::Turn Drive::control_turn() const {
+  DriveControl::Turn turn{.now = now(),
+                          .online = state_ == LinkState::online,
+                          .suspect = resync_.suspect(),
+                          .adopted = adopted_,
+                          .axes = {}};
+  for (const auto& axis : axes_)
+    turn.axes.push_back({.core = axis->core(),
+                         .enabling = axis->enabling(),
+                         .disabling = axis->disable_waits(),
+                         .stopping = axis->stopping() || axis->owes_stop(),
+                         .live = axis->commands_live()});
+  return turn;
+}
+
+// Whatever of this drive has its turn lets what is due go first, and keeps its own; but a stop, which makes it void.
+std::optional<bus::Exchange> Drive::keep_alive_turn(bus::Priority priority) {
+  if (priority == bus::Priority::stop || !control_.concerned()) return std::nullopt;
+  auto due = control_.due(control_turn());
+  if (!due) return std::nullopt;
+  on_wire_.job = 0;
+  on_wire_.keeps_alive = due->axis;
+  return std::move(due->exchange);
+}
+
+std::optional<bus::Exchange> Drive::whole_frame(const bus::Exchange& exchange, bus::JobId id, bus::Priority priority) {
+  if (!control_.concerned()) return exchange;
+  auto whole = control_.whole(control_turn(), exchange, priority == bus::Priority::stop);
+  if (whole) return whole;
+  if (on_wire_.keeps_alive) {
+    control_.failed(*on_wire_.keeps_alive, now());
+    return std::nullopt;
+  }
+  for (auto& axis : axes_)
+    if (axis->has(id)) axis->on_job_ended(id, Errc::state_unsuitable);
+  return std::nullopt;
+}
+
+// Takes and gives up a place in the queue as it is needed; says when it must be looked at again.
+Instant Drive::schedule_keep_alive() {
+  // The queue was full: its own exchanges carry what is due meanwhile, and a place is asked for again.
+  constexpr Duration kPlaceRetry = std::chrono::milliseconds(5);
+  const Instant next = control_.concerned() ? control_.next_due(control_turn()) : kNever;
+  if (next > now()) {
+    if (jobs_.keep_alive != 0) bus_.finish(std::exchange(jobs_.keep_alive, 0));
+    return next;
+  }
+  if (jobs_.keep_alive != 0) return kNever;
+  jobs_.keep_alive = queue_own(bus::Priority::command);
+  return jobs_.keep_alive != 0 ? kNever : now() + kPlaceRetry;
+}
+
+// --- The end on purpose --------------------------------------------------------------------------------------------
+
+void Drive::close(Closing why, std::function<void()> closed) {
+  for (auto& axis : axes_) axis->close();
+  // A bring-up would arm what is to be disarmed, and start nodes. What it has not read nobody knows: it is left.
+  if (jobs_.setup != 0) bus_.finish(std::exchange(jobs_.setup, 0));
+  // Polls and what else is slow do not hold up the end.
+  if (end_.begin(why, brought_up(), store_, std::move(closed))) jobs_.end = queue_own(bus::Priority::command);
+  after_event();
+}
+
+void Drive::reopen() {
+  const bool disarmed = end_.take_back() && brought_up();
+  if (jobs_.end != 0) bus_.finish(std::exchange(jobs_.end, 0));
+  for (auto& axis : axes_) axis->reopen();
+  if (disarmed && bring_up_.has_setup()) begin_bring_up(false);
+  if (state_ == LinkState::unknown) presence_.look_at(now());  // a bring-up that was not begun meanwhile
+  after_event();
+}
+
+// Stops go first, to their end: what a motor does is not known before.
+std::optional<bus::Exchange> Drive::next_of_end() {
+  const bool stops =
+      std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return !axis->idle() || axis->owes_stop(); });
+  if (stops) {
+    bus_.wait(jobs_.end, now() + DriveEnd::kStopsFirst);
+    return std::nullopt;
+  }
+  const auto next = end_.next();
+  if (!next) {
+    finish_end();
+    return std::nullopt;
+  }
+  return next->write ? write(next->object, next->number) : read_of(model_, next->object);
+}
+
+void Drive::finish_end() {
+  bus_.finish(std::exchange(jobs_.end, 0));
+  if (const std::string told = end_.told(); !told.empty()) tell_all(EventKind::boot, 0, told);
+}
+
+void Drive::tell_closed() {
+  if (jobs_.end != 0) return;
+  for (const auto& axis : axes_)
+    if (!axis->idle()) return;
+  if (const auto closed = end_.take_closed()) closed();
+}
+
+}  // namespace axisgate::drive

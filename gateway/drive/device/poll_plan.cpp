@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/device/poll_plan.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace axisgate::drive {
+namespace {
+
+void add(std::vector<PollItem>& items, ObjectId object, PollClass poll_class) {
+  if (object == kNoObject) return;
+  const auto found = std::find_if(items.begin(), items.end(), [&](const PollItem& i) { return i.object == object; });
+  if (found == items.end())
+    items.push_back({object, poll_class, false});
+  else
+    found->poll_class = std::min(found->poll_class, poll_class);
+}
+
+/// It comes by itself, in a known beat, and is asked for never; but the state is.
+bool comes_unasked(const DriveModel& model, ObjectId id) {
+  if (model.unasked.every == Duration{}) return false;
+  const auto has = [id](const std::vector<ObjectId>& list) {
+    return std::find(list.begin(), list.end(), id) != list.end();
+  };
+  const bool state =
+      std::any_of(model.axes.begin(), model.axes.end(), [&](const AxisModel& axis) { return has(axis.state_sources); });
+  return !state && has(model.unasked.objects);
+}
+
+}  // namespace
+
+std::vector<PollItem> poll_items(const DriveModel& model) {
+  std::vector<PollItem> items;
+  for (const AxisModel& axis : model.axes) {
+    const auto read = [&](ObjectId id, PollClass poll_class) {
+      if (id != kNoObject && !model.object(id).emulated) add(items, id, poll_class);
+    };
+    // A PLC sees everything else through the statusword: it, or what it is made from, is never slower than fast.
+    for (const ObjectId source : axis.state_sources) read(source, PollClass::fast);
+    read(axis.mode_display, PollClass::normal);
+    for (const ObjectId word : axis.fault_words) add(items, word, PollClass::normal);
+    for (const auto* condition : {&axis.homed, &axis.homing_failed, &axis.moving})
+      if (condition->has_value()) add(items, (*condition)->object, PollClass::normal);
+    for (const Binding& binding : axis.bindings) {
+      if (binding.object != kNoObject && model.object(binding.object).readable) read(binding.object, binding.poll);
+      for (const BitField& field : binding.bits) add(items, field.object, binding.poll);
+    }
+  }
+  // Their zero is judged at each enable: read once, it need not be written.
+  for (const AxisModel& axis : model.axes)
+    for (const ObjectId id : axis.zero_before_enable)
+      if (model.object(id).readable) add(items, id, PollClass::once);
+  for (const AxisModel& axis : model.axes)
+    for (const HomingNeed& need : axis.homing_needs)
+      for (const ObjectId id : need.any_of) add(items, id, PollClass::once);
+  for (const Check& check : model.checks) add(items, check.bad.object, PollClass::once);
+  // Scales depend on them, and a panel or the mailbox may change what they follow from.
+  for (const ObjectId id : constant_objects(model)) add(items, id, PollClass::slow);
+  std::erase_if(items, [&](const PollItem& item) {
+    return !model.object(item.object).readable || comes_unasked(model, item.object);
+  });
+  for (PollItem& item : items)
+    for (const TpdoProperties& tpdo : model.canopen.tpdos)
+      item.mapped = item.mapped || std::find(tpdo.map.begin(), tpdo.map.end(), item.object) != tpdo.map.end();
+  return items;
+}
+
+PollPlan::PollPlan(const DriveModel& model) {
+  for (const PollItem& item : poll_items(model)) {
+    const auto index = static_cast<std::size_t>(item.poll_class);
+    const Duration period = item.poll_class == PollClass::once ? Duration{} : model.poll_period[index];
+    entries_.push_back({item.object, period, kNever, false, period, {}});
+  }
+}
+
+void PollPlan::restart(Instant now) {
+  for (Entry& e : entries_) e = {e.object, e.beat, now, false, e.beat, {}};
+}
+
+void PollPlan::map(ObjectId object, std::optional<Duration> event, Duration confirm) {
+  Entry* e = entry(object);
+  if (e == nullptr || e->beat == Duration{}) return;
+  constexpr int kMissedEvents = 3;
+  e->silence = event ? kMissedEvents * *event : confirm;
+  e->period = event ? e->beat : std::max(e->beat, confirm);
+}
+
+void PollPlan::unmap_all(Instant now) {
+  for (Entry& e : entries_) {
+    if (e.silence == Duration{}) continue;
+    e.silence = {};
+    e.period = e.beat;
+    if (!e.dropped) e.due = std::min(e.due, now);
+  }
+}
+
+void PollPlan::received(ObjectId object, Instant now) {
+  Entry* e = entry(object);
+  if (e != nullptr && e->silence != Duration{} && !e->dropped) e->due = now + std::min(e->silence, e->limit);
+}
+
+void PollPlan::confirm_within(ObjectId object, std::optional<Duration> limit, Instant now) {
+  Entry* e = entry(object);
+  if (e == nullptr || e->silence == Duration{} || e->dropped) return;
+  const Duration before = std::exchange(e->limit, limit.value_or(Duration::max()));
+  if (e->limit < before) e->due = std::min(e->due, now + e->limit);
+}
+
+void PollPlan::hurry(ObjectId object, Instant now) {
+  Entry* e = entry(object);
+  if (e != nullptr && !e->dropped) e->due = std::min(e->due, now);
+}
+
+const PollPlan::Entry* PollPlan::earliest() const {
+  const auto found =
+      std::min_element(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.due < b.due; });
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+PollPlan::Entry* PollPlan::entry(ObjectId object) {
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.object == object; });
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+std::optional<ObjectId> PollPlan::next(Instant now) const {
+  const Entry* e = earliest();
+  if (e == nullptr || e->due > now) return std::nullopt;
+  return e->object;
+}
+
+bool PollPlan::due(ObjectId object, Instant now) const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [&](const Entry& e) { return e.object == object && e.due <= now; });
+}
+
+Instant PollPlan::next_due() const {
+  const Entry* e = earliest();
+  return e == nullptr ? kNever : e->due;
+}
+
+void PollPlan::done(ObjectId object, Instant now) {
+  Entry* e = entry(object);
+  if (e == nullptr || e->due == kNever) return;
+  if (e->period == Duration{}) {
+    e->due = kNever;
+    return;
+  }
+  if (e->silence != Duration{}) {
+    e->due = now + std::min(e->period, e->limit);
+    return;
+  }
+  // On time: keep the beat. Read early by somebody else, or late (an overloaded bus stretches instead of piling up):
+  // one period from now.
+  const bool on_time = now >= e->due && now - e->due < e->period;
+  e->due = (on_time ? e->due : now) + e->period;
+}
+
+void PollPlan::drop(ObjectId object) {
+  Entry* e = entry(object);
+  if (e == nullptr) return;
+  e->due = kNever;
+  e->dropped = true;
+}
+
+void PollPlan::written(ObjectId object, Instant now) {
+  Entry* e = entry(object);
+  if (e != nullptr && e->period == Duration{} && !e->dropped) e->due = std::min(e->due, now);
+}
+
+void PollPlan::refresh(Instant now) {
+  for (Entry& e : entries_) {
+    if (e.period != Duration{} || e.dropped) continue;
+    now += kRefreshPause;
+    e.due = std::min(e.due, now);
+  }
+}
+
+Duration PollPlan::period(ObjectId object) const {
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.object == object; });
+  return found == entries_.end() ? Duration{} : found->period;
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which object of a drive is read next, and when: classes fast, normal, slow and once (design section 5).
+// Promises that the object longest overdue goes first, and that one the drive refuses spoils none of the others.
+// Never reads anything, and knows no clock but the instants it is given.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "gateway/model/model.hpp"
+
+namespace axisgate::drive {
+
+struct PollItem {
+  ObjectId object = kNoObject;
+  PollClass poll_class = PollClass::normal;
+  bool mapped = false;  ///< planned to come by TPDO: then read only where it was silent for CanopenProperties::confirm
+};
+
+/// Every object that must be read to keep the image of these axes true, each once, in its fastest class. What the drive
+/// sends by itself in a beat of its own is not asked for, but for the state: it is never slower than class fast.
+[[nodiscard]] std::vector<PollItem> poll_items(const DriveModel& model);
+
+class PollPlan {
+ public:
+  explicit PollPlan(const DriveModel& model);
+
+  /// All objects are due at once (the drive came online), those of class once included; none comes by itself.
+  void restart(Instant now);
+  /// It comes by TPDO from now on: with an event timer, it is read in its own beat where three of them were missed;
+  /// without, once in `confirm` where it was silent.
+  void map(ObjectId object, std::optional<Duration> event, Duration confirm);
+  /// Nothing comes by TPDO any more: what did is read in its own beat again.
+  void unmap_all(Instant now);
+  /// It came by TPDO.
+  void received(ObjectId object, Instant now);
+  /// What comes by TPDO is read after so long without one at the latest, from now on; none: as it was mapped.
+  void confirm_within(ObjectId object, std::optional<Duration> limit, Instant now);
+  /// It is read as soon as its turn comes: something was heard that it will tell of.
+  void hurry(ObjectId object, Instant now);
+  /// The object to read now: the one longest overdue. None before next_due().
+  [[nodiscard]] std::optional<ObjectId> next(Instant now) const;
+  [[nodiscard]] bool due(ObjectId object, Instant now) const;
+  /// kNever where nothing is polled.
+  [[nodiscard]] Instant next_due() const;
+  /// It was read (by whomever) or refused: due again one period after its due time, never more than once to catch up.
+  void done(ObjectId object, Instant now);
+  /// The drive does not have it: never due again until restart().
+  void drop(ObjectId object);
+  /// A write of it was acknowledged: if it is of class once, it is read once more as soon as its turn comes.
+  void written(ObjectId object, Instant now);
+  /// What the drive holds was invalidated: those of class once are read again, one by one, so that the others keep
+  /// their beat.
+  void refresh(Instant now);
+  /// 0 for class once.
+  [[nodiscard]] Duration period(ObjectId object) const;
+
+ private:
+  struct Entry {
+    ObjectId object;
+    Duration period;  ///< 0: once
+    Instant due;
+    bool dropped = false;
+    Duration beat;                     ///< its period where it does not come by TPDO
+    Duration silence{};                ///< it comes by TPDO, and is read after so long without one; 0: it does not
+    Duration limit = Duration::max();  ///< of that silence, and of the time between two such reads
+  };
+  static constexpr Duration kRefreshPause = std::chrono::milliseconds(20);
+  [[nodiscard]] const Entry* earliest() const;
+  [[nodiscard]] Entry* entry(ObjectId object);
+  std::vector<Entry> entries_;
+};
+
+}  // namespace axisgate::drive

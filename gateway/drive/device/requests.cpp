@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/device/requests.hpp"
+
+#include "gateway/drive/device/resync.hpp"
+
+namespace axisgate::drive {
+
+bus::Exchange read_of(const DriveModel& model, ObjectId object) {
+  const ObjectDef& def = model.object(object);
+  return {model.node, bus::Access::read, def.address, def.any_width ? std::uint8_t{0} : def.size, 0};
+}
+
+bus::Exchange read_of(const DriveModel& model, const ResyncRead& read) {
+  bus::Exchange exchange = read_of(model, read.object);
+  if (read.registers == 0 || read.registers == registers_of(exchange)) return exchange;
+  exchange.size = 2;
+  for (std::uint16_t i = 1; i < read.registers; ++i)
+    exchange.more.push_back({{static_cast<std::uint16_t>(exchange.object.index + i), 0}, 2});
+  return exchange;
+}
+
+bus::Exchange plain_read(const DriveModel& model) { return read_of(model, model.axes.front().state_sources.front()); }
+
+// Without a checksum or an address, an answer that is all zeros is the query's own echo as well (Keya's faults of two
+// enabled motors): a drive that is looked for is asked what is never 0.
+bus::Exchange probe_read(const DriveModel& model) {
+  const bool packed = !model.composed.empty() && !model.resync.candidates.empty();
+  return packed ? read_of(model, model.resync.candidates.front()) : plain_read(model);
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The requests that a drive is read with. Promises that an object is asked for in the profile's width, or in any where
+// the profile says so. Never asks for more than was wanted: what comes along is ReadBlocks' part.
+#pragma once
+
+#include "adapters/bus/exchange.hpp"
+#include "gateway/model/model.hpp"
+
+namespace axisgate::drive {
+
+[[nodiscard]] bus::Exchange read_of(const DriveModel& model, ObjectId object);
+/// As many registers as tell its reply from one that is owed.
+[[nodiscard]] bus::Exchange read_of(const DriveModel& model, const ResyncRead& read);
+/// A read that every drive of this type answers.
+[[nodiscard]] bus::Exchange plain_read(const DriveModel& model);
+/// A read that shows that the drive is there.
+[[nodiscard]] bus::Exchange probe_read(const DriveModel& model);
+
+}  // namespace axisgate::drive

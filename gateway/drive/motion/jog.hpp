@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// A jog: the axis runs while a button is held, and not a moment longer (design 3.4, "Jog"). Pure.
+// Promises that it ends by itself once its coil was not written 1 again within its time, and that nothing but a new
+// press begins it anew. Never moves or stops an axis: the axis asks it, and halts.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "gateway/core/rational.hpp"
+#include "gateway/image/command.hpp"
+
+namespace axisgate::drive {
+
+class Jog {
+ public:
+  void start(Command direction, ClientId client, Instant now, Duration timeout) {
+    direction_ = direction;
+    client_ = client;
+    until_ = now + timeout;
+    timeout_ = timeout;
+    carried_ = false;
+    ++presses_;
+  }
+  /// Its coil was written 1 once more; false: it is no jog of this client's, or has ended.
+  [[nodiscard]] bool again(Command direction, ClientId client, Instant now) {
+    const bool mine = active() && direction == direction_ && client == client_;
+    if (mine) until_ = now + timeout_;
+    return mine;
+  }
+  void end() { direction_ = Command::none; }
+  /// The drive is out of sight, or its answer was lost: the axis may run all the same, so its button counts on.
+  void carry() { carried_ = true; }
+  [[nodiscard]] bool carried() const { return active() && carried_; }
+  /// The number of this jog; 0: none runs.
+  [[nodiscard]] std::uint64_t press() const { return active() ? presses_ : 0; }
+
+  [[nodiscard]] bool active() const { return direction_ != Command::none; }
+  /// jog_forward, jog_reverse, or none.
+  [[nodiscard]] Command direction() const { return direction_; }
+  [[nodiscard]] ClientId client() const { return client_; }
+  [[nodiscard]] Instant until() const { return active() ? until_ : kNever; }
+  [[nodiscard]] bool expired(Instant now) const { return active() && now >= until_; }
+
+ private:
+  Command direction_ = Command::none;
+  ClientId client_ = 0;
+  Instant until_ = kNever;
+  Duration timeout_{};
+  bool carried_ = false;
+  std::uint64_t presses_ = 0;
+};
+
+/// What a jog near a position limit is judged by. All in register units.
+struct JogTravel {
+  std::int64_t position = 0;
+  std::int64_t velocity = 0;  ///< signed, 0.001 rpm: the faster of what is shown and what was asked for
+  std::optional<std::int64_t> deceleration{};  ///< 0.1 rpm/s; none: not known, the ramp's way is not reckoned
+  Rational units_per_rev{10000};
+  Duration latency{};  ///< until a halt that is decided now acts
+  Range limits;
+};
+/// A halt that is decided now would come to rest at the limit in the jog's direction, or past it.
+[[nodiscard]] bool must_stop(const JogTravel& travel, Command direction);
+
+}  // namespace axisgate::drive

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// The motion rules of design 3.4 for one axis, the same on every drive: the stop latch, what runs, what survives, and
+// which set-points may reach the drive now. Promises that only start() begins a motion, that every stop, fault,
+// disable, restart and loss of the drive ends it for good, and that a latched axis starts nothing. Never sends:
+// planners ask it, the axis tells it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "gateway/image/axis_image.hpp"
+#include "gateway/model/cia402.hpp"
+
+namespace axisgate::drive {
+
+enum class MotionKind : std::uint8_t { none, discrete, velocity, torque, homing };
+
+/// What the drive shows, from its newest samples.
+struct AxisFacts {
+  Instant at = kLongAgo;   ///< now
+  bool reachable = false;  ///< link_state online or suspect
+  State402 state = State402::not_ready_to_switch_on;
+  int mode = 0;                    ///< mode in force, unified number
+  bool own_velocity_mode = false;  ///< and it is one of the drive's own that follows a target velocity
+  /// The controlword in effect has the bits of operation enabled: without them the axis is on its way out of it,
+  /// however long its ramp takes, and only shows it still.
+  bool commanded = true;
+  bool moving = false;
+  /// The velocity or torque set-point in the drive makes it turn, as far as it tells.
+  bool follows = false;
+  bool target_reached = false;
+  bool acknowledges = true;     ///< bit 12 tells in mode 1 that a set-point was taken
+  bool reference_tells = true;  ///< what says that it is homed means that in the mode in force
+  bool reference = false;       ///< the drive says that it is homed
+  bool homing_failed = false;
+  bool motion_failed = false;             ///< a move has ended elsewhere than at its target
+  std::uint64_t statusword_exchange = 0;  ///< the exchange that gave the newest statusword
+
+  [[nodiscard]] bool enabled() const { return reachable && state == State402::operation_enabled; }
+  [[nodiscard]] bool faulted() const { return state == State402::fault || state == State402::fault_reaction_active; }
+};
+
+/// A target velocity or torque acts at once in the mode in force.
+[[nodiscard]] bool is_continuous(const AxisFacts& facts);
+/// Which of the two: a torque in modes 4 and 10; none where is_continuous() is false.
+[[nodiscard]] std::optional<Quantity> followed_target(const AxisFacts& facts);
+
+/// A target as a client asked for it.
+struct Wanted {
+  std::int64_t value = 0;               ///< in register units
+  std::optional<std::int64_t> exact{};  ///< as the drive counts, where the object mailbox gave it so
+};
+
+class Motion {
+ public:
+  /// `velocity_lag`: how long after a change the sampled velocity may still show what was before.
+  explicit Motion(Duration velocity_lag) : velocity_lag_(velocity_lag) {}
+
+  // --- Stops and the stop latch -------------------------------------------------------------------------------------
+
+  /// A stop was accepted: the motion is over, velocity and torque are needed anew. `latch`: quick_stop and lease
+  /// actions.
+  void stop(bool latch, Instant now);
+  /// How many stops were accepted: what a write batch that was accepted before the newest one starts or enables does
+  /// not count.
+  [[nodiscard]] std::uint64_t stops() const { return stops_; }
+  /// One was accepted while it moved, or may have, and it was not seen to stand since.
+  [[nodiscard]] bool stopping() const { return stopping_; }
+  /// An enable accepted after the stop has been carried out (command 1, coil 0).
+  void enabled() {
+    raw_run_ = false;
+    unlatch();
+  }
+  /// The same of an axis that was enabled all the time: nothing was sent, and a raw run goes on.
+  void unlatch() {
+    latched_ = false;
+    unlatch_armed_ = false;
+  }
+  [[nodiscard]] bool latched() const { return latched_; }
+  /// The quick stop that latched it goes to the drive now: a 6 or 7 that went before it, in the same request, was no
+  /// step out of the latch.
+  void disarm() { unlatch_armed_ = false; }
+
+  enum class Pass : std::uint8_t { refused, passes, passes_and_unlatches };
+  /// While latched, `controlword` passes only stops and the two steps: 6 or 7, and then 15.
+  [[nodiscard]] Pass pass(Request402 request) const;
+  void passed(Request402 request);
+
+  // --- What runs -----------------------------------------------------------------------------------------------------
+
+  /// Commands 6 to 11 need an axis that is enabled, not faulted and not stop-latched.
+  [[nodiscard]] bool may_start(const AxisFacts& facts) const { return facts.enabled() && facts.commanded && !latched_; }
+  /// Standstill, as a relative move and set_position need it, and as axis_state shows it of an enabled axis.
+  [[nodiscard]] bool at_rest(const AxisFacts& facts) const;
+  /// A motion command was accepted: target_reached reads 0 from now until unmask().
+  void mask_target_reached() { target_reached_masked_ = true; }
+  void unmask_target_reached() { target_reached_masked_ = false; }
+  [[nodiscard]] bool target_reached_masked() const {
+    return target_reached_masked_ || (awaits_fall_ && kind_ == MotionKind::discrete);
+  }
+
+  /// The drive has acknowledged a start in this exchange; a motion under way is aborted by it.
+  void start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t exchange);
+  /// A raw enable or mode write that lets set-points act at once (raw modes 3, 4, 9, 10). A drive may take its time to
+  /// become enabled after it: only leaving that state ends the run, not that it is not reached yet.
+  void run_raw() { raw_run_ = true; }
+  [[nodiscard]] bool runs_raw() const { return raw_run_; }
+  /// Of a target that acts by this: a run that was found running goes on in the drive, in a mode that follows it.
+  [[nodiscard]] bool goes_on(Quantity target, const AxisFacts& facts) const;
+  /// It was enabled when the gateway first saw it, and nothing was asked of it since: whose motion it is nobody knows.
+  [[nodiscard]] bool found_at_start() const { return found_at_start_ && !raw_run_; }
+  /// The mode was changed: what ran in the mode before is over.
+  void mode_changed();
+  /// How often velocity and torque were made void until now.
+  [[nodiscard]] std::uint64_t ends() const { return ends_; }
+  /// How often a fault, and the loss of the drive, were seen.
+  [[nodiscard]] std::uint64_t faults() const { return faults_; }
+  [[nodiscard]] std::uint64_t losses() const { return losses_; }
+  /// New samples. Ends the motion where they show its end.
+  void observe(const AxisFacts& facts, Duration homing_timeout);
+  /// Homing has run longer than its timeout: the axis must be halted (once).
+  [[nodiscard]] bool take_homing_timeout();
+  /// A value that came by itself shows its end, and may be of before its start (D33): only a read made now settles it.
+  [[nodiscard]] bool end_wants_sample(const AxisFacts& facts) const;
+  /// When observe() must be called even without samples.
+  [[nodiscard]] Instant deadline() const;
+
+  [[nodiscard]] MotionKind running() const { return kind_; }
+  [[nodiscard]] MotionState state() const { return state_; }
+  [[nodiscard]] std::uint16_t id() const { return id_; }
+  [[nodiscard]] AxisState axis_state(const AxisFacts& facts) const;
+
+  // --- Set-points are not starts -------------------------------------------------------------------------------------
+
+  /// A client has written a target: it is kept, whether or not it may reach the drive now.
+  void want(Quantity target, Wanted wanted);
+  /// What clients asked for last. Velocity and torque: none after anything that ended a motion for good.
+  [[nodiscard]] std::optional<Wanted> wanted(Quantity target) const;
+  /// Whether a write of this quantity may go to the drive now. `held_back`: by this drive the write itself would move
+  /// the axis (profile `trigger`, or a maker's bit in the controlword in effect).
+  [[nodiscard]] bool target_acts_now(Quantity target, const AxisFacts& facts, bool held_back) const;
+
+ private:
+  void end(MotionState how);
+  void complete(Instant now);
+  void observe_homing(const AxisFacts& facts, Duration timeout);
+  [[nodiscard]] bool move_under_way(const AxisFacts& facts) const;
+
+  Duration velocity_lag_;
+  bool latched_ = false;
+  bool unlatch_armed_ = false;
+  std::uint64_t stops_ = 0;
+  std::uint64_t ends_ = 0;
+  std::uint64_t faults_ = 0;
+  std::uint64_t losses_ = 0;
+  bool raw_run_ = false;
+  bool stopping_ = false;
+  bool rests_ = false;    ///< by the newest samples, with no set-point that it follows
+  bool arrived_ = false;  ///< the motion started last was completed, and nothing has ended anything since
+  bool target_reached_masked_ = false;
+  bool homing_timed_out_ = false;
+  MotionKind kind_ = MotionKind::none;
+  MotionState state_ = MotionState::none;
+  std::uint16_t id_ = 0;
+  Instant started_ = kLongAgo;
+  Instant settled_from_ =
+      kLongAgo;  ///< the sampled velocity tells the truth of the newest start, stop or end from then on
+  std::uint64_t started_by_ = 0;  ///< exchange: only statuswords sampled after it tell of this motion
+  Instant homing_until_ = kNever;
+  bool acknowledges_ = true;  ///< the drive says that it took a set-point, as far as seen last
+  /// It does not: bit 10 may still tell of the move before, until it was seen to fall or the axis stands all the same.
+  bool awaits_fall_ = false;
+  Instant seen_ = kLongAgo;  ///< the newest instant of observe()
+  bool was_faulted_ = false;
+  bool was_reachable_ = false;
+  bool was_enabled_ = false;
+  bool seen_before_ = false;
+  bool found_at_start_ = false;
+  bool found_ = false;  ///< enabled when it came into sight, and nothing was started or stopped since
+  /// What clients last asked for: position, velocity, torque.
+  std::array<std::optional<Wanted>, 3> wanted_;
+};
+
+}  // namespace axisgate::drive

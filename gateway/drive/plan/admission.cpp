@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/plan/admission.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "gateway/drive/plan/planner.hpp"
+#include "gateway/image/register_map.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+bool writable(const AxisCore& core, Quantity q) { return (core.model.writable & bit(q)) != 0; }
+
+Errc admit_command(const AxisCore& core, Command command) {
+  if (command == Command::none || command == Command::end_halt) return Errc::ok;
+  // Every drive can be halted: where it has no halt, quick_stop takes its place.
+  return supports(command, core.model.supported_commands) ? Errc::ok : Errc::not_supported;
+}
+
+// The steps of a command that is nothing but this one write.
+bool is_alone(const Steps& steps, ObjectId id, std::int64_t number) {
+  const auto writes = [](const Step& step) { return step.verb == Step::Verb::write; };
+  const auto first = std::find_if(steps.begin(), steps.end(), writes);
+  return first != steps.end() && std::count_if(steps.begin(), steps.end(), writes) == 1 && first->object == id &&
+         first->source == Step::Source::literal && first->literal == number;
+}
+
+bool belongs_to_a_command(const AxisCore& core, ObjectId id) {
+  return std::any_of(core.model.commands.begin(), core.model.commands.end(), [&](const auto& def) {
+    return def && std::any_of(def->steps.begin(), def->steps.end(),
+                              [&](const Step& step) { return step.verb == Step::Verb::write && step.object == id; });
+  });
+}
+
+// Registers have no bounds between objects: a write of half a target, or of a target and its neighbour, would go past
+// the limits, the latch and the gate.
+bool cuts_a_quantity(const AxisCore& core, const ObjectRequest& request) {
+  if (!core.drive.resync.by_length) return false;
+  const auto last = [](int first, std::uint8_t size) { return first + (size > 2 ? 1 : 0); };
+  const auto guarded = [&](ObjectId id) {
+    const auto& bindings = core.model.bindings;
+    return belongs_to_a_command(core, id) || std::any_of(bindings.begin(), bindings.end(), [&](const Binding& b) {
+             return b.object == id && b.writable;
+           });
+  };
+  for (std::size_t i = 0; i < core.drive.objects.size(); ++i) {
+    const ObjectDef& object = core.drive.objects[i];
+    if (object.emulated || !object.writable || !guarded(static_cast<ObjectId>(i))) continue;
+    const int first = object.address.index;
+    const bool overlaps = request.index <= last(first, object.size) && last(request.index, request.size) >= first;
+    if (overlaps && (request.index != first || request.size != object.size)) return true;
+  }
+  return false;
+}
+
+// A virtual axis's drive takes its commands as numbers in an object: by the mailbox they are the same commands, with
+// the gate and the latch. What the gateway has no command for needs an axis that may start. No value: it is none.
+std::optional<Errc> as_command(const AxisCore& core, ObjectId id, std::int64_t number, WriteBatch& out) {
+  if (!core.is_virtual() || !core.object(id).trigger || !belongs_to_a_command(core, id)) return std::nullopt;
+  constexpr std::array kCommands{Command::quick_stop,    Command::halt,          Command::fault_reset,
+                                 Command::move_absolute, Command::move_relative, Command::run_velocity,
+                                 Command::home};
+  for (const Command command : kCommands) {
+    const auto& def = core.model.command(command);
+    if (!def || !is_alone(def->steps, id, number)) continue;
+    out.object.reset();
+    out.command = command;
+    return Errc::ok;
+  }
+  if (number != 0 && !core.motion.may_start(core.facts())) return Errc::state_unsuitable;
+  return std::nullopt;
+}
+
+// The quantity that a write of this object is one of; where several are at its place, that of the mode in force.
+const Binding* quantity_at(const AxisCore& core, ObjectId id) {
+  const Binding* found = nullptr;
+  const auto of_mode = setpoint_of_mode(core.mode_in_force());
+  for (const Binding& binding : core.model.bindings) {
+    if (binding.object == kNoObject || !binding.writable || !same_place(core, id, binding.object)) continue;
+    if (found == nullptr || of_mode == binding.quantity) found = &binding;
+  }
+  return found;
+}
+
+// Another motor's object, one that moves or enables without any rule of ours standing before it, or, where a write is
+// always one of a whole control frame, one that is no field of it.
+bool out_of_reach(const AxisCore& core, ObjectId id) {
+  const bool frames = !core.drive.composed.empty();
+  if (id == kNoObject) return frames;
+  const ObjectDef& object = core.object(id);
+  if (object.slot != bus::kNoAxis && object.slot < core.drive.axes.size() &&
+      &core.drive.axes[object.slot] != &core.model)
+    return true;
+  if (quantity_at(core, id) != nullptr || id == core.model.controlword || id == core.model.mode) return false;
+  const bool enables = core.is_virtual() && !core.model.virtual_axis->gate_only;
+  return frames || object.composed || (enables && object.trigger);
+}
+
+// A width that this protocol can carry; 0 stands for all there is, and in a write for `bytes`.
+bool size_fits(const AxisCore& core, const ObjectRequest& request) {
+  const auto fits_a_field = [](std::size_t size) { return size == 1 || size == 2 || size == 4; };
+  if (request.size != 0) return fits_a_field(request.size);
+  const bool by_length = core.drive.resync.by_length;
+  if (!request.write) return !by_length || request.count == 0 || fits_a_field(request.count);
+  // Longer objects, and such of 3 bytes, are carried by a chain of exchanges: CANopen alone has them.
+  return is_canopen(core.drive) && request.bytes && !request.bytes->empty() && request.bytes->size() <= kMaxObjectBytes;
+}
+
+// What a row of the register map has given to the write batch, alone. No value: nothing.
+std::optional<WriteBatch> part_of(const WriteBatch& batch, const RegisterRow& row) {
+  WriteBatch part;
+  if (row.source == Source::command && batch.command != Command::none) {
+    part.command = batch.command;
+  } else if (row.source == Source::jog_velocity && batch.jog_velocity) {
+    part.jog_velocity = batch.jog_velocity;
+  } else if (row.source == Source::set_position_value && batch.set_position_value) {
+    part.set_position_value = batch.set_position_value;
+  } else if (row.source == Source::object_request && batch.object) {
+    part.object = batch.object;
+  } else if (row.source == Source::quantity && row.quantity == Quantity::controlword && batch.controlword) {
+    part.controlword = batch.controlword;
+  } else if (row.source == Source::quantity && row.quantity == Quantity::mode && batch.mode) {
+    part.mode = batch.mode;
+  } else if (row.source == Source::quantity) {
+    for (const Setpoint& sp : batch.setpoints)
+      if (sp.quantity == row.quantity) part.setpoints.push_back(sp);
+    if (part.setpoints.empty()) return std::nullopt;
+  } else {
+    return std::nullopt;
+  }
+  return part;
+}
+
+bool is_position_limit(const RegisterRow& row) {
+  return row.source == Source::quantity &&
+         (row.quantity == Quantity::position_limit_min || row.quantity == Quantity::position_limit_max);
+}
+
+// What is refused at its turn although each part of it could be: first what acts, since the rest goes before it.
+int weight(const RegisterRow& row) {
+  if (row.source == Source::object_request) return 4;
+  if (row.source == Source::command) return 3;
+  if (row.source != Source::quantity) return 0;
+  return row.quantity == Quantity::controlword ? 2 : row.quantity == Quantity::mode ? 1 : 0;
+}
+
+}  // namespace
+
+std::optional<std::uint16_t> refused_row(const AxisCore& core, const WriteBatch& batch, Errc code) {
+  if (code != Errc::not_supported && code != Errc::bad_value) return std::nullopt;
+  const bool crossed = code == Errc::bad_value && !limits_in_order(core, batch);
+  const RegisterRow* acts = nullptr;
+  for (const RegisterRow& row : register_table(Block::axis).rows()) {
+    if (!row.writable) continue;
+    const std::optional<WriteBatch> part = part_of(batch, row);
+    if (!part) continue;
+    if (admit(core, *part) == code || (crossed && is_position_limit(row))) return row.offset;
+    if (acts == nullptr || weight(row) > weight(*acts)) acts = &row;
+  }
+  return acts == nullptr ? std::nullopt : std::optional(acts->offset);
+}
+
+Errc admit(const AxisCore& core, const WriteBatch& batch) {
+  for (const Setpoint& sp : batch.setpoints)
+    if (!writable(core, sp.quantity)) return Errc::not_supported;
+  if (batch.mode && !writable(core, Quantity::mode)) return Errc::not_supported;
+  if (batch.controlword && !writable(core, Quantity::controlword)) return Errc::not_supported;
+  if (batch.set_position_value && !core.model.command(Command::set_position)) return Errc::not_supported;
+  const Binding* velocity = core.model.binding(Quantity::target_velocity);
+  if (batch.jog_velocity && (velocity == nullptr || !core.model.command(Command::run_velocity)))
+    return Errc::not_supported;
+  if (const Errc code = admit_command(core, batch.command); code != Errc::ok) return code;
+  if (batch.object && !size_fits(core, *batch.object)) return Errc::bad_value;
+  if (batch.jog_velocity && !velocity->limits.holds(*batch.jog_velocity)) return Errc::bad_value;
+  for (const Setpoint& sp : batch.setpoints) {
+    const Binding* binding = core.model.binding(sp.quantity);
+    if (!binding->limits.holds(sp.value)) return Errc::bad_value;
+    // The drive has not told yet how it counts: nobody knows whether it could take the value.
+    if (!binding->scaled) return Errc::still_in_setup;
+    if (!binding->to_raw(sp.value, core.object(binding->object))) return Errc::bad_value;
+    const auto& methods = core.model.homing_methods;
+    if (sp.quantity == Quantity::homing_method && std::find(methods.begin(), methods.end(), sp.value) == methods.end())
+      return Errc::bad_value;
+  }
+  if (batch.mode) {
+    const auto& modes = core.model.modes;
+    if (std::none_of(modes.begin(), modes.end(), [&](const auto& m) { return m.first == *batch.mode; }))
+      return Errc::bad_value;
+  }
+  return limits_in_order(core, batch) ? Errc::ok : Errc::bad_value;
+}
+
+bool reads_alone(const WriteBatch& batch) {
+  return batch.object && !batch.object->write && batch.setpoints.empty() && !batch.mode && !batch.controlword &&
+         batch.command == Command::none && !batch.set_position_value;
+}
+
+bool holds_stop(const WriteBatch& batch) {
+  return is_stop(batch.command) || (batch.controlword && is_stop(*batch.controlword, batch.single_controlword));
+}
+
+bool stops_alone(const WriteBatch& batch) {
+  return holds_stop(batch) && batch.setpoints.empty() && !batch.mode && !batch.object && !batch.set_position_value &&
+         !batch.jog_velocity && (batch.command == Command::none || is_stop(batch.command)) &&
+         (!batch.controlword || is_stop(*batch.controlword, batch.single_controlword));
+}
+
+bool asks_to_enable(const WriteBatch& batch) {
+  return batch.command == Command::enable ||
+         (batch.controlword && request_of(*batch.controlword) == Request402::enable_operation);
+}
+
+WriteBatch stop_alone(const WriteBatch& batch) {
+  WriteBatch out = batch;
+  out.setpoints.clear();
+  out.mode.reset();
+  out.set_position_value.reset();
+  out.jog_velocity.reset();
+  out.object.reset();
+  if (!is_stop(out.command)) out.command = Command::none;
+  if (out.controlword && !is_stop(*out.controlword, out.single_controlword)) out.controlword.reset();
+  return out;
+}
+
+bool stop_latches(const AxisCore& core, const WriteBatch& batch) {
+  if (batch.latches || batch.command == Command::quick_stop) return true;
+  if (batch.command == Command::halt) return halt_is_quick_stop(core);
+  return batch.controlword && request_of(*batch.controlword) == Request402::quick_stop;
+}
+
+bool starts_motion(const AxisCore& core, const WriteBatch& batch) {
+  if (batch.command >= Command::move_absolute && batch.command <= Command::home) return true;
+  return batch.controlword && (*batch.controlword & ~core.controlword() & controlword::kStart) != 0;
+}
+
+Translated as_quantities(const AxisCore& core, const WriteBatch& batch) {
+  if (!batch.object || !batch.object->write) return {batch, Errc::ok};
+  const ObjectRequest& request = *batch.object;
+  if (cuts_a_quantity(core, request)) return {batch, Errc::bad_value};
+  const ObjectId id = core.drive.find({request.index, request.subindex});
+  if (out_of_reach(core, id)) return {batch, Errc::bad_value};
+  if (id == kNoObject) return {batch, Errc::ok};
+  const ObjectDef& object = core.object(id);
+  WriteBatch out = batch;
+  if (const auto trigger = as_command(core, id, object.number(request.data), out)) {
+    if (request.size != object.size) return {batch, Errc::bad_value};
+    return {out, *trigger};
+  }
+  const Binding* binding = quantity_at(core, id);
+  out.object.reset();
+  const bool of_a_quantity = id == core.model.controlword || id == core.model.mode || binding != nullptr;
+  if (!of_a_quantity) return {batch, Errc::ok};
+  // A width of its own would cut the value, behind the limits' back.
+  if (request.size != object.size) return {batch, Errc::bad_value};
+  const std::int64_t number = object.number(request.data);
+  if (id == core.model.controlword) {
+    out.controlword = static_cast<std::uint16_t>(request.data);
+    out.single_controlword = true;
+  } else if (id == core.model.mode) {
+    const auto& modes = core.model.modes;
+    const auto known = std::find_if(modes.begin(), modes.end(), [&](const auto& m) { return m.second == number; });
+    if (known == modes.end()) return {batch, Errc::bad_value};
+    out.mode = known->first;
+  } else {
+    if (!binding->scaled) return {batch, Errc::still_in_setup};
+    const auto value = binding->to_register(number);
+    if (!value) return {batch, Errc::bad_value};  // not representable in register units: outside every limit
+    out.setpoints.push_back({binding->quantity, *value, number});
+  }
+  return {out, Errc::ok};
+}
+
+bus::BusJob job_for(const AxisCore& core, const WriteBatch& batch, bool stop) {
+  bus::BusJob job;
+  if (stop) {
+    job.priority = bus::Priority::stop;  // without a start deadline: a stop is never given up for being late
+    return job;
+  }
+  job.start_by = batch.start_by;
+  const bool setpoints = !batch.setpoints.empty() || batch.set_position_value;
+  const bool plain = !batch.mode && !batch.controlword && batch.command == Command::none;
+  if (batch.object && plain && !setpoints) {
+    job.priority = bus::Priority::interactive;
+    job.survives_stop = true;
+    // Reads of one object may be one, where both want it in the same width.
+    if (!batch.object->write && batch.object->size != 0)
+      job.read = bus::PlainRead{{batch.object->index, batch.object->subindex}, batch.object->size};
+    return job;
+  }
+  job.setpoints_only = plain && !batch.object && !batch.set_position_value;
+  job.survives_stop = plain;
+  for (const Setpoint& sp : batch.setpoints) {
+    if (is_target(sp.quantity)) job.survives_stop = false;
+    job.writes.push_back(core.object(core.model.binding(sp.quantity)->object).address);
+  }
+  std::sort(job.writes.begin(), job.writes.end());
+  return job;
+}
+
+}  // namespace axisgate::drive

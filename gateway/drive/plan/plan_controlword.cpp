@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/plan/planner.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+constexpr Duration kEnableShows = std::chrono::milliseconds(300);
+
+Condition torque_on(const AxisCore& core) {
+  Condition c = torque_off(core);
+  c.test = Condition::Test::equals;
+  c.values = {0x27};  // operation enabled
+  return c;
+}
+
+// Bit 4 rising starts; so does the maker's bit that makes the drive follow its target, even in the word that enables.
+bool starts_move(const AxisFacts& facts, std::uint16_t follow_bits, std::uint16_t before, std::uint16_t word) {
+  if (facts.mode != 1) return false;
+  const bool follows = (word & controlword::kStart) != 0 && (word & follow_bits) != 0;
+  if (!facts.enabled()) return follows && request_of(word) == Request402::enable_operation;
+  return rising(before, word, controlword::kStart) || (follows && rising(before, word, follow_bits));
+}
+
+// A raw start: the set-point held back until now goes first, and the move must lie within the limits.
+Plan plan_raw_move(const AxisCore& core, std::uint16_t word) {
+  const bool relative = (word & controlword::kRelative) != 0;
+  if (relative && !core.motion.at_rest(core.facts())) return Plan::refuse(Errc::busy);  // never added
+  if (const Errc code = judge_move(core, relative); code != Errc::ok) return Plan::refuse(code);
+  Plan plan;
+  const auto target = core.motion.wanted(Quantity::target_position);
+  if (target && !add_write(core, Quantity::target_position, *target, plan)) return Plan::refuse(Errc::bad_value);
+  return plan;
+}
+
+Plan plan_raw_homing(const AxisCore& core) {
+  if (!core.homing_method) return Plan::refuse(Errc::bad_value);
+  Plan plan;
+  if (!add_write(core, Quantity::homing_method, {*core.homing_method}, plan)) return Plan::refuse(Errc::bad_value);
+  plan.add(Action::at(Mark::not_homed));
+  return plan;
+}
+
+}  // namespace
+
+Plan plan_controlword(const AxisCore& core, std::uint16_t word, bool command_follows) {
+  const Request402 request = request_of(word);
+  if (core.motion.pass(request) == Motion::Pass::refused) return Plan::refuse(Errc::state_unsuitable);
+  if (core.is_virtual()) return plan_virtual_controlword(core, word);
+  Plan plan;
+  const AxisFacts facts = core.facts();
+  const std::uint16_t before = core.controlword();
+  const bool enables = request == Request402::enable_operation;
+  const bool halts = facts.enabled() && rising(before, word, controlword::kHalt);
+  const bool moves = starts_move(facts, core.model.cia402.follow_bits, before, word);
+  const bool homes = facts.enabled() && facts.mode == 6 && rising(before, word, controlword::kStart);
+
+  const bool halted = (word & controlword::kHalt) != 0;
+  const bool runs = enables && !halted && is_continuous(facts);
+
+  if (rising(word, before, controlword::kHalt)) {
+    add_end_of_halt(core, plan);  // bit 8 falls: nothing resumes
+  } else if (enables && (runs || !facts.enabled())) {
+    // What survives: velocity and torque that nobody has written anew since the last stop, fault or disable are made 0.
+    add_running_targets(core, true, plan);
+    if (!facts.enabled() && (facts.mode == 7 || facts.mode == 8)) add_target_here(core, plan);
+  }
+  if (moves && !append(plan, plan_raw_move(core, word))) return plan;
+  if (homes && !append(plan, plan_raw_homing(core))) return plan;
+
+  plan.add(Action::write(core.model.controlword, word));
+  plan.add(Action::at(Mark::controlword_passed));
+  if (rising(before, word, controlword::kFaultReset))
+    plan.add(Action::at(Mark::values_invalidated, core.model.controlword));
+  if (halts) plan.add(Action::at(Mark::halted));
+  if (moves) plan.add(Action::at(Mark::start_discrete));
+  if (homes) plan.add(Action::at(Mark::start_homing));
+  if (runs) plan.add(Action::at(Mark::run_raw));
+  // A command that finds the axis as enabled as before would be told done, and the axis is disabled.
+  const bool disables = !enables && request != Request402::other && facts.enabled();
+  if (disables && command_follows) plan.add(Action::wait(torque_off(core), kStopLimit));
+  // And one that finds it as disabled as before would take the torque away once more.
+  if (enables && !facts.enabled() && command_follows) plan.add(Action::wait(torque_on(core), kEnableShows, true));
+  return plan;
+}
+
+}  // namespace axisgate::drive

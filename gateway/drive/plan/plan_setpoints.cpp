@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "gateway/drive/plan/planner.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+// How long a drive may take to show the mode it was given. No sheet says; two slow poll periods are ample.
+constexpr Duration kModeLimit = std::chrono::milliseconds(500);
+
+Condition equals(ObjectId object, std::int64_t number) {
+  Condition c;
+  c.object = object;
+  c.values = {number};
+  return c;
+}
+
+const std::int64_t* raw_mode(const AxisCore& core, std::int16_t mode) {
+  for (const auto& entry : core.model.modes)
+    if (entry.first == mode) return &entry.second;
+  return nullptr;
+}
+
+// New limits above the old ones: the upper one goes first, so that the pair never stands the wrong way round in the
+// drive.
+bool upper_limit_first(const AxisCore& core, const WriteBatch& batch) {
+  const auto old_max = core.value(Quantity::position_limit_max);
+  for (const Setpoint& sp : batch.setpoints)
+    if (sp.quantity == Quantity::position_limit_min) return old_max && sp.value > *old_max;
+  return false;
+}
+
+// A target that comes with its own start goes with it, once the mode is the right one: a change of mode would
+// invalidate it.
+bool sent_with_start(Command command, Quantity quantity) {
+  switch (command) {
+    case Command::move_absolute:
+    case Command::move_relative:
+      return quantity == Quantity::target_position;
+    case Command::run_velocity:
+      return quantity == Quantity::target_velocity;
+    case Command::run_torque:
+      return quantity == Quantity::target_torque;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+bool limits_in_order(const AxisCore& core, const WriteBatch& batch) {
+  std::optional<std::int64_t> low, high;
+  for (const Setpoint& sp : batch.setpoints) {
+    if (sp.quantity == Quantity::position_limit_min) low = sp.value;
+    if (sp.quantity == Quantity::position_limit_max) high = sp.value;
+  }
+  if (!low && !high) return true;
+  if (!low) low = core.value(Quantity::position_limit_min);
+  if (!high) high = core.value(Quantity::position_limit_max);
+  return !low || !high || *low <= *high;
+}
+
+bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan) {
+  const Binding* binding = core.model.binding(quantity);
+  if (binding == nullptr || binding->object == kNoObject || !binding->writable) return false;
+  const ObjectDef& object = core.object(binding->object);
+  const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, object);
+  if (!raw) return false;
+  const ObjectState& state = core.store[binding->object];
+  if (state.cached && state.number == *raw && !object.trigger && !object.composed) return true;
+  if (object.nvm != Nvm::no && !state.cached && object.readable && !object.trigger && !state.refused) {
+    // Where a write wears out the drive's memory, it is looked at first.
+    plan.add(Action::read(binding->object));
+    plan.add(Action::at(Mark::look_again));
+    return true;
+  }
+  plan.add(Action::write(binding->object, *raw));
+  return true;
+}
+
+namespace {
+
+// Unconditionally, although it may be cached: a panel or a PC at the drive's other port can have changed it since it
+// was read, and this is what keeps an enable from moving. Where a write wears out the drive's memory, it is looked at
+// first.
+void add_running_target(const AxisCore& core, ObjectId id, std::int64_t raw, Plan& plan, bool& look_again) {
+  constexpr Duration kFresh = std::chrono::milliseconds(500);
+  const ObjectState& state = core.store[id];
+  if (state.refused || core.object(id).nvm == Nvm::no || core.object(id).trigger) {
+    Action write = Action::write(id, raw);
+    // One refused read proves nothing. What the drive does not have holds nothing, but that its answer has to say.
+    write.optional = state.refused;
+    plan.add(write);
+  } else if (!state.cached || core.now - state.sent_at > kFresh) {
+    plan.add(Action::read(id));
+    look_again = true;
+  } else if (state.number != raw) {
+    plan.add(Action::write(id, raw));
+  }
+}
+
+}  // namespace
+
+bool moves_by_write(const AxisCore& core, ObjectId object) {
+  return core.is_virtual() && object != kNoObject && (core.object(object).trigger || core.object(object).composed);
+}
+
+std::optional<Quantity> setpoint_of_mode(int mode) {
+  switch (mode) {
+    case 1:
+      return Quantity::target_position;
+    case 3:
+      return Quantity::target_velocity;
+    case 4:
+      return Quantity::target_torque;
+    default:
+      return std::nullopt;
+  }
+}
+
+bool is_target(Quantity quantity) {
+  return quantity == Quantity::target_position || quantity == Quantity::target_velocity ||
+         quantity == Quantity::target_torque;
+}
+
+bool same_place(const AxisCore& core, ObjectId a, ObjectId b) {
+  const auto& aliases = core.object(a).aliases;
+  return a == b || std::find(aliases.begin(), aliases.end(), b) != aliases.end();
+}
+
+bool writes(const Plan& plan, ObjectId object) {
+  return std::any_of(plan.actions.begin(), plan.actions.end(),
+                     [&](const Action& a) { return a.kind == Action::Kind::write && a.object == object; });
+}
+
+void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
+  bool look_again = false;
+  // Those without a quantity on this axis are nobody's to ask for: 0 in any unit. They go first: a drive may take two
+  // of them for one set-point (Kinco: target torque and target current), and what was asked for must be the last word.
+  const auto& bindings = core.model.bindings;
+  for (const ObjectId id : core.model.zero_before_enable)
+    if (std::none_of(bindings.begin(), bindings.end(),
+                     [&](const Binding& b) { return b.writable && same_place(core, id, b.object); }))
+      add_running_target(core, id, 0, plan, look_again);
+  for (const Quantity q : {Quantity::target_velocity, Quantity::target_torque}) {
+    const Binding* binding = core.model.binding(q);
+    if (binding == nullptr || !binding->writable || moves_by_write(core, binding->object)) continue;
+    const Wanted wanted = keep_wanted ? core.running_target(q) : Wanted{};
+    const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, core.object(binding->object));
+    add_running_target(core, binding->object, raw.value_or(0), plan, look_again);
+  }
+  if (look_again) plan.add(Action::at(Mark::look_again));
+}
+
+void add_target_here(const AxisCore& core, Plan& plan) {
+  const Binding* target = core.model.binding(Quantity::target_position);
+  const Binding* actual = core.model.binding(Quantity::position_actual);
+  // The target of a virtual axis starts nothing: only its command does.
+  if (core.is_virtual()) return;
+  if (target == nullptr || actual == nullptr || !target->writable || core.object(target->object).trigger) return;
+  plan.add(Action::read(actual->object));
+  plan.add(Action::copy(actual->object, target->object));
+}
+
+void add_quiet_setpoint(const AxisCore& core, const Steps* steps, Plan& plan) {
+  const auto quantity = setpoint_of_mode(core.mode_in_force());
+  const Binding* target = quantity ? core.model.binding(*quantity) : nullptr;
+  if (target == nullptr || !target->writable || !moves_by_write(core, target->object)) return;
+  const auto by_step = [&](const Step& step) {
+    return step.verb == Step::Verb::write && step.object == target->object;
+  };
+  if (steps != nullptr && std::any_of(steps->begin(), steps->end(), by_step)) return;
+  if (quantity != Quantity::target_position) {
+    plan.add(Action::write(target->object, 0));
+    return;
+  }
+  const Binding* actual = core.model.binding(Quantity::position_actual);
+  if (actual == nullptr || actual->object == kNoObject) return;
+  plan.add(Action::read(actual->object));
+  plan.add(Action::copy(actual->object, target->object));
+}
+
+// 3.4: a target_velocity acts at once while commands 8 and 9 or raw modes run, and not on a jog.
+bool waits_for_jog(const AxisCore& core, const WriteBatch& batch, Quantity quantity) {
+  return core.velocity_beside_jog && quantity == Quantity::target_velocity && batch.command != Command::run_velocity;
+}
+
+void remember_setpoints(AxisCore& core, const WriteBatch& batch) {
+  for (const Setpoint& sp : batch.setpoints) {
+    const bool beside_jog = core.velocity_beside_jog && sp.quantity == Quantity::target_velocity && !batch.jogs;
+    if (beside_jog) core.velocity_beside_jog = Wanted{sp.value, sp.exact};
+    if (!waits_for_jog(core, batch, sp.quantity)) core.motion.want(sp.quantity, {sp.value, sp.exact});
+    if (sp.quantity == Quantity::homing_method) core.homing_method = sp.value;
+    if (sp.quantity == Quantity::homing_offset) core.offset_owed.reset();
+  }
+  if (batch.set_position_value) core.set_position_value = *batch.set_position_value;
+}
+
+namespace {
+
+// A set-point that changed while the axis runs acts on some drives only if they are told to run once more.
+void add_changed_run(const AxisCore& core, const WriteBatch& batch, Plan& plan) {
+  const auto& run = core.model.command(Command::run_velocity);
+  if (!run || !run->repeat_on_change || !core.facts().enabled() || batch.command == Command::run_velocity) return;
+  const Binding* binding = core.model.binding(Quantity::target_velocity);
+  if (!writes(plan, binding->object)) return;
+  add_steps(core, run->steps, plan);
+  plan.add(Action::at(Mark::start_velocity));
+}
+
+// What moves the axis by being written is kept for a start of its own mode, and acts at once only while that runs. The
+// drive is not asked for the number that it holds once more: keep-alive does that (profile key "keepalive").
+bool may_be_written(const AxisCore& core, const Setpoint& sp, const AxisFacts& facts) {
+  const Binding* binding = core.model.binding(sp.quantity);
+  const bool held_back = core.held_back(sp.quantity);
+  if (binding == nullptr || !moves_by_write(core, binding->object) || !is_target(sp.quantity))
+    return core.motion.target_acts_now(sp.quantity, facts, held_back);
+  const bool runs = facts.enabled() && facts.commanded && setpoint_of_mode(facts.mode) == sp.quantity;
+  if (!runs || !core.motion.target_acts_now(sp.quantity, facts, true)) return false;
+  const auto raw = sp.exact ? sp.exact : binding->to_raw(sp.value, core.object(binding->object));
+  const ObjectState& state = core.store[binding->object];
+  const auto& repeated = core.model.keep_alive;
+  const bool kept_alive = std::any_of(repeated.begin(), repeated.end(), [&](const auto& row) {
+    return row.first == facts.mode && row.second == binding->object;
+  });
+  return !(kept_alive && state.cached && raw && state.number == *raw);
+}
+
+}  // namespace
+
+Plan plan_setpoints(const AxisCore& core, const WriteBatch& batch) {
+  // Judged again: another client's limit may have been written since this one was admitted.
+  if (!limits_in_order(core, batch)) return Plan::refuse(Errc::bad_value);
+  Plan plan;
+  const AxisFacts facts = core.facts();
+  const auto add = [&](const Setpoint& sp) {
+    if (sent_with_start(batch.command, sp.quantity) || waits_for_jog(core, batch, sp.quantity)) return true;
+    if (!may_be_written(core, sp, facts)) return true;
+    const std::size_t before = plan.actions.size();
+    if (!add_write(core, sp.quantity, {sp.value, sp.exact}, plan)) return false;
+    // From now on it is a run of ours, also at no speed.
+    if (plan.actions.size() != before && core.motion.goes_on(sp.quantity, facts)) plan.add(Action::at(Mark::run_raw));
+    return true;
+  };
+  const bool max_first = upper_limit_first(core, batch);
+  for (const Setpoint& sp : batch.setpoints)
+    if (max_first && sp.quantity == Quantity::position_limit_max && !add(sp)) return Plan::refuse(Errc::bad_value);
+  for (const Setpoint& sp : batch.setpoints)
+    if (!(max_first && sp.quantity == Quantity::position_limit_max) && !add(sp)) return Plan::refuse(Errc::bad_value);
+  add_changed_run(core, batch, plan);
+  return plan;
+}
+
+Plan plan_mode(const AxisCore& core, std::int16_t mode) {
+  if (core.is_virtual()) return plan_virtual_mode(core, mode, false);
+  Plan plan;
+  const std::int64_t* raw = raw_mode(core, mode);
+  if (raw == nullptr || core.model.mode == kNoObject) return Plan::refuse(Errc::bad_value);
+  const ObjectId display = core.model.mode_display != kNoObject ? core.model.mode_display : core.model.mode;
+  const ObjectState& asked = core.store[core.model.mode];
+  const ObjectState& shown = core.store[display];
+  if (asked.cached && asked.number == *raw && shown.cached && shown.number == *raw) return plan;
+  if (asked.known && asked.number == *raw && shown.known && shown.number == *raw && !asked.unsure) {
+    // Invalidated only: to look is better than to write a mode in which something may be running.
+    plan.add(Action::read(core.model.mode));
+    if (display != core.model.mode) plan.add(Action::read(display));
+    plan.add(Action::at(Mark::look_again));
+    return plan;
+  }
+  plan.add(Action::write(core.model.mode, *raw));
+  plan.add(Action::at(Mark::values_invalidated, core.model.mode));
+  plan.add(Action::wait(equals(display, *raw), kModeLimit));
+  plan.add(Action::at(Mark::mode_changed));
+  return plan;
+}
+
+Plan plan_raw_mode(const AxisCore& core, std::int16_t mode) {
+  if (core.is_virtual()) return plan_virtual_mode(core, mode, true);
+  Plan change = plan_mode(core, mode);
+  Plan plan;
+  if (!change.refused() && !change.actions.empty() && core.facts().enabled()) {
+    if (core.is_continuous(mode)) add_running_targets(core, true, plan);
+    // In modes 7 and 8 the target is the demand of every cycle: the change itself must not be a step.
+    if (mode == 7 || mode == 8) add_target_here(core, plan);
+  }
+  static_cast<void>(append(plan, std::move(change)));
+  return plan;
+}
+
+bool nothing_to_send(const AxisCore& core, const WriteBatch& batch) {
+  if (batch.command != Command::none || batch.controlword || batch.object) return false;
+  const Plan setpoints = plan_setpoints(core, batch);
+  if (setpoints.refused() || !setpoints.actions.empty()) return false;
+  if (!batch.mode) return true;
+  const Plan mode = plan_raw_mode(core, *batch.mode);
+  return !mode.refused() && mode.actions.empty();
+}
+
+}  // namespace axisgate::drive

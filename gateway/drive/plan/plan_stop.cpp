@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "gateway/drive/plan/planner.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+// Controlwords of a virtual axis (CiA 402-2 table 28).
+constexpr std::uint16_t kSwitchedOn = 0x0007, kEnabled = 0x000F;
+
+// How long a halt may take to be seen in the motor's speed. Then it is owed, and sent again after a pause.
+constexpr Duration kHaltLimit = std::chrono::seconds(2);
+
+Condition not_enabled(const AxisCore& core) {
+  Condition c;
+  c.object = core.model.statusword;
+  c.mask = 0x6F;
+  c.test = Condition::Test::not_equals;
+  c.values = {0x27};  // operation enabled
+  return c;
+}
+
+// Kinco's halt word is 0x010F: its low bits ask for "enabled", also of a drive that is not.
+bool would_enable(const AxisCore& core, const Steps& steps) {
+  return std::any_of(steps.begin(), steps.end(), [&](const Step& s) {
+    return s.verb == Step::Verb::write && s.object == core.model.controlword && s.source == Step::Source::literal &&
+           request_of(static_cast<std::uint16_t>(s.literal)) == Request402::enable_operation;
+  });
+}
+
+Plan quick_stop(const AxisCore& core) {
+  Plan plan;
+  if (!add_command_steps(core, Command::quick_stop, plan)) return plan;
+  // As soon as it is acknowledged.
+  plan.actions.insert(plan.actions.begin() + (plan.actions.empty() ? 0 : 1), Action::at(Mark::quick_stopped));
+  add_virtual_controlword(core, controlword::kEnableVoltage, plan);
+  plan.add(Action::wait(not_enabled(core), kStopLimit));
+  return plan;
+}
+
+Plan disable(const AxisCore& core) {
+  Plan plan;
+  if (!add_command_steps(core, Command::disable, plan)) return plan;
+  // Its gate is the gateway's own: that the motor obeys, only the motor shows.
+  if (core.is_virtual() && core.model.virtual_axis->gate_only && halt_shows(core))
+    plan.add(Action::wait(Effect::halt, kHaltLimit));
+  add_virtual_controlword(core, kSwitchedOn, plan);
+  plan.add(Action::wait(torque_off(core), kStopLimit));
+  return plan;
+}
+
+// A halt must never enable: not the axis whose disable is still on its way, not the drive that has just restarted. What
+// stops without that risk is the quick stop; and an axis without torque needs no halt at all.
+Plan halt(const AxisCore& core) {
+  if (halt_is_quick_stop(core)) return quick_stop(core);
+  const Steps* steps = steps_of(core, Command::halt);
+  Plan plan;
+  if (would_enable(core, *steps)) {
+    const ObjectState& status = core.store[core.model.statusword];
+    const ObjectState& word = core.store[core.model.controlword];
+    if (core.link != LinkState::online || !status.known || !word.known || word.unsure) return quick_stop(core);
+    if (!status.cached) {
+      plan.add(Action::read(core.model.statusword));
+      plan.add(Action::at(Mark::look_again));
+      return plan;
+    }
+    const bool asked_for = request_of(core.controlword()) == Request402::enable_operation;
+    if (!asked_for || !core.facts().enabled()) {
+      plan.add(Action::read(core.model.statusword));
+      plan.add(Action::wait(not_enabled(core), kStopLimit));
+      return plan;
+    }
+  }
+  add_steps(core, *steps, plan);
+  if (core.facts().enabled()) add_virtual_controlword(core, controlword::kHalt | kEnabled, plan);
+  // No state tells of it: that it was obeyed, only the motor shows. A long ramp goes on after the answer.
+  if (halt_shows(core)) plan.add(Action::wait(Effect::halt, kHaltLimit));
+  return plan;
+}
+
+Plan by_command(const AxisCore& core, Command command) {
+  if (command == Command::halt) return halt(core);
+  return command == Command::quick_stop ? quick_stop(core) : disable(core);
+}
+
+Plan by_controlword(const AxisCore& core, std::uint16_t word) {
+  Plan plan;
+  if (core.is_virtual()) {
+    plan = by_command(core, request_of(word) == Request402::quick_stop ? Command::quick_stop : Command::disable);
+    if (plan.refused()) return plan;
+  }
+  plan.add(Action::write(core.model.controlword, word));
+  plan.add(Action::at(Mark::controlword_passed));
+  const Request402 request = request_of(word);
+  // A drive that stays in quick stop active (605Ah 5 to 7) leaves it by neither 6 nor 7 (CiA 402-2, figure 2): that it
+  // is not enabled is all that they can be seen by.
+  const bool stays = core.facts().state == State402::quick_stop_active && request != Request402::disable_voltage;
+  const bool torque_may_stay = request == Request402::quick_stop || stays;
+  plan.add(Action::wait(torque_may_stay ? not_enabled(core) : torque_off(core), kStopLimit));
+  return plan;
+}
+
+}  // namespace
+
+Condition torque_off(const AxisCore& core) {
+  Condition c = not_enabled(core);
+  c.test = Condition::Test::not_in;
+  c.values = {0x27, 0x07};
+  return c;
+}
+
+Plan plan_stop(const AxisCore& core, const WriteBatch& batch) {
+  const bool commanded = is_stop(batch.command);
+  if (!batch.controlword || !is_stop(*batch.controlword, batch.single_controlword))
+    return by_command(core, batch.command);
+  Plan plan = by_controlword(core, *batch.controlword);
+  // Both: in the order of the write batch. A halt asks for less than any stop by controlword does.
+  if (commanded && batch.command != Command::halt) static_cast<void>(append(plan, by_command(core, batch.command)));
+  return plan;
+}
+
+bool halt_is_quick_stop(const AxisCore& core) {
+  const auto& halt_def = core.model.command(Command::halt);
+  if (!halt_def) return true;
+  const int mode = core.mode_in_force();
+  for (const CommandDef::Variant& variant : halt_def->variants)
+    for (const std::int16_t m : variant.modes)
+      if (m == mode) return false;
+  return halt_def->quick_stop_otherwise || halt_def->steps.empty();
+}
+
+void add_end_of_halt(const AxisCore& core, Plan& plan) {
+  const std::uint16_t word = core.controlword();
+  if ((word & controlword::kHalt) == 0) return;
+  constexpr std::uint16_t kShutdown = 0x0006, kTake = 0x0030;  // new set-point, change at once
+  if (core.is_virtual()) {
+    // Bit 8 falling does nothing: what was halted is over.
+    plan.add(Action::write(core.model.controlword, word & static_cast<std::uint16_t>(~controlword::kHalt)));
+    return;
+  }
+  if (!core.facts().enabled()) {
+    plan.add(Action::write(core.model.controlword, kShutdown));  // ending a halt never enables
+    return;
+  }
+  add_running_targets(core, false, plan);
+  const Binding* target = core.model.binding(Quantity::target_position);
+  if (!core.is_continuous(core.mode_in_force()) && target != nullptr && !core.object(target->object).trigger) {
+    // A halted homing would go on, and so would a move whose target was merely overwritten: the drive must have taken
+    // the new set-point, the present position, before bit 8 falls.
+    if (core.mode_in_force() != 1) static_cast<void>(append(plan, plan_mode(core, 1)));
+    plan.add(Action::write(core.model.controlword, controlword::kHalt | kEnabled));
+    add_target_here(core, plan);
+    plan.add(Action::write(core.model.controlword, controlword::kHalt | kEnabled | kTake));
+  }
+  plan.add(Action::write(core.model.controlword, kEnabled));
+}
+
+}  // namespace axisgate::drive

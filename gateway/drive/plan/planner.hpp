@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// The planners: what each part of a write batch comes to on this axis, now (design 3.3 and 3.4). Pure: rules and facts
+// in, a plan out. Promise that no plan moves the axis unless a start was asked for, that no stop enables it, and that a
+// set-point the drive is known to hold is not sent again. Never carry a plan out: the command sequence does.
+#pragma once
+
+#include "gateway/drive/plan/action.hpp"
+#include "gateway/image/command.hpp"
+
+namespace axisgate::drive {
+
+// --- Parameters, set-points and mode ---------------------------------------------------------------------------------
+
+/// Rows 72 to 75 are checked as a pair: what is written against what is written with it, or else cached.
+[[nodiscard]] bool limits_in_order(const AxisCore& core, const WriteBatch& batch);
+/// Parameters and set-points: those that may reach the drive now.
+[[nodiscard]] Plan plan_setpoints(const AxisCore& core, const WriteBatch& batch);
+/// Targets are remembered in the motion rules even where they may not reach the drive now.
+void remember_setpoints(AxisCore& core, const WriteBatch& batch);
+/// The mode a command needs: writes it and waits for the display.
+[[nodiscard]] Plan plan_mode(const AxisCore& core, std::int16_t mode);
+/// A mode that a client writes: as plan_mode(), and nothing the drive holds from before moves it.
+[[nodiscard]] Plan plan_raw_mode(const AxisCore& core, std::int16_t mode);
+/// Parameters, set-points and mode alone, and the drive is known to hold them all: the wire is not needed.
+[[nodiscard]] bool nothing_to_send(const AxisCore& core, const WriteBatch& batch);
+
+// --- Starts --------------------------------------------------------------------------------------------------------
+
+/// A raw controlword that is no stop. `command_follows`: in the same write batch, and is planned from what the word has
+/// led to.
+[[nodiscard]] Plan plan_controlword(const AxisCore& core, std::uint16_t controlword, bool command_follows);
+/// What must be so before a command's own actions are planned: the halt ended, the mode it needs in force.
+[[nodiscard]] Plan plan_preparation(const AxisCore& core, Command command);
+/// Commands that are no stops, once prepared. `mode_before`: the mode in force before the preparation.
+[[nodiscard]] Plan plan_command(const AxisCore& core, Command command, int mode_before);
+/// Whether the move that a start would begin stays within the limits: bad_value where it does not.
+[[nodiscard]] Errc judge_move(const AxisCore& core, bool relative);
+/// Command 11: by the drive's own homing on the present position; what it needs for that is put back afterwards.
+[[nodiscard]] Plan plan_set_position(const AxisCore& core, int mode_before);
+
+// --- Stops ---------------------------------------------------------------------------------------------------------
+
+/// The stop of a write batch: commands 2, 3, 4, a raw controlword, or both.
+[[nodiscard]] Plan plan_stop(const AxisCore& core, const WriteBatch& batch);
+/// How long a stop may take to show: a ramp at the drive's own deceleration. Meanwhile it is repeated
+/// (CommandSequence).
+inline constexpr Duration kStopLimit = std::chrono::seconds(5);
+/// Disabled: neither operation enabled nor still in quick stop.
+[[nodiscard]] Condition torque_off(const AxisCore& core);
+/// Halt on this drive in the mode in force is carried out by quick_stop.
+[[nodiscard]] bool halt_is_quick_stop(const AxisCore& core);
+/// What must be written before a halt may end, and the controlword without bit 8.
+void add_end_of_halt(const AxisCore& core, Plan& plan);
+
+// --- Virtual axes --------------------------------------------------------------------------------------------------
+
+/// A raw controlword that is no stop, on an axis whose drive has none: its operation bits become the drive's commands.
+[[nodiscard]] Plan plan_virtual_controlword(const AxisCore& core, std::uint16_t controlword);
+/// The mode is the gateway's own: nothing is sent, but what runs in another one is halted before.
+[[nodiscard]] Plan plan_virtual_mode(const AxisCore& core, std::int16_t mode, bool asked_for);
+/// Appends the controlword in effect from now on; nothing where the drive has its own.
+void add_virtual_controlword(const AxisCore& core, std::uint16_t controlword, Plan& plan);
+/// Where a set-point moves the axis by being written: what the set-point of the mode in force must be before torque
+/// comes on, 0 or the present position; nothing where `steps` write it themselves.
+void add_quiet_setpoint(const AxisCore& core, const Steps* steps, Plan& plan);
+
+// --- Building blocks -----------------------------------------------------------------------------------------------
+
+/// Appends another plan; false where that one is refused (its refusal becomes this plan's).
+bool append(Plan& plan, Plan more);
+/// Appends the profile's steps.
+void add_steps(const AxisCore& core, const Steps& steps, Plan& plan);
+/// Appends the command's steps in the mode in force; false (and refused) where the drive has none.
+bool add_command_steps(const AxisCore& core, Command command, Plan& plan);
+/// Writes the quantity's value unless the drive is known to hold it. False where it cannot be had in the drive's
+/// numbers.
+[[nodiscard]] bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan);
+/// Makes the velocity and torque set-points in the drive 0, or, with `keep_wanted`, what was asked for since the last
+/// stop.
+void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan);
+/// Makes the position set-point the actual position.
+void add_target_here(const AxisCore& core, Plan& plan);
+/// On this drive the write of this set-point is what moves the axis: it goes with a start, and while that runs.
+[[nodiscard]] bool moves_by_write(const AxisCore& core, ObjectId object);
+/// The set-point of this mode; none where it has none.
+[[nodiscard]] std::optional<Quantity> setpoint_of_mode(int mode);
+/// Position, velocity or torque: what a start goes by.
+[[nodiscard]] bool is_target(Quantity quantity);
+/// One object, or two at one place in the drive.
+[[nodiscard]] bool same_place(const AxisCore& core, ObjectId a, ObjectId b);
+/// The plan writes this object.
+[[nodiscard]] bool writes(const Plan& plan, ObjectId object);
+/// The steps of a command in the mode in force, or null where the drive has none.
+[[nodiscard]] const Steps* steps_of(const AxisCore& core, Command command);
+
+}  // namespace axisgate::drive

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/state/axis_core.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace axisgate::drive {
+namespace {
+
+constexpr std::int64_t kNoMode = 0;  // which mode is in force nobody knows
+
+bool holds(const AxisCore& core, const std::optional<Condition>& condition) {
+  if (!condition) return false;
+  const ObjectState& s = core.store[condition->object];
+  return s.known && condition->holds(core.object(condition->object), static_cast<std::uint32_t>(s.number));
+}
+
+// A composed quantity: bit fields of one or more objects side by side.
+std::optional<std::int64_t> composed(const AxisCore& core, const Binding& binding) {
+  std::uint32_t out = 0;
+  for (const BitField& field : binding.bits) {
+    const ObjectState& s = core.store[field.object];
+    if (s.refused) continue;  // what this drive does not have reads 0
+    if (!s.known) return std::nullopt;
+    const std::uint32_t mask = field.count >= 32 ? ~0U : (1U << field.count) - 1U;
+    std::uint32_t bits = (static_cast<std::uint32_t>(s.number) >> field.from) & mask;
+    if (field.inverted) bits ^= mask;
+    out |= bits << field.to;
+  }
+  return static_cast<std::int64_t>(out);
+}
+
+}  // namespace
+
+std::optional<std::int64_t> AxisCore::value(Quantity quantity) const {
+  const Binding* binding = model.binding(quantity);
+  if (binding == nullptr) return std::nullopt;
+  if (!binding->bits.empty()) return composed(*this, *binding);
+  if (binding->object == kNoObject || !store[binding->object].known) return std::nullopt;
+  return binding->to_register(store[binding->object].number);
+}
+
+int AxisCore::mode_in_force() const {
+  const ObjectId id = model.mode_display != kNoObject ? model.mode_display : model.mode;
+  if (id == kNoObject || !store[id].known) return 0;
+  for (const auto& [unified, raw] : model.modes)
+    if (raw == store[id].number) return unified;
+  return static_cast<int>(store[id].number);
+}
+
+std::uint16_t AxisCore::controlword() const {
+  if (model.controlword == kNoObject) return 0;
+  const ObjectState& s = store[model.controlword];
+  return s.known ? static_cast<std::uint16_t>(s.number) : 0;
+}
+
+AxisFacts AxisCore::facts() const {
+  AxisFacts facts;
+  facts.at = now;
+  facts.reachable = reachable();
+  const ObjectState& status = store[model.statusword];
+  const auto word = static_cast<std::uint16_t>(status.known ? status.number : 0);
+  facts.state = status.known ? state_of(word) : State402::not_ready_to_switch_on;
+  facts.statusword_exchange = status.exchange;
+  facts.target_reached = (word & statusword::kTargetReached) != 0;
+  const ObjectId word_object = model.controlword;
+  facts.commanded = word_object == kNoObject || !store[word_object].known ||
+                    request_of(controlword()) == Request402::enable_operation;
+  facts.mode = mode_in_force();
+  facts.own_velocity_mode = model.is_own_velocity_mode(facts.mode);
+  facts.acknowledges = model.cia402.setpoint_acknowledge;
+  facts.reference_tells = !model.homed_mode || facts.mode == *model.homed_mode;
+  facts.reference = is_virtual() ? machine.homing_attained() : facts.reference_tells && holds(*this, model.homed);
+  facts.homing_failed =
+      is_virtual() ? machine.homing_failed() : facts.reference_tells && holds(*this, model.homing_failed);
+  facts.motion_failed = machine.motion_failed();
+  if (model.moving) {
+    facts.moving = holds(*this, model.moving);
+  } else if (const auto velocity = value(Quantity::velocity_actual)) {
+    facts.moving = std::llabs(*velocity) > model.standstill_velocity;
+  }
+  facts.follows = follows(facts);
+  return facts;
+}
+
+bool AxisCore::is_continuous(int mode) const { return drive::is_continuous(mode) || model.is_own_velocity_mode(mode); }
+
+// A CiA 402 drive tells its set-point, and turns by it alone; of another the motor itself has to tell.
+bool AxisCore::follows(const AxisFacts& facts) const {
+  const std::optional<Quantity> followed = followed_target(facts);
+  if (!followed || (controlword() & controlword::kHalt) != 0) return false;
+  const Binding* target = model.binding(*followed);
+  const bool tells = !is_virtual() && target != nullptr && target->object != kNoObject && store[target->object].known;
+  return tells ? store[target->object].number != 0 : facts.moving;
+}
+
+// --- Virtual axes --------------------------------------------------------------------------------------------------
+
+std::optional<VirtualAxis::Seen> AxisCore::seen() const {
+  VirtualAxis::Seen out;
+  out.at = now;
+  out.exchange = UINT64_MAX;
+  for (const ObjectId id : model.state_sources) {
+    if (store[id].refused) continue;
+    if (!store[id].known) return std::nullopt;
+    out.exchange = std::min(out.exchange, store[id].exchange);
+  }
+  const VirtualProperties& by = *model.virtual_axis;
+  out.enabled = holds(*this, by.enabled);
+  out.fault = holds(*this, by.fault);
+  out.limit = holds(*this, by.limit);
+  out.moving = facts().moving;
+  out.standing = by.reached ? holds(*this, by.reached) : !out.moving;
+  out.homed_at = !by.homed_at || holds(*this, by.homed_at);
+  if (const Binding* position = model.binding(Quantity::position_actual);
+      position != nullptr && position->object != kNoObject && store[position->object].known) {
+    out.position = store[position->object].number;
+    out.position_exchange = store[position->object].exchange;
+  }
+  out.controlword = controlword();
+  out.mode = mode_in_force();
+  out.running = motion.running();
+  const auto velocity = value(Quantity::velocity_actual);
+  const auto target = value(Quantity::target_velocity);
+  constexpr std::int64_t kTolerance = 50;  // a fiftieth of the target: "reached" is a window in CiA 402 as well (606Dh)
+  if (velocity && target && out.running == MotionKind::velocity)
+    out.at_velocity = std::llabs(*velocity - *target) <= std::llabs(*target) / kTolerance + model.standstill_velocity;
+  return out;
+}
+
+void AxisCore::refresh_virtual() {
+  if (!is_virtual()) return;
+  const auto newest = seen();
+  if (!newest) return;
+  machine.observe(*newest, *model.virtual_axis);
+  // What shows enabled takes starts: a CiA 402 drive that is found so holds this word as well.
+  constexpr std::uint16_t kEnabled = 0x000F;
+  if (machine.take_found_enabled()) store.make(model.controlword, kEnabled);
+  Instant oldest = kNever;
+  bool cached = true;
+  for (const ObjectId id : model.state_sources) {
+    if (store[id].refused) continue;
+    oldest = std::min(oldest, store[id].sent_at);
+    cached = cached && store[id].cached;
+  }
+  store.make(model.statusword, machine.statusword(*newest), cached, oldest, newest->exchange);
+  // Without torque no mode is in force, and the next enable says in which it is to be.
+  const auto state = state_of(static_cast<std::uint16_t>(store[model.statusword].number));
+  if (store[model.mode].known && store[model.mode].number == kNoMode && state != State402::operation_enabled)
+    begin_mode();
+}
+
+void AxisCore::begin_mode() {
+  if (is_virtual()) store.make(model.mode, model.modes.empty() ? kNoMode : model.modes.front().first);
+}
+
+void AxisCore::make(ObjectId id, std::int64_t number) {
+  store.make(id, number);
+  if (id == model.controlword) machine.control(static_cast<std::uint16_t>(number), *model.virtual_axis);
+  refresh_virtual();
+}
+
+void AxisCore::started(MotionKind kind, bool relative) {
+  if (!is_virtual()) return;
+  std::optional<std::int64_t> goal;
+  const Binding* target = model.binding(Quantity::target_position);
+  const Binding* actual = model.binding(Quantity::position_actual);
+  if (kind == MotionKind::discrete && target != nullptr && store[target->object].known) {
+    goal = store[target->object].number;
+    if (relative) goal = *goal + store[actual->object].number;  // read at standstill, just before the start
+  }
+  machine.started(kind, goal, now, store.exchange());
+  refresh_virtual();
+}
+
+ObjectId AxisCore::to_read(ObjectId id) const {
+  if (id != model.statusword || !object(id).emulated) return id;
+  const auto older = [&](ObjectId a, ObjectId b) {
+    if (store[a].refused != store[b].refused) return store[b].refused;
+    return store[a].exchange < store[b].exchange;
+  };
+  return *std::min_element(model.state_sources.begin(), model.state_sources.end(), older);
+}
+
+bool AxisCore::cannot_deenergise() const {
+  if (!is_virtual()) return false;
+  const auto newest = seen();
+  return newest && machine.cannot_deenergise(*newest, *model.virtual_axis);
+}
+
+bool AxisCore::held_back(Quantity quantity) const {
+  const Binding* binding = model.binding(quantity);
+  if (binding == nullptr || binding->object == kNoObject) return false;
+  const bool followed = facts().enabled() && (this->controlword() & model.cia402.follow_bits) != 0;
+  return object(binding->object).trigger || followed;
+}
+
+std::optional<Wanted> AxisCore::target_position() const {
+  if (const auto wanted = motion.wanted(Quantity::target_position)) return wanted;
+  if (const auto cached = value(Quantity::target_position)) return Wanted{*cached};
+  return std::nullopt;
+}
+
+Wanted AxisCore::running_target(Quantity quantity) const { return motion.wanted(quantity).value_or(Wanted{}); }
+
+// --- Faults --------------------------------------------------------------------------------------------------------
+
+bool AxisCore::tells_state(ObjectId id) const {
+  return std::find(model.state_sources.begin(), model.state_sources.end(), id) != model.state_sources.end();
+}
+
+bool AxisCore::names_cause(ObjectId id) const {
+  return store[id].known && fault.counts(tells_state(id), store[id].exchange);
+}
+
+void AxisCore::watch_fault() {
+  const ObjectState& status = store[model.statusword];
+  FaultWatch::Seen seen{.at = now,
+                        .known = status.known,
+                        .faulted = status.known && facts().faulted(),
+                        .statusword = to_read(model.statusword),
+                        .statusword_exchange = status.exchange,
+                        .words = {}};
+  for (const ObjectId id : causes) {
+    const ObjectState& word = store[id];
+    seen.words.push_back({.object = id,
+                          .refused = word.refused,
+                          .tells_state = tells_state(id),
+                          .number = word.number,
+                          .exchange = word.exchange});
+  }
+  fault.observe(seen);
+  fault.name(named_code(*this));
+}
+
+const AlarmRow* active_alarm(const AxisCore& core) {
+  for (const AlarmRow& row : core.drive.alarms) {
+    const ObjectId id = core.model.fault_words[row.word];
+    if (id == kNoObject || !core.names_cause(id)) continue;
+    const auto word = static_cast<std::uint64_t>(core.store[id].number);
+    if (row.value ? word == *row.value : ((word >> row.bit) & 1U) != 0) return &row;
+  }
+  return nullptr;
+}
+
+std::uint16_t named_code(const AxisCore& core) {
+  if (const AlarmRow* row = active_alarm(core)) return row->code;
+  const Binding* listed = core.model.binding(Quantity::error_code);
+  if (listed == nullptr || listed->object == kNoObject || !core.names_cause(listed->object)) return 0;
+  return static_cast<std::uint16_t>(core.store[listed->object].number);
+}
+
+}  // namespace axisgate::drive

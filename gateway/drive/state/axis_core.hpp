@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything that is known of one axis, for those who decide: its model, its drive's objects, its motion rules.
+// Promises that facts() and value() read the newest good samples and nothing else.
+// Never sends and never waits.
+#pragma once
+
+#include "gateway/drive/motion/motion.hpp"
+#include "gateway/drive/motion/virtual_axis.hpp"
+#include "gateway/drive/state/fault_watch.hpp"
+#include "gateway/drive/state/nvm_budget.hpp"
+#include "gateway/drive/state/object_store.hpp"
+#include "gateway/model/model.hpp"
+
+namespace axisgate::drive {
+
+struct AxisCore {
+  const DriveModel& drive;
+  const AxisModel& model;
+  ObjectStore& store;
+  Motion motion{model.velocity_lag};
+  Instant now = kLongAgo;                       ///< of the turn in which this is looked at
+  std::uint32_t alarms = 0;                     ///< AxisAlarm bits found by checks and by what was seen
+  LinkState link = LinkState::unknown;          ///< the drive's
+  FaultWatch fault{};                           ///< when a fault is shown, and what must be read before
+  CauseObjects causes = cause_objects(model);   ///< what names the cause of one
+  std::optional<std::int64_t> homing_method{};  ///< written or configured since bring-up
+  std::optional<std::int64_t> offset_owed{};    ///< homing offset that set_position could not put back yet
+  /// While a jog runs: the velocity that a client asked for last. It waits for a start of its own.
+  std::optional<Wanted> velocity_beside_jog{};
+  bool mode_chosen = false;             ///< a client has chosen the mode since bring-up
+  bool homed = false;                   ///< latched (design 3.1, discrete input 6)
+  std::int32_t set_position_value = 0;  ///< row 78, the gateway's own
+  VirtualAxis machine{};                ///< of a virtual axis alone
+  NvmBudget nvm{};
+
+  /// link_state online or suspect.
+  [[nodiscard]] bool reachable() const { return link == LinkState::online || link == LinkState::suspect; }
+  [[nodiscard]] AxisFacts facts() const;
+  [[nodiscard]] bool is_virtual() const { return model.virtual_axis.has_value(); }
+  /// Virtual axes: makes the statusword from the newest samples.
+  void refresh_virtual();
+  /// Virtual axes: the mode in force is the one that the drive begins with.
+  void begin_mode();
+  /// Carries out the write of an `emulated` object.
+  void make(ObjectId id, std::int64_t number);
+  /// The drive has acknowledged a start. `relative`: the target is a distance.
+  void started(MotionKind kind, bool relative);
+  /// What must be read to know this object: itself, or, of an `emulated` statusword, the oldest of its samples.
+  [[nodiscard]] ObjectId to_read(ObjectId id) const;
+  /// New samples, or time has passed: whether there is a fault, and what names it.
+  void watch_fault();
+  /// A sample of this object names the cause of the fault that there is now, not of one before.
+  [[nodiscard]] bool names_cause(ObjectId id) const;
+  /// The statusword is made from it, or is it.
+  [[nodiscard]] bool tells_state(ObjectId id) const;
+  /// The newest number of the quantity in register units; none where there is no good one.
+  [[nodiscard]] std::optional<std::int64_t> value(Quantity quantity) const;
+  /// The unified number of the mode in force, 0 where it is unknown or the drive's number stands for none.
+  [[nodiscard]] int mode_in_force() const;
+  /// In this mode a target velocity or torque acts at once.
+  [[nodiscard]] bool is_continuous(int mode) const;
+  /// The controlword in effect: sent last by anyone, or read.
+  [[nodiscard]] std::uint16_t controlword() const;
+  [[nodiscard]] bool alarm(AxisAlarm a) const { return (alarms & bit(a)) != 0; }
+  [[nodiscard]] const ObjectDef& object(ObjectId id) const { return drive.object(id); }
+  /// A write of this target would by itself move the axis on this drive, now.
+  [[nodiscard]] bool held_back(Quantity target) const;
+  /// The position a move uses: what a client asked for last, else what the drive holds.
+  [[nodiscard]] std::optional<Wanted> target_position() const;
+  /// The bus cannot take this virtual axis's torque away, and it is not enabled.
+  [[nodiscard]] bool cannot_deenergise() const;
+  /// Velocity and torque: what a client has asked for since the last stop, fault, disable or loss, else 0.
+  [[nodiscard]] Wanted running_target(Quantity quantity) const;
+
+ private:
+  [[nodiscard]] bool follows(const AxisFacts& facts) const;
+  [[nodiscard]] std::optional<VirtualAxis::Seen> seen() const;
+};
+
+/// The fault words of an axis and what they mean: the first active row of the profile's alarm table.
+[[nodiscard]] const AlarmRow* active_alarm(const AxisCore& core);
+/// What the drive names now: the code of that row, or else what it holds as its error code itself; 0: nothing.
+[[nodiscard]] std::uint16_t named_code(const AxisCore& core);
+/// The cause of the fault that there is, what is to be done, and the words it was found in (fault_text.cpp).
+[[nodiscard]] std::string fault_text(const AxisCore& core);
+
+}  // namespace axisgate::drive

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is known of each object of one drive: the number last read or acknowledged, and when its request was sent.
+// Promises that a number counts as cached only while nothing has happened that could have changed it unseen
+// (design 3.3), and that objects at one place of the drive hold one number. Never holds a value of a suspect drive: the
+// drive does not put one in.
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <vector>
+
+#include "gateway/model/model.hpp"
+
+namespace axisgate::drive {
+
+struct ObjectState {
+  std::int64_t number = 0;
+  bool known = false;          ///< read or acknowledged since bring-up
+  bool cached = false;         ///< the drive is known to hold it now
+  bool refused = false;        ///< the drive does not have it: not asked again until the next bring-up
+  bool unverified = false;     ///< acknowledged, but not read back yet
+  bool unsure = false;         ///< a write of it may or may not have happened, and it was not read since
+  bool clamped = false;        ///< read back other than it was acknowledged; until it is written again
+  bool emulated = false;       ///< the gateway's own (virtual axis): nothing invalidates it
+  Instant sent_at = kLongAgo;  ///< when the request that gave the number was sent
+  std::uint64_t exchange = 0;  ///< and which one it was: tells before from after where both fall on one instant
+};
+
+class ObjectStore {
+ public:
+  explicit ObjectStore(std::size_t objects) : states_(objects), periods_(objects), aliases_(objects) {}
+  /// Objects that are aliases of one another share what becomes of any of them.
+  explicit ObjectStore(const std::vector<ObjectDef>& objects) : ObjectStore(objects.size()) {
+    for (std::size_t i = 0; i < objects.size(); ++i) aliases_[i] = objects[i].aliases;
+  }
+
+  [[nodiscard]] const ObjectState& operator[](ObjectId id) const {
+    assert(id < states_.size());
+    return states_[id];
+  }
+  /// The drive's next exchange goes on the wire; what is read or acknowledged from now on comes from it.
+  void begin_exchange() { ++exchange_; }
+  /// The newest exchange's number.
+  [[nodiscard]] std::uint64_t exchange() const { return exchange_; }
+
+  void read(ObjectId id, std::int64_t number, Instant sent_at) {
+    each(id, [&](ObjectState& s) {
+      const bool clamped = s.unverified ? s.number != number : s.clamped && s.number == number;
+      s = {.number = number,
+           .known = true,
+           .cached = true,
+           .clamped = clamped,
+           .sent_at = sent_at,
+           .exchange = exchange_};
+    });
+  }
+  void acknowledged(ObjectId id, std::int64_t number, Instant sent_at) {
+    each(id, [&](ObjectState& s) {
+      s = {.number = number,
+           .known = true,
+           .cached = true,
+           .unverified = true,
+           .sent_at = sent_at,
+           .exchange = exchange_};
+    });
+  }
+  /// Of a frame that carries the whole desired state: it was sent and may not have arrived, and what it asked for is
+  /// what the next one asks for.
+  void asked(ObjectId id, std::int64_t number, Instant sent_at) {
+    each(id, [&](ObjectState& s) {
+      s = {.number = number, .known = true, .unsure = true, .sent_at = sent_at, .exchange = s.exchange};
+    });
+  }
+  /// The gateway's own number, made from samples of this exchange; kLongAgo and 0: from none.
+  void make(ObjectId id, std::int64_t number, bool cached = true, Instant sent_at = kLongAgo,
+            std::uint64_t exchange = 0) {
+    at(id) = {
+        .number = number, .known = true, .cached = cached, .emulated = true, .sent_at = sent_at, .exchange = exchange};
+  }
+  void refused(ObjectId id) { at(id) = {.refused = true}; }
+  /// A write of it may or may not have happened.
+  void invalidate(ObjectId id) {
+    each(id, [](ObjectState& s) {
+      s.cached = s.unverified = false;
+      s.unsure = true;
+    });
+  }
+  /// Nothing is taken as cached any more, but what `except` holds: timeout, mailbox write, mode change, fault reset,
+  /// set_position (design 3.3).
+  void invalidate_all(ObjectId except = kNoObject) {
+    for (std::size_t i = 0; i < states_.size(); ++i)
+      if (!same_place(i, except) && !states_[i].emulated) states_[i].cached = states_[i].unverified = false;
+    ++invalidations_;
+  }
+  /// How often invalidate_all() was called: whoever keeps the image true reads everything anew then.
+  [[nodiscard]] std::uint64_t invalidations() const { return invalidations_; }
+  /// What it was last may be true, but nothing confirms it any more: good only when it is read again.
+  void outdate(ObjectId id) {
+    each(id, [](ObjectState& s) { s.sent_at = kLongAgo; });
+  }
+  void forget(ObjectId id) { at(id) = {}; }
+  /// How often the object is confirmed, where that is not its poll class's period; 0: it is.
+  void set_period(ObjectId id, Duration period) { periods_[id] = period; }
+  [[nodiscard]] Duration period(ObjectId id) const { return periods_[id]; }
+  /// Bring-up begins: nothing is known but what is the gateway's own.
+  void forget_all() {
+    for (ObjectState& s : states_)
+      if (!s.emulated) s = {};
+  }
+
+ private:
+  ObjectState& at(ObjectId id) {
+    assert(id < states_.size());
+    return states_[id];
+  }
+  template <typename Change>
+  void each(ObjectId id, Change change) {
+    change(at(id));
+    for (const ObjectId alias : aliases_[id]) change(at(alias));
+  }
+  [[nodiscard]] bool same_place(std::size_t id, ObjectId other) const {
+    if (other == kNoObject) return false;
+    const auto& aliases = aliases_[other];
+    return id == other || std::find(aliases.begin(), aliases.end(), id) != aliases.end();
+  }
+  std::vector<ObjectState> states_;
+  std::vector<Duration> periods_;
+  std::vector<std::vector<ObjectId>> aliases_;
+  std::uint64_t exchange_ = 0;
+  std::uint64_t invalidations_ = 0;
+};
+
+}  // namespace axisgate::drive

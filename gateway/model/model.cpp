@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/model/model.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "gateway/model/scale.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+std::uint32_t low_bytes(std::uint32_t raw, std::uint8_t size) {
+  return size >= 4 ? raw : raw & ((std::uint32_t{1} << (8U * size)) - 1U);
+}
+
+}  // namespace
+
+std::int64_t ObjectDef::number(std::uint32_t raw) const {
+  const std::int64_t value = low_bytes(raw, size);
+  const std::int64_t span = std::int64_t{1} << (8 * size);
+  return is_signed && value >= span / 2 ? value - span : value;
+}
+
+Range ObjectDef::range() const {
+  const std::int64_t span = std::int64_t{1} << (8 * size);
+  return is_signed ? Range{-span / 2, span / 2 - 1} : Range{0, span - 1};
+}
+
+std::optional<std::int64_t> Binding::to_register(std::int64_t raw) const {
+  if (!codes.empty()) {
+    const auto code = std::find_if(codes.begin(), codes.end(), [&](const auto& c) { return c.second == raw; });
+    return code == codes.end() ? std::nullopt : std::optional(code->first);
+  }
+  if (!scaled) return std::nullopt;
+  const std::optional<std::int64_t> value = raw_per_unit.inverse().scale(raw);
+  if (!value || !range_of(row(quantity).type).holds(*value)) return std::nullopt;
+  return value;
+}
+
+std::optional<std::int64_t> Binding::to_raw(std::int64_t value, const ObjectDef& object_def) const {
+  if (!codes.empty()) {
+    const auto code = std::find_if(codes.begin(), codes.end(), [&](const auto& c) { return c.first == value; });
+    return code == codes.end() ? std::nullopt : std::optional(code->second);
+  }
+  if (!scaled) return std::nullopt;
+  const std::optional<std::int64_t> raw = raw_per_unit.scale(value);
+  if (!raw || !object_def.range().holds(*raw)) return std::nullopt;
+  return raw;
+}
+
+bool Condition::holds(const ObjectDef& object_def, std::uint32_t raw) const {
+  const std::int64_t seen = mask == 0 ? object_def.number(raw) : std::int64_t{low_bytes(raw, object_def.size) & mask};
+  const bool found = std::find(values.begin(), values.end(), seen) != values.end();
+  const bool wanted = test == Test::equals || test == Test::in;
+  return found == wanted;
+}
+
+const Binding* AxisModel::binding(Quantity q) const {
+  const std::int16_t at = binding_of[static_cast<std::size_t>(q)];
+  return at < 0 ? nullptr : &bindings[static_cast<std::size_t>(at)];
+}
+
+std::vector<ObjectId> constant_objects(const DriveModel& model) {
+  std::vector<ObjectId> out;
+  const auto add = [&](const DriveConstant::Operand& operand) {
+    if (operand.object != kNoObject && std::find(out.begin(), out.end(), operand.object) == out.end())
+      out.push_back(operand.object);
+  };
+  for (const DriveConstant& constant : model.constants) {
+    for (const DriveConstant::Rule& rule : constant.rules) {
+      add(rule.left);
+      add(rule.right);
+      for (const auto* operands : {&rule.mul, &rule.div}) std::for_each(operands->begin(), operands->end(), add);
+    }
+  }
+  return out;
+}
+
+std::optional<Rational> value_of(const DriveConstant& constant,
+                                 const std::function<std::optional<std::int64_t>(ObjectId)>& number_of) {
+  const auto number = [&](const DriveConstant::Operand& operand) -> std::optional<Rational> {
+    if (operand.object == kNoObject) return operand.number;
+    const std::optional<std::int64_t> known = number_of(operand.object);
+    return known ? std::optional(Rational(*known)) : std::nullopt;
+  };
+  try {
+    for (const DriveConstant::Rule& rule : constant.rules) {
+      if (rule.conditional) {
+        const auto left = number(rule.left);
+        const auto right = number(rule.right);
+        if (!left || !right) return std::nullopt;
+        if ((*left == *right) != rule.equal) continue;
+      }
+      Rational out(1);
+      for (const auto& operand : rule.mul) {
+        const auto factor = number(operand);
+        if (!factor) return std::nullopt;
+        out = out * *factor;
+      }
+      for (const auto& operand : rule.div) {
+        const auto factor = number(operand);
+        if (!factor || factor->numerator() == 0) return std::nullopt;
+        out = out / *factor;
+      }
+      return out;
+    }
+  } catch (const std::overflow_error&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+/// What it writes, once every constant it waits for is known.
+std::optional<std::int64_t> raw_of(const FactoryWrite& write, const std::vector<std::optional<Rational>>& constants) {
+  const std::optional<Rational> scale = scale_of(write.recipe, constants);
+  if (!scale) return std::nullopt;
+  try {
+    const std::optional<std::int64_t> raw = (write.amount * *scale).scale(1);
+    return raw && write.recipe.raw.holds(*raw) ? raw : std::nullopt;
+  } catch (const std::overflow_error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::vector<ObjectWrite> setup_writes(const DriveModel& model,
+                                      const std::function<std::optional<std::int64_t>(ObjectId)>& number_of) {
+  std::vector<ObjectWrite> out = model.setup;
+  if (model.factory_writes.empty()) return out;
+  std::vector<std::optional<Rational>> constants;
+  for (const DriveConstant& constant : model.constants) constants.push_back(value_of(constant, number_of));
+  for (const FactoryWrite& write : model.factory_writes) {
+    const std::optional<std::int64_t> held = number_of(write.object);
+    if (!held || std::find(write.instead_of.begin(), write.instead_of.end(), *held) == write.instead_of.end()) continue;
+    const std::optional<std::int64_t> raw = raw_of(write, constants);
+    if (raw && *raw != *held) out.push_back({write.object, *raw, write.why});
+  }
+  return out;
+}
+
+bool AxisModel::is_own_velocity_mode(int in_force) const {
+  const std::vector<std::int16_t>& own = cia402.velocity_modes;
+  return std::find(own.begin(), own.end(), in_force) != own.end();
+}
+
+bool AxisModel::needs_for_state(ObjectId object) const {
+  if (!virtual_axis) return object == statusword;
+  return object == virtual_axis->enabled.object || object == virtual_axis->fault.object;
+}
+
+bool DriveModel::needs_for_state(ObjectId object) const {
+  return std::any_of(axes.begin(), axes.end(),
+                     [object](const AxisModel& axis) { return axis.needs_for_state(object); });
+}
+
+bool DriveModel::needs(ObjectId object) const {
+  return needs_for_state(object) || std::any_of(axes.begin(), axes.end(), [object](const AxisModel& axis) {
+           const Binding* position = axis.binding(Quantity::position_actual);
+           return position != nullptr && position->object == object;
+         });
+}
+
+ObjectId DriveModel::find(bus::ObjectAddress address) const {
+  const auto at = std::find_if(objects.begin(), objects.end(), [&](const ObjectDef& candidate) {
+    return !candidate.emulated && candidate.address == address;
+  });
+  return at == objects.end() ? kNoObject : static_cast<ObjectId>(at - objects.begin());
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/process/file_watch.hpp"
+
+#include <array>
+#include <boost/asio/post.hpp>
+#include <fstream>
+#include <utility>
+
+namespace axisgate::app {
+namespace {
+
+/// As far as kMaxWatchedBytes; what cannot be read is empty.
+std::string text_of(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string text;
+  constexpr std::size_t kPiece = 4096;
+  std::array<char, kPiece> piece{};
+  while (text.size() < kMaxWatchedBytes && (stream.read(piece.data(), piece.size()) || stream.gcount() > 0))
+    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+}  // namespace
+
+FileWatch::FileWatch(boost::asio::io_context& io, Runtime& runtime, const std::vector<std::string>& files,
+                     std::function<void(const std::string& file)> on_change)
+    : io_(io),
+      runtime_(runtime),
+      watched_(read(files)),
+      on_change_(std::move(on_change)),
+      timer_(runtime.make_timer([this] { look(); })) {
+  timer_->expires_at(runtime_.now() + kPeriod);
+}
+
+std::vector<FileWatch::Watched> FileWatch::read(const std::vector<std::string>& files) {
+  std::vector<Watched> out;
+  for (const std::string& file : files) out.push_back({file, text_of(file)});
+  return out;
+}
+
+void FileWatch::take(std::vector<Watched> files) {
+  boost::asio::post(thread_, [this, files = std::move(files)]() mutable { watched_ = std::move(files); });
+}
+
+// The next look waits for the end of this one.
+void FileWatch::look() {
+  boost::asio::post(thread_, [this, alive = std::weak_ptr(alive_)] {
+    std::string differs;
+    for (const Watched& each : watched_)
+      if (differs.empty() && text_of(each.file) != each.text) differs = each.file;
+    boost::asio::post(io_, [this, alive, differs] {
+      if (!alive.expired()) on_looked(differs);
+    });
+  });
+}
+
+void FileWatch::on_looked(const std::string& file) {
+  timer_->expires_at(runtime_.now() + kPeriod);
+  if (file.empty() == told_.empty()) return;
+  told_ = file;
+  on_change_(file);
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether the files that the gateway was started with still are what it runs with (gateway alarm "configuration
+// changed"). Promises that a disk which hangs never holds up the loop: files are read on a thread of their own, one
+// look at a time. Never reads more of a file than its first kMaxWatchedBytes, and never does anything about a change.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gateway/core/clock.hpp"
+
+namespace axisgate::app {
+
+inline constexpr std::size_t kMaxWatchedBytes = 4U << 20U;
+
+class FileWatch {
+ public:
+  static constexpr Duration kPeriod = std::chrono::seconds(2);
+
+  /// `files` as they are now count as what runs. `on_change(file)`: on the loop, when the answer changes: the first
+  /// file that differs or is gone; empty: none does any more.
+  FileWatch(boost::asio::io_context& io, Runtime& runtime, const std::vector<std::string>& files,
+            std::function<void(const std::string& file)> on_change);
+  struct Watched {
+    std::string file;
+    std::string text;
+  };
+  /// The files as they are now. May be called from any thread.
+  [[nodiscard]] static std::vector<Watched> read(const std::vector<std::string>& files);
+  /// From now on these are what runs.
+  void take(std::vector<Watched> files);
+
+ private:
+  void look();
+  void on_looked(const std::string& file);
+
+  boost::asio::io_context& io_;
+  Runtime& runtime_;
+  std::vector<Watched> watched_;  ///< the thread's, once it runs
+  std::function<void(const std::string&)> on_change_;
+  std::string told_;
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< what is posted to the loop may outlive this
+  std::unique_ptr<Timer> timer_;
+  boost::asio::thread_pool thread_{1};  ///< last: joined before the rest goes
+};
+
+}  // namespace axisgate::app

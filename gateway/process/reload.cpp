@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/process/reload.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <exception>
+#include <utility>
+
+#include "gateway/process/descriptor_needs.hpp"
+#include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
+
+namespace axisgate::app {
+
+std::vector<std::string> files_of(const Config& config) {
+  std::vector<std::string> files = config.profile_files;
+  files.insert(files.begin(), config.file);
+  return files;
+}
+
+Reload::Reload(boost::asio::io_context& io, Config running, std::function<LoadResult()> load, const Running& with)
+    : io_(io), running_(std::move(running)), load_(std::move(load)), with_(with) {}
+
+void Reload::begin(Done done) {
+  if (done_) return done({false, {"another reload is under way: ask again when it has ended"}});
+  if (with_.gateway.ends()) return done({false, {"the gateway ends"}});
+  done_ = std::move(done);
+  boost::asio::post(thread_, [this, alive = std::weak_ptr(alive_)] {
+    auto loaded = std::make_shared<Loaded>(Loaded{load_(), {}});
+    if (const auto* good = std::get_if<LoadedConfig>(&loaded->result))
+      loaded->files = FileWatch::read(files_of(good->config));
+    boost::asio::post(io_, [this, alive, loaded] {
+      if (!alive.expired()) on_loaded(std::move(*loaded));
+    });
+  });
+}
+
+void Reload::on_loaded(Loaded loaded) {
+  if (with_.gateway.ends()) return;
+  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&loaded.result)) {
+    std::vector<std::string> lines;
+    for (const ConfigFault& fault : *faults) lines.push_back(text(fault));
+    return refuse(std::move(lines));
+  }
+  change(std::get<LoadedConfig>(std::move(loaded.result)), std::move(loaded.files));
+}
+
+void Reload::change(LoadedConfig wanted, std::vector<FileWatch::Watched> files) {
+  const ReloadPlan plan = plan_reload(running_, wanted.config);
+  std::vector<std::string> why_not = plan.refusals;
+  for (std::string& line : clients_in_the_way(plan)) why_not.push_back(std::move(line));
+  if (!why_not.empty()) return refuse(std::move(why_not));
+  try {
+    with_.server.prepare(wanted.config.modbus_tcp, plan.kept_listeners);
+  } catch (const std::exception& error) {
+    return refuse({fmt::format("{}: {}", wanted.config.file, error.what())});
+  }
+  for (const std::string& warning : wanted.warnings) with_.gateway.report(EventKind::warning, warning);
+  std::vector<StartLine> start = start_lines(wanted, AXISGATE_VERSION);
+  Config config = wanted.config;
+  with_.gateway.reload(
+      plan, std::move(wanted.config), std::move(wanted.models), [this, plan] { return clients_in_the_way(plan); },
+      [this, plan, config = std::move(config), files = std::move(files),
+       start = std::move(start)](std::vector<std::string> not_done) mutable {
+        if (not_done.empty()) return commit(plan, std::move(config), std::move(files), start);
+        with_.server.give_up();
+        refuse(std::move(not_done));
+      });
+}
+
+// A connection that is closed would end what keeps a motor under its owner's command.
+std::vector<std::string> Reload::clients_in_the_way(const ReloadPlan& plan) const {
+  std::vector<std::string> out;
+  for (const auto& axis : with_.gateway.image().axes()) {
+    const auto& owner = axis->lease.owner;
+    if (!owner || axis->axis_state == AxisState::disabled) continue;
+    for (const std::size_t place : plan.leaving_listeners) {
+      if (!with_.server.serves(place, owner->id)) continue;
+      const auto& listener = running_.modbus_tcp[place];
+      out.push_back(fmt::format("listener {} would close the connection of {}, which owns axis {} ({}): {}",
+                                modbus_tcp::address_text(listener.host, listener.port), owner->name, axis->number,
+                                axis->name, text(axis->axis_state)));
+    }
+  }
+  return out;
+}
+
+void Reload::commit(const ReloadPlan& plan, Config wanted, std::vector<FileWatch::Watched> files,
+                    const std::vector<StartLine>& start) {
+  with_.server.commit(modbus_tcp::take_descriptors(descriptor_needs(wanted)));
+  if (with_.dds != nullptr && wanted.dds) with_.dds->take_axes(wanted.dds->units);
+  with_.files.take(std::move(files));
+  running_ = std::move(wanted);
+  std::vector<std::string> lines = plan.changes;
+  if (lines.empty()) lines.emplace_back("nothing has changed");
+  with_.gateway.report(EventKind::boot, fmt::format("{} was read anew: {}", running_.file, fmt::join(lines, "; ")));
+  for (const StartLine& line : plan.changes.empty() ? std::vector<StartLine>() : start)
+    with_.log.write(LogLevel::info, line.source, line.text);
+  end({true, std::move(lines)});
+}
+
+void Reload::refuse(std::vector<std::string> why_not) {
+  for (const std::string& line : why_not)
+    with_.gateway.report(EventKind::warning, "reload refused, and nothing was changed: " + line);
+  end({false, std::move(why_not)});
+}
+
+void Reload::end(ReloadResult result) { std::exchange(done_, nullptr)(result); }
+
+}  // namespace axisgate::app

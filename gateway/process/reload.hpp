@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// A reload of the running gateway: reads the configuration anew and has the gateway go on with it, or
+// says why it stays as it was. Promises all or nothing; that the file is read and checked on a thread of its own, so
+// that the loop never waits for a disk; that a bus or listener whose section says the same is not touched. Never stops,
+// enables or moves anything, and never closes the connection of a client whose axis is enabled.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gateway/compose/gateway.hpp"
+#include "gateway/compose/start_lines.hpp"
+#include "gateway/config/config_loader.hpp"
+#include "gateway/process/file_watch.hpp"
+#include "gateway/upstream/dds_host/dds_server.hpp"
+#include "gateway/upstream/modbus_tcp/server/server.hpp"
+
+namespace axisgate::app {
+
+struct ReloadResult {
+  bool done = false;
+  /// One each: what was done, or why nothing was.
+  std::vector<std::string> lines;
+};
+
+class Reload {
+ public:
+  /// What runs. `dds`: nullptr where the configuration has none.
+  struct Running {
+    Gateway& gateway;
+    modbus_tcp::Server& server;
+    dds::DdsServer* dds;
+    FileWatch& files;
+    const Log& log;
+  };
+  using Done = std::function<void(const ReloadResult&)>;
+
+  /// `load` is called on the thread. `running`: what `with` was made from. Everything referred to outlives the reload.
+  Reload(boost::asio::io_context& io, Config running, std::function<LoadResult()> load, const Running& with);
+
+  /// `done` is called once, on the loop; at once where another reload is under way. Not at all where the gateway ends
+  /// before. The result is an event, too.
+  void begin(Done done);
+
+ private:
+  struct Loaded {
+    LoadResult result;
+    std::vector<FileWatch::Watched> files;
+  };
+  void on_loaded(Loaded loaded);
+  void change(LoadedConfig wanted, std::vector<FileWatch::Watched> files);
+  [[nodiscard]] std::vector<std::string> clients_in_the_way(const ReloadPlan& plan) const;
+  void commit(const ReloadPlan& plan, Config wanted, std::vector<FileWatch::Watched> files,
+              const std::vector<StartLine>& start);
+  void refuse(std::vector<std::string> why_not);
+  void end(ReloadResult result);
+
+  boost::asio::io_context& io_;
+  Config running_;
+  std::function<LoadResult()> load_;
+  Running with_;
+  Done done_{};  ///< of the reload that is under way
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);
+  boost::asio::thread_pool thread_{1};  ///< last: joined before the rest goes
+};
+
+/// The files that make a configuration what it is, itself first.
+[[nodiscard]] std::vector<std::string> files_of(const Config& config);
+
+}  // namespace axisgate::app

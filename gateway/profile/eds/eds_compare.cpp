@@ -1,0 +1,166 @@
+#include "gateway/profile/eds/eds_compare.hpp"
+
+#include <algorithm>
+
+#include "gateway/profile/read/profile_reading.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+constexpr std::string_view kCanopen = "canopen";
+/// CiA 301: TPDO parameters and mapping, and the sub-indexes of what a profile may set.
+constexpr std::uint16_t kFirstTpdo = 0x1800, kFirstMapping = 0x1A00;
+constexpr std::uint8_t kInhibit = 3, kEventTimer = 5;
+
+std::string hex(std::uint32_t value, int figures) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string out;
+  for (int shift = 4 * (figures - 1); shift >= 0; shift -= 4) out += kDigits[(value >> shift) & 0xFU];
+  return out;
+}
+
+/// As a section of it would be called.
+std::string section_of(bus::ObjectAddress address) {
+  return hex(address.index, 4) + (address.sub == 0 ? "" : "sub" + hex(address.sub, address.sub > 0xF ? 2 : 1));
+}
+
+std::string type_text(const DataType& type) {
+  return std::string(type.is_signed ? "i" : "u") + std::to_string(8 * type.size);
+}
+
+class Comparison {
+ public:
+  Comparison(const Profile& profile, const Eds& eds) : profile_(profile), eds_(eds) {}
+
+  std::vector<EdsContradiction> run() {
+    for (const Object& object : profile_.objects) compare(object);
+    const auto protocol = profile_.protocols.find(kCanopen);
+    if (protocol != profile_.protocols.end()) {
+      compare_tpdos(protocol->second.canopen);
+      compare_loss(protocol->second);
+    }
+    for (const WriteSpec& write : profile_.setup) compare_setup(write);
+    return std::move(out_);
+  }
+
+ private:
+  static const Place* place_of(const Object& object) {
+    const auto at = object.places.find(kCanopen);
+    return at == object.places.end() ? nullptr : &at->second;
+  }
+  [[nodiscard]] const EdsObject* find(bus::ObjectAddress address) const {
+    const auto at = eds_.objects.find(address);
+    return at == eds_.objects.end() ? nullptr : &at->second;
+  }
+  [[nodiscard]] bool has_index(std::uint16_t index) const {
+    const auto at = eds_.objects.lower_bound({index, 0});
+    return at != eds_.objects.end() && at->first.index == index;
+  }
+  void say(std::string pointer, std::string section, std::string message) {
+    out_.push_back({std::move(pointer), std::move(section), std::move(message)});
+  }
+
+  void compare(const Object& object) {
+    const Place* place = place_of(object);
+    if (place == nullptr) return;
+    const std::string at = pointer_to(pointer_to(object.pointer, "at"), kCanopen);
+    const EdsObject* known = find(place->address);
+    if (known == nullptr)
+      return say(at, section_of(place->address),
+                 has_index(place->address.index) ? "the EDS has this index, but not this sub-index"
+                                                 : "the EDS has no such object");
+    compare_type(object, place->type.value_or(object.type), *known);
+    compare_access(object, *known);
+    if (object.range) compare_range(pointer_to(object.pointer, "range"), *object.range, *known);
+  }
+
+  void compare_type(const Object& object, const DataType& type, const EdsObject& known) {
+    const std::string at = pointer_to(object.pointer, "type");
+    if (known.type == 0) return say(at, known.section, "has no DataType in the EDS");
+    const auto width = width_of(known.type);
+    const bool fits = width && (object.any_width ? width->size <= type.size : width->size == type.size);
+    if (!fits || width->is_signed != type.is_signed)
+      say(at, known.section, "is " + type_text(type) + " here, " + eds_type_name(known.type) + " in the EDS");
+  }
+
+  void compare_access(const Object& object, const EdsObject& known) {
+    if (known.access.empty()) return;
+    const std::string at = pointer_to(object.pointer, "access");
+    const bool reads = known.access != "wo";
+    const bool writes = known.access.starts_with("rw") || known.access == "wo";  // rwr, rww: mapped one way only
+    if (object.readable && !reads) say(at, known.section, "is read here, " + known.access + " in the EDS");
+    if (object.writable && !writes) say(at, known.section, "is written here, " + known.access + " in the EDS");
+  }
+
+  void compare_range(const std::string& at, const Range& range, const EdsObject& known) {
+    if (known.low && range.min < *known.low)
+      say(at, known.section, "begins at " + std::to_string(range.min) + ", LowLimit is " + std::to_string(*known.low));
+    if (known.high && range.max > *known.high)
+      say(at, known.section, "ends at " + std::to_string(range.max) + ", HighLimit is " + std::to_string(*known.high));
+  }
+
+  void compare_value(const std::string& name, std::int64_t raw, const std::string& at) {
+    const Object* object = profile_.find(name, 0);
+    const Place* place = object == nullptr ? nullptr : place_of(*object);
+    const EdsObject* known = place == nullptr ? nullptr : find(place->address);
+    if (known == nullptr) return;  // told with the object, or not on canopen
+    if ((known->low && raw < *known->low) || (known->high && raw > *known->high))
+      say(at, known->section,
+          std::to_string(raw) + " is written, the limits are " +
+              (known->low ? std::to_string(*known->low) : std::string("none")) + " and " +
+              (known->high ? std::to_string(*known->high) : std::string("none")));
+  }
+
+  void compare_setup(const WriteSpec& write) {
+    if (!write.on.empty() && std::find(write.on.begin(), write.on.end(), kCanopen) == write.on.end()) return;
+    for (const ValueSpec& value : write.values)
+      if (const auto* raw = std::get_if<std::int64_t>(&value))
+        compare_value(write.object, *raw, pointer_to(write.pointer, "value"));
+  }
+
+  void compare_loss(const ProtocolSpec& protocol) {
+    if (protocol.loss.by == LossSpec::By::life_guarding)
+      compare_value(protocol.loss.object, protocol.loss.value, "/protocols/canopen/loss/value");
+  }
+
+  void compare_tpdos(const CanopenSpec& canopen) {
+    for (std::size_t i = 0; i < canopen.tpdos.size(); ++i) {
+      const CanopenSpec::Tpdo& tpdo = canopen.tpdos[i];
+      const std::string at = pointer_to("/protocols/canopen/tpdo", i);
+      const auto parameters = static_cast<std::uint16_t>(kFirstTpdo + tpdo.number - 1);
+      const auto mapping = static_cast<std::uint16_t>(kFirstMapping + tpdo.number - 1);
+      for (const std::uint16_t index : {parameters, mapping})
+        if (!has_index(index)) say(at, section_of({index, 0}), "the EDS has no such TPDO");
+      const auto needs = [&](std::uint8_t sub, const char* key) {
+        if (has_index(parameters) && find({parameters, sub}) == nullptr)
+          say(pointer_to(at, key), section_of({parameters, sub}), "the EDS has no such sub-index");
+      };
+      if (tpdo.inhibit) needs(kInhibit, "inhibit_us");
+      if (tpdo.event_ms) needs(kEventTimer, "event_ms");
+      for (std::size_t k = 0; k < tpdo.map.size(); ++k)
+        compare_mapped(tpdo.map[k], pointer_to(pointer_to(at, "map"), k));
+    }
+  }
+
+  void compare_mapped(const std::string& name, const std::string& at) {
+    const auto same = [&](const Object& object) { return object.name == name; };
+    const auto object = std::find_if(profile_.objects.begin(), profile_.objects.end(), same);
+    const Place* place = object == profile_.objects.end() ? nullptr : place_of(*object);
+    const EdsObject* known = place == nullptr ? nullptr : find(place->address);
+    if (known == nullptr) return;  // told with the object
+    if (!known->mappable) return say(at, known->section, "is mapped here, PDOMapping is 0 in the EDS");
+    if (known->access == "rww") say(at, known->section, "is mapped to a TPDO here, rww (RPDO only) in the EDS");
+  }
+
+  const Profile& profile_;
+  const Eds& eds_;
+  std::vector<EdsContradiction> out_;
+};
+
+}  // namespace
+
+std::vector<EdsContradiction> contradictions(const Profile& profile, const Eds& eds) {
+  return Comparison(profile, eds).run();
+}
+
+}  // namespace axisgate::drive

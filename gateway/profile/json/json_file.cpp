@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading JSON files (declared in json_schema.hpp): bounded, with comments, and strict about what JSON leaves open.
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "gateway/profile/json/json_schema.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+using nlohmann::json;
+
+/// Watches the parser: what JSON allows and a hand-written file never means, a key twice, ends the reading.
+class Watch {
+ public:
+  bool operator()(int depth, json::parse_event_t event, const json& parsed) {
+    if (static_cast<std::size_t>(depth) > kMaxJsonDepth) return refuse("nested more than 32 levels deep");
+    if (event == json::parse_event_t::object_start) {
+      levels_.emplace_back();
+    } else if (event == json::parse_event_t::object_end) {
+      levels_.pop_back();
+    } else if (event == json::parse_event_t::key) {
+      const std::string& key = parsed.get_ref<const std::string&>();
+      if (key.size() > kMaxJsonString) return refuse("a key of more than 4096 characters");
+      if (!levels_.back().keys.insert(key).second)
+        return refuse("key \"" + key + "\" is given twice" + (levels_.size() > 1 ? " under " + where() : ""));
+      levels_.back().current = key;
+    } else if (event == json::parse_event_t::value && parsed.is_string()) {
+      if (parsed.get_ref<const std::string&>().size() > kMaxJsonString)
+        return refuse("a text of more than 4096 characters");
+    }
+    return true;
+  }
+  [[nodiscard]] const std::string& refused() const { return refused_; }
+
+ private:
+  bool refuse(std::string why) {
+    if (refused_.empty()) refused_ = std::move(why);
+    return true;  // the rest is still read, so that brackets stay in step; the fault stands
+  }
+  /// The keys that lead here; an array's index is not known to the parser.
+  [[nodiscard]] std::string where() const {
+    std::string out;
+    for (std::size_t i = 0; i + 1 < levels_.size(); ++i) out += "/" + levels_[i].current;
+    return out;
+  }
+  struct Level {
+    std::set<std::string> keys;
+    std::string current;
+  };
+  std::vector<Level> levels_;
+  std::string refused_;
+};
+
+std::string at_line(std::string_view text, std::size_t byte) {
+  std::size_t line = 1;
+  std::size_t column = 1;
+  for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
+    ++column;
+    if (text[i] == '\n') {
+      ++line;
+      column = 1;
+    }
+  }
+  return "line " + std::to_string(line) + ", column " + std::to_string(column) + ": ";
+}
+
+/// nlohmann's "[json.exception...] parse error at line 1, column 2: syntax error while parsing value - what" -> "what".
+std::string plain(std::string_view what) {
+  const std::size_t dash = what.find(" - ");
+  return std::string(dash == std::string_view::npos ? what : what.substr(dash + 3));
+}
+
+}  // namespace
+
+std::variant<json, SchemaFault> parse_json(std::string_view text) {
+  Watch watch;
+  try {
+    json document = json::parse(
+        text.begin(), text.end(),
+        [&](int depth, json::parse_event_t event, json& parsed) { return watch(depth, event, parsed); }, true, true);
+    if (!watch.refused().empty()) return SchemaFault{"", watch.refused()};
+    return document;
+  } catch (const json::parse_error& error) {
+    return SchemaFault{"", at_line(text, error.byte) + plain(error.what())};
+  } catch (const json::exception& error) {
+    return SchemaFault{"", plain(error.what())};
+  }
+}
+
+std::variant<json, SchemaFault> load_json(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) return SchemaFault{"", "cannot be read: " + error.message()};
+  if (size > kMaxJsonFileBytes) return SchemaFault{"", "is larger than 1 MiB"};
+  std::string text(static_cast<std::size_t>(size), '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(text.data(), static_cast<std::streamsize>(text.size()))) return SchemaFault{"", "cannot be read"};
+  return parse_json(text);
+}
+
+std::optional<Rational> rational_of(const json& value) {
+  if (value.is_string()) return Rational::parse(value.get_ref<const std::string&>());
+  // dump() prints the shortest text that gives this number again: the digits that were written.
+  return value.is_number() ? Rational::parse(value.dump()) : std::nullopt;
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// JSON files and JSON Schema, for profiles and configurations alike: reads a file, checks it against a schema.
+// Promises all faults of a document at once, each with the JSON pointer of the place and words a person can act on.
+// Never throws on what a file says, and never shows the validator library behind it.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "gateway/core/rational.hpp"
+
+namespace axisgate::drive {
+
+struct SchemaFault {
+  std::string pointer;  ///< RFC 6901; empty: the whole document
+  std::string message;
+  friend bool operator==(const SchemaFault&, const SchemaFault&) = default;
+};
+
+inline constexpr std::size_t kMaxJsonFileBytes = 1U << 20U;
+/// Deeper nesting and longer strings than any profile or configuration has are refused before anything recurses over
+/// them.
+inline constexpr std::size_t kMaxJsonDepth = 32;
+inline constexpr std::size_t kMaxJsonString = 4096;
+
+/// The document, or why there is none. A syntax error's message begins with "line 3, column 14: "; its pointer is
+/// empty. Comments are allowed; a key given twice is a fault.
+[[nodiscard]] std::variant<nlohmann::json, SchemaFault> load_json(const std::filesystem::path& path);
+/// The same for text already in memory (an embedded schema, a test).
+[[nodiscard]] std::variant<nlohmann::json, SchemaFault> parse_json(std::string_view text);
+
+/// `schema` (draft-7) is part of the program: a bad one throws. Beside draft-7 a schema may say, at a "pattern",
+/// "expects": in words what the text must be (at "patternProperties": what a key must be).
+[[nodiscard]] std::vector<SchemaFault> validate(const nlohmann::json& document, const nlohmann::json& schema);
+
+/// One more step of a JSON pointer, escaped.
+[[nodiscard]] std::string pointer_to(std::string_view parent, std::string_view key);
+[[nodiscard]] std::string pointer_to(std::string_view parent, std::size_t index);
+
+/// An exact number: a JSON integer, a decimal as it was written (27.5), or a decimal string ("1.414").
+[[nodiscard]] std::optional<Rational> rational_of(const nlohmann::json& value);
+
+}  // namespace axisgate::drive

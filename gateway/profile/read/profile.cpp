@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/profile/read/profile.hpp"
+
+#include <algorithm>
+
+namespace axisgate::drive {
+Range Object::numbers() const {
+  const std::int64_t span = std::int64_t{1} << (8 * type.size);
+  Range out = type.is_signed ? Range{-span / 2, span / 2 - 1} : Range{0, span - 1};
+  if (range) out = {std::max(out.min, range->min), std::min(out.max, range->max)};
+  return out;
+}
+
+const std::string& QuantitySpec::unit_of(const Object& object) const {
+  if (units.empty()) return object.unit;
+  return object.slot < units.size() ? units[object.slot] : units.front();
+}
+
+bool ConfiguredModeSpec::is_fixed_on(std::string_view protocol) const {
+  return std::find(fixed_on.begin(), fixed_on.end(), protocol) != fixed_on.end();
+}
+
+bool KeepAliveSpec::is_on(std::string_view protocol) const {
+  return on.empty() || std::find(on.begin(), on.end(), protocol) != on.end();
+}
+
+const Object* Profile::find(std::string_view object, bus::AxisSlot motor) const {
+  const std::string own = motor < axes.size() ? axes[motor] + "." + std::string(object) : std::string();
+  const Object* shared = nullptr;
+  for (const Object& candidate : objects) {
+    if (candidate.name == own) return &candidate;
+    if (candidate.name == object) shared = &candidate;
+  }
+  return shared;
+}
+
+const QuantitySpec* Profile::find(Quantity quantity) const {
+  const auto at = std::find_if(quantities.begin(), quantities.end(),
+                               [&](const QuantitySpec& spec) { return spec.quantity == quantity; });
+  return at == quantities.end() ? nullptr : &*at;
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/profile/read/profile_loader.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "gateway/profile/read/profile_layers.hpp"
+#include "gateway/profile/read/profile_reading.hpp"
+#include "gateway/profile/read/profile_schema.hpp"
+
+namespace axisgate::drive {
+
+using nlohmann::json;
+
+namespace {
+
+/// Parsed once; a schema that does not parse is a mistake of the build.
+const json& profile_schema() {
+  static const json schema = json::parse(profile_schema_text());
+  return schema;
+}
+
+void read_head(Reading& reading, const std::string& file) {
+  Profile& out = reading.profile;
+  out.name = text_in(reading.document, "name");
+  out.title = text_in(reading.document, "title");
+  out.nvm = nvm_named(text_in(reading.document, "nvm"));
+  out.axes = names_in(reading.document, "axes");
+  if (out.axes.empty()) out.axes = {"A"};
+  if (std::set<std::string>(out.axes.begin(), out.axes.end()).size() != out.axes.size())
+    reading.fault("/axes", "an axis is named twice");
+  const std::string stem = std::filesystem::path(file).stem().string();
+  // Configurations find a profile by its file's name, logs and maps show its own: they must be one.
+  if (!out.name.empty() && out.name != stem)
+    reading.fault("/name", "is \"" + out.name + "\", but the file is called \"" + stem + ".json\"");
+}
+
+}  // namespace
+
+std::string text(const Fault& fault) {
+  return fault.file + ": " + (fault.pointer.empty() ? std::string() : fault.pointer + ": ") + fault.message;
+}
+
+Written written_at(const WrittenPlaces& places, const std::string& pointer) {
+  for (std::size_t end = pointer.size();; end = pointer.rfind('/', end - 1)) {
+    const auto known = places.find(std::string_view(pointer).substr(0, end));
+    if (known != places.end()) return {known->second.file, known->second.pointer + pointer.substr(end)};
+    if (end == 0) return {"", pointer};
+  }
+}
+
+LoadedProfile load_profile(const std::string& path, const std::vector<std::string>& folders) {
+  LayeredProfile layered = layered_profile(path, folders);
+  LoadedProfile out;
+  out.file = path;
+  out.files = std::move(layered.files);
+  out.written = std::move(layered.written);
+  out.faults = std::move(layered.faults);
+  if (!out.faults.empty()) return out;
+  const json& document = *layered.document;
+  out.text = document.dump();
+  out.base_only = flag_in(document, "base_only", false);
+  if (out.base_only) {
+    out.faults.push_back({path, "/base_only", "is no drive but a base: name or check a profile that extends it"});
+    return out;
+  }
+  std::vector<SchemaFault> faults = validate(document, profile_schema());
+  Reading reading(document, out.profile, faults);
+  read_head(reading, path);
+  read_constants(reading);
+  read_units(reading);
+  read_protocols(reading);
+  read_objects(reading);
+  read_quantities(reading);
+  read_modes(reading);
+  read_configured_mode(reading);
+  read_state(reading);
+  read_homing(reading);
+  read_commands(reading);
+  read_setup(reading);
+  read_checks(reading);
+  read_alarms(reading);
+  read_keepalive(reading);
+  check_protocols(reading);
+  check_keepalive(reading);
+  read_constant_rules(reading);
+  check_state_places(reading);
+  for (SchemaFault& fault : faults) {
+    Written written = written_at(out.written, fault.pointer);
+    Fault told{std::move(written.file), std::move(written.pointer), std::move(fault.message)};
+    // It may be right by itself: what is missing there may have been taken out here.
+    if (told.file != path) told.message += " (as extended by " + std::filesystem::path(path).filename().string() + ")";
+    // What is written once for all axes is wrong once.
+    if (std::find(out.faults.begin(), out.faults.end(), told) == out.faults.end())
+      out.faults.push_back(std::move(told));
+  }
+  return out;
+}
+
+std::optional<std::string> find_profile(const std::string& name_or_path, const std::vector<std::string>& folders) {
+  const auto is_file = [](const std::filesystem::path& path) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(path, error);
+  };
+  if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".json"))
+    return is_file(name_or_path) ? std::optional(name_or_path) : std::nullopt;
+  for (const std::string& folder : folders) {
+    const std::filesystem::path path = std::filesystem::path(folder) / (name_or_path + ".json");
+    if (is_file(path)) return path.string();
+  }
+  return std::nullopt;
+}
+
+}  // namespace axisgate::drive

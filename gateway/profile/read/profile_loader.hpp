@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads drive profiles.
+// Promises every mistake of a profile at once, each with file, JSON pointer and what to change.
+// Never resolves: what a profile says of one configured drive is gateway/profile/resolve's.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/profile/read/profile.hpp"
+
+namespace axisgate::drive {
+
+struct Fault {
+  std::string file;
+  std::string pointer;  ///< RFC 6901; empty: the whole file
+  std::string message;
+  friend bool operator==(const Fault&, const Fault&) = default;
+};
+/// "kinco-jd.json: /objects/mode/type: must be ..."
+[[nodiscard]] std::string text(const Fault& fault);
+
+/// Where something was written: a profile may say it in a file that it extends, or once for all its axes.
+struct Written {
+  std::string file;
+  std::string pointer;
+};
+/// By the JSON pointer into the profile as a whole, with everything that it extends.
+using WrittenPlaces = std::map<std::string, Written, std::less<>>;
+/// Where `pointer` was written; of what is not there, where it would belong.
+[[nodiscard]] Written written_at(const WrittenPlaces& places, const std::string& pointer);
+
+struct LoadedProfile {
+  std::string file;
+  std::vector<std::string> files;  ///< `file`, and those that it extends
+  Profile profile;
+  WrittenPlaces written;
+  bool base_only = false;     ///< no drive: only others extend it (and a fault says so)
+  std::string text;           ///< the whole JSON without spaces: whether two profiles say the same
+  std::vector<Fault> faults;  ///< empty: the profile is good, and only then may it be resolved
+};
+
+/// Never throws for what the file says; a file that cannot be read is a fault as well. A profile that it extends lies
+/// beside it, or in the first of `folders` that has it.
+[[nodiscard]] LoadedProfile load_profile(const std::string& path, const std::vector<std::string>& folders = {});
+
+/// "kinco-jd" -> the first FOLDER/kinco-jd.json that exists; a name with '/' or ending in ".json" is a path already.
+/// No value where there is none.
+[[nodiscard]] std::optional<std::string> find_profile(const std::string& name_or_path,
+                                                      const std::vector<std::string>& folders);
+
+}  // namespace axisgate::drive

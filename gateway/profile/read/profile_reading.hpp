@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the section readers of a profile share: the document, the profile being filled, the faults found, and how values
+// are written in JSON. Promises that a reader can go on after any fault, so that all are found in one run. Never
+// reports what the JSON Schema reports already: a value of the wrong type simply reads as absent.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gateway/core/nearest.hpp"
+#include "gateway/profile/json/json_schema.hpp"
+#include "gateway/profile/read/profile.hpp"
+
+namespace axisgate::drive {
+
+/// The last address of a Modbus register.
+inline constexpr std::int64_t kLastRegister = 0xFFFF;
+
+class Reading {
+ public:
+  Reading(const nlohmann::json& file, Profile& filled, std::vector<SchemaFault>& faults)
+      : document(file), profile(filled), faults_(faults), from_schema_(faults.size()) {}
+
+  const nlohmann::json& document;
+  Profile& profile;
+
+  /// Dropped where the schema has found fault with the same place.
+  void fault(const std::string& pointer, std::string message);
+  /// The axis slots that a name without a prefix is looked up for.
+  [[nodiscard]] std::size_t axes() const { return profile.axes.size(); }
+  /// Says what is wrong with `object` for any axis, unless it names one. Returns whether it does.
+  bool names_object(const std::string& object, const std::string& pointer);
+  /// Calls `check(object)` for what the name means on each axis (once, where all mean the same).
+  template <class Check>
+  void each_meaning(const std::string& name, Check&& check) const {
+    const Object* last = nullptr;
+    for (std::size_t slot = 0; slot < axes(); ++slot) {
+      const Object* object = profile.find(name, static_cast<bus::AxisSlot>(slot));
+      if (object != nullptr && object != last) check(*object);
+      last = object;
+    }
+  }
+  /// Readers of a value, shared by commands, setup and remedies.
+  [[nodiscard]] std::vector<ValueSpec> values(const nlohmann::json& node, const std::string& pointer);
+  void value_fits(const ValueSpec& value, const Object& object, const std::string& pointer);
+  /// For what is written without a further look: not an amount in a unit that waits for the drive.
+  void value_known(const ValueSpec& value, const Object& object, const std::string& pointer);
+  [[nodiscard]] ConditionSpec condition(const nlohmann::json& node, const std::string& object,
+                                        const std::string& pointer);
+  /// "3000 rpm"; nothing where the schema has reported its form. An unknown constant is a fault.
+  [[nodiscard]] std::optional<Amount> amount(const nlohmann::json& node, const std::string& pointer);
+
+ private:
+  void by_constant(const nlohmann::json& node, std::int64_t mask, const std::string& pointer, ConditionSpec& out);
+  std::vector<SchemaFault>& faults_;
+  std::size_t from_schema_;
+};
+
+/// The member, or null.
+[[nodiscard]] const nlohmann::json* member(const nlohmann::json& node, std::string_view key);
+[[nodiscard]] std::string text_in(const nlohmann::json& node, std::string_view key);
+[[nodiscard]] bool flag_in(const nlohmann::json& node, std::string_view key, bool otherwise);
+/// 47, "47", "0x2F".
+[[nodiscard]] std::optional<std::int64_t> whole(const nlohmann::json& node);
+[[nodiscard]] std::int64_t whole_in(const nlohmann::json& node, std::string_view key, std::int64_t otherwise);
+[[nodiscard]] std::vector<std::string> names_in(const nlohmann::json& node, std::string_view key);
+[[nodiscard]] std::optional<DataType> type_named(std::string_view name);
+[[nodiscard]] Nvm nvm_named(std::string_view name);
+/// The unit counts by a constant that is read from the drive: nothing can be converted by it before that.
+[[nodiscard]] bool waits_for_drive(const Profile& profile, const Unit& unit);
+[[nodiscard]] std::string range_text(const Range& range);
+/// What an axis in this mode follows; none: no single quantity.
+[[nodiscard]] std::optional<Quantity> setpoint_of(std::int16_t mode);
+/// "a, b, c"
+[[nodiscard]] std::string listed(const std::vector<std::string>& names);
+template <class Map>
+[[nodiscard]] std::vector<std::string> keys_in(const Map& map) {
+  std::vector<std::string> out;
+  for (const auto& [key, value] : map) out.push_back(key);
+  return out;
+}
+
+// The sections, in the order in which they must be read.
+void read_constants(Reading& reading);
+void read_units(Reading& reading);
+void read_protocols(Reading& reading);
+void read_objects(Reading& reading);
+void read_quantities(Reading& reading);
+void read_modes(Reading& reading);
+void read_configured_mode(Reading& reading);
+void read_state(Reading& reading);
+void read_homing(Reading& reading);
+void read_commands(Reading& reading);
+void read_setup(Reading& reading);
+void read_checks(Reading& reading);
+void read_alarms(Reading& reading);
+void read_keepalive(Reading& reading);
+/// Of section "protocols": what belongs to canopen alone.
+void read_canopen(Reading& reading, const nlohmann::json& node, const std::string& pointer, CanopenSpec& out);
+void check_canopen(Reading& reading, const ProtocolSpec& protocol, const std::string& pointer);
+/// Of sections "protocols" and "objects": what belongs to Keya's own protocols alone.
+[[nodiscard]] bool is_keya(std::string_view protocol);
+/// `place` has what every protocol's places have; none where it is wrong.
+[[nodiscard]] std::optional<Place> place_in_frame(Reading& reading, std::string_view protocol, const Object& object,
+                                                  const nlohmann::json& node, const std::string& pointer, Place place);
+void check_control_frame(Reading& reading, const std::string& protocol, const std::string& pointer);
+/// After all: what a section can only be judged by together with others.
+void check_protocols(Reading& reading);
+void check_keepalive(Reading& reading);
+void read_constant_rules(Reading& reading);
+void check_state_places(Reading& reading);
+
+/// Reads "write"/"value"/"on"/"why" as setup and remedies have them.
+[[nodiscard]] WriteSpec read_write(Reading& reading, const nlohmann::json& node, const std::string& pointer);
+
+}  // namespace axisgate::drive

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The JSON Schema of drive profiles, as text inside the program.
+// Promises that it is schemas/drive-profile.schema.json, word for word.
+// Never reads a file.
+#pragma once
+
+#include <string_view>
+
+namespace axisgate::drive {
+
+[[nodiscard]] std::string_view profile_schema_text();
+
+}  // namespace axisgate::drive

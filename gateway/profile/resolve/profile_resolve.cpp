@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+// resolve(): what this version can do, constants, objects, and how names, values and units become the model's.
+#include <algorithm>
+#include <stdexcept>
+
+#include "gateway/core/nearest.hpp"
+#include "gateway/profile/json/json_schema.hpp"
+#include "gateway/profile/read/profile_reading.hpp"
+#include "gateway/profile/resolve/profile_resolving.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+void check_protocol(Resolving& r) {
+  const std::string& protocol = r.input.protocol;
+  if (r.profile.protocols.contains(protocol)) return;
+  std::vector<std::string> known;
+  for (const auto& [name, spec] : r.profile.protocols) known.push_back(name);
+  r.fault("/profile",
+          "profile \"" + r.profile.name + "\" has no protocol \"" + protocol + "\": it has " + listed(known));
+}
+
+/// A constant that decides a mode tells why there are no more of them.
+std::string why_no_more(const Profile& profile, const std::string& name, const Constant& constant) {
+  if (!profile.configured_mode) return "";
+  const auto& names = profile.configured_mode->constants;
+  return std::find(names.begin(), names.end(), name) == names.end() ? "" : ": " + constant.text;
+}
+
+}  // namespace
+
+ObjectId Resolving::id(std::string_view name, bus::AxisSlot slot) const {
+  const Object* object = profile.find(name, motor(slot));
+  if (object == nullptr) return kNoObject;
+  const auto at = ids.find(object->name);
+  return at == ids.end() ? kNoObject : at->second;
+}
+
+std::optional<Condition> Resolving::condition(const ConditionSpec& spec, bus::AxisSlot slot) const {
+  Condition out;
+  out.object = id(spec.object, slot);
+  if (out.object == kNoObject) return std::nullopt;
+  out.mask = spec.mask;
+  out.test = spec.test;
+  out.values = spec.values;
+  if (spec.constant.empty()) return out;
+  const auto value = constants.find(spec.constant);
+  const auto number = value == constants.end() ? std::nullopt : value->second.scale(spec.times);
+  if (!number) return std::nullopt;
+  out.values = {*number};
+  return out;
+}
+
+std::optional<std::int64_t> Resolving::raw(const std::vector<ValueSpec>& values, std::string_view name,
+                                           bus::AxisSlot slot) const {
+  const std::size_t which = values.size() > 1 && motor(slot) < values.size() ? motor(slot) : 0;
+  const ValueSpec& value = values.at(which);
+  if (const auto* literal = std::get_if<std::int64_t>(&value)) return *literal;
+  const Object* object = profile.find(name, motor(slot));
+  if (object == nullptr || !std::holds_alternative<Amount>(value)) return std::nullopt;
+  // Units per revolution cancel out here: any number will do.
+  const Rational per_rev(1);
+  const Unit& unit = profile.units.find(object->unit)->second;
+  const std::optional<Rational> registers = in_registers(std::get<Amount>(value), constants, per_rev);
+  const std::optional<Rational> scale = raw_per_base(unit, constants);
+  if (!registers || !scale) return std::nullopt;
+  return (*registers * base_per_register(unit.base, per_rev) * *scale).scale(1);
+}
+
+std::optional<ObjectWrite> Resolving::write(const WriteSpec& spec, bus::AxisSlot slot) const {
+  const ObjectId object = id(spec.object, slot);
+  if (object == kNoObject) return std::nullopt;
+  const std::optional<std::int64_t> value = raw(spec.values, spec.object, slot);
+  if (!value) return std::nullopt;
+  return ObjectWrite{object, *value, spec.why};
+}
+
+std::optional<FactoryWrite> Resolving::factory_write(const WriteSpec& spec, bus::AxisSlot slot) {
+  const Object* object = profile.find(spec.object, motor(slot));
+  const ObjectId written = id(spec.object, slot);
+  if (object == nullptr || written == kNoObject) return std::nullopt;
+  FactoryWrite out{written, spec.instead_of, {}, {}, spec.why};
+  if (const auto* literal = std::get_if<std::int64_t>(&spec.values.at(0))) {
+    out.amount = Rational(*literal);
+  } else {
+    const Unit& unit = profile.units.find(object->unit)->second;
+    const Rational per_rev(1);  // units per revolution cancel out here: any number will do
+    const auto registers = in_registers(std::get<Amount>(spec.values.at(0)), constants, per_rev);
+    const std::optional<ScaleRecipe> scale = recipe(unit);
+    if (!registers || !scale) return std::nullopt;
+    out.amount = *registers * base_per_register(unit.base, per_rev);
+    out.recipe = *scale;
+  }
+  out.recipe.raw = object->numbers();
+  return out;
+}
+
+std::optional<DriveConstant::Operand> Resolving::operand(const Factor& factor) const {
+  if (const std::optional<Rational> number = value_of(factor, constants))
+    return DriveConstant::Operand{kNoObject, *number};
+  const auto& name = std::get<std::string>(factor);
+  const ObjectId object = profile.constants.contains(name) ? kNoObject : id(name, 0);
+  if (object == kNoObject) return std::nullopt;
+  return DriveConstant::Operand{object, Rational(1)};
+}
+
+/// Position in the model, where it is put at its first need. None where it is not read from the drive, or a rule needs
+/// what is not there: a rule left out could make another one true.
+std::optional<std::size_t> Resolving::drive_constant(const std::string& name) {
+  const auto named = [&](const DriveConstant& constant) { return constant.name == name; };
+  const auto at = std::find_if(model.constants.begin(), model.constants.end(), named);
+  if (at != model.constants.end()) return static_cast<std::size_t>(at - model.constants.begin());
+  DriveConstant out;
+  out.name = name;
+  for (const Constant::Rule& spec : profile.constants.find(name)->second.rules) {
+    DriveConstant::Rule rule{spec.conditional, spec.equal, {}, {}, {}, {}};
+    if (spec.conditional) {
+      const auto left = operand(spec.left);
+      const auto right = operand(spec.right);
+      if (!left || !right) return std::nullopt;
+      rule.left = *left;
+      rule.right = *right;
+    }
+    for (const auto& [from, to] : {std::pair(&spec.mul, &rule.mul), std::pair(&spec.div, &rule.div)}) {
+      for (const Factor& factor : *from) {
+        const auto one = operand(factor);
+        if (!one) return std::nullopt;
+        to->push_back(*one);
+      }
+    }
+    out.rules.push_back(std::move(rule));
+  }
+  if (out.rules.empty()) return std::nullopt;
+  model.constants.push_back(std::move(out));
+  return model.constants.size() - 1;
+}
+
+std::optional<ScaleRecipe> Resolving::recipe(const Unit& unit) {
+  ScaleRecipe out;
+  const auto add = [&](const Factor& factor, bool divides) {
+    if (const std::optional<Rational> value = value_of(factor, constants)) {
+      if (divides && value->numerator() == 0) return false;
+      out.fixed = divides ? out.fixed / *value : out.fixed * *value;
+      return true;
+    }
+    const std::optional<std::size_t> at = drive_constant(std::get<std::string>(factor));
+    if (at) (divides ? out.div : out.mul).push_back(*at);
+    return at.has_value();
+  };
+  const auto all = [&](const std::vector<Factor>& factors, bool divides) {
+    return std::all_of(factors.begin(), factors.end(), [&](const Factor& factor) { return add(factor, divides); });
+  };
+  if (!all(unit.mul, false) || !all(unit.div, true)) return std::nullopt;  // a constant nobody gave
+  return out;
+}
+
+void resolve_constants(Resolving& r) {
+  std::vector<std::string> known;
+  for (const auto& [name, constant] : r.profile.constants) {
+    known.push_back(name);
+    if (constant.standard) r.constants.emplace(name, *constant.standard);
+    if (constant.required && !r.input.constants.contains(name))
+      r.fault(pointer_to("/constants", name),
+              "\"" + name + "\" is required for profile \"" + r.profile.name + "\": " + constant.text);
+  }
+  for (const auto& [name, value] : r.input.constants) {
+    const std::string pointer = pointer_to("/constants", name);
+    const auto at = r.profile.constants.find(name);
+    if (at == r.profile.constants.end()) {
+      const std::optional<std::string> near = nearest(name, known);
+      r.fault(pointer, "profile \"" + r.profile.name + "\" has no constant \"" + name + "\"" +
+                           (near ? "; did you mean \"" + *near + "\"?"
+                                 : ": it has " + (known.empty() ? "none" : listed(known))));
+      continue;
+    }
+    const Constant& constant = at->second;
+    const auto decimal = [](const Rational& number) {
+      std::string text = std::to_string(number.to_double());
+      text.erase(text.find_last_not_of('0') + 1);
+      return text.ends_with('.') ? text.substr(0, text.size() - 1) : text;
+    };
+    if (constant.min && constant.max &&
+        (value.to_double() < constant.min->to_double() || value.to_double() > constant.max->to_double()))
+      r.fault(pointer, "must be " + decimal(*constant.min) + " to " + decimal(*constant.max) + ", is " +
+                           decimal(value) + why_no_more(r.profile, name, constant));
+    r.constants.insert_or_assign(name, value);
+  }
+}
+
+void resolve_objects(Resolving& r) {
+  for (const Object& object : r.profile.objects) {
+    const auto place = object.places.find(r.input.protocol);
+    if (place == object.places.end()) continue;
+    const Place& at = place->second;
+    const bus::AxisSlot axis = object.slot == bus::kNoAxis ? bus::kNoAxis : r.axis_of(object.slot);
+    // Of a motor that is no axis only what travels with the others' is needed.
+    if (object.slot != bus::kNoAxis && axis == bus::kNoAxis && !at.composed) continue;
+    const DataType type = object.type_at(at);
+    ObjectDef def;
+    def.name = object.name;
+    def.slot = axis;
+    def.address = at.address;
+    def.size = type.size;
+    def.is_signed = type.is_signed;
+    def.readable = object.readable && !at.write_only && !at.unasked;
+    def.writable = object.writable;
+    def.composed = at.composed;
+    def.turns_on = at.turns_on;
+    def.trigger = object.trigger;
+    def.any_width = object.any_width && r.input.protocol == "canopen";
+    def.nvm = object.nvm;
+    r.ids.emplace(object.name, static_cast<ObjectId>(r.model.objects.size()));
+    r.model.objects.push_back(std::move(def));
+  }
+}
+
+std::variant<DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded, const ResolveInput& input) {
+  Resolving r(loaded.profile, input);
+  if (!loaded.faults.empty()) {
+    r.fault("/profile", "profile \"" + loaded.file + "\" has mistakes of its own");
+    return r.faults;
+  }
+  check_protocol(r);
+  resolve_constants(r);
+  if (input.axes.empty() || input.axes.size() > loaded.profile.axes.size())
+    r.fault("/axes", "profile \"" + loaded.profile.name + "\" is a drive of " +
+                         std::to_string(loaded.profile.axes.size()) + " axes, " + std::to_string(input.axes.size()) +
+                         " are configured");
+  if (!r.faults.empty()) return r.faults;
+  resolve_motors(r);
+  if (!r.faults.empty()) return r.faults;
+  try {
+    resolve_objects(r);
+    for (std::size_t i = 0; i < input.axes.size(); ++i) {
+      const auto slot = static_cast<bus::AxisSlot>(i);
+      r.model.axes.emplace_back();
+      if (r.profile.state.is_virtual) make_objects(r, slot);
+      resolve_quantities(r, slot);
+      resolve_state(r, slot);
+      resolve_commands(r, slot);
+    }
+    resolve_together(r);
+    resolve_drive(r);
+  } catch (const std::overflow_error& error) {
+    r.fault("/constants", std::string(error.what()) + ": give constants and units_per_rev with fewer digits");
+  }
+  if (!r.faults.empty()) return r.faults;
+  return std::move(r.model);
+}
+
+}  // namespace axisgate::drive

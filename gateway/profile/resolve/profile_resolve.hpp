@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Resolves a profile for one configured drive: protocol, constants, units and limits of its axes.
+// Promises every mistake at once, each with JSON pointer and what to change, and a model that is checked.
+// Never guesses: what a sheet or a configuration does not give is not supported, or refused by name.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "gateway/profile/read/profile_loader.hpp"
+
+namespace axisgate::drive {
+
+/// An axis of the configuration, in register units (design 2).
+struct ResolveAxis {
+  AxisNumber number = 0;
+  std::string name;
+  Rational units_per_rev{10000};
+  bool inverted = false;
+  std::optional<Range> position_limits;
+  std::optional<std::int64_t> velocity_limit;
+  std::optional<std::int64_t> acceleration_limit;
+  std::optional<std::int64_t> torque_limit;
+  std::optional<std::int64_t> quick_stop_deceleration_min;
+  std::int64_t standstill_velocity = 1000;
+  std::optional<std::int16_t> homing_method;
+  Duration homing_timeout = std::chrono::seconds(60);
+  LeaseRules lease;
+  Duration jog_timeout = std::chrono::milliseconds(500);
+  std::string motor;  ///< "A", "B": which of the drive's motors; empty: its place in the list
+};
+
+struct ResolveInput {
+  std::string protocol;  ///< the adapter of its bus: "kinco-serial"
+  std::uint8_t node = 1;
+  std::map<std::string, Rational> constants;  ///< overrides
+  /// canopen: 1018h sub 1 to 4 as they must be; none: whatever it is.
+  std::array<std::optional<std::uint32_t>, 4> identity{};
+  std::array<Duration, 3> poll{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
+                               std::chrono::milliseconds(1000)};
+  std::vector<ResolveAxis> axes;  ///< at most as many as the drive has
+};
+
+/// Faults point into the drive's entry of the configuration ("/constants/peak_current_a", "/axes/0/limits/velocity",
+/// ""), and their `file` is empty: the caller knows both. `loaded.faults` must be empty.
+[[nodiscard]] std::variant<DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded,
+                                                                   const ResolveInput& input);
+
+}  // namespace axisgate::drive

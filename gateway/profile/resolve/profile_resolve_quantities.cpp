@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// Quantities of one axis: where each is had from, its exact scale and the limits of a write.
+#include <algorithm>
+
+#include "gateway/profile/json/json_schema.hpp"
+#include "gateway/profile/resolve/profile_resolving.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+/// Where a write may be repeated by every scan, the drive's own value seldom changes: it is read once and after each
+/// write.
+PollClass default_poll(const QuantityRow& row) { return row.writable ? PollClass::once : PollClass::normal; }
+
+/// What an inverted axis negates. Magnitudes (profile_velocity, max_torque) have no direction.
+bool is_directed(const QuantityRow& row) {
+  const bool directed =
+      row.kind == Kind::position || row.kind == Kind::velocity || row.kind == Kind::torque || row.kind == Kind::current;
+  return directed && (row.type == RegisterType::i16 || row.type == RegisterType::i32);
+}
+
+/// On an inverted axis the drive's positive limit is the axis's negative one.
+Quantity opposite(Quantity quantity) {
+  if (quantity == Quantity::position_limit_min) return Quantity::position_limit_max;
+  if (quantity == Quantity::position_limit_max) return Quantity::position_limit_min;
+  return quantity;
+}
+
+/// Limits of the axis that hold for this quantity, and the configuration key that says so.
+struct AxisLimit {
+  Range range{INT64_MIN, INT64_MAX};
+  std::string key;
+};
+
+AxisLimit axis_limit(const ResolveAxis& axis, const QuantityRow& row) {
+  const auto magnitude = [&](const std::optional<std::int64_t>& limit, const char* key) {
+    return limit ? AxisLimit{{-*limit, *limit}, key} : AxisLimit{};
+  };
+  switch (row.quantity) {
+    case Quantity::target_position:
+    case Quantity::position_limit_min:
+    case Quantity::position_limit_max:
+      return axis.position_limits ? AxisLimit{*axis.position_limits, "position"} : AxisLimit{};
+    case Quantity::target_velocity:
+    case Quantity::profile_velocity:
+    case Quantity::homing_speed_switch:
+    case Quantity::homing_speed_zero:
+    case Quantity::max_velocity:
+      return magnitude(axis.velocity_limit, "velocity");
+    case Quantity::profile_acceleration:
+    case Quantity::profile_deceleration:
+    case Quantity::homing_acceleration:
+      return magnitude(axis.acceleration_limit, "acceleration");
+    case Quantity::target_torque:
+    case Quantity::max_torque:
+      return magnitude(axis.torque_limit, "torque");
+    case Quantity::quick_stop_deceleration:
+      if (axis.quick_stop_deceleration_min)
+        return {{*axis.quick_stop_deceleration_min, INT64_MAX}, "quick_stop_deceleration_min"};
+      return {};
+    default:
+      return {};
+  }
+}
+
+class AxisQuantities {
+ public:
+  AxisQuantities(Resolving& resolving, bus::AxisSlot slot)
+      : r_(resolving), slot_(slot), axis_(resolving.input.axes[slot]), model_(resolving.model.axes[slot]) {}
+
+  void run() {
+    model_.binding_of.fill(-1);
+    for (const QuantityRow& row : quantity_table())
+      if (std::optional<Binding> binding = bind(row)) add(std::move(*binding));
+  }
+
+ private:
+  std::optional<Binding> bind(const QuantityRow& row) {
+    if (r_.profile.state.is_virtual)
+      if (std::optional<Binding> made = bind_emulated(row)) return made;
+    const QuantitySpec* spec = r_.profile.find(axis_.inverted ? opposite(row.quantity) : row.quantity);
+    if (!r_.can_follow(slot_, row.quantity)) return std::nullopt;
+    if (spec == nullptr) return row.quantity == Quantity::error_code ? from_alarm_table() : std::nullopt;
+    Binding out;
+    out.quantity = row.quantity;
+    out.poll = spec->poll.value_or(default_poll(row));
+    out.limits = range_of(row.type);
+    if (!spec->bits.empty()) return compose(*spec, std::move(out));
+    for (const std::string& name : spec->objects) {
+      out.object = r_.id(name, slot_);
+      if (out.object != kNoObject) return scaled(row, *spec, *r_.profile.find(name, r_.motor(slot_)), std::move(out));
+    }
+    return std::nullopt;
+  }
+
+  /// Statusword, controlword and mode of a virtual axis: the gateway's own objects hold the registers' numbers.
+  std::optional<Binding> bind_emulated(const QuantityRow& row) const {
+    Binding out;
+    out.quantity = row.quantity;
+    switch (row.quantity) {
+      case Quantity::statusword:
+        out.object = model_.statusword;
+        break;
+      case Quantity::controlword:
+        out.object = model_.controlword;
+        break;
+      case Quantity::mode_display:
+      case Quantity::mode:
+        out.object = model_.mode;
+        break;
+      default:
+        return std::nullopt;
+    }
+    out.poll = row.writable ? PollClass::once : PollClass::fast;
+    out.writable = row.writable;
+    out.limits = intersection(range_of(row.type), r_.model.object(out.object).range());
+    return out;
+  }
+
+  /// error_code is read from no object where the profile has an alarm table: it follows from the fault words.
+  std::optional<Binding> from_alarm_table() {
+    const auto there = [&](const AlarmSpec& row) {
+      return r_.id(r_.profile.fault_words[row.word], slot_) != kNoObject;
+    };
+    if (!std::any_of(r_.profile.alarms.begin(), r_.profile.alarms.end(), there)) return std::nullopt;
+    Binding out;
+    out.quantity = Quantity::error_code;
+    out.limits = range_of(RegisterType::u16);
+    return out;
+  }
+
+  std::optional<Binding> compose(const QuantitySpec& spec, Binding out) {
+    const bool swaps = axis_.inverted && out.quantity == Quantity::digital_inputs;
+    for (const BitsSpec& field : spec.bits) {
+      const ObjectId object = r_.id(field.object, slot_);
+      if (object == kNoObject) continue;  // a bit the drive cannot give is 0
+      if (!swaps) {
+        out.bits.push_back({object, field.from, field.count, field.to, field.inverted});
+        continue;
+      }
+      for (std::uint8_t i = 0; i < field.count; ++i) {
+        const auto to = static_cast<std::uint8_t>(field.to + i);
+        const std::uint8_t swapped = to < 2 ? static_cast<std::uint8_t>(1 - to) : to;
+        out.bits.push_back({object, static_cast<std::uint8_t>(field.from + i), 1, swapped, field.inverted});
+      }
+    }
+    return out.bits.empty() ? std::nullopt : std::optional(std::move(out));
+  }
+
+  std::optional<Binding> scaled(const QuantityRow& row, const QuantitySpec& spec, const Object& object, Binding out) {
+    if (row.kind != Kind::code) {
+      const Unit& unit = r_.profile.units.find(spec.unit_of(object))->second;
+      std::optional<ScaleRecipe> recipe = r_.recipe(unit);
+      if (!recipe) return std::nullopt;  // not supported, never guessed
+      recipe->fixed = recipe->fixed * base_per_register(unit.base, axis_.units_per_rev);
+      if (axis_.inverted && is_directed(row)) recipe->fixed = recipe->fixed * Rational(-1);
+      out.scaled = !recipe->waits();
+      if (out.scaled)
+        out.raw_per_unit = recipe->fixed;
+      else
+        out.recipe = std::move(*recipe);
+    }
+    const ObjectDef& def = r_.model.object(out.object);
+    out.writable = row.writable && def.writable;
+    // What cannot be read back is no quantity, except where writing is all there is to it.
+    if (!out.writable && !def.readable) return std::nullopt;
+    if (row.quantity == Quantity::homing_method) translate(out);
+    if (row.writable) limit(row, spec, object, def, out);
+    if (!out.scaled) {
+      out.recipe.raw = intersection(object.numbers(), def.range());
+      out.recipe.allowed = out.limits;
+    }
+    return out;
+  }
+
+  /// A drive that numbers its homing methods otherwise: the register has CiA 402's.
+  void translate(Binding& out) const {
+    const auto& methods = r_.profile.homing.methods;
+    if (std::all_of(methods.begin(), methods.end(), [](const auto& row) { return row.first == row.second; })) return;
+    out.codes.assign(methods.begin(), methods.end());
+  }
+
+  void limit(const QuantityRow& row, const QuantitySpec& spec, const Object& object, const ObjectDef& def,
+             Binding& out) {
+    const Range raw = intersection(object.numbers(), def.range());
+    if (!out.codes.empty())
+      out.limits = {out.codes.front().first, out.codes.back().first};
+    else if (out.scaled)
+      out.limits = intersection(out.limits, registers_within(raw, out.raw_per_unit));
+    out.limits = intersection(out.limits, profile_limit(spec));
+    const AxisLimit own = axis_limit(axis_, row);
+    const Range allowed = intersection(out.limits, own.range);
+    if (allowed.min > allowed.max)
+      r_.fault("/axes/" + std::to_string(slot_) + "/limits/" + own.key,
+               "leaves no value for " + std::string(row.name) + ", which this drive takes from " +
+                   std::to_string(out.limits.min) + " to " + std::to_string(out.limits.max));
+    out.limits = allowed;
+  }
+
+  [[nodiscard]] Range profile_limit(const QuantitySpec& spec) const {
+    Range out{INT64_MIN, INT64_MAX};
+    const auto end = [&](const std::optional<Amount>& amount) -> std::optional<Rational> {
+      return amount ? in_registers(*amount, r_.constants, axis_.units_per_rev) : std::nullopt;
+    };
+    if (const auto low = end(spec.min)) out.min = rounded_up(*low);
+    if (const auto high = end(spec.max)) out.max = rounded_down(*high);
+    if (!axis_.inverted || !is_directed(row(spec.quantity))) return out;
+    return {out.max == INT64_MAX ? INT64_MIN : -out.max, out.min == INT64_MIN ? INT64_MAX : -out.min};
+  }
+
+  void add(Binding binding) {
+    model_.binding_of[static_cast<std::size_t>(binding.quantity)] = static_cast<std::int16_t>(model_.bindings.size());
+    model_.supported |= bit(binding.quantity);
+    if (binding.writable) model_.writable |= bit(binding.quantity);
+    model_.bindings.push_back(std::move(binding));
+  }
+
+  Resolving& r_;
+  bus::AxisSlot slot_;
+  const ResolveAxis& axis_;
+  AxisModel& model_;
+};
+
+}  // namespace
+
+void resolve_quantities(Resolving& resolving, bus::AxisSlot slot) { AxisQuantities(resolving, slot).run(); }
+
+}  // namespace axisgate::drive

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Objects that are not alone: several names for one place, fields of one frame, and what comes unasked.
+#include <algorithm>
+
+#include "gateway/profile/resolve/profile_resolving.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+bool at_one_place(const ObjectDef& a, const ObjectDef& b) {
+  return !a.emulated && !b.emulated && a.address == b.address && a.size == b.size;
+}
+
+void name_aliases(DriveModel& model) {
+  for (std::size_t i = 0; i < model.objects.size(); ++i)
+    for (std::size_t j = 0; j < model.objects.size(); ++j)
+      if (i != j && at_one_place(model.objects[i], model.objects[j]))
+        model.objects[i].aliases.push_back(static_cast<ObjectId>(j));
+}
+
+/// Of several names for one field, the set-point that its motor's mode follows.
+bool is_followed(const DriveModel& model, ObjectId id) {
+  const bus::AxisSlot slot = model.object(id).slot;
+  if (slot == bus::kNoAxis) return false;
+  const auto& bindings = model.axes[slot].bindings;
+  return std::any_of(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.object == id; });
+}
+
+/// Each field once: all enable bits in the order of the motors, and then all values.
+void list_composed(DriveModel& model) {
+  std::vector<ObjectId>& out = model.composed;
+  for (std::size_t i = 0; i < model.objects.size(); ++i) {
+    const auto id = static_cast<ObjectId>(i);
+    if (!model.object(id).composed) continue;
+    const auto same = std::find_if(out.begin(), out.end(),
+                                   [&](ObjectId o) { return at_one_place(model.object(o), model.object(id)); });
+    if (same == out.end())
+      out.push_back(id);
+    else if (is_followed(model, id) && !is_followed(model, *same))
+      *same = id;
+  }
+  std::sort(out.begin(), out.end(), [&](ObjectId a, ObjectId b) {
+    const ObjectDef& left = model.object(a);
+    const ObjectDef& right = model.object(b);
+    if (left.turns_on != right.turns_on) return left.turns_on;
+    return left.address < right.address;
+  });
+}
+
+void list_unasked(Resolving& r) {
+  if (r.input.protocol == "keya-can")
+    r.model.unasked.every = r.profile.protocols.find(r.input.protocol)->second.heartbeat;
+  for (const Object& object : r.profile.objects) {
+    const auto place = object.places.find(r.input.protocol);
+    const auto id = r.ids.find(object.name);
+    if (place != object.places.end() && place->second.unasked && id != r.ids.end())
+      r.model.unasked.objects.push_back(id->second);
+  }
+}
+
+}  // namespace
+
+void resolve_together(Resolving& r) {
+  name_aliases(r.model);
+  list_composed(r.model);
+  list_unasked(r);
+}
+
+}  // namespace axisgate::drive

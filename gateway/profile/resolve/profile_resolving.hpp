@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the parts of resolve() share: the profile, the configured drive, the model being built and the faults found.
+// Promises that names become ids here and nowhere else.
+// Never decides what a quantity or a command means: the parts do.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/model/scale.hpp"
+#include "gateway/profile/resolve/profile_resolve.hpp"
+
+namespace axisgate::drive {
+
+class Resolving {
+ public:
+  Resolving(const Profile& loaded, const ResolveInput& configured) : profile(loaded), input(configured) {}
+
+  const Profile& profile;
+  const ResolveInput& input;
+  DriveModel model;
+  Constants constants;
+  std::vector<Fault> faults;
+
+  void fault(std::string pointer, std::string message) {
+    faults.push_back({"", std::move(pointer), std::move(message)});
+  }
+
+  // Each is absent where the protocol, or a constant nobody gave, leaves something out.
+  [[nodiscard]] ObjectId id(std::string_view name, bus::AxisSlot slot) const;
+  [[nodiscard]] std::optional<Condition> condition(const ConditionSpec& spec, bus::AxisSlot slot) const;
+  [[nodiscard]] std::optional<std::int64_t> raw(const std::vector<ValueSpec>& values, std::string_view object,
+                                                bus::AxisSlot slot) const;
+  [[nodiscard]] std::optional<ObjectWrite> write(const WriteSpec& spec, bus::AxisSlot slot) const;
+  [[nodiscard]] std::optional<FactoryWrite> factory_write(const WriteSpec& spec, bus::AxisSlot slot);
+  /// What a unit makes of a number, before the axis's own factors: known now, or once constants of the drive are.
+  [[nodiscard]] std::optional<ScaleRecipe> recipe(const Unit& unit);
+
+  /// The motor that an axis is, and the axis that a motor is (kNoAxis: none).
+  [[nodiscard]] bus::AxisSlot motor(bus::AxisSlot slot) const;
+  [[nodiscard]] bus::AxisSlot axis_of(bus::AxisSlot motor) const;
+  /// The mode that the maker's tool has given this axis's motor; none where the drive is simply told.
+  [[nodiscard]] std::optional<std::int16_t> configured_mode(bus::AxisSlot slot) const;
+  /// Whether the axis can have a mode, and follow a set-point in one of its modes.
+  [[nodiscard]] bool can_have(bus::AxisSlot slot, std::int16_t mode) const;
+  [[nodiscard]] bool can_follow(bus::AxisSlot slot, Quantity setpoint) const;
+
+  std::vector<bus::AxisSlot> motors;                 ///< of each axis: position in Profile::axes
+  std::map<std::string, ObjectId, std::less<>> ids;  ///< by full name
+
+ private:
+  [[nodiscard]] std::optional<std::size_t> drive_constant(const std::string& name);
+  [[nodiscard]] std::optional<DriveConstant::Operand> operand(const Factor& factor) const;
+};
+
+// The parts, in their order.
+void resolve_constants(Resolving& resolving);
+/// Which motor each axis is, and that its mode is known.
+void resolve_motors(Resolving& resolving);
+void resolve_objects(Resolving& resolving);
+/// After all axes: objects at one place, and what is sent or comes together.
+void resolve_together(Resolving& resolving);
+/// The objects that the gateway makes for a virtual axis.
+void make_objects(Resolving& resolving, bus::AxisSlot slot);
+/// Bindings and limits of the axis at `slot`.
+void resolve_quantities(Resolving& resolving, bus::AxisSlot slot);
+/// How its state is known, its modes and its homing.
+void resolve_state(Resolving& resolving, bus::AxisSlot slot);
+void resolve_modes(Resolving& resolving, bus::AxisSlot slot);
+void resolve_commands(Resolving& resolving, bus::AxisSlot slot);
+void resolve_drive(Resolving& resolving);
+/// After the setup list, which it adds to.
+void resolve_canopen(Resolving& resolving, const ProtocolSpec& protocol);
+
+}  // namespace axisgate::drive

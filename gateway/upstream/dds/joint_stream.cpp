@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/dds/joint_stream.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace axisgate::dds {
+
+JointView joint_view(const AxisImage& axis, double position, double tolerance, ClientId client) {
+  JointView view;
+  const bool moves = axis.axis_state == AxisState::standstill || axis.axis_state == AxisState::discrete_motion ||
+                     axis.axis_state == AxisState::continuous_motion;
+  view.ready = axis.reachable() && moves && axis.has(AxisInput::enabled) && !axis.has(AxisInput::fault) &&
+               !axis.has(AxisInput::stop_latched);
+  view.position = position;
+  view.tolerance = tolerance;
+  view.endings = axis.endings;
+  view.client = client;
+  return view;
+}
+
+void JointStream::begin_anew() {
+  in_step_.reset();
+  asked_.reset();
+  waiting_.reset();
+  told_astray_ = false;
+}
+
+void JointStream::look_for_endings(const JointView& axis) {
+  if (!axis.ready || (in_step_ && axis.endings.ended(since_, axis.client))) begin_anew();
+}
+
+// A velocity leads away from the position that the stream was at, so each way of control comes into step by itself.
+bool JointStream::in_step(const JointTarget& target, double position, const JointView& axis) {
+  if (in_step_ == target.is_velocity) return true;
+  if (!axis.ready) return false;
+  const bool there =
+      target.is_velocity ? target.value == 0 : std::fabs(position - axis.position) <= axis.tolerance;  // NaN: no
+  if (!there) {
+    astray_ = !std::exchange(told_astray_, true);
+    return false;
+  }
+  in_step_ = target.is_velocity;
+  since_ = axis.endings.now();
+  asked_.reset();
+  waiting_.reset();
+  told_astray_ = false;
+  return true;
+}
+
+JointTarget JointStream::ask(const JointTarget& target) {
+  busy_ = true;
+  asked_ = target;
+  waiting_.reset();
+  return target;
+}
+
+std::optional<JointTarget> JointStream::on_sample(const Guid& writer, const JointTarget& target, double position,
+                                                  const JointView& axis) {
+  astray_ = false;
+  if (writer != writer_) begin_anew();
+  writer_ = writer;
+  look_for_endings(axis);
+  if (!in_step(target, position, axis)) return std::nullopt;
+  if (busy_) {
+    waiting_ = target;
+    return std::nullopt;
+  }
+  if (asked_ == target) return std::nullopt;
+  return ask(target);
+}
+
+std::optional<JointTarget> JointStream::on_result(Errc code, const JointView& axis) {
+  busy_ = false;
+  // What the axis cannot do is not asked again and again; what had no room or no answer may be, by a newer sample.
+  if (code != Errc::ok && code != Errc::bad_value) asked_.reset();
+  if (code == Errc::not_owner) begin_anew();
+  look_for_endings(axis);
+  const auto next = std::exchange(waiting_, std::nullopt);
+  if (!next || next == asked_) return std::nullopt;
+  return ask(*next);
+}
+
+bool JointStream::take_astray() { return std::exchange(astray_, false); }
+
+}  // namespace axisgate::dds

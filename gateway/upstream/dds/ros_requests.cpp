@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/dds/ros_requests.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "gateway/image/register_map.hpp"
+#include "gateway/image/shown.hpp"
+#include "gateway/upstream/dds/dds_session.hpp"
+#include "gateway/upstream/dds_link/ros_names.hpp"
+
+namespace axisgate::dds {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kTooOld =
+    "ros2: a sample is older than max_age_ms, or as far ahead of this clock: it is no sign of life, and starts nothing";
+constexpr Duration kToldAgainAfter = std::chrono::minutes(1);
+
+/// Why a sample cannot be meant as it stands; empty: it can.
+std::string wrong_with(const JointCommandsRecord& record) {
+  const std::size_t joints = record.names.size();
+  if (joints > kMaxJoints) return fmt::format("it names more than {} joints", kMaxJoints);
+  const auto fits = [&](std::size_t count) { return count == 0 || count == joints; };
+  if (!fits(record.positions.size()) || !fits(record.velocities.size()) || !fits(record.efforts)) {
+    return fmt::format(
+        "it names {} joints, with {} positions, {} velocities and {} efforts: each list has as many numbers as there "
+        "are names, or none (give all joints the same command interfaces)",
+        joints, record.positions.size(), record.velocities.size(), record.efforts);
+  }
+  const auto infinite = [](double value) { return std::isinf(value); };
+  if (std::any_of(record.positions.begin(), record.positions.end(), infinite) ||
+      std::any_of(record.velocities.begin(), record.velocities.end(), infinite))
+    return "a number in it is infinite";
+  std::set<std::string_view> seen;
+  for (const std::string& name : record.names)
+    if (!name.empty() && !seen.insert(name).second) return fmt::format("it names {} twice", name);
+  return {};
+}
+
+Command command_of(RosAction action) {
+  switch (action) {
+    case RosAction::enable:
+      return Command::enable;
+    case RosAction::disable:
+      return Command::disable;
+    case RosAction::quick_stop:
+      return Command::quick_stop;
+    case RosAction::fault_reset:
+      return Command::fault_reset;
+    case RosAction::home:
+      return Command::home;
+  }
+  return Command::none;
+}
+
+}  // namespace
+
+RosRequests::RosRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image,
+                         CommandPort& commands, const SignsOfLife& signs, const Namesakes& namesakes, TellLine tell)
+    : settings_(settings),
+      units_(units),
+      image_(image),
+      commands_(commands),
+      signs_(signs),
+      namesakes_(namesakes),
+      tell_(std::move(tell)) {}
+
+RosRequests::Joint& RosRequests::joint_of(AxisNumber axis) {
+  Joint& joint = joints_[axis];
+  if (joint.life == nullptr) {
+    joint.life = std::make_shared<ClientLife>();
+    joint.life->id = kFirstRosClient + axis;
+    joint.life->role = settings_.role;
+    // No participant has this GUID prefix: nobody is of the same hand.
+    joint.life->origin = {'r', 'o', 's', '2', static_cast<std::uint8_t>(axis >> 8U), static_cast<std::uint8_t>(axis)};
+    joint.life->name = "ros2";
+    joint.life->strength = 0;
+  }
+  return joint;
+}
+
+const DdsUnits& RosRequests::units_of(AxisNumber axis) const {
+  static const DdsUnits kUsual;
+  const auto found = units_.find(axis);
+  return found == units_.end() ? kUsual : found->second;
+}
+
+JointView RosRequests::view_of(const AxisImage& axis, const Joint& joint) const {
+  const bool good = axis[Quantity::position_actual].valid;
+  const double position =
+      units_of(axis.number).to_si(Quantity::position_actual, shown_value(axis, Quantity::position_actual));
+  // An angle of the motor: on an axis in metres, the way that it is there.
+  const double tolerance = settings_.sync_tolerance / kTwoPi.high * units_of(axis.number).turn();
+  return joint_view(axis, good ? position : kNan, tolerance, joint.life->id);
+}
+
+std::map<std::string_view, const AxisImage*> RosRequests::axes_by_name() const {
+  std::map<std::string_view, const AxisImage*> out;
+  for (const auto& axis : image_.axes()) out.emplace(axis->name, axis.get());
+  return out;
+}
+
+WriteBatch RosRequests::new_batch(const Joint& joint) const {
+  WriteBatch batch;
+  batch.client = joint.life->id;
+  batch.role = joint.life->role;
+  batch.life = joint.life;
+  batch.is_write = true;
+  batch.beats = true;
+  batch.start_by = joint.newest + settings_.start_deadline;
+  batch.answer_by = joint.newest + settings_.reply_deadline;
+  return batch;
+}
+
+void RosRequests::heard(Joint& joint, Instant now) {
+  joint.newest = now;
+  joint.life->last_request = now;
+  joint.life->heartbeat = now;
+  joint.life->grace = Duration{};
+}
+
+void RosRequests::on_link_down() {
+  for (auto& [axis, joint] : joints_) joint.life->grace = kGrace;
+}
+
+void RosRequests::complain(const std::string& line, Instant now) {
+  const auto told = complaints_.find(line);
+  if (!tell_ || (told != complaints_.end() && now - told->second < kToldAgainAfter) || !lines_.takes(now)) return;
+  if (complaints_.size() >= kMaxComplaints) complaints_.clear();
+  complaints_[line] = now;
+  tell_(line + left_out_text(lines_.left_out()));
+}
+
+// --- joint_commands --------------------------------------------------------------------------------------------------
+
+void RosRequests::on_joint_commands(const JointCommandsRecord& record, Instant now) {
+  if (!settings_.commands || settings_.role < Role::operator_) return;
+  if (!signs_.fresh(record.written, now)) return complain(kTooOld, now);
+  if (const std::string wrong = wrong_with(record); !wrong.empty())
+    return complain("a sample of joint_commands is refused as a whole: " + wrong, now);
+  const auto axes = axes_by_name();
+  for (std::size_t i = 0; i < record.names.size(); ++i) {
+    const auto axis = axes.find(record.names[i]);
+    if (axis == axes.end()) {
+      complain(fmt::format("joint_commands names '{}', and there is no axis of this name: its numbers are left out",
+                           record.names[i]),
+               now);
+      continue;
+    }
+    const auto number = [&](const std::vector<double>& from) { return i < from.size() ? from[i] : kNan; };
+    take_target(*axis->second, number(record.positions), number(record.velocities), record.writer, now);
+  }
+}
+
+void RosRequests::take_target(const AxisImage& axis, double position, double velocity, const Guid& writer,
+                              Instant now) {
+  const bool is_velocity = std::isnan(position);
+  if (is_velocity && std::isnan(velocity)) return;  // it leaves this axis alone, and is no sign of life for it
+  Joint& joint = joint_of(axis.number);
+  heard(joint, now);
+  const auto value = units_of(axis.number)
+                         .to_register(is_velocity ? Quantity::target_velocity : Quantity::target_position,
+                                      is_velocity ? velocity : position);
+  if (!value) {
+    return complain(fmt::format("joint_commands asks {} for {:.6g}, which no register holds", axis.name,
+                                is_velocity ? velocity : position),
+                    now);
+  }
+  JointView view = view_of(axis, joint);
+  if (namesakes_.taken()) view.ready = false;
+  const auto target = joint.stream.on_sample(writer, {is_velocity, *value}, position, view);
+  if (joint.stream.take_astray()) {
+    complain(is_velocity
+                 ? fmt::format("joint_commands asks {} for the velocity {:.6g}: it acts once it was 0 (the axis was "
+                               "enabled or stopped, or another node writes)",
+                               axis.name, velocity)
+                 : fmt::format("joint_commands asks {} for {:.6g}, and it is at {:.6g}: positions act once they were "
+                               "within {:.3g} of the axis (sync_tolerance)",
+                               axis.name, position, view.position, view.tolerance),
+             now);
+  }
+  if (target) return ask(axis.number, target);
+  // Nothing is asked of it anew, but its owner writes all the same.
+  if (axis.lease.owned_by(joint.life->id) && axis.lease.rules.renew == LeaseRenewal::write)
+    submit_alone(axis.number, new_batch(joint));
+}
+
+WriteBatch RosRequests::batch_of(const AxisImage& axis, const Joint& joint, const JointTarget& target) const {
+  constexpr std::uint16_t kVelocityRuns = 1U << 7U;
+  WriteBatch batch = new_batch(joint);
+  batch.claims = true;
+  batch.setpoints.push_back({target.is_velocity ? Quantity::target_velocity : Quantity::target_position, target.value});
+  // While it runs, a new velocity acts by itself.
+  const bool runs = target.is_velocity && (shown_level_coils(axis) & kVelocityRuns) != 0;
+  if (!runs) batch.command = target.is_velocity ? Command::run_velocity : Command::move_absolute;
+  return batch;
+}
+
+// Until one waits for the drive: the callback goes on from there.
+void RosRequests::ask(AxisNumber number, std::optional<JointTarget> target) {
+  while (target) {
+    const AxisImage* const axis = image_.find(number);
+    if (axis == nullptr) return;
+    Joint& joint = joint_of(number);
+    const auto at_once = commands_.submit(
+        number, batch_of(*axis, joint, *target), [self = std::weak_ptr(self_), number](const BatchResult& result) {
+          const auto here = self.lock();
+          if (here == nullptr) return;
+          const AxisImage* const there = here->image_.find(number);
+          if (there == nullptr) {
+            here->joints_.erase(number);
+            return;
+          }
+          Joint& asked = here->joint_of(number);
+          here->ask(number, asked.stream.on_result(result.outcome.code, here->view_of(*there, asked)));
+        });
+    if (!at_once) return;
+    target = joint.stream.on_result(at_once->outcome.code, view_of(*axis, joint));
+  }
+}
+
+void RosRequests::submit_alone(AxisNumber axis, const WriteBatch& batch) {
+  static_cast<void>(commands_.submit(axis, batch, [](const BatchResult&) {}));
+}
+
+// --- The topics of one axis ------------------------------------------------------------------------------------------
+
+void RosRequests::on_action(const RosActionRecord& record, Instant now) {
+  const Command command = command_of(RosAction{record.action});
+  const AxisImage* const axis = image_.find(record.axis);
+  if (!settings_.commands || settings_.role < Role::operator_ || axis == nullptr || command == Command::none) return;
+  if (!supports(command, axis->supported_commands))
+    return complain(fmt::format("ros2: {} of {}: this drive cannot do it", text(command), axis->name), now);
+  const bool starts = command == Command::enable || command == Command::home;
+  if (!is_stop(command) && !signs_.fresh(record.written, now)) return complain(kTooOld, now);
+  if (starts && namesakes_.taken())
+    return complain(
+        fmt::format("ros2: {} of {} is refused: {} has our name", text(command), axis->name, namesakes_.text()), now);
+  Joint& joint = joint_of(record.axis);
+  heard(joint, now);
+  if (!is_stop(command)) joint.stream.begin_anew();
+  WriteBatch batch = new_batch(joint);
+  batch.command = command;
+  batch.claims = !is_stop(command);
+  submit_alone(record.axis, batch);
+}
+
+}  // namespace axisgate::dds

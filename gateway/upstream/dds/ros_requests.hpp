@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// What ROS 2 nodes ask of axes by topics: joint_commands for all of them, and enable, quick_stop, fault_reset and home
+// of each (design 4). Promises that each axis has one client for all nodes, whose lease a sample that names a target
+// for the axis renews, so that silence ends it; that a sample which cannot be meant as it stands is refused whole; that
+// nothing but the topic enable enables. Never replies: what is refused is an event or a line of the log.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "gateway/core/line_bucket.hpp"
+#include "gateway/image/command_port.hpp"
+#include "gateway/image/process_image.hpp"
+#include "gateway/upstream/dds/dds_requests.hpp"
+#include "gateway/upstream/dds/joint_stream.hpp"
+#include "gateway/upstream/dds/namesakes.hpp"
+#include "gateway/upstream/dds/signs_of_life.hpp"
+
+namespace axisgate::dds {
+
+/// Ids of these clients: above those of Modbus clients and of DDS writers.
+inline constexpr ClientId kFirstRosClient = kFirstDdsClient + (ClientId{1} << 62U);
+
+/// Complaints that are remembered, so that a stream does not fill the log with one of them.
+inline constexpr std::size_t kMaxComplaints = 64;
+
+class RosRequests {
+ public:
+  /// `tell`: a line for the log, of what is refused here.
+  RosRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image, CommandPort& commands,
+              const SignsOfLife& signs, const Namesakes& namesakes, TellLine tell);
+  RosRequests(const RosRequests&) = delete;
+  RosRequests& operator=(const RosRequests&) = delete;
+
+  void on_joint_commands(const JointCommandsRecord& record, Instant now);
+  void on_action(const RosActionRecord& record, Instant now);
+  /// Nobody can hear these clients for as long as axisgate-dds is away: their leases get their grace.
+  void on_link_down();
+
+ private:
+  struct Joint {
+    std::shared_ptr<ClientLife> life{};
+    JointStream stream{};
+    Instant newest = kLongAgo;  ///< when the newest sample for this axis came
+  };
+  [[nodiscard]] Joint& joint_of(AxisNumber axis);
+  [[nodiscard]] const DdsUnits& units_of(AxisNumber axis) const;
+  [[nodiscard]] JointView view_of(const AxisImage& axis, const Joint& joint) const;
+  [[nodiscard]] std::map<std::string_view, const AxisImage*> axes_by_name() const;
+  [[nodiscard]] WriteBatch new_batch(const Joint& joint) const;
+  void heard(Joint& joint, Instant now);
+  void take_target(const AxisImage& axis, double position, double velocity, const Guid& writer, Instant now);
+  void ask(AxisNumber axis, std::optional<JointTarget> target);
+  [[nodiscard]] WriteBatch batch_of(const AxisImage& axis, const Joint& joint, const JointTarget& target) const;
+  /// What its axis says of it is an event.
+  void submit_alone(AxisNumber axis, const WriteBatch& batch);
+  /// The same complaint again and again is one line a minute.
+  void complain(const std::string& line, Instant now);
+
+  const DdsSettings& settings_;
+  const UnitsOfAxes& units_;
+  const ProcessImage& image_;
+  CommandPort& commands_;
+  const SignsOfLife& signs_;
+  const Namesakes& namesakes_;
+  TellLine tell_;
+  LineBucket lines_;
+  std::map<std::string, Instant> complaints_;  ///< when each was told last; at most kMaxComplaints
+  std::map<AxisNumber, Joint> joints_;
+  /// Callbacks hold it weakly: they may come when this is gone.
+  std::shared_ptr<RosRequests> self_{this, [](RosRequests*) {}};
+};
+
+}  // namespace axisgate::dds

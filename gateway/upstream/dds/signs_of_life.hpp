@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What counts as a sign of life of a DDS client (design 4): the one place that says so.
+// Promises that what was written too long ago is none, and that a library which goes on for a program that hangs is
+// believed nothing. Never knows which axes a client owns.
+#pragma once
+
+#include <optional>
+
+#include "gateway/core/clock.hpp"
+#include "gateway/upstream/dds_link/records.hpp"
+
+namespace axisgate::dds {
+
+class SignsOfLife {
+ public:
+  /// `max_age`: none: a sample's age is not looked at.
+  explicit SignsOfLife(std::optional<Duration> max_age) : max_age_(max_age) {}
+
+  /// A sample that was written then: it is neither too old, nor from as far ahead, nor without a time.
+  [[nodiscard]] bool fresh(SteadyNs written, Instant now) const;
+  /// Of the writer `heartbeat.client`, whose last counter was this one: only one that has changed counts, from the
+  /// client's own participant.
+  [[nodiscard]] bool counts(const HeartbeatRecord& heartbeat, std::optional<std::uint32_t> last, Instant now) const;
+
+ private:
+  std::optional<Duration> max_age_;
+};
+
+/// What is to be told of a writer whose liveliness counts for nothing; empty: nothing.
+[[nodiscard]] std::string told_of_liveliness(LivelinessKind kind);
+
+}  // namespace axisgate::dds

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// DDSI-RTPS GUIDs, as far as the gateway reads them.
+// Promises the one place that knows which bytes are the participant's.
+// Never knows a DDS type.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace axisgate::dds {
+
+/// GUID of a DataWriter: 12 bytes of its participant's prefix, 4 of the entity id (DDSI-RTPS 2.2, 9.3.1).
+using Guid = std::array<std::uint8_t, 16>;
+inline constexpr std::size_t kGuidPrefix = 12;
+
+[[nodiscard]] inline bool same_participant(const Guid& a, const Guid& b) {
+  return std::equal(a.begin(), a.begin() + kGuidPrefix, b.begin());
+}
+
+}  // namespace axisgate::dds

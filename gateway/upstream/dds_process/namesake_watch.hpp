@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Other participants that publish states of axes under our gateway's key: found by what their writers say of
+// themselves, believed once a state of theirs was heard. Promises each axis of each such writer once, and its end once.
+// Never takes our own writer for another's, nor one of which nothing is heard: that of our own former process, which a
+// discovery server still knows.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "gateway/upstream/dds_link/records.hpp"
+
+namespace axisgate::dds {
+
+inline constexpr std::size_t kMaxNamesakesKnown = 64;
+
+/// What a gateway's writer of states says in its user data, for others of its key to know it by.
+[[nodiscard]] std::vector<std::uint8_t> gateway_user_data(std::uint32_t key);
+
+class NamesakeWatch {
+ public:
+  explicit NamesakeWatch(std::uint32_t key) : key_(key) {}
+
+  // From any thread.
+  void on_discovered(const Guid& writer, const std::vector<std::uint8_t>& user_data, const std::string& where);
+  void on_removed(const Guid& writer);
+
+  /// A state of that writer was read.
+  void on_state(const Guid& writer, std::uint32_t key, std::uint16_t axis);
+  /// Somebody of our key is there, though perhaps silent: states are to be read.
+  [[nodiscard]] bool any() const;
+  /// To be told since the last call.
+  [[nodiscard]] std::vector<NamesakeRecord> take();
+
+ private:
+  struct Other {
+    std::string where{};
+    std::set<std::uint16_t> axes{};  ///< heard of, and told
+  };
+  const std::uint32_t key_;
+  mutable std::mutex mutex_;
+  std::map<Guid, Other> others_;
+  std::vector<NamesakeRecord> changes_;
+};
+
+}  // namespace axisgate::dds

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/modbus_tcp/session/pipeline.hpp"
+
+#include <cassert>
+#include <string>
+#include <utility>
+
+#include "gateway/core/words.hpp"
+#include "gateway/upstream/modbus_tcp/read/reads.hpp"
+#include "gateway/upstream/modbus_tcp/read/references.hpp"
+#include "gateway/upstream/modbus_tcp/session/device_identification.hpp"
+
+namespace axisgate::modbus_tcp {
+namespace {
+
+constexpr Byte kExceptionBit = 0x80;  // V1.1b3 section 7
+
+/// What is carried out by the command port, or may be; all else is answered from the image.
+bool is_carried_out(const Request& request) { return request.writes() || request.reference.has_value(); }
+
+/// "writes": "posted": what range, role, owner and queue checks found is the answer; what became of the write otherwise
+/// is told by registers 25, 26 and 30, so that FC 23 never loses its read to a link.
+bool found_by_checks(Errc code) {
+  return command_result(code) == CommandResult::none || code == Errc::not_owner || code == Errc::not_new;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const SessionContext& context, Role role, std::shared_ptr<Client> client, Emit emit,
+                   OnResult on_result)
+    : context_(context),
+      role_(role),
+      client_(std::move(client)),
+      emit_(std::move(emit)),
+      on_result_(std::move(on_result)) {}
+
+Pipeline::~Pipeline() { abandon(); }
+
+Onlooker Pipeline::onlooker(Instant now) const {
+  return {context_.image, context_.commands, context_.settings, *client_, role_, now};
+}
+
+void Pipeline::accept(const Frame& frame, Instant now) {
+  assert(entries_.size() < kMaxPipelined);
+  ++context_.clients.counters.messages;
+  const auto view = UnitView::of(frame.unit, context_.settings, context_.image);
+  std::variant<Request, ModbusException> decoded = decode_request(frame.pdu);
+  Request* const request = std::get_if<Request>(&decoded);
+  // A client that is an address has programs that only look: their reads are no sign of the one that commands.
+  const bool writes = request != nullptr && (request->writes() || (request->reference && request->reference->write));
+  if (writes || !context_.settings.client_is_address) client_->life->last_request = now;
+  on_deadline(now);
+  // The common case, and the only one that must be quick: a read with nothing before it.
+  if (entries_.empty() && view && request != nullptr && !is_carried_out(*request)) {
+    return send(frame.transaction, frame.unit, answer(*request, *view, now));
+  }
+  Entry& entry = entries_.emplace_back();
+  entry.number = ++last_number_;
+  entry.transaction = frame.transaction;
+  entry.unit = frame.unit;
+  entry.view = view;
+  if (!view) {
+    entry.reply = exception_pdu(frame.pdu[0], ModbusException::gateway_path_unavailable);
+  } else if (request == nullptr) {
+    entry.reply = exception_pdu(frame.pdu[0], std::get<ModbusException>(decoded));
+  } else {
+    entry.stage = is_carried_out(*request) ? Stage::waiting : Stage::at_turn;
+    entry.request = *request;
+  }
+  const bool is_write = writes || (request == nullptr && is_write_function(frame.pdu[0]));
+  if (context_.settings.staged_halves && is_write) stage_half(entry, now);
+  start_ready(now);
+  flush(now);
+}
+
+/// A first half is answered as written, and waits; with the second one the row is written whole. Any other write, also
+/// one that is refused, drops a half that waits.
+void Pipeline::stage_half(Entry& entry, Instant now) {
+  const auto half = entry.view ? half_write(entry.request, *entry.view, context_.image) : std::nullopt;
+  if (!half) return drop_half("another write came between");
+  const auto other = half_.take_other(*half);
+  if (!other) drop_half("another write came between");
+  const Request whole = whole_write(*half, other ? other->word : std::uint16_t{0});
+  if (!other) {
+    if (const Errc wrong = check_row(whole, *entry.view, onlooker(now)); wrong != Errc::ok) {
+      tell_refused(entry, {wrong}, now);
+      return finish(entry, {wrong, 0});
+    }
+    half_.keep(*half, now);
+  }
+  entry.reply = write_reply(entry.request);
+  entry.stage = other ? Stage::waiting : Stage::answered;
+  entry.halves = true;
+  if (!other) return;
+  entry.request = whole;
+  note_whole_row(client_->at(half->axis));
+}
+
+void Pipeline::on_deadline(Instant now) {
+  if (half_.until() <= now) drop_half("the other half did not come within a second");
+}
+
+void Pipeline::drop_half(const char* why) {
+  if (const auto half = half_.take()) tell_dropped_half(half->axis, half->row, why, *client_, context_.log);
+}
+
+/// FC 22 masks the value at the moment it is carried out, so what this connection has under way must have ended first.
+bool Pipeline::must_wait(std::size_t position) const {
+  if (entries_[position].request.function != Function::mask_write_register) return false;
+  for (std::size_t i = 0; i < position; ++i)
+    if (entries_[i].is_running_write()) return true;
+  return false;
+}
+
+/// On arrival, all that can be; behind a request that has to wait only stops, so that writes keep their order.
+void Pipeline::start_ready(Instant now) {
+  bool held_back = false;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    Entry& entry = entries_[i];
+    if (entry.stage != Stage::waiting) continue;
+    const bool stop = asks_for_a_stop(entry.request, *entry.view, context_.image);
+    if (!stop && (held_back || must_wait(i))) {
+      held_back = true;
+      continue;
+    }
+    if (stop && held_back) drop_waiting_before(i);
+    start(entry, now);
+  }
+}
+
+/// What the client asked for before it asked to stop must not be carried out after the stop.
+void Pipeline::drop_waiting_before(std::size_t stop) {
+  const AxisNumber axis = written_axis(entries_[stop]);
+  for (std::size_t i = 0; i < stop; ++i) {
+    Entry& entry = entries_[i];
+    if (entry.stage == Stage::waiting && written_axis(entry) == axis) {
+      finish(entry, {Errc::dropped_by_stop, 0});
+    }
+  }
+}
+
+AxisNumber Pipeline::written_axis(const Entry& entry) const {
+  return entry.request.reference ? axis_of_object_write(entry.request, *entry.view, context_.image)
+                                 : axis_of_write(entry.request, *entry.view, context_.image);
+}
+
+void Pipeline::start(Entry& entry, Instant now) {
+  if (entry.request.reference) return start_object(entry, now);
+  Planned planned = plan_write(entry.request, *entry.view, onlooker(now), *client_);
+  if (const Refused* const refused = std::get_if<Refused>(&planned)) {
+    tell_refused(entry, *refused, now);
+    return finish(entry, {refused->code, 0});
+  }
+  entry.run = std::make_shared<WriteRun>(context_.commands, client_, std::get<WritePlan>(std::move(planned)), now,
+                                         context_.settings, context_.log);
+  entry.stage = Stage::running;
+  const bool posted = context_.settings.posted_writes;
+  WriteRun::OnDone on_done;
+  if (!posted) on_done = [this, number = entry.number](const Outcome& outcome) { on_result_(number, outcome); };
+  const std::optional<Outcome> at_once = entry.run->start(std::move(on_done));
+  if (posted) {
+    finish(entry, at_once && found_by_checks(at_once->code) ? *at_once : Outcome{});
+  } else if (at_once) {
+    finish(entry, *at_once);
+  }
+}
+
+/// The outcome table's "command_result 0": no older result may be taken for this write's.
+void Pipeline::tell_refused(const Entry& entry, const Refused& refused, Instant now) {
+  const AxisNumber axis = axis_of_write(entry.request, *entry.view, context_.image);
+  if (axis == 0 || !refused.row)
+    log_refused_write(block_write(entry.request, axis), {refused.code}, *client_, now, context_.log);
+  if (axis == 0) return;
+  ClientAxis& own = client_->at(axis);
+  if (refused.row) {
+    show_refused(own, *refused.row);
+    return log_refused(block_write(entry.request, axis), {*refused.row, refused.code}, *client_, context_.log);
+  }
+  own.used = true;
+  own.result = {};
+  ++own.submission;
+}
+
+/// "writes": "posted" changes nothing here: the reply is the only place that tells how it ended.
+void Pipeline::start_object(Entry& entry, Instant now) {
+  const ReferencePlan plan = plan_reference(entry.request, *entry.view, onlooker(now), *client_);
+  if (plan.refused != Errc::ok) {
+    const GeneralReference& reference = *entry.request.reference;
+    if (reference.write) log_refused_object(reference, {plan.refused}, *client_, now, context_.log);
+    return refuse(entry, modbus_exception(plan.refused));
+  }
+  entry.object_axis = plan.axis;
+  entry.stage = Stage::at_turn;
+  if (!plan.batch) return;
+  entry.object_run = std::make_shared<ObjectRun>(client_, plan.axis);
+  entry.stage = Stage::running;
+  const auto at_once =
+      entry.object_run->start(context_.commands, *plan.batch, [this, number = entry.number](const BatchResult& result) {
+        for (Entry& each : entries_)
+          if (each.number == number) finish_object(each, result);
+        on_result_(number, result.outcome);
+      });
+  if (at_once) finish_object(entry, *at_once);
+}
+
+/// Its reply, and what it does to the client's buffers, come at its turn.
+void Pipeline::finish_object(Entry& entry, const BatchResult& result) {
+  entry.object_run = nullptr;
+  entry.object_result = result;
+  entry.stage = Stage::at_turn;
+  log_failure(entry.request, result.outcome);
+}
+
+void Pipeline::finish(Entry& entry, const Outcome& outcome) {
+  entry.run = nullptr;
+  log_failure(entry.request, outcome);
+  if (outcome.code == Errc::not_new) log_not_new(entry);
+  if (outcome.code != Errc::ok) return refuse(entry, modbus_exception(outcome.code));
+  if (entry.request.reads()) {
+    entry.stage = Stage::at_turn;
+    return;
+  }
+  entry.stage = Stage::answered;
+  if (!entry.halves) entry.reply = write_reply(entry.request);
+}
+
+void Pipeline::log_failure(const Request& request, const Outcome& outcome) const {
+  if (outcome.code == Errc::ok || !context_.log.wants(LogLevel::debug)) return;
+  const auto& reference = request.reference;
+  const std::string what = reference ? "object " + hex_text({reference->head.data(), reference->head.size()})
+                                     : "write to " + std::to_string(request.write_address);
+  context_.log.write(LogLevel::debug, "modbus", client_->life->name + ": " + what + " ended: " + modbus_text(outcome));
+}
+
+void Pipeline::log_exception(const Pdu& reply) const {
+  if (!context_.log.wants(LogLevel::debug)) return;
+  const Byte function = reply[0] & static_cast<Byte>(~kExceptionBit);
+  const auto word = name_of(WordKind::exception, reply[1]);
+  context_.log.write(LogLevel::debug, "modbus",
+                     client_->life->name + ": function 0x" + hex_text({&function, 1}) +
+                         " is answered with exception 0x" + hex_text({&reply[1], 1}) + " " + std::string(word));
+}
+
+/// Once, until something of this client's acts again: a tool in a loop must not fill the log.
+void Pipeline::log_not_new(const Entry& entry) {
+  const AxisNumber axis = axis_of_write(entry.request, *entry.view, context_.image);
+  if (axis == 0) return;
+  ClientAxis& own = client_->at(axis);
+  if (own.told_not_new) return;
+  own.told_not_new = true;
+  context_.log.write(LogLevel::info, "modbus",
+                     client_->life->name + ": a write to " + std::to_string(entry.request.write_address) + " (axis " +
+                         std::to_string(axis) + ") is not new and does nothing: write 0 first");
+}
+
+void Pipeline::refuse(Entry& entry, ModbusException exception) {
+  entry.stage = Stage::answered;
+  entry.reply = exception_pdu(static_cast<Byte>(entry.request.function), exception);
+}
+
+void Pipeline::conclude(std::uint64_t number, const Outcome& outcome, Instant now) {
+  for (Entry& entry : entries_) {
+    if (entry.number != number) continue;
+    if (entry.stage == Stage::running) finish(entry, outcome);
+    start_ready(now);
+    return flush(now);
+  }
+}
+
+void Pipeline::flush(Instant now) {
+  while (!entries_.empty() && entries_.front().stage >= Stage::at_turn) {
+    Entry& first = entries_.front();
+    if (first.stage == Stage::at_turn) first.reply = answer(first, now);
+    send(first.transaction, first.unit, first.reply);
+    entries_.pop_front();
+  }
+}
+
+Pdu Pipeline::answer(const Entry& entry, Instant now) const {
+  return entry.request.reference
+             ? answer_reference(entry.request, entry.object_axis, entry.object_result, *client_, now)
+             : answer(entry.request, *entry.view, now);
+}
+
+Pdu Pipeline::answer(const Request& request, const UnitView& view, Instant now) const {
+  if (request.reads()) return answer_read(request, view, onlooker(now));
+  if (request.function == Function::diagnostics) {
+    return answer_diagnostics(request, role_, context_.clients.counters);
+  }
+  if (role_ < Role::viewer) {
+    return exception_pdu(static_cast<Byte>(request.function), ModbusException::illegal_function);
+  }
+  return answer_identification(request, identification_objects(context_.image, context_.settings));
+}
+
+void Pipeline::send(std::uint16_t transaction, std::uint8_t unit, const Pdu& reply) {
+  ++context_.clients.counters.server_messages;
+  if ((reply[0] & kExceptionBit) != 0) {
+    ++context_.clients.counters.exceptions;
+    log_exception(reply);
+  }
+  emit_(transaction, unit, reply);
+}
+
+void Pipeline::abandon() {
+  drop_half("its connection has ended");
+  context_.clients.counters.unanswered += static_cast<std::uint32_t>(entries_.size());
+  for (Entry& entry : entries_) {
+    if (entry.run != nullptr) entry.run->abandon();
+    if (entry.object_run != nullptr) entry.object_run->abandon();
+  }
+  entries_.clear();
+}
+
+}  // namespace axisgate::modbus_tcp

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/modbus_tcp/session/session.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
+#include "gateway/upstream/modbus_tcp/session/pipeline.hpp"
+
+namespace axisgate::modbus_tcp {
+namespace {
+
+std::shared_ptr<Client> join(const SessionContext& context, const Peer& peer, Instant now) {
+  auto connected = context.clients.connect(peer, context.settings.client_is_address, now);
+  if (connected.forgotten) context.commands.client_gone(*connected.forgotten);
+  return std::move(connected.client);
+}
+
+}  // namespace
+
+class Session::Impl {
+ public:
+  Impl(const SessionContext& context, const Peer& peer, Instant now, std::function<void()> on_output)
+      : context_(context),
+        client_(join(context, peer, now)),
+        on_output_(std::move(on_output)),
+        pipeline_(
+            context, peer.role, client_,
+            [this](std::uint16_t transaction, std::uint8_t unit, const Pdu& pdu) { put_reply(transaction, unit, pdu); },
+            [this](std::uint64_t number, const Outcome& outcome) { on_result(number, outcome); }),
+        now_(now),
+        active_at_(now) {}
+
+  void on_bytes(Bytes bytes, Instant now);
+  void on_deadline(Instant now);
+  void on_closed(Instant now);
+  void close() { on_closed(now_); }
+  void take_output(std::size_t bytes, Instant now);
+  [[nodiscard]] Bytes output() const { return Bytes(output_).subspan(taken_); }
+  [[nodiscard]] bool wants_input() const { return !over() && has_room() && output().empty(); }
+  [[nodiscard]] bool finished() const { return why_ != CloseReason::none && pipeline_.under_way() == 0; }
+  [[nodiscard]] CloseReason why_finished() const { return why_; }
+  [[nodiscard]] Instant next_deadline() const;
+  [[nodiscard]] ClientId client() const { return client_->id; }
+
+ private:
+  [[nodiscard]] bool over() const { return why_ != CloseReason::none || closed_; }
+  [[nodiscard]] bool has_room() const { return pipeline_.under_way() + replies_waiting_ < kMaxPipelined; }
+  void take_requests();
+  void put_reply(std::uint16_t transaction, std::uint8_t unit, const Pdu& pdu);
+  void on_result(std::uint64_t number, const Outcome& outcome);
+  [[nodiscard]] Instant part_deadline() const;
+  [[nodiscard]] Instant reply_deadline() const;
+  [[nodiscard]] Instant idle_deadline() const;
+
+  SessionContext context_;
+  std::shared_ptr<Client> client_;
+  std::function<void()> on_output_;
+  MbapFramer framer_;
+  Pipeline pipeline_;
+  std::vector<Byte> output_;
+  std::size_t taken_ = 0;            // bytes of output_
+  std::size_t replies_waiting_ = 0;  // replies put into output_ since it was last empty
+  Instant now_;                      // of the last call
+  Instant part_since_ = kNever;      // first byte of a request that is not whole yet
+  Instant reply_since_ = kNever;     // first byte of output_ that is not taken yet
+  Instant active_at_;                // last whole request, or last reply taken
+  CloseReason why_ = CloseReason::none;
+  bool closed_ = false;
+};
+
+void Session::Impl::on_bytes(Bytes bytes, Instant now) {
+  if (over()) return;
+  now_ = now;
+  framer_.push(bytes);
+  take_requests();
+}
+
+/// As many as there is room for; the rest stays with the framer until replies were taken.
+void Session::Impl::take_requests() {
+  Frame frame;
+  while (!over() && has_room()) {
+    const MbapFramer::Verdict verdict = framer_.next(frame);
+    if (verdict == MbapFramer::Verdict::need_more) {
+      if (framer_.kept() == 0)
+        part_since_ = kNever;
+      else if (part_since_ == kNever)
+        part_since_ = now_;
+      return;
+    }
+    part_since_ = kNever;
+    if (verdict == MbapFramer::Verdict::malformed) {
+      ++context_.clients.counters.malformed;
+      why_ = CloseReason::malformed;
+      return;
+    }
+    active_at_ = now_;
+    pipeline_.accept(frame, now_);
+  }
+  // What is kept now waits for us, not for the client.
+  part_since_ = kNever;
+}
+
+void Session::Impl::put_reply(std::uint16_t transaction, std::uint8_t unit, const Pdu& pdu) {
+  const std::size_t at = output_.size();
+  output_.resize(at + kMbapSize + pdu.size());
+  const auto head = std::span(output_).subspan(at);
+  store_be16(head, 0, transaction);
+  store_be16(head, 4, static_cast<std::uint16_t>(1 + pdu.size()));
+  head[6] = unit;
+  std::copy(pdu.begin(), pdu.end(), head.begin() + kMbapSize);
+  ++replies_waiting_;
+  if (reply_since_ == kNever) reply_since_ = now_;
+}
+
+void Session::Impl::on_result(std::uint64_t number, const Outcome& outcome) {
+  if (context_.runtime != nullptr) now_ = context_.runtime->now();
+  pipeline_.conclude(number, outcome, now_);
+  take_requests();
+  if (on_output_) on_output_();
+}
+
+void Session::Impl::take_output(std::size_t bytes, Instant now) {
+  assert(bytes <= output().size());
+  now_ = now;
+  taken_ += bytes;
+  if (taken_ < output_.size()) return;
+  output_.clear();
+  taken_ = 0;
+  replies_waiting_ = 0;
+  if (reply_since_ != kNever) active_at_ = now;
+  reply_since_ = kNever;
+  if (!closed_) take_requests();
+}
+
+Instant Session::Impl::part_deadline() const {
+  return part_since_ == kNever ? kNever : part_since_ + context_.settings.request_deadline;
+}
+
+Instant Session::Impl::reply_deadline() const {
+  return reply_since_ == kNever ? kNever : reply_since_ + context_.settings.request_deadline;
+}
+
+Instant Session::Impl::idle_deadline() const {
+  const bool busy = pipeline_.under_way() != 0 || !output().empty();
+  return busy || context_.settings.idle_timeout == Duration::zero() ? kNever
+                                                                    : active_at_ + context_.settings.idle_timeout;
+}
+
+Instant Session::Impl::next_deadline() const {
+  if (closed_) return kNever;
+  if (why_ != CloseReason::none) return reply_deadline();
+  return std::min({part_deadline(), reply_deadline(), idle_deadline(), pipeline_.next_deadline()});
+}
+
+void Session::Impl::on_deadline(Instant now) {
+  now_ = now;
+  if (closed_) return;
+  pipeline_.on_deadline(now);
+  if (reply_deadline() <= now) {
+    // A client that takes no replies gets no more of them either.
+    pipeline_.abandon();
+    output_.clear();
+    taken_ = 0;
+    reply_since_ = kNever;
+    if (why_ == CloseReason::none) why_ = CloseReason::reply_not_taken;
+  }
+  if (why_ != CloseReason::none) return;
+  if (part_deadline() <= now) {
+    why_ = CloseReason::request_incomplete;
+  } else if (idle_deadline() <= now) {
+    why_ = CloseReason::idle;
+  }
+}
+
+void Session::Impl::on_closed(Instant now) {
+  if (closed_) return;
+  closed_ = true;
+  now_ = now;
+  pipeline_.abandon();
+  if (const auto gone = context_.clients.disconnect(client_, now)) context_.commands.client_gone(*gone);
+}
+
+std::string_view text(CloseReason why) {
+  switch (why) {
+    case CloseReason::none:
+      return "closed by the client";
+    case CloseReason::malformed:
+      return "malformed frame";
+    case CloseReason::request_incomplete:
+      return "request not complete in time";
+    case CloseReason::reply_not_taken:
+      return "reply not taken in time";
+    case CloseReason::idle:
+      return "idle";
+  }
+  return {};
+}
+
+Session::Session(const SessionContext& context, const Peer& peer, Instant now, std::function<void()> on_output)
+    : impl_(std::make_unique<Impl>(context, peer, now, std::move(on_output))) {}
+Session::~Session() { impl_->close(); }
+void Session::on_bytes(Bytes bytes, Instant now) { impl_->on_bytes(bytes, now); }
+void Session::on_deadline(Instant now) { impl_->on_deadline(now); }
+void Session::on_closed(Instant now) { impl_->on_closed(now); }
+Bytes Session::output() const { return impl_->output(); }
+void Session::take_output(std::size_t bytes, Instant now) { impl_->take_output(bytes, now); }
+bool Session::wants_input() const { return impl_->wants_input(); }
+bool Session::finished() const { return impl_->finished(); }
+ClientId Session::client() const { return impl_->client(); }
+CloseReason Session::why_finished() const { return impl_->why_finished(); }
+Instant Session::next_deadline() const { return impl_->next_deadline(); }
+
+}  // namespace axisgate::modbus_tcp

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/modbus_tcp/write/refused_blocks.hpp"
+
+#include <array>
+#include <string>
+
+#include "gateway/core/words.hpp"
+#include "gateway/image/register_map.hpp"
+
+namespace axisgate::modbus_tcp {
+namespace {
+
+/// ", target_position"; empty where no row or coil is listed there.
+std::string named(const BlockWrite& block, std::uint16_t offset) {
+  if (block.coils) return offset < kCoils ? ", " + std::string(coil_rows()[offset].name) : "";
+  const RegisterRow* const row = register_table(Block::axis).covering(offset);
+  return row == nullptr ? "" : ", " + std::string(row->name);
+}
+
+/// A tool in a loop must not fill the log.
+constexpr Duration kToldAgain = std::chrono::seconds(60);
+
+void log_once(const RefusedWrite& refused, const std::string& what, const Outcome& outcome, Client& client, Instant now,
+              const Log& log) {
+  if (client.refused == refused && now - client.refused_told < kToldAgain) return;
+  if (!client.host->refused_lines.takes(now)) return;
+  client.refused = refused;
+  client.refused_told = now;
+  log.write(LogLevel::info, "modbus",
+            client.life->name + ": " + what + " is refused: " + modbus_text(outcome) +
+                left_out_text(client.host->refused_lines.left_out()));
+}
+
+}  // namespace
+
+bool is_wrong(Errc code) {
+  return code == Errc::bad_value || code == Errc::not_supported || code == Errc::role_forbidden;
+}
+
+BlockWrite block_write(const Request& request, AxisNumber axis) {
+  return {axis, request.write_address, request.write_count, request.writes_coils()};
+}
+
+bool show_refused(ClientAxis& axis, std::uint16_t row) {
+  if (axis.result.result == CommandResult::pending) return false;
+  axis.used = true;
+  axis.result = {CommandResult::none, row_detail(row), 0};
+  ++axis.submission;
+  return true;
+}
+
+void log_refused(const BlockWrite& block, const RefusedRow& refused, Client& client, const Log& log) {
+  ClientAxis& axis = client.at(block.axis);
+  if (axis.refused == refused) return;
+  axis.refused = refused;
+  const std::string what = block.coils ? "coil" : "row";
+  log.write(LogLevel::info, "modbus",
+            client.life->name + ": a block write of " + std::to_string(block.count) +
+                (block.coils ? " coils from " : " registers from ") + std::to_string(block.address) +
+                " is refused at " + what + " " + std::to_string(refused.offset) + " of axis " +
+                std::to_string(block.axis) + named(block, refused.offset) + ": " + std::string(text(refused.why)));
+}
+
+void log_refused_write(const BlockWrite& write, const Outcome& outcome, Client& client, Instant now, const Log& log) {
+  const std::uint16_t offset = write.address % kAxisBlock;
+  const std::string where =
+      write.axis == 0 ? std::string() : " of axis " + std::to_string(write.axis) + named(write, offset);
+  const std::string kind = write.coils ? "coil " : "register ";
+  log_once({write.address, write.coils, outcome.code}, "a write to " + kind + std::to_string(write.address) + where,
+           outcome, client, now, log);
+}
+
+void log_refused_object(const GeneralReference& reference, const Outcome& outcome, Client& client, Instant now,
+                        const Log& log) {
+  const std::array<Byte, 2> index{static_cast<Byte>(reference.index >> 8U), static_cast<Byte>(reference.index)};
+  const std::array<Byte, 1> sub{reference.subindex};
+  std::string digits = hex_text(index);
+  std::erase(digits, ' ');
+  log_once({reference.index, false, outcome.code}, "a write of object 0x" + digits + ":" + hex_text(sub) + " (43/13)",
+           outcome, client, now, log);
+}
+
+void tell_dropped_half(AxisNumber axis, std::uint16_t row, const char* why, Client& client, const Log& log) {
+  ClientAxis& own = client.at(axis);
+  if (show_refused(own, row)) own.result.result = CommandResult::never_started;
+  const RefusedRow dropped{row, Errc::never_started};
+  if (own.refused == dropped) return;
+  own.refused = dropped;
+  log.write(LogLevel::info, "modbus",
+            client.life->name + ": half of row " + std::to_string(row) + " of axis " + std::to_string(axis) +
+                named({.axis = axis}, row) + ", was written and is dropped: " + why);
+}
+
+void note_whole_row(ClientAxis& axis) {
+  if (axis.refused && axis.refused->why == Errc::never_started) axis.refused.reset();
+}
+
+void note_block_done(ClientAxis& axis) { axis.refused.reset(); }
+
+std::uint16_t coil_of(Command command) {
+  for (const CoilRow& coil : coil_rows())
+    if (command != Command::none && (coil.on == command || coil.off == command)) return coil.offset;
+  return 0;
+}
+
+}  // namespace axisgate::modbus_tcp

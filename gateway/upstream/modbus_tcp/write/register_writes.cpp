@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <boost/container/static_vector.hpp>
+
+#include "gateway/upstream/modbus_tcp/write/claims.hpp"
+#include "gateway/upstream/modbus_tcp/write/row_writes.hpp"
+#include "gateway/upstream/modbus_tcp/write/write_plan.hpp"
+
+namespace axisgate::modbus_tcp {
+namespace {
+
+bool is_quantity(const RegisterRow& row, Quantity quantity) {
+  return row.source == Source::quantity && row.quantity == quantity;
+}
+
+/// Registers 80..85 as they will be; whether the request in them can be made.
+struct MailboxWrite {
+  Mailbox mailbox;
+  bool requested = false;
+  WrongRow refused{};
+};
+
+MailboxWrite write_mailbox(const RowWrites& found, const Mailbox& before) {
+  MailboxWrite write{before};
+  Mailbox& box = write.mailbox;
+  for (const RowWrite& each : found.rows) {
+    const auto word = static_cast<std::uint16_t>(each.value);
+    switch (each.row->source) {
+      case Source::object_request:
+        box.request = word;
+        break;
+      case Source::object_index:
+        box.index = word;
+        break;
+      case Source::object_subindex:
+        box.subindex = word;
+        break;
+      case Source::object_size:
+        box.size = word;
+        break;
+      case Source::object_data:
+        box.data = static_cast<std::uint32_t>(each.value);
+        break;
+      default:
+        break;
+    }
+  }
+  write.requested = found.of(Source::object_request) != nullptr && box.request != 0;
+  if (!write.requested) return write;
+  constexpr std::uint16_t kSubindexRow = 82, kSizeRow = 83;
+  if (box.subindex > UINT8_MAX)
+    write.refused = {Errc::bad_value, kSubindexRow};
+  else if (box.size != 1 && box.size != 2 && box.size != 4)
+    write.refused = {Errc::bad_value, kSizeRow};
+  else if (before.status == ObjectStatus::busy)
+    write.refused = {Errc::busy};
+  return write;
+}
+
+/// One register write on its way to a write batch: the client's memory is brought up to date, and what asks is put into
+/// it.
+class BatchMaker {
+ public:
+  BatchMaker(const RowWrites& found, const Onlooker& onlooker, Client& client)
+      : found_(found),
+        onlooker_(onlooker),
+        client_(client),
+        axis_(found.axis->number),
+        own_(client.at(axis_)),
+        single_(!found.block),
+        writing_(writing_to(*found.axis, onlooker, single_ ? WriteForm::single : WriteForm::block)),
+        batch_(client.new_batch(onlooker.role)) {}
+
+  struct Made {
+    WriteBatch batch;
+    bool not_new = false;  ///< something in it was remembered, or repeated, and did not act: its client is told
+    bool repeats = false;  ///< nothing in it is new: it asks because the axis does not hold it any more
+  };
+  [[nodiscard]] Made make() {
+    // A viewer comes this far with the mailbox alone, which it may ask to read.
+    batch_.is_write = onlooker_.role >= Role::operator_;
+    batch_.all_zero = found_.zeros;
+    // Judged before anything is remembered.
+    const bool only_remembered = found_.block && first_block();
+    // A command goes by its targets, and what acts in the request lets its set-points ask: so in this order.
+    for (const RowWrite& each : found_.rows)
+      if (is_remembered(*each.row)) changed_.push_back(own_.rows.write(each.row->offset, each.value));
+    if (found_.zeros)
+      put_zeros();
+    else
+      put_words();
+    put_heartbeat();
+    if (!found_.zeros && !only_remembered) put_rows();
+    batch_.claims = register_claims(batch_);
+    const bool commands = batch_.command != Command::none || batch_.controlword;
+    return {batch_, not_new_, !single_ && !commands && !anew_};
+  }
+
+ private:
+  /// Rows 41 to 79 that are values; not controlword, command, its id and the heartbeat, which have rules of their own.
+  [[nodiscard]] static bool is_remembered(const RegisterRow& row) {
+    return row.source == Source::jog_velocity || row.source == Source::set_position_value ||
+           (row.source == Source::quantity && row.quantity != Quantity::controlword);
+  }
+
+  [[nodiscard]] const RowWrite* controlword_row() const {
+    for (const RowWrite& each : found_.rows)
+      if (is_quantity(*each.row, Quantity::controlword)) return &each;
+    return nullptr;
+  }
+  [[nodiscard]] std::uint16_t id() const {
+    const RowWrite* const row = found_.of(Source::command_id);
+    return row == nullptr ? std::uint16_t{0} : static_cast<std::uint16_t>(row->value);
+  }
+
+  /// "On an empty memory a block that carries 40 or 54 only remembers its set-points." The memory of a command with an
+  /// id is that of its address.
+  [[nodiscard]] bool first_block() const {
+    if (found_.of(Source::command) != nullptr)
+      return id() != 0 ? !client_.last_id(axis_).has_value() : own_.edges.command_empty();
+    return controlword_row() != nullptr && own_.edges.controlword_empty();
+  }
+
+  /// What acts lets the set-points beside it ask. A stop claims nothing, and so lets those of the owner ask alone.
+  void note_acting(bool stop) {
+    const Lease& lease = found_.axis->lease;
+    acting_ = acting_ || !stop || !lease.rules.on || lease.owned_by(client_.id);
+  }
+  void note(Verdict verdict) { not_new_ = not_new_ || verdict == Verdict::not_new; }
+
+  void put_words() {
+    if (const RowWrite* const row = controlword_row(); row != nullptr && !row->ignored) {
+      const auto word = static_cast<std::uint16_t>(row->value);
+      constexpr std::uint16_t kStart = 0x0010;  // bit 4: the other words start nothing that a target belongs to
+      writing_.targets = (word & kStart) != 0 ? own_.rows.targets() : 0;
+      const Verdict verdict = own_.edges.controlword(word, writing_);
+      note(verdict);
+      if (verdict == Verdict::acts) {
+        batch_.controlword = word;
+        batch_.single_controlword = single_;
+        constexpr std::uint16_t kStoppingBits = 0x0006;  // one of them 0: a stop of anybody's
+        note_acting((word & kStoppingBits) != kStoppingBits);
+      }
+    }
+    if (const RowWrite* const row = found_.of(Source::command)) {
+      const auto asked = Command{static_cast<std::uint8_t>(row->value)};
+      writing_.targets = own_.rows.targets_of(asked);
+      const Verdict verdict = id() != 0 ? own_.edges.command_with_id(asked, id(), client_.host->ids[axis_], writing_)
+                                        : own_.edges.command(asked, writing_);
+      note(verdict);
+      if (verdict == Verdict::acts) batch_.command = asked;
+      if (verdict == Verdict::acts) note_acting(is_stop(asked));
+    }
+    if (found_.of(Source::command_id) != nullptr) own_.command_id = batch_.command_id = id();
+  }
+
+  /// A scanner's image before its program runs asks for nothing. Two zeros stop all the same.
+  void put_zeros() {
+    if (own_.edges.zeros(writing_)) {
+      batch_.controlword = 0;
+      batch_.single_controlword = false;
+    }
+    if (found_.of(Source::command_id) != nullptr) own_.command_id = 0;
+    const AxisImage& axis = *found_.axis;
+    const bool runs = axis.axis_state == AxisState::continuous_motion && axis.lease.owned_by(client_.id);
+    for (const Quantity target : {Quantity::target_velocity, Quantity::target_torque})
+      if (runs && (axis.supported & axis.writable & bit(target)) != 0) batch_.setpoints.push_back({target, 0});
+  }
+
+  void put_heartbeat() {
+    const RowWrite* const row = found_.of(Source::heartbeat);
+    if (row == nullptr) return;
+    const auto word = static_cast<std::uint16_t>(row->value);
+    batch_.beats = !found_.zeros && own_.heartbeat != word;
+    own_.heartbeat = word;
+  }
+
+  /// Whether a value asks: a single write always; in a block where it changed, where the owner's is no longer the one
+  /// accepted last, or where something acts beside it.
+  enum class Asks : std::uint8_t { no, by_itself, with_command };
+  [[nodiscard]] Asks asks(const RowWrite& write, bool changed) const {
+    if (single_ || changed || owner_asks(write)) return Asks::by_itself;
+    return acting_ ? Asks::with_command : Asks::no;
+  }
+  [[nodiscard]] bool owner_asks(const RowWrite& write) const {
+    const AxisImage& axis = *found_.axis;
+    if (write.row->source == Source::quantity)
+      return onlooker_.commands.owner_asks(axis_, client_.id, write.row->quantity, write.value);
+    return !write.cached && axis.reachable() && axis.lease.owned_by(client_.id);
+  }
+
+  void put_rows() {
+    std::size_t remembered = 0;
+    for (const RowWrite& each : found_.rows) {
+      if (!is_remembered(*each.row)) continue;
+      const bool changed = changed_[remembered++];
+      // What the drive holds and this role may not write is nobody's question.
+      if (each.ignored || (each.cached && onlooker_.role < each.row->may_write)) continue;
+      const Asks how = asks(each, changed);
+      if (how == Asks::no) continue;
+      anew_ = anew_ || changed;
+      put(each, how == Asks::with_command);
+    }
+  }
+
+  void put(const RowWrite& write, bool with_command) {
+    const RegisterRow& row = *write.row;
+    if (row.source == Source::set_position_value) {
+      batch_.set_position_value = static_cast<std::int32_t>(write.value);
+    } else if (row.source == Source::jog_velocity) {
+      batch_.jog_velocity = static_cast<std::uint32_t>(write.value);
+    } else if (row.quantity != Quantity::mode) {
+      batch_.setpoints.push_back({.quantity = row.quantity, .value = write.value, .with_command = with_command});
+    } else if (!with_command || batch_.controlword) {
+      // Commands 6 to 11 select the mode they need: one that merely stands beside them would only be left again.
+      batch_.mode = static_cast<std::int16_t>(write.value);
+    }
+  }
+
+  const RowWrites& found_;
+  const Onlooker& onlooker_;
+  Client& client_;
+  AxisNumber axis_;
+  ClientAxis& own_;
+  bool single_;
+  Writing writing_;
+  WriteBatch batch_;
+  boost::container::static_vector<bool, kMaxWriteRegisters> changed_{};
+  bool acting_ = false;
+  bool not_new_ = false;
+  bool anew_ = false;  ///< a set-point that asks is another one than this client wrote before
+};
+
+WriteBatch object_batch(const Mailbox& box, const Client& client, Role role) {
+  WriteBatch batch = client.new_batch(role);
+  batch.claims = batch.is_write = box.request == 2;
+  batch.object = ObjectRequest{box.request == 2, box.index, static_cast<std::uint8_t>(box.subindex),
+                               static_cast<std::uint8_t>(box.size), box.data};
+  return batch;
+}
+
+/// Gateway register 8. Changed, it is a sign of life for every axis, and takes over what an ended connection of the
+/// same program has left.
+std::vector<AxisNumber> beat(Client& client, std::uint16_t value, const Onlooker& onlooker) {
+  std::vector<AxisNumber> orphans;
+  if (client.heartbeat == value) return orphans;
+  client.heartbeat = value;
+  client.life->heartbeat = onlooker.now;
+  if (onlooker.role < Role::operator_) return orphans;
+  for (const auto& axis : onlooker.image.axes()) {
+    const auto& owner = axis->lease.owner;
+    if (owner && !owner->connected && owner->id != client.id && same_hand(*owner, *client.life))
+      orphans.push_back(axis->number);
+  }
+  return orphans;
+}
+
+}  // namespace
+
+Errc check_row(const Request& request, const UnitView& view, const Onlooker& onlooker) {
+  return check_role_and_addresses(resolve_rows(request, view, onlooker), onlooker.role).code;
+}
+
+Planned plan_register_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
+  const RowWrites found = resolve_rows(request, view, onlooker);
+  const auto refuse = [&found](const WrongRow& wrong) {
+    return Refused{wrong.code, found.several && is_wrong(wrong.code) ? std::optional(wrong.row) : std::nullopt};
+  };
+  if (const WrongRow wrong = check_rows(found, onlooker.role); wrong.code != Errc::ok) return refuse(wrong);
+
+  WritePlan plan;
+  if (found.axis == nullptr) {
+    plan.reclaims = beat(client, static_cast<std::uint16_t>(found.rows.front().value), onlooker);
+    return plan;
+  }
+  plan.axis = found.axis->number;
+  const ClientAxis* before = client.find(plan.axis);
+  const MailboxWrite box = write_mailbox(found, before == nullptr ? Mailbox{} : before->mailbox);
+  if (box.refused.code != Errc::ok) return refuse(box.refused);
+
+  ClientAxis& own = client.at(plan.axis);
+  plan.before = memory_of(client, plan.axis);
+  const BatchMaker::Made made = BatchMaker(found, onlooker, client).make();
+  own.mailbox = box.mailbox;
+  if (box.requested) {
+    own.used = true;
+    own.mailbox.status = ObjectStatus::busy;
+    own.mailbox.detail = 0;
+    plan.object = object_batch(box.mailbox, client, onlooker.role);
+  }
+  plan.not_new = made.not_new;
+  plan.repeats = made.repeats;
+  plan.single = !found.block;
+  plan.block = block_write(request, plan.axis);
+  // The mailbox's own request stands for a write batch that asks for nothing beside it.
+  if (!box.requested || made.batch.beats || !asks_nothing(made.batch)) plan.batches.push_back(made.batch);
+  return plan;
+}
+
+}  // namespace axisgate::modbus_tcp

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/upstream/modbus_tcp/write/write_plan.hpp"
+
+#include "gateway/image/shown.hpp"
+
+namespace axisgate::modbus_tcp {
+namespace {
+
+/// The two bits whose 0 stops: enable voltage and, inverted, quick stop.
+constexpr std::uint16_t kStoppingBits = 0x0006;
+
+bool stops_through(const RegisterRow& row, const Request& request) {
+  const bool is_controlword = row.source == Source::quantity && row.quantity == Quantity::controlword;
+  if (request.function == Function::mask_write_register) {
+    // Both masks force at least one of the bits to 0.
+    return is_controlword && (~request.and_mask & ~request.or_mask & kStoppingBits) != 0;
+  }
+  const std::uint16_t value = request.written_register(0);
+  if (row.source == Source::command) return value <= kLastCommand && is_stop(Command{static_cast<Byte>(value)});
+  return is_controlword && is_stop_controlword(value);
+}
+
+}  // namespace
+
+WriteMemory memory_of(const Client& client, AxisNumber axis) {
+  WriteMemory memory;
+  if (const ClientAxis* const own = client.find(axis)) {
+    memory.edges = own->edges;
+    memory.rows = own->rows;
+  }
+  if (const auto ids = client.host->ids.find(axis); ids != client.host->ids.end()) memory.ids = ids->second;
+  return memory;
+}
+
+void restore(const WriteMemory& memory, Client& client, AxisNumber axis) {
+  ClientAxis& own = client.at(axis);
+  own.edges = memory.edges;
+  own.rows = memory.rows;
+  if (memory.ids)
+    client.host->ids[axis] = *memory.ids;
+  else
+    client.host->ids.erase(axis);
+}
+
+Writing writing_to(const AxisImage& axis, const Onlooker& onlooker, WriteForm form) {
+  constexpr std::uint16_t kEnabled = 1U << 0, kRunsVelocity = 1U << 7;
+  Writing writing;
+  writing.form = form;
+  writing.now = onlooker.now;
+  writing.request = onlooker.client.writes;
+  writing.rearm = onlooker.settings.rearm;
+  writing.client = onlooker.client.id;
+  writing.endings = &axis.endings;
+  writing.enabled = (shown_level_coils(axis) & kEnabled) != 0;
+  writing.runs_velocity = (shown_level_coils(axis) & kRunsVelocity) != 0;
+  writing.needs_zero = axis.has(AxisInput::stop_latched) || axis.has(AxisInput::fault);
+  return writing;
+}
+
+Planned plan_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
+  ++client.writes;
+  Planned planned = request.writes_coils() ? plan_coil_write(request, view, onlooker, client)
+                                           : plan_register_write(request, view, onlooker, client);
+  if (auto* const plan = std::get_if<WritePlan>(&planned)) plan->request = client.writes;
+  return planned;
+}
+
+bool asks_for_a_stop(const Request& request, const UnitView& view, const ProcessImage& image) {
+  if (request.write_count != 1) return false;
+  if (request.writes_coils()) {
+    const auto place = view.place_bit(request.write_address, image);
+    if (!place || place->offset >= kCoils) return false;
+    const CoilRow& coil = coil_rows()[place->offset];
+    const Command asked = request.written_coil(0) ? coil.on : coil.off;
+    return is_stop(asked) || asked == Command::jog_end;
+  }
+  const auto place = view.place_register(request.write_address, image);
+  if (!place || place->block != Block::axis) return false;
+  const RegisterRow* row = register_table(Block::axis).covering(place->offset);
+  return row != nullptr && stops_through(*row, request);
+}
+
+AxisNumber axis_of_write(const Request& request, const UnitView& view, const ProcessImage& image) {
+  const auto place = view.place_register(request.write_address, image);
+  return place && place->block == Block::axis ? place->number : AxisNumber{0};
+}
+
+}  // namespace axisgate::modbus_tcp

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ten gateways of fifty axes each behind one discovery server: one reader sees all 500 axes, and `topics --all` shows them in one
+table; of two gateways with one name it says so."""
+from own_network import make_interfaces  # first: it begins anew in a network of its own
+
+import json
+
+from dds_stage import DdsStory, main
+from processes import Program, until
+from stage import AXISGATE, Gateway
+
+GATEWAYS, AXES = 10, 50
+SERVER = "127.0.0.1:11811"
+
+
+def setUpModule():
+    make_interfaces()
+
+
+class Fleet(DdsStory):
+    """Their lines are not plugged in: an axis is one all the same."""
+
+    def setUp(self):
+        super().setUp()
+        self.keep(Program("discovery server", ["fast-discovery-server", "-i", "0", "-l", "127.0.0.1", "-p", "11811"]))
+
+    def configure_gateway(self, name, axes=AXES, file=None):
+        drives = [{"profile": "kinco-jd", "node": 1 + index, "axes": [{"axis": 1 + index, "name": f"axis_{1 + index}"}]} for index in range(axes)]
+        config = {"gateway": {"name": name}, "modbus_tcp": [self.listener()],
+                  "dds": {"domain": self.domain, "discovery_servers": [SERVER]},
+                  "buses": [{"name": "line", "adapter": "kinco-serial", "device": self.path("not-plugged-in"), "poll": {"fast": 20000, "normal": 60000, "slow": 60000},
+                             "drives": drives}]}
+        path = self.path(f"{file or name}.json")
+        with open(path, "w", encoding="utf-8") as out:
+            json.dump(config, out)
+        return path
+
+    def start_gateway(self, path):
+        gateway = self.keep(Gateway(path))
+        gateway.name = path
+        return gateway.wait_until_it_listens()
+
+    def test_one_reader_sees_all_axes_of_ten_gateways(self):
+        paths = [self.configure_gateway(f"cell_{number}") for number in range(GATEWAYS)]
+        for path in paths:
+            self.start_gateway(path)
+        topics = self.keep(Program("topics", [AXISGATE, "topics", paths[0], "--all", "--json"]))
+
+        def seen():
+            samples = [json.loads(line) for line in list(topics.lines) if line.startswith("{")]
+            return {(sample["gateway"], sample["axis"]) for sample in samples}
+
+        wanted = {(f"cell_{gateway}", axis) for gateway in range(GATEWAYS) for axis in range(1, AXES + 1)}
+        until("all axes are seen", lambda: seen() == wanted, 180)
+        table = until("its own are shown", lambda: self.command_line("topics", paths[3], "--once").stdout)
+        self.assertIn("cell_3", table)
+        self.assertNotIn("cell_4", table, "without --all it is the configuration's own")
+
+    def test_two_gateways_of_one_name_are_shown(self):
+        first, second = self.configure_gateway("cell_7", 2), self.configure_gateway("cell_7", 2, "second")
+        for path in (first, second):
+            self.start_gateway(path)
+
+        def shown():
+            return "2 GATEWAYS HAVE THIS NAME" in self.command_line("topics", first, "--all", "--once").stdout
+
+        until("the name is seen to be taken", shown)
+
+
+if __name__ == "__main__":
+    main()

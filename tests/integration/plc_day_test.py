@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A PLC's normal day with the shipped function blocks, on each kind of drive: it enables, moves, runs, jogs, homes, stops, disables."""
+from plc_stage import TURN, PlcStory, main
+
+FAR = 5000.0 * TURN
+SPEED = 5.0 * TURN  # units per second: 300 rpm
+RAMP = 50.0 * TURN
+CENTRE = 20  # units that a drive may stand beside its target
+HERE = 35  # homing method: where it stands
+
+
+class Day(PlcStory):
+    def setUp(self):
+        super().setUp()
+        self.begin()
+        self.day = self.plc()
+        self.day.enable()
+
+    def buses(self):
+        buses = super().buses()
+        for line in buses:
+            for axis in line["drives"][0]["axes"]:
+                if self.homes(axis["axis"]):
+                    axis["homing_method"] = HERE
+        return buses
+
+    def homes(self, number):
+        return self.motors[number][0] in ("serial", "modbus", "kincocan", "leadshine")
+
+    def positioning(self):
+        """Axes that position; a Keya as delivered runs at speed."""
+        return [number for number in self.numbers if not self.motors[number][1]]
+
+    def ramps(self, number):
+        """A Keya has none that a bus writes."""
+        return {} if self.motors[number][1] else {"Acceleration": RAMP, "Deceleration": RAMP}
+
+    def run_all(self, velocity=SPEED):
+        for number in self.numbers:
+            self.day.begin(number, "MoveVelocity", Velocity=velocity, **self.ramps(number))
+        for number in self.numbers:
+            self.day.until_at_speed(number)
+            self.assertTrue(self.day[number].ReadStatus.ContinuousMotion)
+
+    def end_all(self, block, how, numbers=None):
+        self.assertEqual({number: self.day.end(number, block) for number in numbers or self.numbers},
+                         dict.fromkeys(numbers or self.numbers, how))
+
+    def until_there(self, number, position):
+        axis = self.day[number].Axis
+        self.until(f"axis {number} is at {position}", lambda: abs(axis.Position - position) <= CENTRE)
+        self.until_motor_stands(number)
+
+
+class Positioning(Day):
+    def test_moves_arrive_where_they_were_asked_to(self):
+        start = {number: self.position(number) for number in self.positioning()}
+        scale = {}
+        for turns in (2.0, -1.0, 3.0):
+            for number in start:
+                self.day.begin(number, "MoveAbsolute", Position=turns * TURN, Velocity=SPEED, **self.ramps(number))
+            self.end_all("MoveAbsolute", "Done", start)
+            for number in start:
+                self.until_there(number, turns * TURN)
+                moved = self.position(number) - start[number]
+                self.assertAlmostEqual(moved / scale.setdefault(number, moved / turns), turns, delta=0.01, msg="the motor itself")
+        for number in start:
+            self.day.begin(number, "MoveRelative", Distance=-1.0 * TURN)
+        self.end_all("MoveRelative", "Done", start)
+        for number in start:
+            self.until_there(number, 2.0 * TURN)
+            self.assertAlmostEqual((self.position(number) - start[number]) / scale[number], 2.0, delta=0.01)
+
+    def test_the_end_of_a_move_is_told_for_one_cycle_where_execute_was_short(self):
+        told = dict.fromkeys(self.positioning(), 0)
+        for number in told:
+            move = self.day[number].MoveAbsolute
+            move.Position, move.Velocity, move.Execute = 1.0 * TURN, SPEED, True
+        self.go_on()
+        for number in told:
+            self.day[number].MoveAbsolute.Execute = False
+
+        def count():
+            for number in told:
+                told[number] += self.day[number].MoveAbsolute.Done
+            return all(told.values())
+
+        self.until("each has told it", count)
+        for _ in range(3):
+            self.go_on()
+            count()
+        self.assertEqual(set(told.values()), {1})
+
+    def test_homing_and_set_position_end_where_the_axis_stands(self):
+        homing = [number for number in self.positioning() if self.homes(number)]
+        for number in homing:
+            self.day.begin(number, "MoveAbsolute", Position=1.0 * TURN, Velocity=SPEED, **self.ramps(number))
+        self.end_all("MoveAbsolute", "Done", homing)
+        for number in homing:
+            self.until_motor_stands(number)
+            self.day.begin(number, "Home")
+        self.end_all("Home", "Done", homing)
+        for number in homing:
+            self.until_there(number, 0.0)
+            self.assertEqual(self.position(number), 0, "the drive's own zero")
+        stepper = self.number_of("stepper")
+        self.day.do(stepper, "SetPosition", Position=12345.0)
+        self.until_there(stepper, 12345.0)
+        self.day.do(stepper, "SetPosition", Position=-7.0)
+        self.until_there(stepper, -7.0)
+        for number in set(self.numbers) - set(self.positioning()):
+            set_position = self.day.begin(number, "SetPosition", Position=1.0)
+            self.assertEqual((set_position.Error, set_position.ErrorID), (True, 0x20A), "this drive cannot")
+
+
+class Interrupting(Day):
+    def test_a_newer_move_takes_the_place_of_one_under_way(self):
+        for number in self.positioning():
+            self.day.begin(number, "MoveAbsolute", Position=FAR, Velocity=SPEED, **self.ramps(number))
+        for number in self.positioning():
+            self.until("the first is active", lambda number=number: self.day[number].MoveAbsolute.Active)
+            self.day.begin(number, "MoveOther", Position=-1.0 * TURN)
+        self.end_all("MoveAbsolute", "CommandAborted", self.positioning())
+        self.end_all("MoveOther", "Done", self.positioning())
+        for number in self.positioning():
+            self.until_there(number, -1.0 * TURN)
+
+    def test_a_move_is_stopped_and_another_goes_on_from_there(self):
+        """On every drive alike, also where it can only halt by a quick stop that takes its torque."""
+        for block in ("Stop", "Halt"):
+            for number in self.positioning():
+                self.day.begin(number, "MoveAbsolute", Position=FAR, Velocity=SPEED, **self.ramps(number))
+            for number in self.positioning():
+                self.until("it is active", lambda number=number: self.day[number].MoveAbsolute.Active)
+                self.until_motor_turns(number)
+                self.day.begin(number, block)
+            self.end_all("MoveAbsolute", "CommandAborted", self.positioning())
+            self.end_all(block, "Done", self.positioning())
+            for number in self.positioning():
+                self.assertFalse(self.day[number].Power.Error)
+                place = self.day[number].Axis.Position + TURN
+                self.day.do(number, "MoveAbsolute", Position=place, Velocity=SPEED)
+                self.until_there(number, place)
+
+    def test_of_two_moves_that_wait_the_newer_one_is_carried_out(self):
+        """Whatever the order in which the program calls them: MoveAbsolute comes first."""
+        for number in self.positioning():
+            station = self.day[number]
+            station.MoveAbsolute.Position, station.MoveOther.Position = 1.0 * TURN, 3.0 * TURN
+            station.MoveAbsolute.Velocity = station.MoveOther.Velocity = SPEED
+            station.Reset.Execute = station.MoveOther.Execute = True
+        self.go_on()
+        for number in self.positioning():
+            self.assertTrue(self.day[number].MoveOther.Busy and not self.day[number].MoveOther.Active)
+            self.day[number].MoveAbsolute.Execute = True
+        self.go_on()
+        self.end_all("MoveAbsolute", "Done", self.positioning())
+        self.end_all("MoveOther", "CommandAborted", self.positioning())
+        for number in self.positioning():
+            self.until_there(number, 1.0 * TURN)
+
+    def test_two_moves_in_one_cycle_are_carried_out_as_the_newer_one(self):
+        for number in self.positioning():
+            station = self.day[number]
+            station.MoveAbsolute.Position, station.MoveOther.Position = 3.0 * TURN, 1.0 * TURN
+            station.MoveAbsolute.Velocity = station.MoveOther.Velocity = SPEED
+            station.MoveAbsolute.Execute = station.MoveOther.Execute = True
+        self.go_on()
+        self.end_all("MoveOther", "Done", self.positioning())
+        self.end_all("MoveAbsolute", "CommandAborted", self.positioning())
+        for number in self.positioning():
+            self.until_there(number, 1.0 * TURN)
+
+
+class Running(Day):
+    def test_it_runs_at_the_velocity_asked_for_and_halts(self):
+        self.run_all()
+        for number in self.numbers:
+            self.assert_turns_on(number)
+            self.day.begin(number, "Halt")
+        self.end_all("MoveVelocity", "CommandAborted")
+        self.end_all("Halt", "Done")
+        self.until_motor_stands(*self.numbers)
+        for number in self.numbers:
+            self.assertTrue(self.day[number].Power.Status, "a halt keeps the torque")
+            self.assertTrue(self.day[number].ReadStatus.Standstill)
+
+    def test_a_run_with_another_velocity_replaces_it(self):
+        turned = {}
+        for velocity in (SPEED, -SPEED):
+            self.run_all(velocity)
+            for number in self.numbers:
+                before = self.position(number)
+                self.assert_turns_on(number)
+                turned.setdefault(number, []).append(self.position(number) > before)
+        for number, ways in turned.items():
+            self.assertNotEqual(*ways, f"axis {number} turns the other way")
+
+    def test_nothing_begins_while_a_stop_is_held(self):
+        self.run_all()
+        for number in self.numbers:
+            self.day.begin(number, "Stop", **({} if self.motors[number][1] else {"Deceleration": RAMP}))
+        self.end_all("MoveVelocity", "CommandAborted")
+        for number in self.numbers:
+            self.until("it has stopped", lambda number=number: self.day[number].Stop.Done)
+        self.until_motor_stands(*self.numbers)
+        for number in self.numbers:
+            self.assertTrue(self.day[number].ReadStatus.Stopping)
+            run = self.day.begin(number, "MoveVelocity", Velocity=SPEED)
+            self.assertEqual((run.Error, run.ErrorID), (True, 0x204))
+        self.assert_stays(*self.numbers)
+        for number in self.numbers:
+            self.day.end(number, "MoveVelocity")
+            self.day.end(number, "Stop")
+            self.until("standstill", lambda number=number: self.day[number].ReadStatus.Standstill)
+        self.run_all()
+
+    def until_jogging(self, number, sign):
+        station = self.day[number]
+        self.day.until_or_over(f"axis {number} jogs", lambda: abs(station.Axis.Velocity - sign * SPEED) < SPEED / 10,
+                               lambda: station.Jog.Error or station.Jog.CommandAborted)
+
+    def until_jogged(self):
+        self.until("all have ended", lambda: not any(self.day[number].Jog.Busy for number in self.numbers))
+        self.assertTrue(all(self.day[number].Jog.Done for number in self.numbers))
+
+    def test_jog_runs_as_long_as_it_is_held(self):
+        for way, sign in (("JogForward", 1), ("JogBackward", -1)):
+            for number in self.numbers:
+                jog = self.day[number].Jog
+                jog.Velocity = SPEED
+                setattr(jog, way, True)
+            for number in self.numbers:
+                self.until_jogging(number, sign)
+                self.assertTrue(self.day[number].Jog.Active)
+                setattr(self.day[number].Jog, way, False)
+            self.until_jogged()
+            self.until_motor_stands(*self.numbers)
+
+    def test_jog_turns_round_and_both_at_once_halt(self):
+        for number in self.numbers:
+            self.day[number].Jog.Velocity = SPEED
+            self.day[number].Jog.JogForward = True
+        for number in self.numbers:
+            self.until_jogging(number, 1)
+            self.day[number].Jog.JogForward, self.day[number].Jog.JogBackward = False, True
+        for number in self.numbers:
+            self.until_jogging(number, -1)
+            self.day[number].Jog.JogForward = True
+        self.until_jogged()
+        self.until_motor_stands(*self.numbers)
+
+    def test_disabling_ends_what_runs(self):
+        self.run_all()
+        self.day.disable()
+        self.end_all("MoveVelocity", "CommandAborted")
+        self.until_motor_stands(*self.numbers)
+        for number in self.numbers:
+            run = self.day.begin(number, "MoveVelocity", Velocity=SPEED)
+            self.until("it is refused", lambda run=run: not run.Busy)
+            self.assertEqual((run.Error, run.ErrorID), (True, 9), "an axis that is disabled is in no state for it")
+        self.assert_stays(*self.numbers)
+
+
+if __name__ == "__main__":
+    main()

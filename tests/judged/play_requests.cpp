@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// What clients ask in a run, and what they are told.
+#include <gtest/gtest-printers.h>
+
+#include <algorithm>
+
+#include "tests/judged/playing.hpp"
+#include "tests/judged/shown.hpp"
+
+namespace axisgate::test::judged {
+
+using namespace model;
+using obey::Answer;
+
+void Play::send(std::size_t client, Write write, bool at_once) {
+  if (over() || !clients_.connected(client)) return;
+  if (client != kDds) writers_->sent(client, write);
+  watch_trouble();
+  const std::string before = stamp();
+  const int request = contract_->send(client, write);
+  watches_->cable.asked(request, write);
+  ++outcome_.writes;
+  const std::uint64_t number = clients_.begin(client, write);
+  outcome_.story.push_back(before + ": " + kNames.at(client) + " " + text(write) + "  -> " + contract_->predicted());
+  const bool of_object = rows_of(write).contains(row::object_request);
+  const bool posted = plant_.listener.posted_writes && client != kDds && !of_object;
+  if (posted) lose_sight_of_posted(client);
+  open_.push_back({request, client, number, now_ms(), outcome_.story.size() - 1, posted});
+  collect();
+  while (!at_once && !over() && std::ranges::any_of(open_, [&](const Open& open) { return open.request == request; }))
+    pass(kStepMs);
+}
+
+void Play::collect() {
+  std::erase_if(open_, [this](Open& open) {
+    if (over()) return false;
+    std::string& line = outcome_.story[open.line];
+    if (const auto answer = answer_to(open)) {
+      if (answer->empty()) {
+        line += "  [posted, and nobody can tell]";
+        return never_answered(open), true;
+      }
+      watches_->cable.answered(open.request);
+      line += answer->contains(0) ? "  [ok]" : "  [exception";
+      if (!answer->contains(0)) {
+        for (const int each : *answer) line += " " + std::to_string(each);
+        line += "]";
+      }
+      const std::string expected = contract_->expected();
+      if (!contract_->answered(open.request, *answer)) {
+        line += "  <-- NO READING HAS THIS ANSWER";
+        violated("no reading has this answer; expected: " + expected);
+      } else {
+        line += "\n      then, " + std::to_string(contract_->worlds().size()) + " readings: " + contract_->expected();
+      }
+      return true;
+    }
+    if (!clients_.connected(open.client)) violated("the gateway has closed a connection");
+    if (now_ms() - open.sent_ms > kSilenceMs) violated("a request was never answered: " + line);
+    return false;
+  });
+}
+
+// 3.3, "posted": "answered after the checks, the outcome in 25, 26, 30". Empty: nobody can tell.
+std::optional<std::set<int>> Play::answer_to(Open& open) {
+  if (!open.checked) {
+    const std::optional<std::set<int>> answer = clients_.answer_of(open.client, open.number);
+    if (!open.posted || !answer || !answer->contains(0)) return answer;
+    open.checked = true;
+  }
+  if (!clients_.connected(open.client)) return {};
+  if (!open.asked_for_result) {
+    contract_->asked(open.client);
+    open.asked_for_result = clients_.ask_for_result(open.client);
+  }
+  std::optional<Clients::Posted> became = clients_.posted(open.client, *open.asked_for_result);
+  if (!became) return {};
+  open.asked_for_result.reset();
+  open.pending = open.pending || became->pending;
+  if (became->pending) return {};
+  // What asks for nothing leaves what was told before, or is told of another client's.
+  const bool may_be_older = !open.pending || !contract_->surely_acts(open.request);
+  if (!became->stands_for.empty() && may_be_older) became->stands_for.insert(0);
+  return became->stands_for;
+}
+
+// Register 25 tells of the newest.
+void Play::lose_sight_of_posted(std::size_t client) {
+  std::erase_if(open_, [&](const Open& open) {
+    if (!open.posted || open.client != client) return false;
+    never_answered(open);
+    return true;
+  });
+}
+
+void Play::never_answered(const Open& open) {
+  contract_->unanswered(open.request);
+  watches_->cable.unanswered(open.request);
+}
+
+void Play::replace(std::size_t client, bool silently) {
+  if (!clients_.connected(client)) return;
+  for (const Open& open : open_)
+    if (open.client == client) never_answered(open);
+  std::erase_if(open_, [&](const Open& open) { return open.client == client; });
+  contract_->left(client, silently);
+  clients_.replace(client, silently);
+  outcome_.story.push_back(stamp() + ": " + kNames.at(client) + (silently ? " vanishes" : " begins anew"));
+}
+
+// 3.2: what is shown as valid was true at its age.
+void Play::read(std::size_t client) {
+  if (!clients_.connected(client)) return;
+  look();
+  contract_->asked(client);
+  const Answer answer = clients_.modbus(client).answer_to_read(0, Shown::kRegisters);
+  if (!answer.ok()) {
+    // 3.2: listener option "offline_reads": "exception" answers 0x0B instead.
+    constexpr int kNoAnswer = 11;
+    const bool fits = plant_.listener.offline_reads_fail && !plant_.stage.axis(1).reachable();
+    if (!fits || answer.exception != kNoAnswer) violated("a read was answered with " + testing::PrintToString(answer));
+    return;
+  }
+  Shown shown{.words = answer.words,
+              .low_word_first = plant_.listener.low_word_first,
+              .float_numbers = plant_.listener.float_numbers,
+              .statusword_tells = obey::is_cia402(program_.subject)};
+  look();
+  if (const auto wrong = wrong_in(shown, client, *contract_, seen_))
+    violated(std::string("to ") + kNames.at(client) + " " + *wrong);
+}
+
+// 3.1: 43/13 reads any object of any drive.
+void Play::look_up(std::size_t client) {
+  if (over() || !clients_.connected(client)) return;
+  const obey::ObjectPlace place = obey::readable_object(program_.subject);
+  obey::Client& modbus = clients_.modbus(client);
+  const bool well = !contract_->in_trouble();
+  contract_->asked(client);
+  const obey::RequestNumber number = modbus.ask_for_object(place.index, place.sub);
+  const std::int64_t asked_ms = now_ms();
+  while (!over() && modbus.connected() && !modbus.answer_of(number)) {
+    pass(kStepMs);
+    if (now_ms() - asked_ms > kSilenceMs) violated("an object that was asked for was never told");
+  }
+  const auto answer = modbus.answer_of(number);
+  if (!answer) return;
+  outcome_.story.push_back(stamp() + ": " + kNames.at(client) + " looks up " + testing::PrintToString(*answer));
+  if (!answer->ok()) {
+    // "not sent: plain exception 0x0A; no answer: 0x0B"; 0x06: "a stop or command for the same node" (7.3), a full
+    // queue.
+    const std::set<int> expected = well && !contract_->in_trouble() ? std::set{6} : std::set{6, 10, 11, 0xFF};
+    if (!expected.contains(answer->exception)) violated("an object was not told");
+    return;
+  }
+  if (!obey::is_cia402(program_.subject)) return;
+  constexpr int kStateBits = 0x6F, kOperationEnabled = 0x27;
+  const bool enabled = answer->words.size() == 2 && (answer->words[0] & kStateBits) == kOperationEnabled;
+  if (answer->words.size() != 2 || !seen_.was_enabled(enabled, now_ms() - asked_ms))
+    violated("the drive's statusword was told otherwise");
+}
+
+// A13: panels that only have function 6; of others a target in one request.
+void Play::write_halves(const Step& step) {
+  constexpr std::array<std::int64_t, 5> kBetween{0, 50, 50, 400, 1500};
+  constexpr std::uint8_t kWhole = 8;
+  const Write whole = writers_->write_of(step);
+  const bool all_the_same = !plant_.listener.staged_halves && step.number % kWhole != 0;
+  if (all_the_same || whole.words.size() != 2) return send(step.client, whole, step.at_once);
+  const auto half = [&](bool second) {
+    const std::size_t at = second ? 1 : 0;
+    send(step.client, {fc::write_register, static_cast<std::uint16_t>(whole.first + at), {whole.words[at]}},
+         step.at_once);
+  };
+  half(step.on);
+  pass(kBetween.at(step.id));
+  if (step.number % kWhole == 1) send(step.client, one(row::heartbeat, step.number), step.at_once);
+  half(!step.on);
+}
+
+}  // namespace axisgate::test::judged

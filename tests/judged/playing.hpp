@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program being played before the shipped gateway: who asks what when, what befalls the plant, and what is watched
+// beside it. Promises that after each 5 ms contract and watches have seen what motor, cable and clients show. Never
+// decides what is right.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/judged/clients.hpp"
+#include "tests/judged/history.hpp"
+#include "tests/judged/play.hpp"
+#include "tests/judged/watches.hpp"
+#include "tests/judged/writers.hpp"
+
+namespace axisgate::test::judged {
+
+class Play {
+ public:
+  Play(const Program& program, std::uint64_t seed)
+      : program_(program),
+        neighbour_(seed % 2 == 0),
+        other_bus_(seed % 4 == 3),
+        plant_(program.subject, options_of(program, seed)),
+        clients_(plant_) {}
+
+  Outcome run();
+
+ private:
+  static constexpr std::int64_t kStepMs = 5;
+  /// No request is unanswered for so long (3.3: reply_deadline_ms 900).
+  static constexpr std::int64_t kSilenceMs = 10'000;
+
+  static obey::PlantOptions options_of(const Program& program, std::uint64_t seed);
+  struct Open {
+    int request = 0;
+    std::size_t client = 0;
+    obey::RequestNumber number = 0;
+    std::int64_t sent_ms = 0;
+    std::size_t line = 0;
+    bool posted = false;   ///< the answer comes after the checks, register 25 tells the rest
+    bool checked = false;  ///< that answer is there
+    bool pending = false;  ///< register 25 has said so
+    std::optional<obey::RequestNumber> asked_for_result{};
+  };
+
+  [[nodiscard]] std::int64_t now_ms() { return elapsed_ms(began_, plant_.stage.runtime().now()); }
+  void begin();
+  void act(const Step& step);
+  void send(std::size_t client, model::Write write, bool at_once);
+  void outage(const Step& step);
+  void die(const Step& step);
+  void pass(std::int64_t ms);
+  void look();
+  void collect();
+  void never_answered(const Open& open);
+  std::optional<std::set<int>> answer_to(Open& open);
+  void lose_sight_of_posted(std::size_t client);
+  void write_halves(const Step& step);
+  void look_up(std::size_t client);
+  void watch_trouble();
+  void begin_trouble();
+  void mend();
+  void replace(std::size_t client, bool silently);
+  void read(std::size_t client);
+  void violated(std::string what);
+  [[nodiscard]] bool over() const { return outcome_.violation.has_value(); }
+  [[nodiscard]] std::string stamp();
+  [[nodiscard]] bool online() {
+    return plant_.stage.gateway_runs() && plant_.stage.axis(1).link_state == LinkState::online;
+  }
+
+  Program program_;
+  bool neighbour_, other_bus_;
+  obey::Plant plant_;
+  Clients clients_;
+  std::optional<Writers> writers_;
+  std::optional<model::Contract> contract_;
+  std::optional<Watches> watches_;
+  Outcome outcome_;
+  Instant began_{};
+  std::vector<Open> open_;
+  History seen_;
+  bool wire_whole_ = true;
+  bool had_outage_ = false;
+  std::int64_t whole_since_ms_ = 0;
+  std::int64_t online_since_ms_ = -1;
+};
+
+}  // namespace axisgate::test::judged

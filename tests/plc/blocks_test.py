@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The function blocks as they are shipped: of the subset, with PLCopen's inputs and outputs, and the same in text, XML and manual."""
+import re
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+from xml.etree import ElementTree
+
+from st_machine import Machine
+
+SOURCE = Path(sys.argv[1])
+TEXT = (SOURCE / "deploy/plc/axisgate.st").read_text(encoding="utf-8")
+EXAMPLE = (SOURCE / "deploy/plc/example.st").read_text(encoding="utf-8")
+MANUAL = (SOURCE / "docs/plc.md").read_text(encoding="utf-8")
+NAMESPACE = "{http://www.plcopen.org/xml/tc6_0201}"
+
+MOTION = {"Execute", "Done", "Busy", "Active", "CommandAborted", "Error", "ErrorID", "Axis"}
+SERVICE = {"Execute", "Done", "Busy", "Error", "ErrorID", "Axis"}
+RAMPS = {"Velocity", "Acceleration", "Deceleration"}
+READING = {"Enable", "Valid", "Busy", "Error", "ErrorID", "Axis"}
+BLOCKS = {
+    "AXG_Cycle": {"Connected", "Axis"},
+    "AXG_Power": {"Enable", "Status", "Busy", "Error", "ErrorID", "Axis"},
+    "AXG_Reset": SERVICE,
+    "AXG_Stop": MOTION | {"Deceleration"},
+    "AXG_Halt": MOTION | {"Deceleration"},
+    "AXG_Home": MOTION,
+    "AXG_MoveAbsolute": MOTION | RAMPS | {"Position"},
+    "AXG_MoveRelative": MOTION | RAMPS | {"Distance"},
+    "AXG_MoveVelocity": MOTION - {"Done"} | RAMPS | {"InVelocity"},
+    "AXG_Jog": MOTION - {"Execute"} | RAMPS | {"JogForward", "JogBackward"},
+    "AXG_SetPosition": SERVICE | {"Position"},
+    "AXG_TakeOver": SERVICE,
+    "AXG_ReadStatus": READING | {"ErrorStop", "Disabled", "Stopping", "Homing", "Standstill", "DiscreteMotion", "ContinuousMotion"},
+    "AXG_ReadError": READING | {"AxisErrorID", "VendorError", "Alarms"},
+}
+
+
+class Blocks(unittest.TestCase):
+    def setUp(self):
+        self.machine = Machine(("axisgate.st", TEXT), ("example.st", EXAMPLE))
+
+    def test_each_has_the_inputs_and_outputs_of_plcopens(self):
+        for name, wanted in BLOCKS.items():
+            members = {member for member, (_, section) in self.machine.members_of(name).items() if section != "VAR"}
+            self.assertEqual(members, wanted, name)
+
+    def test_names_are_short_enough_for_every_controller(self):
+        """24 characters: the shortest limit of those that are in use."""
+        for word in set(re.findall(r"[A-Za-z_]\w*", re.sub(r"\(\*.*?\*\)", "", TEXT + EXAMPLE, flags=re.S))):
+            self.assertLessEqual(len(word), 24, word)
+
+    def test_the_images_are_as_long_as_the_map_says(self):
+        axis = self.machine.new("AXG_AXIS")
+        self.assertEqual([len(image) for image in (axis.In, axis.Out, axis.Info, axis.Preset)], [39, 17, 18, 2])
+
+
+class Xml(unittest.TestCase):
+    def setUp(self):
+        self.shipped = (SOURCE / "deploy/plc/axisgate.xml").read_text(encoding="utf-8")
+
+    def test_it_is_made_from_the_text(self):
+        made = subprocess.run([SOURCE / "deploy/plc/make_xml", "-"], capture_output=True, text=True, check=True).stdout
+        self.assertEqual(made, self.shipped, "call deploy/plc/make_xml")
+
+    def test_it_holds_every_block_with_every_variable(self):
+        root = ElementTree.fromstring(self.shipped.encode())
+        machine = Machine(("axisgate.st", TEXT))
+        found = {pou.get("name"): [v.get("name") for v in pou.iter(f"{NAMESPACE}variable")] for pou in root.iter(f"{NAMESPACE}pou")}
+        found |= {kind.get("name"): [v.get("name") for v in kind.iter(f"{NAMESPACE}variable")] for kind in root.iter(f"{NAMESPACE}dataType")}
+        self.assertEqual({name: set(members) for name, members in found.items()},
+                         {name: set(machine.members_of(name)) for name in machine.units})
+
+    def test_its_bodies_say_what_the_text_says(self):
+        root = ElementTree.fromstring(self.shipped.encode())
+        squeezed = re.sub(r"\s+", " ", TEXT)
+        for body in root.iter("{http://www.w3.org/1999/xhtml}xhtml"):
+            self.assertIn(re.sub(r"\s+", " ", body.text), squeezed)
+
+
+class Manual(unittest.TestCase):
+    def test_its_program_is_the_one_that_runs(self):
+        self.assertIn(EXAMPLE, MANUAL)
+
+    def test_its_addresses_are_those_of_the_images(self):
+        """CODESYS counts from 0, Siemens from 40001, or from 0 with a mode of its own."""
+        images = {"In": (100, 39), "Out": (140, 17), "Info": (178, 18), "Preset": (178, 2)}
+        codesys = re.findall(r"^\| (\w+)1 \| .* \| (\d+) \| (\d+) \|[^|]*\| `", MANUAL, re.M)
+        self.assertEqual({name: (int(offset), int(length)) for name, offset, length in codesys}, images)
+        siemens = re.findall(r"^\| (\w+), axis 1 \| ([01]) \| (\d+) \| 1(\d\d), (\d+) \| (\d+) \|", MANUAL, re.M)
+        self.assertEqual({name: (int(zero), int(length)) for name, _, _, _, zero, length in siemens}, images)
+        for _, mode, one, function, zero, _ in siemens:
+            self.assertEqual((int(one) - 40001, function), (int(zero), {"0": "03", "1": "16"}[mode]))
+
+    def test_it_names_every_block_and_every_error(self):
+        for name in BLOCKS:
+            self.assertIn(name, MANUAL)
+        errors = set(re.findall(r"(?:ErrorID|AnswerError|Wrong|Failed) := 16#(02\w\w)", TEXT))
+        self.assertEqual(errors, set(re.findall(r"^\| 16#(02\w\w) \|", MANUAL, re.M)))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: Apache-2.0
+// ROS 2 nodes before the shipped core: streams of joint_commands, the topics of an axis, and what the motor does.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "gateway/upstream/dds_link/ros_names.hpp"
+#include "tests/unit/dds/dds_rig.hpp"
+#include "tests/unit/drive/clients.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using namespace std::chrono_literals;
+using dds::RosAction;
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr Duration kPeriod = 10ms;
+constexpr double kNear = 0.002;  ///< three units of 10000 in a turn: the drive stands within its own window
+
+struct Ros : testing::Test {
+  explicit Ros(DdsRigOptions options = {}) : rig(std::move(options)) {}
+
+  [[nodiscard]] double position() { return rig.state().position; }
+  void act(RosAction action, AxisNumber axis = kServo) {
+    rig.give(dds::RosActionRecord{guid(9), 0, axis, static_cast<std::uint8_t>(action)});
+  }
+  dds::JointCommandsRecord sample(std::vector<double> positions, std::uint8_t writer = 1) {
+    dds::JointCommandsRecord out;
+    out.writer = guid(writer);
+    out.positions = std::move(positions);
+    out.names = {rig.axis(kServo).name, rig.axis(kStepper).name};
+    out.names.resize(std::max<std::size_t>(1, std::min<std::size_t>(2, out.positions.size())));
+    return out;
+  }
+  dds::JointCommandsRecord velocities(double velocity) {
+    auto out = sample({});
+    out.velocities = {velocity};
+    return out;
+  }
+  /// The same sample again and again, as a control loop writes it.
+  void stream(const dds::JointCommandsRecord& record, Duration time) {
+    for (const Instant end = rig.now() + time; rig.now() < end; rig.run(kPeriod)) rig.give(record);
+  }
+  bool stream_until(const dds::JointCommandsRecord& record, const std::function<bool()>& done) {
+    for (const Instant end = rig.now() + 20s; !done() && rig.now() < end; rig.run(kPeriod)) rig.give(record);
+    return done();
+  }
+  bool enabled() { return rig.axis().has(AxisInput::enabled); }
+  /// Enabled, and a stream that is where the axis is.
+  void control() {
+    act(RosAction::enable);
+    ASSERT_TRUE(stream_until(sample({position()}), [&] { return enabled(); }));
+    stream(sample({position()}), 100ms);
+  }
+  bool reaches(double wanted) {
+    return stream_until(sample({wanted}), [&] { return std::fabs(position() - wanted) < kNear; });
+  }
+
+  DdsRig rig;
+};
+
+TEST_F(Ros, AStreamEnablesNothing) {
+  stream(sample({1}), 3s);
+  stream(sample({position()}), 3s);
+  EXPECT_FALSE(enabled());
+  EXPECT_FALSE(rig.turns());
+}
+
+TEST_F(Ros, AnEnabledAxisFollowsAStreamThatBeginsWhereItIs) {
+  control();
+  EXPECT_TRUE(reaches(kTurn));
+  EXPECT_TRUE(reaches(-2 * kTurn));
+}
+
+TEST_F(Ros, HardwareThatStartsWithZeroMovesNothing) {
+  control();
+  ASSERT_TRUE(reaches(3 * kTurn));
+  const double before = position();
+  stream(sample({0}, 2), 5s);  // another writer: the control program was started anew
+  EXPECT_NEAR(position(), before, 1e-3);
+  EXPECT_TRUE(enabled()) << "it lives, and keeps its lease";
+  EXPECT_THAT(rig.told, Contains(HasSubstr("positions act once they were within 0.01 of the axis (sync_tolerance)")));
+}
+
+TEST_F(Ros, AStreamThatGoesOnOverAnEnableMovesNothing) {
+  act(RosAction::enable);
+  ASSERT_TRUE(stream_until(sample({7}), [&] { return enabled(); }));
+  const double before = position();
+  stream(sample({7}), 3s);
+  EXPECT_NEAR(position(), before, 1e-3);
+  stream(sample({before}), 100ms);
+  EXPECT_TRUE(reaches(7));
+}
+
+TEST_F(Ros, NothingResumesAfterAStopByAnybody) {
+  const auto stranger = rig.writer(3);
+  for (const bool latches : {true, false}) {
+    control();
+    const double begun = position();
+    ASSERT_TRUE(stream_until(sample({begun + 500 * kTurn}), [&] { return std::fabs(position() - begun) > 1; }));
+    EXPECT_EQ(rig.ask(stranger, latches ? 3 : 4).result, kDone);
+    stream(sample({begun + 500 * kTurn}), 2s);
+    EXPECT_FALSE(rig.turns());
+    const double stopped = position();
+    act(RosAction::enable);
+    stream(sample({begun + 500 * kTurn}), 1s);
+    EXPECT_TRUE(enabled());
+    EXPECT_NEAR(position(), stopped, 1e-3);
+    act(RosAction::disable);
+    ASSERT_TRUE(rig.run_until([&] { return !enabled(); }));
+  }
+}
+
+TEST_F(Ros, SilenceStopsAnAxis) {
+  control();
+  ASSERT_TRUE(stream_until(sample({position() + 500 * kTurn}), [&] { return rig.turns(); }));
+  const Instant silent = rig.now();
+  ASSERT_TRUE(rig.run_until([&] { return (rig.state().alarms & bit(AxisAlarm::stop_latched)) != 0; }, 10s));
+  EXPECT_LE(rig.now() - silent, 2100ms);
+  ASSERT_TRUE(rig.run_until([&] { return !rig.turns(); }));
+  EXPECT_TRUE(rig.has_event("has run out: quick stop"));
+}
+
+TEST_F(Ros, SilenceAboutOneAxisStopsThatOne) {
+  control();
+  ASSERT_TRUE(stream_until(sample({position() + 500 * kTurn}), [&] { return rig.turns(); }));
+  stream(sample({kNan, 0}), 3s);
+  EXPECT_FALSE(rig.turns());
+  EXPECT_TRUE((rig.state().alarms & bit(AxisAlarm::stop_latched)) != 0);
+}
+
+TEST_F(Ros, ASampleWhoseListsHaveNotOneLengthIsRefusedWhole) {
+  control();
+  const double before = position();
+  auto bad = sample({before + 1});
+  bad.names.emplace_back("another");
+  stream(bad, 3s);
+  EXPECT_NEAR(position(), before, 1e-3);
+  EXPECT_TRUE((rig.state().alarms & bit(AxisAlarm::stop_latched)) != 0) << "it is no sign of life";
+  EXPECT_THAT(rig.told, Contains(HasSubstr("is refused as a whole: it names 2 joints, with 1 positions")));
+}
+
+TEST_F(Ros, WhatCannotBeMeantIsRefusedWhole) {
+  control();
+  const double before = position();
+  auto twice = sample({before + 1, before + 1});
+  twice.names[1] = twice.names[0];
+  auto endless = sample({before + 1, std::numeric_limits<double>::infinity()});
+  auto efforts = sample({before + 1});
+  efforts.efforts = 2;
+  auto many = sample({before + 1});
+  many.names.resize(dds::kMaxJoints + 1);
+  many.positions.resize(dds::kMaxJoints + 1);
+  for (const auto& each : {twice, endless, efforts, many}) {
+    stream(each, 200ms);
+    EXPECT_NEAR(position(), before, 1e-3);
+  }
+  EXPECT_THAT(rig.told, Contains(HasSubstr("twice")));
+  EXPECT_THAT(rig.told, Contains(HasSubstr("infinite")));
+  EXPECT_THAT(rig.told, Contains(HasSubstr("2 efforts")));
+  EXPECT_THAT(rig.told, Contains(HasSubstr("more than 512 joints")));
+}
+
+TEST_F(Ros, AJointThatIsNoAxisIsToldOnce) {
+  auto record = sample({position()});
+  record.names[0] = "gripper";
+  stream(record, 5s);
+  EXPECT_EQ(std::ranges::count_if(rig.told, [](const auto& line) { return line.find("gripper") != line.npos; }), 1);
+}
+
+TEST_F(Ros, PositionsBeatVelocities) {
+  control();
+  auto both = sample({position() + 1});
+  both.velocities = {100};
+  const double wanted = position() + 1;
+  ASSERT_TRUE(stream_until(both, [&] { return std::fabs(position() - wanted) < 0.001; }));
+  stream(both, 1s);
+  EXPECT_NEAR(position(), wanted, 0.001);
+}
+
+TEST_F(Ros, AVelocityActsOnceItWasZero) {
+  act(RosAction::enable);
+  ASSERT_TRUE(stream_until(velocities(3), [&] { return enabled(); }));
+  stream(velocities(3), 2s);
+  EXPECT_FALSE(rig.turns());
+  stream(velocities(0), 200ms);
+  ASSERT_TRUE(stream_until(velocities(3), [&] { return std::fabs(rig.state().velocity - 3) < 0.1; }));
+  ASSERT_TRUE(stream_until(velocities(-3), [&] { return std::fabs(rig.state().velocity + 3) < 0.1; }));
+  stream(velocities(0), 1s);
+  EXPECT_FALSE(rig.turns());
+  EXPECT_TRUE(enabled());
+}
+
+TEST_F(Ros, AnAxisOfAnotherClientIsNotTaken) {
+  const auto plc = client(1, "10.0.0.1");
+  WriteBatch enable;
+  enable.command = Command::enable;
+  ASSERT_EQ(rig.modbus(plc, enable), Errc::ok);
+  const double before = position();
+  for (int i = 0; i < 50; ++i) {
+    plc->last_request = rig.now();
+    stream(sample({before}), 20ms);
+    stream(sample({before + 1}), 20ms);
+  }
+  EXPECT_NEAR(position(), before, 1e-3);
+  EXPECT_TRUE(rig.axis().lease.owned_by(1));
+  act(RosAction::quick_stop);
+  ASSERT_TRUE(rig.run_until([&] { return !enabled(); })) << "a stop is open to everybody";
+}
+
+TEST_F(Ros, AFaultIsResetByItsTopicAndEnablesNothing) {
+  control();
+  rig.stage.drive(0).inject_fault(1, 0x0004);
+  ASSERT_TRUE(rig.run_until([&] { return rig.axis().has(AxisInput::fault); }));
+  rig.stage.drive(0).clear_fault_cause(1, 0x0004);
+  act(RosAction::fault_reset);
+  ASSERT_TRUE(stream_until(sample({position() + 1}), [&] { return !rig.axis().has(AxisInput::fault); }));
+  stream(sample({position() + 1}), 1s);
+  EXPECT_FALSE(enabled());
+}
+
+TEST_F(Ros, AStreamInStepAfterTheGatewaysOwnRestartGoesOn) {
+  control();
+  ASSERT_TRUE(reaches(kTurn));
+  rig.link_down();
+  rig.run(1s);
+  rig.link_up();
+  EXPECT_TRUE(reaches(2 * kTurn)) << "the writer is the same one";
+}
+
+struct RosInMetres : Ros {
+  RosInMetres() : Ros(options()) {}
+  static DdsRigOptions options() {
+    DdsRigOptions out;
+    out.settings.units = {{kServo, Rational(10000), Rational(1, 200)}};
+    return out;
+  }
+};
+
+TEST_F(RosInMetres, TheToleranceIsThatOfTheMotor) {
+  control();
+  const double before = position();
+  stream(sample({before + 0.009}, 2), 2s);  // nearly two turns of a 5 mm spindle
+  EXPECT_NEAR(position(), before, 1e-6);
+  stream(sample({before + 0.000007}, 2), 200ms);
+  EXPECT_TRUE(stream_until(sample({before + 0.009}, 2), [&] { return position() > before + 0.0089; }));
+}
+
+struct RosWithAge : Ros {
+  RosWithAge() : Ros(options()) {}
+  static DdsRigOptions options() {
+    DdsRigOptions out;
+    out.settings.max_age = 500ms;
+    return out;
+  }
+  void act_written(RosAction action, Duration ago) {
+    rig.give(dds::RosActionRecord{guid(9), (rig.now() - ago).time_since_epoch().count(), kServo,
+                                  static_cast<std::uint8_t>(action)});
+  }
+  void stream_written(Duration ago, Duration time) {
+    for (const Instant end = rig.now() + time; rig.now() < end; rig.run(kPeriod)) {
+      auto record = sample({position()});
+      record.written = (rig.now() - ago).time_since_epoch().count();
+      rig.give(record);
+    }
+  }
+};
+
+TEST_F(RosWithAge, WhatIsOldStartsNothingAndIsNoSignOfLifeButAStopIsAStop) {
+  act_written(RosAction::enable, 600ms);
+  stream_written(0ms, 500ms);
+  EXPECT_FALSE(enabled());
+  act_written(RosAction::enable, 0ms);
+  stream_written(0ms, 3s);
+  EXPECT_TRUE(enabled());
+  act_written(RosAction::quick_stop, 10s);
+  stream_written(0ms, 500ms);
+  EXPECT_TRUE((rig.state().alarms & bit(AxisAlarm::stop_latched)) != 0);
+  act_written(RosAction::enable, 0ms);
+  stream_written(0ms, 500ms);
+  ASSERT_TRUE(enabled());
+  stream_written(600ms, 3s);
+  EXPECT_TRUE((rig.state().alarms & bit(AxisAlarm::stop_latched)) != 0) << "its lease has run out";
+  EXPECT_THAT(rig.told, Contains(HasSubstr("older than max_age_ms")));
+}
+
+struct RosWithWrites : Ros {
+  RosWithWrites() : Ros(options()) {}
+  static DdsRigOptions options() {
+    DdsRigOptions out;
+    out.lease.renew = LeaseRenewal::write;
+    return out;
+  }
+};
+
+TEST_F(RosWithWrites, SamplesAreWrites) {
+  control();
+  const double before = position();
+  stream(sample({before}), 10s);
+  EXPECT_TRUE(enabled());
+  EXPECT_TRUE(reaches(before + 1));
+}
+
+}  // namespace
+}  // namespace axisgate::test
