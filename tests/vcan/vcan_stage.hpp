@@ -4,9 +4,11 @@
 #pragma once
 
 #include <gmock/gmock.h>
+#include <ifaddrs.h>
 #include <linux/can.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
+#include <linux/if_link.h>
 #include <net/if.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -116,6 +118,20 @@ class VcanStage : public testing::Test {
     const std::size_t before = marks;
     peer->send(frame_of(kMark));
     ASSERT_TRUE(await([&] { return marks > before || !diary.up(); }));
+  }
+
+  /// Frames of this interface that no socket has seen: a processor queues 1,000 frames of all interfaces
+  /// (net.core.netdev_max_backlog), and the system drops what comes while a busy machine has not handed those on.
+  [[nodiscard]] std::uint32_t dropped_before_any_socket() const {
+    ifaddrs* list = nullptr;
+    EXPECT_EQ(::getifaddrs(&list), 0) << std::strerror(errno);
+    const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> owner(list, &::freeifaddrs);
+    for (const ifaddrs* each = list; each != nullptr; each = each->ifa_next) {
+      if (interface != each->ifa_name || each->ifa_data == nullptr) continue;
+      return static_cast<const rtnl_link_stats*>(each->ifa_data)->rx_dropped;
+    }
+    ADD_FAILURE() << "the system gives no statistics of " << interface;
+    return 0;
   }
 
   static constexpr std::uint32_t kMark = 0x7E5;
