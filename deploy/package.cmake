@@ -61,11 +61,18 @@ install(FILES ${files}/udev/71-axisgate-lines.rules DESTINATION /lib/udev/rules.
 # What a person decides is no more than an example: a package that brought a bus up, or a gateway, could move a motor.
 install(FILES ${files}/example/gateway.json ${files}/udev/70-axisgate.rules ${files}/can/80-can0.network
         DESTINATION share/doc/axisgate/examples COMPONENT gateway EXCLUDE_FROM_ALL)
-install(FILES ${files}/plc/axisgate.st ${files}/plc/axisgate.xml ${files}/plc/example.st
-        DESTINATION share/doc/axisgate/examples/plc COMPONENT gateway EXCLUDE_FROM_ALL)
-install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/SECURITY.md ${CMAKE_SOURCE_DIR}/docs/installation.md
-              ${CMAKE_SOURCE_DIR}/docs/plc.md ${CMAKE_SOURCE_DIR}/docs/troubleshooting.md ${CMAKE_SOURCE_DIR}/schemas/register-map.md
-        DESTINATION share/doc/axisgate COMPONENT gateway EXCLUDE_FROM_ALL)
+# The manual in the folders that it has here, so that its links lead somewhere in the package as well.
+set(manual share/doc/axisgate)
+install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/SECURITY.md DESTINATION ${manual} COMPONENT gateway EXCLUDE_FROM_ALL)
+install(FILES ${CMAKE_SOURCE_DIR}/schemas/register-map.md DESTINATION ${manual}/schemas COMPONENT gateway EXCLUDE_FROM_ALL)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${manual} COMPONENT gateway EXCLUDE_FROM_ALL FILES_MATCHING PATTERN "*.md")
+install(FILES ${files}/plc/axisgate.st ${files}/plc/axisgate.xml ${files}/plc/example.st ${files}/plc/example_plain.st
+        DESTINATION ${manual}/deploy/plc COMPONENT gateway EXCLUDE_FROM_ALL)
+install(FILES ${files}/examples/README.md DESTINATION ${manual}/deploy/examples COMPONENT gateway EXCLUDE_FROM_ALL)
+foreach(folder modbus panels node-red ros2)
+  file(GLOB examples CONFIGURE_DEPENDS ${files}/examples/${folder}/*)
+  install(FILES ${examples} DESTINATION ${manual}/deploy/examples/${folder} COMPONENT gateway EXCLUDE_FROM_ALL)
+endforeach()
 install(DIRECTORY DESTINATION /etc/axisgate COMPONENT gateway EXCLUDE_FROM_ALL)
 
 if(TARGET axisgate-dds)

@@ -29,13 +29,15 @@ bool is_plain_read(const BusJob& job) { return job.read.has_value() && job.write
 
 struct Arbiter::Candidate {
   Grant grant;
+  bool deferred = false;
   int rank = 0;
   bool started = false;
   std::uint64_t served = 0;
   JobId place = 0;
 
-  /// The order in which the wire is given away, in four comparisons.
+  /// The order in which the wire is given away, in five comparisons.
   [[nodiscard]] bool goes_before(const Candidate& other) const {
+    if (deferred != other.deferred) return other.deferred;       // who answers before who did not
     if (rank != other.rank) return rank < other.rank;            // stop, cause, a poll that is owed, then by class
     if (rank == 0 && started != other.started) return !started;  // a new stop before what follows from an older one
     if (served != other.served) return served < other.served;    // drives take turns inside a class
@@ -111,7 +113,8 @@ std::optional<Arbiter::Candidate> Arbiter::choose(Instant now) const {
 Arbiter::Candidate Arbiter::candidate(const Entry& entry) const {
   static constexpr std::array<int, kPriorityCount> kRanks{0, 1, 3, 4, 5, 6};
   const auto priority = static_cast<std::size_t>(entry.job.priority);
-  return {.grant = {entry.id, entry.job.drive, entry.job.priority},
+  return {.grant = {entry.id, entry.job.drive, entry.job.priority, entry.job.axis},
+          .deferred = deferred(entry.job.drive, entry.job.priority),
           .rank = kRanks[priority],
           .started = entry.started,
           .served = drives_[entry.job.drive].served[priority],
@@ -120,8 +123,13 @@ Arbiter::Candidate Arbiter::candidate(const Entry& entry) const {
 
 Arbiter::Candidate Arbiter::poll_candidate(DriveSlot drive) const {
   return {.grant = {0, drive, Priority::poll},
+          .deferred = deferred(drive, Priority::poll),
           .rank = others_since_poll_ >= kOthersPerPoll ? 2 : 6,
           .served = drives_[drive].served[static_cast<std::size_t>(Priority::poll)]};
+}
+
+bool Arbiter::deferred(DriveSlot drive, Priority priority) const {
+  return priority > Priority::cause && owed_to_answers_ > Duration{} && drives_[drive].unanswered;
 }
 
 bool Arbiter::blocked(const Entry& entry) const {
@@ -140,10 +148,13 @@ void Arbiter::decline() {
   }
 }
 
-void Arbiter::exchange_over(Instant silent_until) {
+void Arbiter::exchange_over(Instant silent_until, bool lost) {
   assert(wire_busy_);
   wire_busy_ = false;
   silent_until_ = silent_until;
+  drives_[granted_.drive].unanswered = lost;
+  const Duration taken = silent_until - granted_.at;
+  owed_to_answers_ = lost ? std::max(owed_to_answers_, taken) : std::max(owed_to_answers_ - taken, Duration{});
 }
 
 void Arbiter::wait(JobId id, Instant until) {
@@ -223,7 +234,7 @@ template <typename Which, typename Reason>
 void Arbiter::end_where(Which which, Reason reason) {
   std::erase_if(entries_, [&](const Entry& entry) {
     if (!which(entry)) return false;
-    endings_.push_back({entry.id, entry.job.drive, reason(entry)});
+    endings_.push_back({entry.id, entry.job.drive, reason(entry), entry.job.axis});
     return true;
   });
 }
@@ -247,6 +258,7 @@ void Arbiter::end_all(Errc waiting, Errc started) {
   end_where([](const Entry&) { return true; }, [&](const Entry& e) { return e.started ? started : waiting; });
   wire_busy_ = false;
   silent_until_ = kLongAgo;
+  owed_to_answers_ = {};
 }
 
 std::optional<Arbiter::Ending> Arbiter::take_ending(Instant now) {

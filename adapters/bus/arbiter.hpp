@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The arbiter of one bus: the only queue to a wire. Pure: bus jobs and instants go in, one grant at a time comes out.
 // Promises at most one exchange outstanding; stop before cause before command before interactive before setup before
-// poll; turns between drives inside a class; every fifth exchange to poll when one is due; each bus job ends exactly
-// once; every queue bounded. Never looks at a clock or a wire, and never repeats anything.
+// poll; turns between drives inside a class; every fifth exchange to poll when one is due; to the others as much time
+// as a drive that did not answer has taken; each bus job ends exactly once; every queue bounded. Never looks at a clock
+// or a wire, and never repeats anything.
 #pragma once
 
 #include <algorithm>
@@ -52,6 +53,7 @@ class Arbiter {
     JobId id = 0;  ///< 0: a poll
     DriveSlot drive = 0;
     Priority priority = Priority::poll;
+    AxisSlot axis = kNoAxis;  ///< whose bus job it is
   };
   /// Whose exchange goes on the wire now; none while one is outstanding, the line must be silent or nobody is ready.
   /// A granted bus job is started: its axis's other bus jobs of the same class wait until it is finished (setup: its
@@ -60,8 +62,10 @@ class Arbiter {
   /// The drive granted last had nothing to send after all: the wire is free again at once, the turn is spent. That
   /// bus job, if it is not finished, or that drive's next poll is granted after kDeclinePause at the earliest.
   void decline();
-  /// The exchange outstanding is over; the line stays silent until `silent_until`.
-  void exchange_over(Instant silent_until);
+  /// The exchange outstanding is over; the line stays silent until `silent_until`. One that was `lost` has taken the
+  /// time of a timeout: its drive's next one, but for stops and causes, waits until answered ones have had as much,
+  /// or nobody else wants the wire. So a drive that is always late costs its neighbours one timeout at a time.
+  void exchange_over(Instant silent_until, bool lost = false);
 
   /// A started bus job wants no exchange before `until` (it waits for a condition).
   void wait(JobId id, Instant until);
@@ -82,7 +86,10 @@ class Arbiter {
     JobId id = 0;
     DriveSlot drive = 0;
     Errc code = Errc::ok;
-    friend bool operator==(const Ending&, const Ending&) = default;
+    AxisSlot axis = kNoAxis;  ///< whose bus job it was: the number of the bus job says it too, and is what is compared
+    friend bool operator==(const Ending& a, const Ending& b) {
+      return a.id == b.id && a.drive == b.drive && a.code == b.code;
+    }
   };
   /// Bus jobs that the arbiter itself has ended, oldest first: superseded, dropped_by_stop, never_started, or by
   /// end_*(). Start deadlines are seen here and in next().
@@ -105,6 +112,7 @@ class Arbiter {
   struct DriveTurns {
     Instant poll_due = kNever;
     Instant poll_not_before = kLongAgo;  ///< after a poll that it declined
+    bool unanswered = false;             ///< its last exchange was lost
     [[nodiscard]] Instant poll_ready_at() const { return std::max(poll_due, poll_not_before); }
     std::array<std::uint64_t, kPriorityCount> served{};  ///< number of its last grant, per class
   };
@@ -113,6 +121,7 @@ class Arbiter {
   [[nodiscard]] Candidate candidate(const Entry& entry) const;
   [[nodiscard]] Candidate poll_candidate(DriveSlot drive) const;
   [[nodiscard]] std::optional<Candidate> choose(Instant now) const;
+  [[nodiscard]] bool deferred(DriveSlot drive, Priority priority) const;
   [[nodiscard]] bool blocked(const Entry& entry) const;
   [[nodiscard]] Entry* joinable(const BusJob& job);
   [[nodiscard]] const Entry* supersedable(const BusJob& job) const;
@@ -130,6 +139,7 @@ class Arbiter {
   JobId last_id_ = 0;
   std::uint64_t grants_ = 0;
   int others_since_poll_ = 0;
+  Duration owed_to_answers_{};  ///< time of the wire that answered exchanges have before the next one that may be lost
   bool wire_busy_ = false;
   struct {
     JobId id = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adapters/bus/bus.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <utility>
@@ -13,6 +15,7 @@ Bus::Bus(BusSettings settings, std::size_t drives, std::unique_ptr<Wire> wire, R
       runtime_(runtime),
       log_(log),
       drives_(drives, nullptr),
+      noisy_timeouts_(drives, 0),
       bits_(settings_.bit_rate),
       timer_(runtime.make_timer([this] { pump(); })),
       wire_(std::move(wire)) {
@@ -135,13 +138,14 @@ bool Bus::take_unsolicited() {
 /// One callback to one drive, if there is reason for one.
 bool Bus::take_turn() {
   if (outstanding_ && now() >= outstanding_->deadline) {
+    look_for_noise();
     ++statistics_.timeouts;
     wire_->abandon();
     end_exchange({.code = Errc::timed_out}, std::max(settings_.min_gap, settings_.settle));
     return true;
   }
   if (const auto ending = arbiter_.take_ending(now())) {
-    drives_[ending->drive]->on_job_ended(ending->id, ending->code);
+    drives_[ending->drive]->on_job_ended(*ending);
     return true;
   }
   if (!up_) return false;
@@ -151,13 +155,13 @@ bool Bus::take_turn() {
 }
 
 void Bus::grant(const Arbiter::Grant& grant) {
-  const std::optional<Exchange> exchange = drives_[grant.drive]->on_grant(grant.id, grant.priority);
+  const std::optional<Exchange> exchange = drives_[grant.drive]->on_grant(grant);
   if (!exchange) {
     arbiter_.decline();
     return;
   }
   ++statistics_.requests;
-  outstanding_ = {*exchange, grant.drive, now() + settings_.timeout};
+  outstanding_ = {*exchange, grant.drive, now() + settings_.timeout, wire_->statistics().bad_frames};
   load_.set_busy(true, now());
   count_bits();
   wire_->send(*exchange);
@@ -165,9 +169,23 @@ void Bus::grant(const Arbiter::Grant& grant) {
 
 void Bus::end_exchange(const ExchangeResult& result, Duration silence) {
   const Outstanding ended = *std::exchange(outstanding_, std::nullopt);
+  if (result.code == Errc::ok) noisy_timeouts_[ended.drive] = 0;
   load_.set_busy(false, now());
-  arbiter_.exchange_over(now() + silence);
+  arbiter_.exchange_over(now() + silence, result.code == Errc::timed_out);
   drives_[ended.drive]->on_result(ended.exchange, result);
+}
+
+/// Where replies meet on a serial line, what comes is noise, and only in place of that number's answer.
+void Bus::look_for_noise() {
+  int& in_a_row = noisy_timeouts_[outstanding_->drive];
+  if (wire_->statistics().bad_frames == outstanding_->bad_frames) {
+    in_a_row = 0;
+  } else if (++in_a_row == kNoisyTimeoutsTold) {
+    log_.write(LogLevel::warning, log_source(),
+               fmt::format("node {}: noise came in place of its answer {} times in a row: are there two drives with "
+                           "this number? Else cable, termination, baud and parity",
+                           outstanding_->exchange.node, kNoisyTimeoutsTold));
+  }
 }
 
 void Bus::link_up() {
@@ -186,7 +204,7 @@ void Bus::link_down(const std::string& why) {
   if (outstanding_) end_exchange({.code = Errc::link_lost}, Duration{});
   arbiter_.end_all(Errc::offline, Errc::link_lost);
   while (const auto ending = arbiter_.take_ending(now())) {
-    drives_[ending->drive]->on_job_ended(ending->id, ending->code);
+    drives_[ending->drive]->on_job_ended(*ending);
   }
   for (BusDrive* drive : drives_) drive->on_link(false);
 }

@@ -24,13 +24,13 @@ class BusDrive {
   BusDrive(const BusDrive&) = delete;
   BusDrive& operator=(const BusDrive&) = delete;
   virtual ~BusDrive() = default;
-  /// The wire is this drive's for one exchange: for bus job `id`, or (0) for a poll. No value: nothing to send after
+  /// The wire is this drive's for one exchange: for a bus job, or for a poll. No value: nothing to send after
   /// all. A suspect drive may answer with its resynchronisation read instead of what the bus job wants; the bus job
   /// then stays.
-  [[nodiscard]] virtual std::optional<Exchange> on_grant(JobId id, Priority priority) = 0;
+  [[nodiscard]] virtual std::optional<Exchange> on_grant(const Arbiter::Grant& grant) = 0;
   virtual void on_result(const Exchange& exchange, const ExchangeResult& result) = 0;
   /// The arbiter has ended this bus job of the drive: its exchange, if one is on the wire, still gets its on_result().
-  virtual void on_job_ended(JobId id, Errc code) = 0;
+  virtual void on_job_ended(const Arbiter::Ending& ending) = 0;
   virtual void on_link(bool up) = 0;
   /// The number by which unsolicited events name it; 0: it takes none.
   [[nodiscard]] virtual std::uint8_t node() const { return 0; }
@@ -92,7 +92,10 @@ class Bus final : private WireEvents {
     Exchange exchange;
     DriveSlot drive = 0;
     Instant deadline = kNever;
+    std::uint32_t bad_frames = 0;  ///< of the wire, when it was sent
   };
+  /// Timeouts of a drive in a row, each with a bad frame in place of its answer, after which the log says so.
+  static constexpr int kNoisyTimeoutsTold = 3;
   /// Callbacks to drives in one turn of the loop; more go on in the next turn, so that other buses keep their
   /// deadlines.
   static constexpr int kMaxTurnsPerPump = 64;
@@ -102,6 +105,7 @@ class Bus final : private WireEvents {
   bool take_unsolicited();
   bool take_turn();
   void grant(const Arbiter::Grant& grant);
+  void look_for_noise();
   void end_exchange(const ExchangeResult& result, Duration silence);
   void link_up();
   void link_down(const std::string& why);
@@ -118,6 +122,7 @@ class Bus final : private WireEvents {
   bool up_ = false;
   bool pumping_ = false;
   std::vector<BusDrive*> drives_;
+  std::vector<int> noisy_timeouts_;  ///< by drive
   std::optional<Outstanding> outstanding_;
   // What the wire said while a callback of ours was running, in the order in which it is taken up.
   std::optional<ExchangeResult> heard_reply_;

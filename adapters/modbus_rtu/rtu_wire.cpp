@@ -45,7 +45,7 @@ void RtuWire::send(const bus::Exchange& exchange) {
   const bool broadcast = is_broadcast(exchange.node);
   assert(!broadcast || exchange.access == bus::Access::write);
   const Frame frame = request_of(exchange, node_of(exchange.node));
-  outstanding_ = {++last_number_, exchange, broadcast};
+  outstanding_ = {++last_number_, exchange, broadcast, runtime_.now(), frame.size() + kCrcSize};
   if (decode_) log_frame("->", frame, describe_request(frame));
   link_->transmit(last_number_, frame);
   if (!broadcast) return;
@@ -57,6 +57,7 @@ void RtuWire::send(const bus::Exchange& exchange) {
 void RtuWire::abandon() {
   if (outstanding_) link_->withdraw(outstanding_->number);
   outstanding_.reset();
+  last_answer_.clear();  // what comes early from now on may be the answer to this one
 }
 
 const bus::Statistics& RtuWire::statistics() const {
@@ -75,6 +76,8 @@ void RtuWire::broadcast_over() {
 
 void RtuWire::on_link_up() {
   outstanding_.reset();
+  last_answer_.clear();
+  timed_ = true;
   watch_.on_link_up();
 }
 
@@ -88,16 +91,31 @@ void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
   if (outstanding_ && !outstanding_->broadcast) {
     const Judgement judgement = judge(frame, outstanding_->exchange, node_of(outstanding_->exchange.node));
     const auto* result = std::get_if<bus::ExchangeResult>(&judgement);
-    if (result != nullptr && newest == outstanding_->number) {
+    const bool mine = result != nullptr && newest == outstanding_->number;
+    if (mine && !said_again(frame)) {
       if (decode_) log_frame("<-", frame, describe_reply(frame));
       watch_.on_answer();
+      last_answer_.assign(frame.begin(), frame.end());
       end(*result);
       return;
     }
-    remark = result != nullptr ? "late" : text(std::get<NotMine>(judgement));
+    remark = mine ? "said twice" : result != nullptr ? "late" : text(std::get<NotMine>(judgement));
   }
   ++(well_formed(frame) && knows(frame[0]) ? statistics_.late_replies : statistics_.bad_frames);
   if (decode_) log_frame("<-", frame, fmt::format("{}  ({})", describe_reply(frame), remark));
+}
+
+/// Sooner than request and answer can have crossed the line, it is no answer: the same as the answer before, it is that
+/// one said again. A line where anything else comes as soon has no rate of its own (a pseudo-terminal, a device
+/// server).
+bool RtuWire::said_again(Bytes frame) {
+  const Duration crossing =
+      wire_time(speed_.baud, speed_.parity_bits, outstanding_->request_bytes, frame.size() + kCrcSize);
+  // A tenth less: no two clocks agree. The silence before an answer does not count, since some slaves keep none.
+  if (!timed_ || runtime_.now() - outstanding_->sent_at >= crossing - crossing / 10) return false;
+  if (!last_answer_.empty() && std::ranges::equal(frame, last_answer_)) return true;
+  timed_ = false;
+  return false;
 }
 
 void RtuWire::on_bad_frame(ExchangeNumber, std::size_t bytes) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Modbus RTU on a serial line, as the bus sees it: requests out, answers back.
 // Promises at most one reply per send(), none after abandon() or a loss of the link, none for a frame that was heard
-// before its request was sent, and that a line that babbles is opened anew three times and then reported down until it
-// is quiet. Never queues or repeats a request, and never judges a value.
+// before its request was sent, or that is the answer before said again by a drive that answers twice, and that a line
+// that babbles is opened anew three times and then reported down until it is quiet. Never queues or repeats a request,
+// and never judges a value.
 #pragma once
 
 #include <memory>
@@ -38,6 +39,8 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
     ExchangeNumber number = 0;
     bus::Exchange exchange;
     bool broadcast = false;
+    Instant sent_at = kLongAgo;
+    std::size_t request_bytes = 0;  ///< with the CRC
   };
 
   void on_link_up() override;
@@ -46,6 +49,7 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   void on_bad_frame(ExchangeNumber newest, std::size_t bytes) override;
 
   void end(const bus::ExchangeResult& result);
+  [[nodiscard]] bool said_again(Bytes frame);
   void broadcast_over();
   [[nodiscard]] bool is_broadcast(std::uint8_t unit) const;
   [[nodiscard]] const RtuNode& node_of(std::uint8_t unit) const;
@@ -60,6 +64,8 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   bus::WireEvents* events_ = nullptr;
   ExchangeNumber last_number_ = 0;
   std::optional<Outstanding> outstanding_;
+  Frame last_answer_;  ///< none where anything was given up since
+  bool timed_ = true;  ///< nothing has come sooner than the line could carry it
   bool decode_ = false;
   mutable bus::Statistics statistics_;
   // Last, so that they go first: none may call into a wire that is half gone.

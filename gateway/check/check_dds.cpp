@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "gateway/upstream/dds/dds_session.hpp"
+#include "gateway/upstream/dds_link/ros_names.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -65,12 +66,13 @@ ReportLines dds_lines(const DdsSettings& settings) {
   out.emplace_back("topics", fmt::format("axisgate/axis_state, axis_event, gateway_state{}",
                                          settings.commands ? ", command_reply, object_reply" : ""));
   if (settings.ros2) {
+    const std::string space = settings.gateway.name.empty() ? "/" : "/" + settings.gateway.name + "/";
     out.emplace_back(
-        "ROS 2", fmt::format("/joint_states and /diagnostics{}",
-                             settings.commands ? fmt::format(", /joint_commands, and of each axis enable, quick_stop, "
+        "ROS 2", fmt::format("{0}joint_states and /diagnostics{1}", space,
+                             settings.commands ? fmt::format(", {}joint_commands, and of each axis enable, quick_stop, "
                                                              "fault_reset, home; a stream of positions begins within "
                                                              "{:.3g} rad of its axis",
-                                                             settings.sync_tolerance)
+                                                             space, settings.sync_tolerance)
                                                : std::string()));
   }
   out.emplace_back("samples", samples_text(settings));
@@ -84,8 +86,14 @@ ReportLines dds_lines(const DdsSettings& settings) {
 
 ReportLines dds_master_lines(const DdsSettings& settings, const AxisConfig& axis, const BusBudget& budget) {
   const LeaseRules& lease = axis.lease;
-  if (!settings.commands || settings.role == Role::viewer || !lease.on) return {};
+  if (!settings.commands || settings.role == Role::viewer) return {};
   ReportLines out;
+  // Names of topics have letters, digits and underscores alone; the joint is called as the axis is.
+  if (settings.ros2 && dds::ros_token(axis.name) != axis.name) {
+    out.emplace_back("ROS 2", fmt::format("joint \"{}\"; its topics begin with {}", axis.name,
+                                          dds::ros_axis_topic(settings.gateway.name, axis.name, "").substr(2)));
+  }
+  if (!lease.on) return out;
   out.emplace_back("DDS client", "kept by " + signs_of_life(lease.renew));
   if (lease.on_expiry == LeaseAction::none) return out;
   const auto worst = [&](Duration more) {

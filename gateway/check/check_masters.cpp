@@ -274,14 +274,14 @@ ReportLines master_lines(const MasteredAxis& axis) {
     out.emplace_back("lease",
                      fmt::format("{:.0f} ms, kept by {}", in_ms(axis.config.lease.timeout), signs_of_life(axis)));
     add_program_dies(out, axis);
-    if (axis.dds) {
-      for (auto& line : dds_master_lines(*axis.dds, axis.config, axis.budget)) out.push_back(std::move(line));
-    }
   } else {
     out.emplace_back("lease", "null: nobody owns it");
     out.emplace_back("program dies", "THE AXIS GOES ON: nobody notices");
     if (axis.model.virtual_axis && !axis.drive.stops_by_itself)
       out.emplace_back("", "but for a quick stop when its connection ends, where \"client\" is \"connection\"");
+  }
+  if (axis.dds) {
+    for (auto& line : dds_master_lines(*axis.dds, axis.config, axis.budget)) out.push_back(std::move(line));
   }
   out.emplace_back("gateway dies", gateway_dies_text(axis.drive));
   add_keep_alive(out, axis);

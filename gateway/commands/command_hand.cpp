@@ -9,12 +9,13 @@ constexpr const char* kHandEnd =
     "computer fails, the gateway stops it when its lease runs out. An axis with \"lease\": null has no such guard.\n"
     "No function of axisgate is a safety function: keep the wired stop in reach.\n";
 
-CLI::App* add_hand(CLI::App& app, HandOptions& options, int& exit_code, HandTask task, const std::string& what) {
+CLI::App* add_hand(CLI::App& app, HandOptions& options, std::function<int()>& chosen, HandTask task,
+                   const std::string& what) {
   options.order.task = task;
   CLI::App* command = app.add_subcommand(std::string(text(task)), what);
   command->add_option("HOST:PORT", options.endpoint, "the gateway's Modbus-TCP listener")->required();
   command->add_option("AXIS", options.order.axis, "axis number")->required()->check(CLI::Range(1, 499).description(""));
-  command->callback([&options, &exit_code] { exit_code = run(options); });
+  command->callback([&options, &chosen] { chosen = [&options] { return run(options); }; });
   return command;
 }
 
@@ -29,14 +30,14 @@ void add_enable_flag(CLI::App* command, HandOptions& options) {
 
 }  // namespace
 
-void add_hand_commands(CLI::App& app, HandCommands& commands, int& exit_code) {
-  CLI::App* enable = add_hand(app, commands.enable, exit_code, HandTask::enable,
+void add_hand_commands(CLI::App& app, HandCommands& commands, std::function<int()>& chosen) {
+  CLI::App* enable = add_hand(app, commands.enable, chosen, HandTask::enable,
                               "Enable an axis and hold it, showing its position, until Ctrl-C disables it");
   enable->footer(std::string("Nothing moves. An axis that was enabled before is held, and left enabled.\n") + kHandEnd +
                  "Exit code 1: it was not enabled, or something else ended it.\n"
                  "Example: axisgate enable 127.0.0.1:1502 1");
 
-  CLI::App* move = add_hand(app, commands.move, exit_code, HandTask::move,
+  CLI::App* move = add_hand(app, commands.move, chosen, HandTask::move,
                             "Move an axis to a position, showing it live, until it is reached");
   move->add_option("TURNS", commands.move.turns, "target position in turns of the motor, such as 12.5 or -3")
       ->required()
@@ -51,7 +52,7 @@ void add_hand_commands(CLI::App& app, HandCommands& commands, int& exit_code) {
       "Example: axisgate move 127.0.0.1:1502 1 2.5 --velocity 60 --enable");
 
   CLI::App* jog =
-      add_hand(app, commands.jog, exit_code, HandTask::jog, "Turn an axis while a key is held, showing its position");
+      add_hand(app, commands.jog, chosen, HandTask::jog, "Turn an axis while a key is held, showing its position");
   add_speed(jog, commands.jog, "jog velocity in rpm of the motor; without it the one that is set");
   add_enable_flag(jog, commands.jog);
   jog->footer(
@@ -62,7 +63,7 @@ void add_hand_commands(CLI::App& app, HandCommands& commands, int& exit_code) {
       "Exit code 1: it ended otherwise than by q.\n"
       "Example: axisgate jog 127.0.0.1:1502 1 --velocity 30 --enable");
 
-  CLI::App* stop = add_hand(app, commands.stop, exit_code, HandTask::stop,
+  CLI::App* stop = add_hand(app, commands.stop, chosen, HandTask::stop,
                             "Stop an axis with a quick stop, whoever owns it, and wait until it stands");
   stop->footer(
       "The stop is latched: the next enable clears it. It needs no lease, and takes none.\n"

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 
 #include "gateway/commands/hand_command.hpp"
 
@@ -14,7 +15,7 @@ struct HandCommands {
   HandOptions enable, move, jog, stop;
 };
 
-/// `commands` and `exit_code` outlive the parsing.
-void add_hand_commands(CLI::App& app, HandCommands& commands, int& exit_code);
+/// `chosen` is set to what carries the command out; `commands` outlives it.
+void add_hand_commands(CLI::App& app, HandCommands& commands, std::function<int()>& chosen);
 
 }  // namespace axisgate::app

@@ -2,6 +2,7 @@
 #include "gateway/commands/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <iostream>
 #include <memory>
 
@@ -39,7 +40,7 @@ struct Parsed {
   HandCommands hand;
   std::string scan_nodes;
   std::string scan_stations;
-  int exit_code = 0;
+  std::function<int()> chosen;
 };
 
 /// A command that reads a configuration.
@@ -53,9 +54,11 @@ CLI::App* add_config_command(CLI::App& app, Parsed& parsed, const std::string& n
 }
 
 template <typename Options>
-void run_with_folders(Parsed& parsed, Options& options) {
-  options.profile_folders = profile_folders(parsed.profiles);
-  parsed.exit_code = run(options);
+void choose_with_folders(Parsed& parsed, Options& options) {
+  parsed.chosen = [&parsed, &options] {
+    options.profile_folders = profile_folders(parsed.profiles);
+    return run(options);
+  };
 }
 
 void add_run(CLI::App& app, Parsed& parsed) {
@@ -71,7 +74,7 @@ void add_run(CLI::App& app, Parsed& parsed) {
   command->add_option("--decode", parsed.run.decode, "log every frame of this bus; may be given more than once")
       ->type_name("BUS");
   command->footer("Example: axisgate run /etc/axisgate/gateway.json --decode lift-serial");
-  command->callback([&parsed] { run_with_folders(parsed, parsed.run); });
+  command->callback([&parsed] { choose_with_folders(parsed, parsed.run); });
 }
 
 void add_check(CLI::App& app, Parsed& parsed) {
@@ -80,7 +83,7 @@ void add_check(CLI::App& app, Parsed& parsed) {
   command->footer(
       "Exit code 1: mistakes (each with file and JSON pointer), or a bus planned over 100 %.\n"
       "Example: axisgate check /etc/axisgate/gateway.json");
-  command->callback([&parsed] { run_with_folders(parsed, parsed.check); });
+  command->callback([&parsed] { choose_with_folders(parsed, parsed.check); });
 }
 
 void add_map(CLI::App& app, Parsed& parsed) {
@@ -90,7 +93,7 @@ void add_map(CLI::App& app, Parsed& parsed) {
       ->type_name("FORMAT")
       ->capture_default_str();
   command->footer("Example: axisgate map /etc/axisgate/gateway.json --format csv > registers.csv");
-  command->callback([&parsed] { run_with_folders(parsed, parsed.map); });
+  command->callback([&parsed] { choose_with_folders(parsed, parsed.map); });
 }
 
 void add_top(CLI::App& app, Parsed& parsed) {
@@ -118,7 +121,7 @@ void add_top(CLI::App& app, Parsed& parsed) {
   command->footer(
       "A terminal of 80 columns is enough. Lines in red and yellow ask for attention; NO_COLOR=1 leaves colours out.\n"
       "Example: axisgate top 127.0.0.1:1502");
-  command->callback([&parsed] { run_with_folders(parsed, parsed.top); });
+  command->callback([&parsed] { choose_with_folders(parsed, parsed.top); });
 }
 
 void add_topics(CLI::App& app, Parsed& parsed) {
@@ -139,7 +142,7 @@ void add_topics(CLI::App& app, Parsed& parsed) {
   command->add_flag("--once", parsed.topics.once, "print what is there and end");
   command->add_flag("--json", parsed.topics.json, "one JSON object a line for each sample");
   command->footer("Example: axisgate topics /etc/axisgate/gateway.json");
-  command->callback([&parsed] { run_with_folders(parsed, parsed.topics); });
+  command->callback([&parsed] { choose_with_folders(parsed, parsed.topics); });
 }
 
 void add_profile(CLI::App& app, Parsed& parsed) {
@@ -154,7 +157,7 @@ void add_profile(CLI::App& app, Parsed& parsed) {
   command->footer(
       "Exit code 1: mistakes, or something in which profile and EDS cannot both be right.\n"
       "Example: axisgate profile check schemas/drives/kinco-jd.json");
-  command->callback([&parsed] { run_with_folders(parsed, parsed.profile); });
+  command->callback([&parsed] { choose_with_folders(parsed, parsed.profile); });
 }
 
 void add_commission(CLI::App& app, Parsed& parsed) {
@@ -173,7 +176,7 @@ void add_commission(CLI::App& app, Parsed& parsed) {
       "no.\nBefore a write the drive is read again: what changed since the question, or has torque, is not written.\n"
       "Exit code 1: something was left as it is, or the drive cannot be reached.\n"
       "Example: axisgate commission /etc/axisgate/gateway.json 1");
-  command->callback([&parsed] { run_with_folders(parsed, parsed.commission); });
+  command->callback([&parsed] { choose_with_folders(parsed, parsed.commission); });
 }
 
 std::string station_range_mistake(const std::string& text) {
@@ -245,7 +248,7 @@ void add_scan(CLI::App& app, Parsed& parsed) {
     if (const auto range = parse_scan_range(parsed.scan_nodes)) parsed.scan.nodes = *range;
     if (const auto range = parse_scan_range(parsed.scan_stations, kLastRtuStation))
       parsed.scan.serial.stations = *range;
-    run_with_folders(parsed, parsed.scan);
+    choose_with_folders(parsed, parsed.scan);
   });
 }
 
@@ -257,7 +260,7 @@ void add_reload(CLI::App& app, Parsed& parsed) {
       "disabled; else\n"
       "nothing is changed and the reasons are told (exit code 1).\n"
       "Example: axisgate check /etc/axisgate/gateway.json && axisgate reload /etc/axisgate/gateway.json");
-  command->callback([&parsed] { parsed.exit_code = run(parsed.reload); });
+  command->callback([&parsed] { parsed.chosen = [&parsed] { return run(parsed.reload); }; });
 }
 
 void add_explain(CLI::App& app, Parsed& parsed) {
@@ -270,22 +273,23 @@ void add_explain(CLI::App& app, Parsed& parsed) {
   command->footer(
       "Exit code 1: nothing is called so.\n"
       "Example: axisgate explain stop_latched; axisgate explain result 9; axisgate explain 0x3130");
-  command->callback([&parsed] { run_with_folders(parsed, parsed.explain); });
+  command->callback([&parsed] { choose_with_folders(parsed, parsed.explain); });
 }
 
 }  // namespace
 
-int run_command_line(int argc, const char* const* argv) {
+CommandLine parse_command_line(int argc, const char* const* argv) {
   CLI::App app("axisgate: motor drives on fieldbuses as one Modbus-TCP register map", "axisgate");
   app.set_version_flag("--version", "axisgate " AXISGATE_VERSION);
   app.require_subcommand(1);
   app.footer("Example: axisgate check CONFIG && axisgate run CONFIG\nEvery command has --help.");
-  Parsed parsed;
+  const auto options = std::make_shared<Parsed>();
+  Parsed& parsed = *options;
   add_run(app, parsed);
   add_check(app, parsed);
   add_map(app, parsed);
   add_top(app, parsed);
-  add_hand_commands(app, parsed.hand, parsed.exit_code);
+  add_hand_commands(app, parsed.hand, parsed.chosen);
   add_topics(app, parsed);
   add_profile(app, parsed);
   add_commission(app, parsed);
@@ -294,21 +298,26 @@ int run_command_line(int argc, const char* const* argv) {
   add_reload(app, parsed);
   if (const auto text = manual::generated(app, argc, argv)) {
     std::cout << *text;
-    return 0;
+    return {.exit_code = 0, .run = {}};
   }
   // CLI11 says of an unknown word only that a command is missing.
   if (const std::string wrong = wrong_command(app, argc, argv); !wrong.empty()) {
     std::cerr << wrong << "\n";
-    return kWrongCommandLine;
+    return {.exit_code = kWrongCommandLine, .run = {}};
   }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = app.exit(error) == 0;
     if (!asked_for_help) std::cerr << nearest_options(app);
-    return asked_for_help ? 0 : kWrongCommandLine;
+    return {.exit_code = asked_for_help ? 0 : kWrongCommandLine, .run = {}};
   }
-  return parsed.exit_code;
+  return {.exit_code = 0, .run = [options] { return options->chosen(); }};
+}
+
+int run_command_line(int argc, const char* const* argv) {
+  const CommandLine line = parse_command_line(argc, argv);
+  return line.run ? line.run() : line.exit_code;
 }
 
 }  // namespace axisgate::app

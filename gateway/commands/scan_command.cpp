@@ -49,9 +49,9 @@ class Scanner {
   class Node final : public bus::BusDrive {
    public:
     Node(Scanner& scan, std::uint8_t node) : scan_(scan), node_(node) {}
-    std::optional<bus::Exchange> on_grant(bus::JobId, bus::Priority) override { return scan_.next_for(node_); }
+    std::optional<bus::Exchange> on_grant(const bus::Arbiter::Grant&) override { return scan_.next_for(node_); }
     void on_result(const bus::Exchange&, const bus::ExchangeResult& result) override { scan_.on_result(result); }
-    void on_job_ended(bus::JobId, Errc) override {}  // a scan submits no bus jobs, it polls
+    void on_job_ended(const bus::Arbiter::Ending&) override {}  // a scan submits no bus jobs, it polls
     void on_link(bool up) override { scan_.on_link(up); }
     [[nodiscard]] std::uint8_t node() const override { return node_; }
     void on_unsolicited(const bus::UnsolicitedEvent& unsolicited) override { scan_.plan_.heard(unsolicited); }

@@ -2,8 +2,11 @@
 #include "gateway/compose/reload_plan.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 namespace axisgate::app {
 namespace {
@@ -18,10 +21,35 @@ BusConfig without_places(BusConfig bus) {
   return bus;
 }
 
-/// The axes' units are those of the buses, and follow them.
-std::optional<dds::DdsSettings> without_axes(std::optional<dds::DdsSettings> settings) {
-  if (settings) settings->units.clear();
-  return settings;
+/// Which keys the two differ in; the axes' units are those of the buses, and follow them.
+std::vector<std::string_view> changed_dds_keys(const std::optional<dds::DdsSettings>& running,
+                                               const std::optional<dds::DdsSettings>& wanted) {
+  if (!running && !wanted) return {};
+  if (!running || !wanted) return {wanted ? "the section is new" : "the section is gone"};
+  const dds::DdsSettings& a = *running;
+  const dds::DdsSettings& b = *wanted;
+  const std::pair<std::string_view, bool> looks[] = {{"/gateway/name", a.gateway != b.gateway},
+                                                     {"domain", a.domain != b.domain},
+                                                     {"interfaces", a.interfaces != b.interfaces},
+                                                     {"shared_memory", a.shared_memory != b.shared_memory},
+                                                     {"peers", a.peers != b.peers},
+                                                     {"discovery_servers", a.discovery_servers != b.discovery_servers},
+                                                     {"multicast", a.multicast != b.multicast},
+                                                     {"qos_file", a.qos_file != b.qos_file},
+                                                     {"commands", a.commands != b.commands},
+                                                     {"role", a.role != b.role},
+                                                     {"max_age_ms", a.max_age != b.max_age},
+                                                     {"ros2", a.ros2 != b.ros2},
+                                                     {"sync_tolerance", a.sync_tolerance != b.sync_tolerance},
+                                                     {"min_period_ms", a.min_period != b.min_period},
+                                                     {"max_period_ms", a.max_period != b.max_period},
+                                                     {"start_deadline_ms", a.start_deadline != b.start_deadline},
+                                                     {"reply_deadline_ms", a.reply_deadline != b.reply_deadline},
+                                                     {"memory_limit_mb", a.memory_limit_mib != b.memory_limit_mib}};
+  std::vector<std::string_view> keys;
+  for (const auto& [key, changed] : looks)
+    if (changed) keys.push_back(key);
+  return keys;
 }
 
 std::string name_of(const modbus_tcp::ListenerSettings& listener) {
@@ -73,11 +101,12 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted) {
   ReloadPlan plan;
   plan_buses(running, wanted, plan);
   plan_listeners(running, wanted, plan);
-  if (without_axes(running.dds) != without_axes(wanted.dds)) {
-    plan.refusals.emplace_back(
-        "/dds: it is read when the gateway starts, since every DDS client would lose its connection: restart the "
-        "gateway when its axes are "
-        "disabled, or put the section back");
+  if (const auto keys = changed_dds_keys(running.dds, wanted.dds); !keys.empty()) {
+    // A default that follows another key is named as well.
+    plan.refusals.push_back(
+        fmt::format("/dds: {}: it is read when the gateway starts, since every DDS client would lose its connection: "
+                    "restart the gateway when its axes are disabled, or put the section back",
+                    fmt::join(keys, ", ")));
   }
   return plan;
 }

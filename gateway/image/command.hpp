@@ -46,6 +46,26 @@ inline constexpr std::uint16_t kLastCommand = 14;
 [[nodiscard]] constexpr bool is_stop(Command c) {
   return c == Command::disable || c == Command::quick_stop || c == Command::halt;
 }
+/// Enable voltage and, inverted, quick stop: a raw controlword with one of them 0 is anybody's stop.
+inline constexpr std::uint16_t kStoppingBits = 0x0006;
+/// A raw controlword that is a stop by design 3.4: bit 1 = 0 or bit 2 = 0 always; bits 0..3 = 6 or 7 only in a single
+/// write.
+[[nodiscard]] constexpr bool is_stop(std::uint16_t controlword, bool single_write) {
+  constexpr unsigned kRequest = 0x0F, kShutdown = 0x06, kSwitchOn = 0x07;
+  if ((controlword & kStoppingBits) != kStoppingBits) return true;
+  const unsigned request = controlword & kRequest;
+  return single_write && (request == kShutdown || request == kSwitchOn);
+}
+/// Commands 6 to 10 start a motion.
+[[nodiscard]] constexpr bool starts_motion(Command c) { return c >= Command::move_absolute && c <= Command::home; }
+/// Commands 6 to 11 need an axis that is enabled, not faulted and not stop-latched.
+[[nodiscard]] constexpr bool needs_ready(Command c) { return starts_motion(c) || c == Command::set_position; }
+/// A button is pressed.
+[[nodiscard]] constexpr bool is_jog(Command c) { return c == Command::jog_forward || c == Command::jog_reverse; }
+/// The coil of that button; it reads back which way the axis jogs.
+[[nodiscard]] constexpr unsigned jog_coil(Command direction) { return direction == Command::jog_forward ? 8 : 9; }
+/// They change whose the axis is, and ask nothing of it.
+[[nodiscard]] constexpr bool hands_over(Command c) { return c == Command::release || c == Command::take_over; }
 
 [[nodiscard]] std::string_view text(Role role);
 

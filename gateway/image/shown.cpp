@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/image/shown.hpp"
 
+#include "gateway/image/command.hpp"
+
 namespace axisgate {
 namespace {
 
-constexpr std::uint16_t kLevelCoils = (1U << 0) | (1U << 3) | (1U << 7) | (1U << 8) | (1U << 9);
+constexpr std::uint16_t kLevelCoils =
+    (1U << 0) | (1U << 3) | (1U << 7) | (1U << jog_coil(Command::jog_forward)) | (1U << jog_coil(Command::jog_reverse));
 // Inputs 0..10 tell of the drive; owned_by_me and stop_latched are the gateway's own knowledge and outlive the link.
 constexpr std::uint16_t kInputsOfTheDrive = (1U << 11) - 1;
 

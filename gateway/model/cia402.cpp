@@ -62,19 +62,4 @@ Request402 request_of(std::uint16_t controlword) {
   return Request402::other;
 }
 
-bool is_stop(std::uint16_t controlword, bool single_write) {
-  switch (request_of(controlword)) {
-    case Request402::disable_voltage:
-    case Request402::quick_stop:
-      return true;
-    case Request402::shutdown:
-    case Request402::switch_on:
-      return single_write;
-    case Request402::enable_operation:
-    case Request402::other:
-      return false;
-  }
-  return false;
-}
-
 }  // namespace axisgate::drive

@@ -74,8 +74,10 @@ enum class Request402 : std::uint8_t {
 };
 [[nodiscard]] Request402 request_of(std::uint16_t controlword);
 
-/// A stop by design 3.4: bit 1 = 0 or bit 2 = 0 always; bits 0..3 = 6 or 7 only in a single write.
-[[nodiscard]] bool is_stop(std::uint16_t controlword, bool single_write);
+/// This word takes an axis to operation enabled, or keeps it there.
+[[nodiscard]] inline bool enables(std::int64_t controlword) {
+  return request_of(static_cast<std::uint16_t>(controlword)) == Request402::enable_operation;
+}
 
 /// Modes of CiA 402 in which a target velocity or torque acts at once (design 3.4). A drive's own modes of that kind
 /// are facts of its model.

@@ -266,8 +266,49 @@ def licence(root):
                 yield f"{name}:{1 + script}: the line before all others, behind #!, is: {wanted}"
 
 
+FAULTS = 29
+C_TEST = re.compile(r"^\s*TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)", re.M)
+STORIES = {"stories": "tests/integration", "vcan_stories": "tests/vcan", "modbus_clients": "tests/integration/modbus_clients"}
+
+
+def tests_of(root):
+    """All tests by the names that docs/faults.md uses."""
+    names = {f"Architecture.{rule}" for rule in RULES}
+    for path in (root / "tests").rglob("*_test.cpp"):
+        names.update(".".join(found) for found in C_TEST.findall(path.read_text(encoding="utf-8")))
+    for prefix, folder in STORIES.items():
+        # A story of tests/integration that speaks to CAN runs on real interfaces as well.
+        for path in (root / folder).glob("*_test.py"):
+            cls = ""
+            for found in re.finditer(r"^class (\w+)|^    def (test_\w+)", path.read_text(encoding="utf-8"), re.M):
+                cls = found[1] or cls
+                if found[2]:
+                    names.add(f"{prefix}.{path.stem.removesuffix('_test')}.{cls}.{found[2]}")
+    return names
+
+
+def fault_proofs(root):
+    """Each fault of docs/faults.md has a test that exists."""
+    name = "docs/faults.md"
+    known, title, proofs, faults = tests_of(root), 0, 0, 0
+    for number, line in [*lines(root, name), (0, "## end")]:
+        if line.startswith("## "):
+            if title and not proofs:
+                yield f"{name}:{title}: a fault without a test that proves it"
+            title, proofs = number, 0
+            faults += number > 0
+            if number and not line.startswith(f"## {faults}. "):
+                yield f"{name}:{number}: this is fault {faults}"
+        elif line.startswith("- "):
+            proofs += 1
+            if line[2:].strip("`") not in known:
+                yield f"{name}:{number}: there is no test {line[2:]}"
+    if faults != FAULTS:
+        yield f"{name}:1: {faults} faults, and there are {FAULTS}"
+
+
 RULES = {"arrows": arrows, "one_place": one_place, "deciding": deciding, "headers": headers, "lengths": lengths, "words": words,
-         "field_words": field_words, "licence": licence}
+         "field_words": field_words, "licence": licence, "fault_proofs": fault_proofs}
 
 if __name__ == "__main__":
     if len(sys.argv) != 2 or sys.argv[1] not in RULES:

@@ -114,6 +114,20 @@ class Rules(unittest.TestCase):
         self.write("adapters/serial/b.cpp", "std::string group;  // in the order of the members of a group\n")
         self.assertEqual(self.breaches("field_words"), [])
 
+    def test_a_fault_without_a_test_and_a_test_that_is_not_there_are_found(self):
+        self.write("tests/unit/a_test.cpp", "TEST_P(Cable, IsPulled) {}\n")
+        self.write("tests/integration/cable_test.py", "class Pulled(Story):\n    def test_idle(self):\n")
+        good = "- `Cable.IsPulled`\n- `stories.cable.Pulled.test_idle`\n"
+        page = "".join(f"## {n}. A fault\n{good}" for n in range(1, rules.FAULTS + 1))
+        self.write("docs/faults.md", page)
+        self.assertEqual(self.breaches("fault_proofs"), [])
+        self.write("docs/faults.md", page.replace("- `stories.cable.Pulled.test_idle`", "- `stories.cable.Pulled.test_moving`", 1))
+        self.assert_breach("fault_proofs", "docs/faults.md:3")
+        self.write("docs/faults.md", page.replace(good, "", 1))
+        self.assert_breach("fault_proofs", "docs/faults.md:1")
+        self.write("docs/faults.md", page.replace(f"## {rules.FAULTS}. A fault\n{good}", ""))
+        self.assert_breach("fault_proofs", "docs/faults.md:1")
+
     def test_a_source_without_its_licence_is_found(self):
         self.write("gateway/core/good.cpp", "// SPDX-" "License-Identifier: Apache-2.0\nint x;\n")
         self.write("deploy/good", "#!/bin/sh\n# SPDX-" "License-Identifier: Apache-2.0\n")

@@ -6,11 +6,13 @@ from own_network import make_interfaces  # first: it begins anew in a network of
 import json
 
 from dds_stage import DdsStory, main
+from modbus import Client
 from processes import Program, until
 from stage import AXISGATE, Gateway
 
 GATEWAYS, AXES = 10, 50
 SERVER = "127.0.0.1:11811"
+NAME_TAKEN = 1 << 13  # alarm of a gateway
 
 
 def setUpModule():
@@ -55,6 +57,26 @@ class Fleet(DdsStory):
         table = until("its own are shown", lambda: self.command_line("topics", paths[3], "--once").stdout)
         self.assertIn("cell_3", table)
         self.assertNotIn("cell_4", table, "without --all it is the configuration's own")
+
+    def test_two_gateways_of_one_name_know_it(self):
+        gateways = []
+        for file in ("first", "second"):
+            path = self.configure_gateway("cell_7", 2, file)
+            self.start_gateway(path)
+            with open(path, encoding="utf-8") as config:
+                port = int(json.load(config)["modbus_tcp"][0]["listen"].rpartition(":")[2])
+            gateways.append(self.peer_at(port))
+        other = self.configure_gateway("cell_8", 2)
+        self.start_gateway(other)
+        with open(other, encoding="utf-8") as config:
+            alone = self.peer_at(int(json.load(config)["modbus_tcp"][0]["listen"].rpartition(":")[2]))
+        until("both say so", lambda: all(gateway.gateway()["alarms"] & NAME_TAKEN for gateway in gateways))
+        self.assertFalse(alone.gateway()["alarms"] & NAME_TAKEN)
+
+    def peer_at(self, port):
+        client = Client(port)
+        self.addCleanup(client.close)
+        return client
 
     def test_two_gateways_of_one_name_are_shown(self):
         first, second = self.configure_gateway("cell_7", 2), self.configure_gateway("cell_7", 2, "second")

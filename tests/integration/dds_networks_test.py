@@ -37,6 +37,7 @@ def setUpModule():
 class Networks(DdsStory):
     lines_of = ("serial",)
     nodes_on_the_host = True
+    lives_by = ()
 
     def setUp(self):
         super().setUp()
@@ -62,7 +63,7 @@ class Networks(DdsStory):
     def assert_it_reads_and_commands(self, node):
         node.read("axis_state")
         self.assertEqual(node.sample("axis_state", axis=1)["name"], "serial")
-        node.command_with()
+        node.command_with(*self.lives_by)
         node.do(1, "enable")
         self.watched(1).until_input("enabled")
         node.do(1, "disable")
@@ -141,6 +142,7 @@ class Secured(Networks):
     """PKI-DH, permissions and AES-GCM, by a QoS file. Debian's Cyclone DDS comes without its security plugins."""
 
     dds = {"interfaces": [OTHER], "qos_file": "secure.xml", "role": "engineer", "ros2": True}
+    lives_by = ("strength", 3, "manual", 20000)  # so that the reader of its lease takes part as well
     story_folder = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
     def prepare(self):

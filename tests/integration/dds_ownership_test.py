@@ -2,7 +2,6 @@
 """Who may command an axis when several want to: DDS writers by their strength, and DDS beside Modbus clients."""
 import collections
 import itertools
-import signal
 
 from dds_stage import CYCLONE, DONE, FAST, LEASE, NOT_OWNER, RPM, VENDORS, DdsStory, main
 from lease_stage import ANOTHER, ME, NOBODY
@@ -165,46 +164,11 @@ class Equals(DdsStory):
             master.leave()
             other.leave()
 
-    def successor(self, go):
-        """Its master gone, an axis is its successor's when the lease has run out, and its stop is heard before."""
-        for master, other in self.pairs():
-            self.run_by_dds(master, 1)
-            go(master)
-            other.do(1, "quick_stop")
-            results = []
-
-            def free(other=other, results=results):
-                results.append(other.answer(other.ask(1, "enable"))[0])
-                return results[-1] == DONE
-
-            until("its successor may enable", free)
-            self.assertLessEqual(set(results), {NOT_OWNER, DONE})
-            other.do(1, "run_velocity", target_velocity=200 * RPM)
-            self.until_it_turns_at(1, 200)
-            self.let_go(other, 1)
-            other.leave()
-
-    def test_the_successor_of_one_that_left_in_good_order_is_heard(self):
-        self.successor(lambda master: master.leave())
-
-    def test_the_successor_of_a_killed_one_is_heard(self):
-        self.successor(lambda master: master.process.kill())
-
-    def test_the_successor_of_one_that_stands_still_is_heard(self):
-        def stand(master):
-            self.addCleanup(master.send, signal.SIGCONT)
-            master.send(signal.SIGSTOP)
-
-        self.successor(stand)
-
 
 class Shared(Equals):
     """Plain publishers: ROS 2 knows no others."""
 
     ownership = ("shared",)
-
-    def test_the_successor_of_a_killed_one_is_heard(self):
-        super().test_the_successor_of_a_killed_one_is_heard()
 
     def test_a_stronger_one_takes_their_axis(self):
         for vendor in self.each_vendor():

@@ -5,6 +5,7 @@ import os
 import signal
 import socket
 import subprocess
+import time
 
 from modbus import ALARM_ADOPTED, COMPLETED, CONTINUOUS, DISABLED, NO_MOTION, STANDSTILL, Closed
 from processes import NEVER, Program, until
@@ -13,6 +14,7 @@ from stage import AXISGATE, Story, main
 TURN = 10000
 FAR = 20000 * TURN
 RPM = 1000
+LOOP_SLOW = 10  # bit of the gateway's alarms
 DRIVES = {1: "lift/1", 2: "feeder/1"}
 
 
@@ -234,8 +236,21 @@ class Killed(End):
             self.assertEqual(self.sim.writes(drive, "6040.00"), 0)
 
 
+class LoopThatStands(End):
+    """The whole process stands still, as it does where its disk or its machine does."""
+
+    def test_it_is_shown_that_it_stood(self):
+        self.run_velocity(self.axis(1))
+        self.gateway.send(signal.SIGSTOP)
+        self.addCleanup(self.gateway.send, signal.SIGCONT)
+        time.sleep(0.3)
+        self.gateway.send(signal.SIGCONT)
+        until("alarm event loop slow", lambda: self.client.gateway()["alarms"] >> LOOP_SLOW & 1)
+        self.assertTrue(self.runs(DRIVES[1]), "shorter than its lease")
+
+
 class LogThatNobodyReads(Story):
-    """A pipe to a program that hangs, or has gone: no reason to leave a motor alone."""
+    """A pipe to a program that hangs, or has gone, or a disk that is full: no reason to leave a motor alone."""
 
     def start_with_log(self, write_end):
         self.simulate()
@@ -267,6 +282,10 @@ class LogThatNobodyReads(Story):
         read_end, write_end = os.pipe()
         gateway = self.start_with_log(write_end)
         os.close(read_end)
+        self.assert_it_lives(gateway)
+
+    def test_the_disk_is_full(self):
+        gateway = self.start_with_log(os.open("/dev/full", os.O_WRONLY))
         self.assert_it_lives(gateway)
 
     def test_the_reader_hangs(self):

@@ -11,26 +11,42 @@ namespace {
 
 constexpr std::int64_t kJogSpeed = 45'000, kHomeSwitch = 19;
 
-ContractOptions options_of(const obey::Plant& plant, const Program& program) {
+ContractOptions options_of(const obey::Plant& plant, const Program& program, std::uint64_t seed) {
   const Subject subject = program.subject;
   ContractOptions options;
   options.by_address = plant.listener.client_is_address;
   options.staged = plant.listener.staged_halves;
   options.leases = program.leases;
+  const LeaseRules lease = lease_of(program, seed);
+  options.expiry_acts = lease.on_expiry != LeaseAction::none;
+  options.only_writes_renew = lease.renew == LeaseRenewal::write;
   options.no_halt = obey::is_kinco(subject) && !obey::is_md(subject) && program.flavour != Flavour::speeds;
   options.by_gateway = !obey::is_cia402(subject);
   if (obey::has_positions(subject)) options.rows.insert(row::target_position);
   if (obey::has_speeds(subject)) options.rows.insert(row::target_velocity);
   options.rows.insert(row::mode);
+  // It has no ramp of the client's, and comes back to where its stop was asked for.
+  constexpr std::int64_t kComesBackMs = 5'000;
+  if (obey::is_keya(subject) && obey::has_positions(subject)) options.settles_ms = kComesBackMs;
   return options;
 }
 
 }  // namespace
 
-Beginning begin(obey::Plant& plant, const Program& program) {
+LeaseRules lease_of(const Program& program, std::uint64_t seed) {
+  LeaseRules rules;
+  if (seed % 7 == 3) rules.on_expiry = LeaseAction::halt;
+  if (seed % 7 == 5) rules.on_expiry = LeaseAction::disable;
+  // A drive that must be told again and again stops when nobody owns it.
+  if (seed % 7 == 6 && obey::is_cia402(program.subject)) rules.on_expiry = LeaseAction::none;
+  if (seed % 5 == 4) rules.renew = LeaseRenewal::write;
+  return rules;
+}
+
+Beginning begin(obey::Plant& plant, const Program& program, std::uint64_t seed) {
   constexpr std::int64_t kSinceReady = 100;
   plant.ready();
-  Beginning out{.options = options_of(plant, program)};
+  Beginning out{.options = options_of(plant, program, seed)};
   const auto fitter = plant.connection_from(obey::Plant::kHostOfFitter, obey::plain(plant.listener));
   Rows rows;
   if (obey::has_speeds(program.subject)) rows[row::jog_velocity] = kJogSpeed;

@@ -15,6 +15,8 @@ struct Beginning {
   std::uint32_t commands = 0;  ///< register 36, one bit for each that the drive has
 };
 
-[[nodiscard]] Beginning begin(obey::Plant& plant, const Program& program);
+/// What the axis's lease is like, each in some of the runs.
+[[nodiscard]] LeaseRules lease_of(const Program& program, std::uint64_t seed);
+[[nodiscard]] Beginning begin(obey::Plant& plant, const Program& program, std::uint64_t seed);
 
 }  // namespace axisgate::test::judged

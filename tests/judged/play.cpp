@@ -22,7 +22,7 @@ constexpr std::int64_t kTailMs = 6'000;        // after the last step
 
 PlantOptions Play::options_of(const Program& program, std::uint64_t seed) {
   PlantOptions options;
-  if (program.leases) options.lease = LeaseRules{};
+  if (program.leases) options.lease = lease_of(program, seed);
   options.seed = seed;
   options.neighbour = seed % 2 == 0;
   if (seed % 3 == 0) options.open_points = seed;
@@ -53,7 +53,7 @@ void Play::violated(std::string what) {
 }
 
 void Play::begin() {
-  Beginning beginning = judged::begin(plant_, program_);
+  Beginning beginning = judged::begin(plant_, program_, seed_);
   watches_.emplace(plant_, neighbour_, other_bus_, [this](std::string what) { violated(std::move(what)); });
   clients_.connect();
   std::ranges::copy(kRanks, beginning.options.ranks.begin());
@@ -223,13 +223,19 @@ void Play::act(const Step& step) {
       replace(step.client, step.deed == Deed::vanish);
       break;
     case Deed::cross:
-      for (unsigned i = 0; i < kDds; ++i) {
-        Step one{.deed = Deed::command, .number = 0};
-        one.client = static_cast<std::uint8_t>((step.client + i) % kDds);
-        one.command = static_cast<std::uint8_t>((step.command + i * (1U + step.number % 5U)) % kCommands.size());
-        send(one.client, writers_->write_of(one), true);
-        pass(kStepMs * (step.id % 4));
-      }
+      send_crossed(step);
+      break;
+    case Deed::tool:
+      use_tool(step);
+      break;
+    case Deed::monitor:
+      use_monitor(step);
+      break;
+    case Deed::rival:
+      take_away(step);
+      break;
+    case Deed::lost:
+      press_out_of_sight(step);
       break;
     case Deed::scan:
       for (std::int64_t gone = 0; gone < kLengths.at(step.length) && gone < 1500 && !over(); gone += 50) {
@@ -237,17 +243,9 @@ void Play::act(const Step& step) {
         pass(50);
       }
       break;
-    case Deed::button: {
-      if (!obey::has_speeds(program_.subject)) break;
-      const std::uint16_t number = step.number % 2 == 0 ? coil::jog_forward : coil::jog_reverse;
-      send(step.client, one_coil(number, false), false);
-      for (std::int64_t gone = 0; gone <= kLengths.at(step.length) && gone < 1500 && !over(); gone += 200) {
-        send(step.client, one_coil(number, true), step.at_once);
-        pass(200);
-      }
-      if (step.on) send(step.client, one_coil(number, false), false);
+    case Deed::button:
+      hold_button(step);
       break;
-    }
     default:
       if (step.deed >= Deed::cut)
         outage(step);

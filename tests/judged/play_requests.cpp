@@ -160,22 +160,4 @@ void Play::look_up(std::size_t client) {
     violated("the drive's statusword was told otherwise");
 }
 
-// A13: panels that only have function 6; of others a target in one request.
-void Play::write_halves(const Step& step) {
-  constexpr std::array<std::int64_t, 5> kBetween{0, 50, 50, 400, 1500};
-  constexpr std::uint8_t kWhole = 8;
-  const Write whole = writers_->write_of(step);
-  const bool all_the_same = !plant_.listener.staged_halves && step.number % kWhole != 0;
-  if (all_the_same || whole.words.size() != 2) return send(step.client, whole, step.at_once);
-  const auto half = [&](bool second) {
-    const std::size_t at = second ? 1 : 0;
-    send(step.client, {fc::write_register, static_cast<std::uint16_t>(whole.first + at), {whole.words[at]}},
-         step.at_once);
-  };
-  half(step.on);
-  pass(kBetween.at(step.id));
-  if (step.number % kWhole == 1) send(step.client, one(row::heartbeat, step.number), step.at_once);
-  half(!step.on);
-}
-
 }  // namespace axisgate::test::judged

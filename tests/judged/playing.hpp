@@ -21,6 +21,7 @@ class Play {
  public:
   Play(const Program& program, std::uint64_t seed)
       : program_(program),
+        seed_(seed),
         neighbour_(seed % 2 == 0),
         other_bus_(seed % 4 == 3),
         plant_(program.subject, options_of(program, seed)),
@@ -59,6 +60,12 @@ class Play {
   std::optional<std::set<int>> answer_to(Open& open);
   void lose_sight_of_posted(std::size_t client);
   void write_halves(const Step& step);
+  void send_crossed(const Step& step);
+  void hold_button(const Step& step);
+  void use_tool(const Step& step);
+  void use_monitor(const Step& step);
+  void take_away(const Step& step);
+  void press_out_of_sight(const Step& step);
   void look_up(std::size_t client);
   void watch_trouble();
   void begin_trouble();
@@ -73,6 +80,7 @@ class Play {
   }
 
   Program program_;
+  std::uint64_t seed_;
   bool neighbour_, other_bus_;
   obey::Plant plant_;
   Clients clients_;

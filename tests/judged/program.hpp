@@ -32,20 +32,24 @@ enum class Deed : std::uint8_t {
   word,           ///< controlword alone
   coil,           ///< one coil
   start_coils,    ///< coils 4 to 7 in one request
-  cross,          ///< a command of each client, none of which waits for an answer
+  cross,          ///< commands and stops of one client or of each in turn, none of which waits for an answer
   again,          ///< what this client wrote last, once more
   scan,           ///< the same each 50 ms
-  button,         ///< a jog button is pressed and held, written each 200 ms, and released or forgotten
+  button,         ///< a jog button is pressed and held, written each 200 ms, and released or forgotten; or both are
+  tool,           ///< a target and a press of its start, again and again; a connection for each, or one for all
+  monitor,        ///< one that only reads, each 100 ms
+  rival,          ///< another client takes the axis while it moves
   read,           ///< registers 0 to 38
   object,         ///< the mailbox, or 43/13, writes the drive's own position target
   look_up,        ///< 43/13 reads an object of the drive
-  halves,         ///< one target by two writes of function 6
+  halves,         ///< one target by two writes of function 6, sometimes with another write between
   bystander,      ///< a viewer writes
   sample,         ///< of a DDS writer
   new_writer,     ///< it is deleted, and another one begins
   release,        ///< command 13
   reconnect,      ///< the connection ends, a new one begins
   vanish,         ///< silent for ever; a new connection begins after a while
+  lost,           ///< something is pressed, or let go, while the drive is out of sight
   cut,            ///< the wire, and nobody reports it
   unplug,         ///< the adapter, and the system reports it
   lose,           ///< the next answers of the drive
@@ -78,7 +82,7 @@ struct Program {
 };
 
 // Few of them, so that what was written before is written again.
-inline constexpr std::array<std::int64_t, 4> kPositions{5'000, -20'000, 12'000, 30'000};
+inline constexpr std::array<std::int64_t, 4> kPositions{1'000, -20'000, 150'000, -500'000};
 inline constexpr std::array<std::int64_t, 4> kSpeeds{60'000, -120'000, 150'000, 0};
 inline constexpr std::array<std::int64_t, 16> kCommands{0, 1, 1, 6, 6, 6, 8, 7, 3, 4, 2, 5, 9, 10, 11, 14};
 inline constexpr std::array<std::int64_t, 7> kPauses{0, 0, 50, 50, 300, 1200, 2500};

@@ -41,6 +41,10 @@ std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Cont
     return "axis_state " + std::to_string(shown.words[obey::shown::axis_state]) + " and statusword " +
            std::to_string(shown.words[obey::shown::statusword]) + " are shown at link_state " + std::to_string(link);
   const std::uint32_t valid = shown.wide(kValid);
+  constexpr std::uint16_t kCompleted = 2, kTargetReached = 0x400;
+  const bool reached = bit_of(valid, kBitOfStatusword) && (shown.words[obey::shown::statusword] & kTargetReached) != 0;
+  if ((reached || shown.words[obey::shown::motion_state] == kCompleted) && !contract.may_be_over())
+    return (reached ? "target_reached" : "a completed motion") + (" is shown; the contract: " + expected);
   const std::int64_t age_ms = shown.words[kAge];
   const std::string old = ", " + std::to_string(age_ms) + " ms old, ";
   if (bit_of(valid, kBitOfPosition) && !history.was_at(shown.position(), age_ms))

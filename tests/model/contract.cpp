@@ -84,6 +84,10 @@ Motion World::motion() const {
   return {motor, 0};
 }
 
+bool World::arrived(const Seen& seen) const {
+  return motor == Motor::moves && seen.stands && seen.clear && std::abs(target - seen.position) <= kClose;
+}
+
 std::string text(const World& world) {
   std::string out = world.faulted   ? "faulted, "
                     : world.latched ? "latched, "
@@ -107,7 +111,8 @@ Seen Contract::seen() const {
   return {sight_.now_ms, sight_.position, sight_.velocity == 0, sight_.now_ms - since_ms_ >= kClearMs, trouble_};
 }
 
-void Contract::changed(World& world, const Motion& before) const {
+void Contract::changed(World& world, const World& was) const {
+  const Motion before = was.arrived(seen()) ? Motion{} : was.motion();
   if (world.motion() == before && world.earlier.empty()) return;
   if (std::ranges::find(world.earlier, before) == world.earlier.end()) world.earlier.push_back(before);
   world.changed_ms = sight_.now_ms;
@@ -121,6 +126,17 @@ void Contract::overtake(World& world, Pending& newest, bool rows) {
     if (newest.verdict.stop || (pending.setpoints && rows)) pending.overtaken = true;
     if (pending.verdict.stop) newest.overtaken = true;
   }
+}
+
+/// A14: a stop "is owed all the same"; what stands beside it was not carried out.
+World Contract::owed_alone(World stopped, const World& none) {
+  stopped.accepted = none.accepted;
+  stopped.owner = none.owner;
+  stopped.orphan = none.orphan;
+  stopped.lease_ends_ms = none.lease_ends_ms;
+  stopped.lease_ends_by_ms = none.lease_ends_by_ms;
+  stopped.lease_unsure = none.lease_unsure;
+  return stopped;
 }
 
 int Contract::send(std::size_t client, const Write& write) {
@@ -158,7 +174,7 @@ int Contract::send(std::size_t client, const Write& write) {
       pending.enables = next.enable_asked_ms != world.enable_asked_ms;
       overtake(next, pending, sets);
       next.pending[number] = pending;
-      changed(next, world.motion());
+      changed(next, world);
       if ((world.enabled && !next.enabled) || (next.latched && !world.latched)) next.off_asked_ms = sight_.now_ms;
       if (next.motion() != world.motion() || next.enabled != world.enabled || next.latched != world.latched ||
           pending.verdict.starts)
@@ -168,6 +184,7 @@ int Contract::send(std::size_t client, const Write& write) {
       World none = world;
       none.clients = next.clients;
       if (none.owner == next.owner) none.lease_ends_by_ms = std::max(none.lease_ends_by_ms, next.lease_ends_by_ms);
+      if (trouble_ && pending.verdict.stop) none = owed_alone(next, none);
       overtake(none, pending, sets);
       pending.void_ = true;
       pending.enables = false;

@@ -149,6 +149,8 @@ struct World {
   std::map<int, Pending> pending{};
   bool operator==(const World&) const = default;
   [[nodiscard]] Motion motion() const;
+  /// It stands where its move ends.
+  [[nodiscard]] bool arrived(const Seen& seen) const;
   void lease_until(std::int64_t ends_ms) {
     lease_ends_ms = lease_ends_by_ms = ends_ms;
     lease_unsure = false;
@@ -164,6 +166,8 @@ struct ContractOptions {
   bool by_gateway = false;         ///< the CiA 402 machine is the gateway's
   bool by_address = false;         ///< "client": "address"
   bool staged = false;             ///< "halves": "staged"
+  bool expiry_acts = true;         ///< false: "on_expiry": "none"
+  bool only_writes_renew = false;  ///< "renew": "write"
   std::array<int, kClients> ranks{};
   std::int64_t settles_ms = 1200;  ///< so long after an answer the motor does what was asked, ramps included
 };
@@ -185,6 +189,8 @@ class Contract {
   void asked(std::size_t client);
   /// What registers 28 and 34 (bit 7) tell this client now. False: no reading of the contract has it.
   bool shown(std::size_t client, int owner, bool latched);
+  /// Whether registers 0 (bit 10) and 32 may tell of a target that is reached.
+  [[nodiscard]] bool may_be_over() const;
   /// False: no reading of the contract lets the motor do this.
   bool see(const Sight& sight);
 
@@ -223,12 +229,13 @@ class Contract {
   void pass_time(std::int64_t now_ms);
   void expire(World& world) const;
   void add_expired();
-  void changed(World& world, const Motion& before) const;
+  void changed(World& world, const World& before) const;
   void drop_equal();
   void keep_different();
   void take_over(World& world, std::size_t client) const;
   void renew(World& world) const;
   static void overtake(World& world, Pending& newest, bool rows);
+  [[nodiscard]] static World owed_alone(World stopped, const World& none);
   [[nodiscard]] Seen seen() const;
 
   ContractOptions options_;

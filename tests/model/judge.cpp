@@ -157,10 +157,14 @@ void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlw
   }
 }
 
+void Judge::leave_motion() {
+  if (world_.motor != Motor::stands && !world_.arrived(seen_)) world_.earlier.push_back(world_.motion());
+}
+
 void Judge::stopped(bool asserted) {
   stopped_ = true;
   // 3.3, the fixed order of one request: what its set-points began ends at once.
-  if (world_.motor != Motor::stands) world_.earlier.push_back(world_.motion());
+  leave_motion();
   if (world_.motor != Motor::stands) world_.stopped_at = seen_.position;
   world_.motor = Motor::stands;  // 3.4: "a stop end[s] every motion for good"
   world_.jog = 0;
@@ -297,6 +301,7 @@ Verdict Judge::registers(const Write& write) {
   }
   if (command == Edge::not_new && single) answer_not_new(number, was, verdict);
   if (!takes_over) tell_foreign(verdict);
+  if (takes_over && !verdict.answers.contains(0)) me().command.refused = true;
   verdict.acts = command == Edge::acts || word == Edge::acts;
   const auto unjudged = [this](const auto& r) {
     return r.first != row::controlword && r.first < row::command && !options_.rows.contains(r.first);

@@ -66,12 +66,14 @@ class Judge {
   bool all_zero(const Write& write, const Rows& rows, Verdict& verdict);
   void setpoints(const Rows& rows, bool single, Edge command, Edge controlword, bool refused, bool was_empty);
   void accept(std::uint16_t offset, std::int64_t value, bool claims);
+  [[nodiscard]] bool is_under_way() const;
   [[nodiscard]] bool start_refused(std::int64_t command, Verdict& verdict);
   /// False: it was refused, and nothing after it is carried out.
   bool controlword(std::int64_t value, bool single, Verdict& verdict);
   void command(std::int64_t number, Item& item, Verdict& verdict);
   void answer_not_new(std::int64_t number, const Item& item, Verdict& verdict);
   void stopped(bool asserted);
+  void leave_motion();
   void halted(bool asserted);
   void renew_speed();
   void claim();
@@ -81,6 +83,7 @@ class Judge {
   void end_run(Verdict& verdict);
   void tell_foreign(Verdict& verdict) const;
   void jog(std::int64_t direction, std::int64_t value, Edge edge, bool single, Verdict& verdict);
+  void jog_both(Verdict& verdict);
   bool reset_fault(Verdict& verdict);
   [[nodiscard]] bool may_have_no_halt() const;
   void take_over(Verdict& verdict);

@@ -41,11 +41,7 @@ void Judge::jog(std::int64_t direction, std::int64_t value, Edge edge, bool sing
     if (single && !mine) verdict = {"jog: write 0 first", {0, 6}, !world_.accepted.contains(row::jog_velocity)};
     return;
   }
-  if (other.value == 1) {
-    if (world_.jog != 0) halted(false);
-    verdict = {"jog both ways: halt", {0}, true};
-    return;
-  }
+  if (other.value == 1) return jog_both(verdict);
   if (!world_.accepted.contains(row::jog_velocity)) {
     verdict = {"jog at a speed that a new gateway does not know", {0}, true};
     if (readings_.other()) world_.motor = Motor::unknown;
@@ -67,6 +63,12 @@ void Judge::jog(std::int64_t direction, std::int64_t value, Edge edge, bool sing
   verdict = {"jogs", {0}};
 }
 
+// Whether it halts a motion that is no jog is not said.
+void Judge::jog_both(Verdict& verdict) {
+  if (world_.jog != 0 || (world_.motor != Motor::stands && readings_.other())) halted(false);
+  verdict = {"jog both ways: halt", {0}, true};
+}
+
 // A1: "7 halts while run_velocity runs"; 3.4: a stop, "open to every operator". Of a coil that ends nothing another
 // client's is refused, or not.
 void Judge::end_run(Verdict& verdict) {
@@ -83,6 +85,9 @@ Verdict Judge::coils(const Write& write) {
   const bool single = write.words.size() == 1;
   Verdict verdict{"nothing", {0}};
   int acted = 0;
+  const std::size_t jogs = coil::jog_forward - write.first;  // in one request neither of the two comes first
+  const bool both = write.first <= coil::jog_forward && jogs + 1 < write.words.size() && write.words[jogs] != 0 &&
+                    write.words[jogs + 1] != 0;
   for (std::size_t i = 0; i < write.words.size(); ++i) {
     const auto number = static_cast<std::uint16_t>(write.first + i);
     if (number >= me().coils.size()) continue;
@@ -94,6 +99,10 @@ Verdict Judge::coils(const Write& write) {
     Edge edge = level ? level_edge(number, value, single)
                       : this->edge(item, value, single, number == coil::quick_stop && value != 0);
     if (!level && value == 0) edge = Edge::nothing;  // it arms
+    if (number > coil::run_velocity && both) {
+      if (number == coil::jog_forward) jog_both(verdict);
+      continue;
+    }
     if (number > coil::run_velocity) {
       jog(number == coil::jog_forward ? 1 : -1, value, edge, single, verdict);
       continue;

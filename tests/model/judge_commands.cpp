@@ -12,6 +12,14 @@ constexpr std::int64_t kJustBegunMs = 1100;  // over CANopen the end of a move i
 
 }  // namespace
 
+// It was accepted, and cannot have ended: whether it is seen to turn already is no matter.
+bool Judge::is_under_way() const {
+  if (world_.awaits != 0 || !world_.pending.empty() || seen_.troubled || world_.broken || world_.held) return false;
+  const Motion motion = world_.motion();
+  return motion.kind == Motor::moves ? std::abs(motion.value - seen_.position) > kClose
+                                     : motion.kind == Motor::runs && motion.value != 0;
+}
+
 bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
   if (refuse_foreign(verdict)) return true;
   // 3.4: "they need an axis that is enabled, not faulted and not stop-latched".
@@ -33,7 +41,7 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
       world_.motor == Motor::moves && (just_begun || std::abs(world_.target - seen_.position) > kClose);
   if (command == 7 && (just_begun || !seen_.stands || world_.motor == Motor::runs || world_.motor == Motor::unknown ||
                        !seen_.clear || under_way)) {
-    const bool unsure = seen_.stands || !seen_.clear;
+    const bool unsure = !is_under_way() && (seen_.stands || !seen_.clear);
     if (!unsure || readings_.other()) {
       verdict = {"refused: relative while moving", {6}};
       for (ClientMemory& client : world_.clients) client.command.ended = true;
@@ -72,7 +80,7 @@ void Judge::renew_speed() {
 void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
   if (is_start(number)) {
     // 3.3, the fixed order of one request: its set-points act before it starts.
-    if (world_.motor != Motor::stands) world_.earlier.push_back(world_.motion());
+    leave_motion();
     claim();
     // A3: "or another client".
     for (std::size_t c = 0; c < world_.clients.size(); ++c) {
@@ -86,6 +94,12 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     if (number > kRun && readings_.other()) {
       verdict = {"refused: command " + std::to_string(number), {3, 4, 6}};
       item.refused = true;
+      // 3.3: "what was done stays done": whether its mode was taken from a jog is not known.
+      if (world_.jog == 0 || !readings_.other()) return;
+      leave_motion();
+      world_.motor = Motor::stands;
+      world_.jog = 0;
+      world_.started_ms = seen_.now_ms;
       return;
     }
     world_.raw_mode.reset();
@@ -124,7 +138,8 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     // A Keya's watchdog trip is over with the next command (keya-kydas4860-2e.md); it is shown as disabled.
     if (world_.faulted && (!options_.by_gateway || readings_.other())) {
       verdict = {"enable while faulted", {4, 6}};
-      world_.latch_unsure = true;  // whether one that fails is "accepted after the stop" is not said
+      if (seen_.troubled) verdict.answers.insert(0);  // it was enabled, and the gateway has not heard of the fault
+      world_.latch_unsure = true;                     // whether one that fails is "accepted after the stop" is not said
       item.refused = true;
       return;
     }
@@ -235,7 +250,8 @@ void Judge::set_position(Verdict& verdict) {
 // other); what its counts come to is not judged here.
 void Judge::object(int function, Verdict& verdict) {
   if (refuse_foreign(verdict)) return;
-  if (options_.leases) claim();
+  // What was told later than at once, and was not carried out, has claimed nothing.
+  if (options_.leases && (!seen_.troubled || readings_.other())) claim();
   verdict = {"object request", {0, 4, 6}};
   // 3.1, 43/13: "Refused ...: abort", an extended exception. It "is the same path".
   constexpr int kExtended = 0xFF;

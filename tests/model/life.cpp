@@ -46,19 +46,20 @@ void Contract::renew(World& world) const {
 
 // 3.5: "renew": any request of the owner; A8: "While an axis is disabled only requests that ask for something".
 void Contract::asked(std::size_t client) {
-  if (options_.by_address) return;  // A8: "With "client": "address" only writes renew"
+  // A8: "With "client": "address" only writes renew"; 3.5, "renew": "a write to this axis".
+  if (options_.by_address || options_.only_writes_renew) return;
   for (World& world : worlds_)
     if (world.owner == client && !world.orphan) renew(world);
 }
 
 // 3.5: on_expiry "acts only if the axis is enabled"; 3.4: "quick_stop and a lease's action set" the latch.
 void Contract::expire(World& world) const {
-  const Motion before = world.motion();
+  const World before = world;
   world.owner.reset();
   world.orphan = false;
   world.lease_until(kNever);
   world.latch_unsure = trouble_ || (world.latch_unsure && !world.enabled);
-  if (!world.enabled) return;
+  if (!world.enabled || !options_.expiry_acts) return;
   world.motor = Motor::stands;
   world.jog = 0;
   world.latched = true;
@@ -87,7 +88,7 @@ void Contract::pass_time(std::int64_t now_ms) {
   std::vector<World> more;
   for (World& world : worlds_) {
     if (world.jog != 0 && now_ms >= world.jog_ends_ms) {
-      const Motion before = world.motion();
+      const World before = world;
       world.motor = Motor::stands;
       world.jog = 0;
       world.stale_speed = true;
@@ -170,7 +171,7 @@ void Contract::trouble_ends() {
 
 void Contract::drive_restarted() {
   for (World& world : worlds_) {
-    const Motion before = world.motion();
+    const World before = world;
     world.motor = Motor::stands;
     world.jog = 0;
     world.enabled = world.faulted = false;
@@ -191,9 +192,11 @@ void Contract::gateway_died() {
   // What it still owed dies with it.
   std::vector<World> owed;
   for (const World& world : worlds_) {
-    if (world.enabled || sight_.enabled != true) continue;
+    const bool turns = world.motor == Motor::stands && sight_.velocity != 0;
+    if (!turns && (world.enabled || sight_.enabled != true)) continue;
     owed.push_back(world);
-    owed.back().enabled = true;
+    owed.back().enabled = sight_.enabled.value_or(true);
+    if (turns) owed.back().motor = Motor::unknown;
   }
   worlds_.insert(worlds_.end(), owed.begin(), owed.end());
   for (World& world : worlds_) {

@@ -47,7 +47,7 @@ bool Contract::enabling_fits(World& world, const Sight& sight) const {
     const bool enabling = std::ranges::any_of(world.pending, [](const auto& p) { return p.second.enables; });
     if (sight.now_ms - world.off_asked_ms <= options_.settles_ms && (!trouble_ || enabling)) return true;
     if (!trouble_ && !world.broken && !world.faulted && sight.now_ms > world.taken_back_by_ms) return false;
-    const Motion before = world.motion();
+    const World before = world;
     world.enabled = false;
     world.motor = Motor::stands;
     world.jog = 0;
@@ -120,6 +120,15 @@ bool Contract::shown(std::size_t client, int owner, bool latched) {
     world.latch_unsure = false;
   }
   return true;
+}
+
+// 3.3: "a PLC never sees the target_reached of the move before"; 3.1: motion_state 2 is a motion that is completed.
+bool Contract::may_be_over() const {
+  if (lost_count_ || trouble_) return true;
+  return std::ranges::any_of(worlds_, [&](const World& world) {
+    const bool far = std::abs(world.target - sight_.position) > kClose;
+    return world.motor != Motor::moves || !far || world.broken || world.awaits != 0 || !world.pending.empty();
+  });
 }
 
 bool Contract::see(const Sight& sight) {

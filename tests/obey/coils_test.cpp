@@ -180,6 +180,18 @@ TEST_P(Levels, JogHeldAfterItsTimeAsksForNothingUntilZero) {
   nothing_moves();
 }
 
+// The homing took the jog's mode, was refused by the drive, and nobody watched the button any more.
+TEST_P(Levels, AStartThatFailsLeavesNoJogWithoutItsButton) {
+  constexpr std::int64_t kHomeSwitch = 19;
+  ASSERT_TRUE(!has_homing(GetParam()) || a_.row(row::homing_method, kHomeSwitch).ok());
+  ASSERT_EQ(a_.coil(coil::jog_forward, false), kOk);
+  ASSERT_EQ(a_.coil(coil::jog_forward, true), kOk);
+  ASSERT_TRUE(plant_.turns_within(400ms));
+  if (a_.command(kHome).ok()) return;  // it homes
+  plant_.run(700ms);                   // jog_timeout_ms is 500
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+}
+
 class EdgeCoils : public testing::TestWithParam<Subject> {};
 
 TEST_P(EdgeCoils, StartAMoveAsACommandWithoutIdDoes) {

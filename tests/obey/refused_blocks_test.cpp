@@ -3,6 +3,8 @@
 // where only the drive's own limits, or the moment, say so.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/obey/plant.hpp"
 
 namespace axisgate::test::obey {
@@ -23,6 +25,7 @@ class RefusedBlocks : public testing::TestWithParam<Subject> {
   Client& a_ = plant_.a;
 };
 class RefusedModes : public RefusedBlocks {};
+class RefusedNumbers : public RefusedBlocks {};
 class RefusedLimits : public RefusedBlocks {};
 class RefusedHomings : public RefusedBlocks {};
 
@@ -44,6 +47,20 @@ TEST_P(RefusedModes, BesideAStopAreToldAndTheAxisStops) {
   EXPECT_TRUE(plant_.comes_to_stand());
 }
 
+// The lowest number of its type is how a row reads that has no value: a program that copies what it has read writes it.
+TEST_P(RefusedNumbers, ThatMeanNoValueBesideAStopAreToldAndTheAxisStops) {
+  constexpr std::int64_t kNoValue = std::numeric_limits<std::int32_t>::min();
+  ASSERT_EQ(plant_.set_endless(a_), kOk);
+  ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
+  ASSERT_TRUE(plant_.keeps_turning());
+  const std::uint16_t target = has_speeds(GetParam()) ? row::target_velocity : row::target_position;
+  Rows rows = plant_.profile_rows();
+  rows[target] = kNoValue;
+  rows[row::command] = kQuickStop;
+  expect_refused(block(target, row::command, rows), target);
+  EXPECT_TRUE(plant_.comes_to_stand());
+}
+
 TEST_P(RefusedLimits, ThatCrossAreToldByTheFirstOfThem) {
   constexpr std::uint16_t kMin = 72, kMax = 74;
   expect_refused(block(kMin, kMax + 1, {{kMin, 1000}, {kMax, -1000}}), kMin);
@@ -57,6 +74,7 @@ TEST_P(RefusedHomings, WithoutAMethodAreToldByTheCommand) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, RefusedModes, testing::ValuesIn(subjects(has_homing)), named);
+INSTANTIATE_TEST_SUITE_P(Every, RefusedNumbers, testing::ValuesIn(kSubjects), named);
 INSTANTIATE_TEST_SUITE_P(Every, RefusedLimits, testing::ValuesIn(subjects([](Subject s) { return !is_keya(s); })),
                          named);
 INSTANTIATE_TEST_SUITE_P(Every, RefusedHomings, testing::ValuesIn(subjects(has_homing)), named);

@@ -23,8 +23,10 @@ OF_ONE = {
               "/usr/share/man/man5/gateway.json.5.gz", "/usr/share/axisgate/schemas/gateway.schema.json",
               "/usr/share/axisgate/schemas/drive-profile.schema.json", "/usr/share/doc/axisgate/examples/gateway.json",
               "/usr/share/doc/axisgate/examples/70-axisgate.rules", "/usr/share/doc/axisgate/examples/80-can0.network",
-              "/usr/share/doc/axisgate/SECURITY.md", "/usr/share/doc/axisgate/installation.md", "/usr/share/doc/axisgate/plc.md",
-              "/usr/share/doc/axisgate/examples/plc/axisgate.st", "/usr/share/doc/axisgate/examples/plc/axisgate.xml"),
+              "/usr/share/doc/axisgate/SECURITY.md", "/usr/share/doc/axisgate/docs/installation.md", "/usr/share/doc/axisgate/docs/README.md",
+              "/usr/share/doc/axisgate/docs/drives/kinco-jd.md", "/usr/share/doc/axisgate/docs/dds/ros2.md",
+              "/usr/share/doc/axisgate/deploy/plc/axisgate.st", "/usr/share/doc/axisgate/deploy/plc/axisgate.xml",
+              "/usr/share/doc/axisgate/deploy/examples/modbus/gateway.json", "/usr/share/doc/axisgate/deploy/examples/node-red/flow.json"),
     DDS: ("/usr/share/axisgate/schemas/axisgate.idl", "/usr/share/doc/axisgate-dds/examples/axisgate-dds.nft",
           "/usr/share/doc/axisgate-dds/examples/README.md"),
     SIMULATOR: (),
@@ -75,6 +77,21 @@ class Debs(unittest.TestCase):
         shipped = {path.name for path in (SOURCE / "schemas/drives").glob("*.json")}
         held = {Path(path).name for path in self.files[GATEWAY] if "/schemas/drives/" in path and path.endswith(".json")}
         self.assertEqual(held, shipped)
+
+    def test_every_page_is_there_and_its_links_lead_to_pages_or_to_the_sources(self):
+        """What only the sources have is named here: nobody finds it missing by chance."""
+        folder = self.folder / GATEWAY / "usr/share/doc/axisgate"
+        made = {path.relative_to(SOURCE).as_posix() for path in (SOURCE / "docs").rglob("*.md")}
+        self.assertEqual(made - {path.relative_to(folder).as_posix() for path in folder.rglob("*.md")}, set())
+        sources = ("CONTRIBUTING.md", "ARCHITECTURE.md", "CHANGELOG.md", "LICENSE", "tests/", "schemas/", "deploy/can", "deploy/container", "deploy/kubernetes",
+                   "deploy/example/", "deploy/examples/dds", "deploy/firewall", "deploy/udev")
+        dead = set()
+        for page in folder.rglob("*.md"):
+            for target in re.findall(r"\]\(([^)\s#]+)", re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)):
+                other = os.path.relpath((page.parent / target).resolve(), folder.resolve())
+                if "://" not in target and not (folder / other).exists() and not other.startswith(sources):
+                    dead.add(f"{page.relative_to(folder)}: {target}")
+        self.assertEqual(dead, set())
 
     def test_no_file_is_in_two_of_them_or_where_it_has_no_business(self):
         everything = [path for files in self.files.values() for path in files if not path.endswith("/")]

@@ -12,6 +12,7 @@ from st_machine import Machine
 SOURCE = Path(sys.argv[1])
 TEXT = (SOURCE / "deploy/plc/axisgate.st").read_text(encoding="utf-8")
 EXAMPLE = (SOURCE / "deploy/plc/example.st").read_text(encoding="utf-8")
+PLAIN = (SOURCE / "deploy/plc/example_plain.st").read_text(encoding="utf-8")
 MANUAL = (SOURCE / "docs/plc.md").read_text(encoding="utf-8")
 NAMESPACE = "{http://www.plcopen.org/xml/tc6_0201}"
 
@@ -39,7 +40,7 @@ BLOCKS = {
 
 class Blocks(unittest.TestCase):
     def setUp(self):
-        self.machine = Machine(("axisgate.st", TEXT), ("example.st", EXAMPLE))
+        self.machine = Machine(("axisgate.st", TEXT), ("example.st", EXAMPLE), ("example_plain.st", PLAIN))
 
     def test_each_has_the_inputs_and_outputs_of_plcopens(self):
         for name, wanted in BLOCKS.items():
@@ -48,7 +49,7 @@ class Blocks(unittest.TestCase):
 
     def test_names_are_short_enough_for_every_controller(self):
         """24 characters: the shortest limit of those that are in use."""
-        for word in set(re.findall(r"[A-Za-z_]\w*", re.sub(r"\(\*.*?\*\)", "", TEXT + EXAMPLE, flags=re.S))):
+        for word in set(re.findall(r"[A-Za-z_]\w*", re.sub(r"\(\*.*?\*\)", "", TEXT + EXAMPLE + PLAIN, flags=re.S))):
             self.assertLessEqual(len(word), 24, word)
 
     def test_the_images_are_as_long_as_the_map_says(self):
@@ -82,6 +83,11 @@ class Xml(unittest.TestCase):
 class Manual(unittest.TestCase):
     def test_its_program_is_the_one_that_runs(self):
         self.assertIn(EXAMPLE, MANUAL)
+
+    def test_it_says_how_long_the_programs_are(self):
+        for program in (EXAMPLE, PLAIN):
+            code = re.sub(r"\(\*.*?\*\)", "", program, flags=re.S)
+            self.assertIn(f" {sum(bool(line.strip()) for line in code.splitlines())} lines", MANUAL)
 
     def test_its_addresses_are_those_of_the_images(self):
         """CODESYS counts from 0, Siemens from 40001, or from 0 with a mode of its own."""

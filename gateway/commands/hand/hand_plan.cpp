@@ -12,7 +12,7 @@
 namespace axisgate::app {
 namespace {
 
-constexpr std::uint16_t kJogForward = 8, kJogReverse = 9;
+constexpr std::uint16_t kJogForward = jog_coil(Command::jog_forward), kJogReverse = jog_coil(Command::jog_reverse);
 std::uint16_t after(std::uint16_t id) {
   return id == UINT16_MAX ? std::uint16_t{1} : static_cast<std::uint16_t>(id + 1);
 }

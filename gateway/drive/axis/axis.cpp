@@ -2,30 +2,27 @@
 #include "gateway/drive/axis/axis.hpp"
 
 #include <algorithm>
-#include <ranges>
 #include <string>
 #include <utility>
 
-#include "gateway/drive/axis/publisher.hpp"
 #include "gateway/drive/plan/admission.hpp"
 #include "gateway/drive/plan/planner.hpp"
 
 namespace axisgate::drive {
 namespace {
 
-bool begins_anything(const WriteBatch& batch) {
-  return asks_to_enable(batch) || (batch.command >= Command::move_absolute && batch.command <= Command::set_position);
-}
+bool begins_anything(const WriteBatch& batch) { return asks_to_enable(batch) || needs_ready(batch.command); }
 
 }  // namespace
 
-Axis::Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, AxisImage& image, AxisHost& host)
+Axis::Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, const Turn& turn, AxisImage& image,
+           AxisHost& host)
     : host_(host),
       image_(image),
       slot_(slot),
-      core_{drive, drive.axes[slot], store},
+      core_{drive, drive.axes[slot], store, turn},
+      shown_(core_, image_, host_),
       ownership_(image.lease, drive.axes[slot].lease) {
-  show_model(core_.model, image_);
   set_alarm(AxisAlarm::no_comm_watchdog, !drive.stops_by_itself);
 }
 
@@ -80,7 +77,7 @@ void Axis::on_bring_up() {
 Errc Axis::link_admits(bool stop, bool reads_alone) const {
   const bool unlike_profile = core_.alarm(AxisAlarm::profile_mismatch);
   const bool another = unlike_profile || core_.alarm(AxisAlarm::identity_mismatch);
-  switch (host_.link_state()) {
+  switch (core_.turn.link) {
     case LinkState::online:
     case LinkState::suspect:
       // A drive that is not the configured one is read-only.
@@ -101,7 +98,8 @@ Errc Axis::link_admits(bool stop, bool reads_alone) const {
 // and what was asked between the two, an enable perhaps, the later stop must end: it is a bus job of its own.
 bool Axis::join_stop(const WriteBatch& batch, BatchCallback& on_result) {
   if (!stops_alone(batch)) return false;
-  for (Pending& p : std::views::reverse(pending_)) {
+  for (auto newest = pending_.rbegin(); newest != pending_.rend(); ++newest) {
+    Pending& p = *newest;
     const WriteBatch& waiting = p.command_sequence->batch();
     if (!p.command_sequence->is_stop()) return false;
     if (p.command_sequence->begun() || p.callbacks.size() >= kMaxJoined) continue;
@@ -115,7 +113,7 @@ bool Axis::join_stop(const WriteBatch& batch, BatchCallback& on_result) {
 }
 
 void Axis::accept_stop(const WriteBatch& batch) {
-  core_.motion.stop(stop_latches(core_, batch), core_.now);
+  core_.motion.stop(stop_latches(core_, batch), core_.turn.now);
   image_.endings.stopped(batch.client);
   for (Pending& p : pending_) {
     if (p.stopped_by) continue;
@@ -164,12 +162,12 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
   // Accepted in every state: the latch is set even where nothing can be sent.
   if (stop) accept_stop(batch);
   if (const Errc of_link = link_admits(stop, reads_alone(batch)); of_link != Errc::ok) {
-    if (stop) publish(core_.now);
+    if (stop) publish();
     return refuse(asked, of_link);
   }
   claim(batch);
   if (stop && pending.refusal == Errc::ok && join_stop(batch, on_result)) {
-    publish(core_.now);
+    publish();
     return std::nullopt;
   }
   if (pending_.empty() && nothing_to_send(core_, batch)) {
@@ -178,21 +176,22 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
     remember_setpoints(core_, batch);
     core_.mode_chosen = core_.mode_chosen || batch.mode.has_value();
     show_latest(batch, {});
-    publish(core_.now);
+    publish();
     return BatchResult{};
   }
   // "Done" is up to 2 s away by the contract (command 12), later than a client's usual deadline.
   constexpr Duration kSaving = std::chrono::milliseconds(2500);
-  if (batch.command == Command::save_parameters) batch.answer_by = std::max(batch.answer_by, core_.now + kSaving);
+  if (batch.command == Command::save_parameters) batch.answer_by = std::max(batch.answer_by, core_.turn.now + kSaving);
   // A long object takes many exchanges, and a client that asks for one is told to wait (43/13).
   constexpr Duration kLongObject = std::chrono::seconds(5);
-  if (batch.object && batch.object->size == 0) batch.answer_by = std::max(batch.answer_by, core_.now + kLongObject);
+  if (batch.object && batch.object->size == 0)
+    batch.answer_by = std::max(batch.answer_by, core_.turn.now + kLongObject);
   pending.by_mailbox = asked.object.has_value();
   pending.command_sequence = std::make_unique<CommandSequence>(core_, batch, stop, asked.object && !batch.object);
   pending.starts_motion = starts_motion(core_, batch);
   if (pending.starts_motion && !pending.jogs) pending.ends_jog = jog_.press();
   pending.start_by = stop ? kNever : batch.start_by;
-  pending.callbacks.push_back({std::move(on_result), pending.start_by, decide_by(batch, core_.now)});
+  pending.callbacks.push_back({std::move(on_result), pending.start_by, decide_by(batch)});
   std::optional<BatchResult> refused;
   enqueue(std::move(pending), stop, refused);
   return refused;
@@ -205,7 +204,7 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<BatchResult>& refus
   const AxisHost::Queued queued = host_.queue(std::move(job));
   if (queued.code != Errc::ok) {
     refused = refuse(batch, queued.code);
-    if (stop) publish(core_.now);
+    if (stop) publish();
     return;
   }
   if (queued.joined) {
@@ -226,14 +225,13 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<BatchResult>& refus
     return sp.quantity == Quantity::target_velocity || sp.quantity == Quantity::target_torque;
   });
   if (pending.starts_motion || drives) {
-    motion_by_ = batch.client;
-    motion_by_life_ = batch.life;
+    motion_by_ = {batch.client, batch.life};
   }
   if (!pending.by_mailbox) image_.latest = {CommandResult::pending, 0, batch.command_id};
   if (pending.starts_motion) core_.motion.mask_target_reached();
   if (!stop) note_accepted(batch);
   pending_.push_back(std::move(pending));
-  publish(core_.now);
+  publish();
 }
 
 // --- Carrying it out -----------------------------------------------------------------------------------------------
@@ -241,17 +239,16 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<BatchResult>& refus
 std::optional<bus::Exchange> Axis::on_grant(bus::JobId id) {
   Pending* pending = find(id);
   if (pending == nullptr) return std::nullopt;
-  core_.link = host_.link_state();
   if (ends_with_gateway(*pending)) {
     end_begun(*pending);
     return std::nullopt;
   }
   if (!pending->command_sequence->is_stop() && waits_for_stop(*pending)) {
     constexpr Duration kStopsFirst = std::chrono::milliseconds(20);
-    host_.job_waits(id, host_.now() + kStopsFirst);
+    host_.job_waits(id, core_.turn.now + kStopsFirst);
     return std::nullopt;
   }
-  const auto move = pending->command_sequence->granted(host_.now());
+  const auto move = pending->command_sequence->granted();
   note_commanded(*pending);
   if (move.kind == CommandSequence::Move::Kind::exchange) return move.exchange;
   if (move.kind == CommandSequence::Move::Kind::wait) {
@@ -265,8 +262,6 @@ std::optional<bus::Exchange> Axis::on_grant(bus::JobId id) {
 bool Axis::passes_resync(bus::JobId id) {
   Pending* pending = find(id);
   if (pending == nullptr) return false;
-  core_.now = host_.now();
-  core_.link = host_.link_state();
   return pending->command_sequence->passes_resync();
 }
 
@@ -319,13 +314,12 @@ bus::JobId Axis::chain_job() const {
 void Axis::on_result(bus::JobId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
   Pending* pending = find(id);
   if (pending == nullptr) return;
-  core_.link = host_.link_state();
   pending->command_sequence->on_result(result, sent_at, trusted);
   carry_on(*pending);
 }
 
 void Axis::carry_on(Pending& pending) {
-  const auto move = pending.command_sequence->advance(host_.now());
+  const auto move = pending.command_sequence->advance();
   if (move.kind == CommandSequence::Move::Kind::finished) {
     complete(pending.id, pending.command_sequence->result());
     return;

@@ -9,48 +9,25 @@
 #include <string_view>
 #include <vector>
 
+#include "gateway/drive/axis/shown_axis.hpp"
 #include "gateway/drive/axis/telling.hpp"
 #include "gateway/drive/command_sequence/command_sequence.hpp"
 #include "gateway/drive/motion/accepted.hpp"
-#include "gateway/drive/motion/jog.hpp"
+#include "gateway/drive/motion/late_enable.hpp"
 #include "gateway/drive/motion/owed_stop.hpp"
 #include "gateway/drive/motion/ownership.hpp"
 #include "gateway/image/command_port.hpp"
-#include "gateway/image/events.hpp"
 
 namespace axisgate::drive {
-
-/// What an axis needs of its drive.
-class AxisHost {
- public:
-  AxisHost() = default;
-  AxisHost(const AxisHost&) = delete;
-  AxisHost& operator=(const AxisHost&) = delete;
-  virtual ~AxisHost() = default;
-  [[nodiscard]] virtual Instant now() const = 0;
-  [[nodiscard]] virtual LinkState link_state() const = 0;
-  struct Queued {
-    Errc code = Errc::ok;  ///< ok or queue_full
-    bus::JobId id = 0;
-    bool joined = false;
-  };
-  [[nodiscard]] virtual Queued queue(bus::BusJob job) = 0;
-  virtual void job_waits(bus::JobId id, Instant until) = 0;
-  virtual void job_done(bus::JobId id) = 0;
-  /// A stop's bus job goes on as another: the rest of its write batch. False: there is no room for it.
-  [[nodiscard]] virtual bool job_goes_on_as(bus::JobId id, const bus::BusJob& rest) = 0;
-  virtual void event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) = 0;
-};
-
-/// So long after its answer an enable may come late.
-inline constexpr Duration kWatched = std::chrono::seconds(5);
 
 /// Clients that may wait for one and the same read or stop.
 inline constexpr std::size_t kMaxJoined = 64;
 
 class Axis {
  public:
-  Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, AxisImage& image, AxisHost& host);
+  /// `turn`: its drive's, kept up to date by it.
+  Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, const Turn& turn, AxisImage& image,
+       AxisHost& host);
 
   [[nodiscard]] std::optional<BatchResult> submit(const WriteBatch& batch, BatchCallback on_result);
   [[nodiscard]] bool holds(Quantity quantity, std::int64_t value) const;
@@ -61,10 +38,10 @@ class Axis {
   /// The drive comes up anew: nothing is known, nothing survives.
   void on_bring_up();
   /// The drive has sent an emergency code; 0: what it told of is over.
-  void on_emergency(std::uint16_t code, Instant now) { core_.fault.emergency(code, now, core_.store.exchange()); }
+  void on_emergency(std::uint16_t code) { core_.fault.emergency(code, core_.turn.now, core_.store.exchange()); }
   /// What is to be read next so that a fault can be shown with its cause; and it goes on the wire.
-  [[nodiscard]] std::optional<ObjectId> cause_to_read(Instant now) const { return core_.fault.next(now); }
-  void cause_asked(Instant now) { core_.fault.asked(now); }
+  [[nodiscard]] std::optional<ObjectId> cause_to_read() const { return core_.fault.next(core_.turn.now); }
+  void cause_asked() { core_.fault.asked(core_.turn.now); }
   /// What came by itself shows the end of the motion, and a read must settle it.
   [[nodiscard]] bool end_wants_sample() const { return core_.motion.end_wants_sample(core_.facts()); }
   /// The axis has shown a fault until now; told once.
@@ -93,7 +70,7 @@ class Axis {
   void on_adopted();
   /// Somebody answers for what the axis does: its owner's lease runs, or leases are off. What must be commanded again
   /// and again (profile key "keepalive") is commanded only so long.
-  [[nodiscard]] bool commands_live() const { return ownership_.live(host_.now()); }
+  [[nodiscard]] bool commands_live() const { return ownership_.live(core_.turn.now); }
 
   /// A stop of it waits for the wire or is under way.
   [[nodiscard]] bool stopping() const;
@@ -118,19 +95,18 @@ class Axis {
   [[nodiscard]] bus::JobId chain_job() const;
 
   /// Deadlines of write batches.
-  void on_time(Instant now);
+  void on_time();
   /// New samples, or time has passed: what runs, what has ended.
-  void observe(Instant now);
+  void observe();
   [[nodiscard]] Instant next_deadline() const;
 
   /// Brings the image up to date; then calls what is due to be called.
-  void publish(Instant now);
+  void publish();
   void call_back();
   [[nodiscard]] bool has_due() const { return !due_.empty() && !core_.fault.withheld(); }
 
   [[nodiscard]] const AxisCore& core() const { return core_; }
-  /// Between the last two samples of the statusword: the poll cycle as it really is.
-  [[nodiscard]] Duration cycle() const { return cycle_; }
+  [[nodiscard]] Duration cycle() const { return shown_.cycle(); }
 
  private:
   /// A client that waits for a result. Those that share a bus job keep a deadline each.
@@ -189,6 +165,7 @@ class Axis {
   void note_accepted(const WriteBatch& batch);
   void tell_end(OwedStop::End end);
   void note_jog(const Pending& pending, Errc code);
+  [[nodiscard]] bool runs_unwatched() const;
   [[nodiscard]] bool waits_for_stop(const Pending& pending) const;
   void end_jog();
   void halt_jog(std::string why);
@@ -208,9 +185,8 @@ class Axis {
   [[nodiscard]] bool ends_with_gateway(const Pending& pending) const;
   void end_begun(Pending& pending);
   void complete(bus::JobId id, const BatchResult& result);
-  void watch_fault();
   // A state that did not come in time (axis_time.cpp).
-  [[nodiscard]] static Instant decide_by(const WriteBatch& batch, Instant now);
+  [[nodiscard]] Instant decide_by(const WriteBatch& batch) const;
   void tell_not_reached(const Pending& pending);
   void withdraw(const WriteBatch& asked, Command stop, const BatchResult& told, std::vector<Waiting> waiting);
   // Who asked for what, and what became of it (axis_told.cpp).
@@ -218,9 +194,6 @@ class Axis {
   void tell_owner(const std::string& what);
   void tell_refused(const WriteBatch& asked, const Outcome& outcome);
   void tell_ended(const Pending& pending, const Outcome& outcome);
-  void tell_fault(const AxisImage& before);
-  void tell_endings();
-  void tell_changes(const AxisImage& before);
   [[nodiscard]] Pending* find(bus::JobId id);
   [[nodiscard]] const Pending* find(bus::JobId id) const { return const_cast<Axis*>(this)->find(id); }
   [[nodiscard]] bool motion_pending() const;
@@ -229,29 +202,21 @@ class Axis {
   AxisImage& image_;
   bus::AxisSlot slot_;
   AxisCore core_;
+  ShownAxis shown_;
   std::vector<Pending> pending_;
   std::vector<Due> due_;
   bool reference_invalidated_ = false;
-  Duration cycle_{};
-  Instant last_statusword_ = kLongAgo;
-  std::optional<ClientId> motion_by_{};  ///< who commanded the motion that runs
-  std::shared_ptr<const ClientLife> motion_by_life_{};
+  struct {
+    std::optional<ClientId> client{};
+    std::shared_ptr<const ClientLife> life{};
+  } motion_by_;  ///< who commanded the motion that runs
   Ownership ownership_;
   Accepted accepted_;
-  std::uint64_t faults_told_ = 0;
-  std::uint64_t losses_told_ = 0;
   Jog jog_;
   OwedStop owed_;
-  bool owed_told_ = false;  ///< an event has told of it: its end is told as well
+  LateEnable late_enable_;
   Telling telling_;
-  struct ShownFault {
-    Instant since = kLongAgo;  ///< kLongAgo: there is none
-    std::uint32_t code = 0;
-    std::string reset_by{};  ///< who has asked for a reset of it last; empty: nobody
-  } shown_fault_;
-  bool closing_ = false;                ///< the gateway ends, or lets go of the drive
-  Instant withdrawn_until_ = kLongAgo;  ///< an enable was withdrawn: until then one that comes late is taken back
-  Instant unknown_until_ = kLongAgo;    ///< the same of one whose outcome nobody knows, while the drive stays in sight
+  bool closing_ = false;  ///< the gateway ends, or lets go of the drive
 };
 
 }  // namespace axisgate::drive

@@ -6,8 +6,6 @@
 namespace axisgate::drive {
 
 void Axis::close() {
-  core_.now = host_.now();
-  core_.link = host_.link_state();
   closing_ = true;
   std::vector<bus::JobId> waiting;
   std::vector<bus::JobId> begun;
@@ -15,7 +13,7 @@ void Axis::close() {
     if (ends_with_gateway(pending)) (pending.command_sequence->begun() ? begun : waiting).push_back(pending.id);
   for (const bus::JobId id : waiting) on_job_ended(id, Errc::never_started);
   // Those that wait for their next step have their turn at once; of one on the wire the reply is awaited.
-  for (const bus::JobId id : begun) host_.job_waits(id, core_.now);
+  for (const bus::JobId id : begun) host_.job_waits(id, core_.turn.now);
 }
 
 // Of a stop, what stands beside it ends with the gateway; the stop does not.

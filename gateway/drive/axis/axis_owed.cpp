@@ -16,7 +16,7 @@ std::optional<StopKind> kind_of(const WriteBatch& batch) {
   if (batch.command == Command::halt) kind = StopKind::halt;
   if (batch.command == Command::quick_stop) kind = StopKind::quick_stop;
   if (batch.command == Command::disable) kind = StopKind::disable;
-  if (!batch.controlword || !is_stop(*batch.controlword, batch.single_controlword)) return kind;
+  if (!stops_by_word(batch)) return kind;
   const bool quick = request_of(*batch.controlword) == Request402::quick_stop;
   return std::max(kind.value_or(StopKind::halt), quick ? StopKind::quick_stop : StopKind::disable);
 }
@@ -49,13 +49,13 @@ void Axis::owe(const WriteBatch& stop) {
 
 // Whatever was asked while a stop is owed by a loss would act on an axis of which nobody knows what it does.
 bool Axis::stop_comes_first(const WriteBatch& batch) const {
-  const LinkState link = host_.link_state();
+  const LinkState link = core_.turn.link;
   const bool back = link != LinkState::offline && link != LinkState::link_down;
   return owed_.gates() && back && !reads_alone(batch) && !stops_alone(batch) && batch.command != Command::jog_end;
 }
 
 // What is not surely read disabled counts as enabled: the motor of a cut cable may be running.
-bool Axis::may_be_enabled() const { return host_.link_state() != LinkState::online || core_.facts().enabled(); }
+bool Axis::may_be_enabled() const { return core_.turn.link != LinkState::online || core_.facts().enabled(); }
 
 void Axis::on_restarted() {
   core_.begin_mode();
@@ -64,14 +64,14 @@ void Axis::on_restarted() {
 }
 
 void Axis::lose_sight() {
-  unknown_until_ = kLongAgo;  // what is enabled when it comes back is adopted
-  owed_.link_lost(last_statusword_, core_.store.exchange());
-  if (owed_.gates() && !std::exchange(owed_told_, true))
+  late_enable_.lost();
+  owed_.link_lost(shown_.heard(), core_.store.exchange());
+  if (owed_.take_news())
     host_.event(image_.number, EventKind::command, 0, "the drive is out of reach: a stop is owed until it is back");
 }
 
 void Axis::observe_owed() {
-  const LinkState link = host_.link_state();
+  const LinkState link = core_.turn.link;
   const ObjectState& status = core_.store[core_.model.statusword];
   const bool gone = link == LinkState::unknown || link == LinkState::offline || link == LinkState::link_down;
   if (gone) {
@@ -79,36 +79,34 @@ void Axis::observe_owed() {
     return;
   }
   if (!status.known) return;
-  core_.link = link;
-  owed_.link_back(host_.now());
+  owed_.link_back(core_.turn.now);
   const auto state = state_of(static_cast<std::uint16_t>(status.number));
   take_back_enable(state);
   if (!owed_.owed() || stopping()) return;
   tell_end(owed_.state_read(state, status.exchange));
-  if (const auto stop = owed_.due(host_.now())) send_owed(*stop);
+  if (const auto stop = owed_.due(core_.turn.now)) send_owed(*stop);
 }
 
 // Its acknowledgement was lost, and its client was told that nobody knows. A set-point that was lost beside it, on an
 // axis that was enabled all the time, is no enable.
 void Axis::watch_enable(const CommandSequence& unknown) {
-  if (unknown.batch().command == Command::enable && unknown.commanded()) unknown_until_ = core_.now + kWatched;
+  if (unknown.batch().command == Command::enable && unknown.commanded()) late_enable_.unknown(core_.turn.now);
 }
 
 // Its client was told that it has failed, or that nobody knows: torque that comes after that, and that nobody has asked
 // for since, is taken away again.
 void Axis::take_back_enable(State402 state) {
-  const bool unknown = core_.now < unknown_until_;
-  if (state != State402::operation_enabled || (!unknown && core_.now >= withdrawn_until_)) return;
+  if (state != State402::operation_enabled || !late_enable_.expected(core_.turn.now)) return;
   if (enable_is_asked() || owed_.owed() || stopping()) return;
-  if (unknown)
+  if (late_enable_.of_unknown(core_.turn.now))
     host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(Command::enable),
                 "the enable whose outcome was unknown has happened, and is taken back");
-  unknown_until_ = kLongAgo;
+  late_enable_.taken_back();
   owed_.accepted(StopKind::disable, core_.store.exchange());
 }
 
 void Axis::tell_end(OwedStop::End end) {
-  if (end == OwedStop::End::none || !std::exchange(owed_told_, false)) return;
+  if (end == OwedStop::End::none || !owed_.take_told()) return;
   std::string how = "the drive has shown it";
   if (end == OwedStop::End::disabled) how = "the axis is read disabled";
   if (end == OwedStop::End::enabled) how = "an enable came later";
@@ -119,7 +117,7 @@ void Axis::tell_end(OwedStop::End end) {
 void Axis::send_owed(StopKind stop) {
   const ObjectState& status = core_.store[core_.model.statusword];
   const ObjectState& word = core_.store[core_.model.controlword];
-  const bool certain = core_.is_virtual() || (core_.link == LinkState::online && status.known && word.known);
+  const bool certain = core_.is_virtual() || (core_.turn.link == LinkState::online && status.known && word.known);
   if (stop == StopKind::halt && !certain) stop = StopKind::quick_stop;
   WriteBatch batch;
   batch.role = Role::engineer;
@@ -132,7 +130,7 @@ void Axis::send_owed(StopKind stop) {
   job.axis = slot_;
   const AxisHost::Queued queued = host_.queue(std::move(job));
   if (queued.code != Errc::ok) {
-    tell_end(owed_.attempted(stop, false, core_.store.exchange(), host_.now()));
+    tell_end(owed_.attempted(stop, false, core_.store.exchange(), core_.turn.now));
     return;
   }
   host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(batch.command),
@@ -150,15 +148,15 @@ void Axis::note_stop(const Pending& pending, bool ended) {
   if (!command_sequence.is_stop() || !kind) return;
   if (command_sequence.begun()) owed_.sending();
   if (ended || command_sequence.stop_confirmed())
-    tell_end(owed_.attempted(*kind, command_sequence.stop_confirmed(), core_.store.exchange(), host_.now()));
+    tell_end(owed_.attempted(*kind, command_sequence.stop_confirmed(), core_.store.exchange(), core_.turn.now));
 }
 
 void Axis::note_accepted(const WriteBatch& batch) {
   if (asks_to_enable(batch)) {
-    withdrawn_until_ = unknown_until_ = kLongAgo;
+    late_enable_.wanted();
     tell_end(owed_.enable_accepted());
   }
-  if (batch.command >= Command::move_absolute && batch.command <= Command::home) tell_end(owed_.start_accepted());
+  if (starts_motion(batch.command)) tell_end(owed_.start_accepted());
 }
 
 // --- Jog
@@ -170,6 +168,19 @@ void Axis::note_jog(const Pending& pending, Errc code) {
   else if (pending.jogs && code != Errc::ok && !pending.command_sequence->begun() && !core_.reachable())
     end_jog();
   if (code == Errc::ok && pending.ends_jog != 0 && pending.ends_jog == jog_.press()) end_jog();
+  const bool no_other_jog = !jog_.active() || pending.ends_jog == jog_.press();
+  if (code != Errc::ok && pending.ends_jog != 0 && !pending.stopped_by && no_other_jog && runs_unwatched()) {
+    end_jog();
+    host_.event(image_.number, EventKind::warning, 0, "jog: another command has taken its mode and failed: halted");
+    stop_by_itself(Command::halt, false, [](const BatchResult&) {});
+  }
+}
+
+// The mode of a jog was taken from it, so nobody watches its button, and nothing has begun in its place.
+bool Axis::runs_unwatched() const {
+  const AxisFacts facts = core_.facts();
+  return facts.enabled() && facts.moving && core_.motion.running() == MotionKind::none &&
+         core_.motion.axis_state(facts) != AxisState::stopping;
 }
 
 // What a client has asked for before or beside the jog is the target again; a stop has left none.

@@ -16,8 +16,6 @@ namespace {
 /// It has no connection that could end.
 bool is_dds(const ClientLife& client) { return client.strength.has_value(); }
 
-bool is_jog(Command command) { return command == Command::jog_forward || command == Command::jog_reverse; }
-
 std::string named_before(const Ownership::ClientPtr& owner) {
   return owner ? " (before: " + owner->name + ")" : std::string();
 }
@@ -56,21 +54,19 @@ void Axis::claim(const WriteBatch& batch) {
   if (batch.jog_velocity) image_.jog_velocity = *batch.jog_velocity;
   if (!batch.claims && !(batch.is_write && ownership_.waits_for(batch.life, batch.all_zero))) return;
   const auto before = ownership_.owner();
-  const Ownership::Taken taken = ownership_.take(batch.life, core_.now);
+  const Ownership::Taken taken = ownership_.take(batch.life, core_.turn.now);
   if (taken == Ownership::Taken::nothing) return;
   if (jog_.client() != batch.client) halt_jog("another client has taken the axis");
   tell_owner(drive::text(taken, *batch.life) + named_before(before));
 }
 
 std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback on_result) {
-  core_.now = host_.now();
-  core_.link = host_.link_state();
   end_expired_lease();
   WriteBatch batch = asked;
   // Bits 0..3 = 6 or 7 are a stop of the owner's in a block of registers as well.
   if (batch.controlword && ownership_.is_owner(batch.client)) batch.single_controlword = true;
   // A coil that is held although its jog has ended asks for nothing until it was 0.
-  const bool holds_in_vain = batch.jog_again && !jog_.again(*batch.jog_again, batch.client, core_.now);
+  const bool holds_in_vain = batch.jog_again && !jog_.again(*batch.jog_again, batch.client, core_.turn.now);
   if (holds_in_vain) batch.jog_again.reset();
   // While something may run, the end of a run is a stop, and so open to every operator.
   if (batch.command == Command::end_run && may_run()) batch.command = Command::halt;
@@ -78,7 +74,7 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
   // An object that is read is no write: a monitor on the PLC's computer keeps no dead PLC's motor running.
   if (!reads_alone(batch))
     ownership_.wrote(batch.renews ? batch.life : nullptr, batch.beats, !asks_nothing(batch) || batch.jog_again,
-                     core_.now);
+                     core_.turn.now);
   if (refusal == Errc::ok && !asks_nothing(batch) && stop_comes_first(batch)) refusal = Errc::stop_owed;
   if (refusal == Errc::ok && closing_ && !asks_nothing(batch) && !stops_alone(batch) &&
       batch.command != Command::jog_end)
@@ -125,7 +121,7 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
 // It may take over an axis that waits for its client all the same.
 BatchResult Axis::nothing_asked(const WriteBatch& batch) {
   claim(batch);
-  publish(core_.now);
+  publish();
   return {};
 }
 
@@ -196,9 +192,8 @@ std::optional<BatchResult> Axis::release(const WriteBatch& batch, BatchCallback 
 }
 
 BatchResult Axis::released(const WriteBatch& batch) {
-  core_.now = host_.now();
   const auto owner = ownership_.owner();
-  const Errc code = ownership_.release(batch.life, may_be_enabled() || enable_is_asked(), core_.now);
+  const Errc code = ownership_.release(batch.life, may_be_enabled() || enable_is_asked(), core_.turn.now);
   if (code != Errc::ok) return refuse(batch, code);
   halt_jog("its owner has released the axis");
   if (owner) {
@@ -207,7 +202,7 @@ BatchResult Axis::released(const WriteBatch& batch) {
                                       : " has released the axis"));
   }
   show_latest(batch, {});
-  publish(core_.now);
+  publish();
   return {};
 }
 
@@ -236,9 +231,8 @@ std::optional<BatchResult> Axis::take_over(const WriteBatch& batch, BatchCallbac
 }
 
 std::optional<BatchResult> Axis::taken_over(const WriteBatch& batch, BatchCallback on_result) {
-  core_.now = host_.now();
   const auto before = ownership_.owner();
-  if (const Ownership::Taken taken = ownership_.take(batch.life, core_.now); taken != Ownership::Taken::nothing) {
+  if (const Ownership::Taken taken = ownership_.take(batch.life, core_.turn.now); taken != Ownership::Taken::nothing) {
     halt_jog("another client has taken the axis");
     tell_owner(drive::text(taken, *batch.life) + named_before(before));
   }
@@ -246,7 +240,7 @@ std::optional<BatchResult> Axis::taken_over(const WriteBatch& batch, BatchCallba
   rest.command = Command::none;
   if (!asks_nothing(rest)) return submit(rest, std::move(on_result));
   show_latest(batch, {});
-  publish(core_.now);
+  publish();
   return BatchResult{};
 }
 
@@ -261,7 +255,7 @@ void Axis::stop_by_itself(Command command, bool latches, BatchCallback on_result
 }
 
 void Axis::end_expired_lease() {
-  const auto expired = ownership_.take_expired(core_.now);
+  const auto expired = ownership_.take_expired(core_.turn.now);
   if (!expired) return;
   const bool writes_wait = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
     return !p.command_sequence->is_stop() && !reads_alone(p.command_sequence->batch());
@@ -294,10 +288,8 @@ void Axis::on_lease_action(const BatchResult& result) {
 }
 
 void Axis::on_adopted() {
-  core_.now = host_.now();
-  core_.link = host_.link_state();
   if (!core_.facts().enabled() || ownership_.owner() || !ownership_.rules().on) return;
-  ownership_.open(core_.now);
+  ownership_.open(core_.turn.now);
   const Command action = command_of(ownership_.rules().on_expiry);
   host_.event(image_.number, EventKind::lease, 0,
               fmt::format("found enabled, and nobody owns it: {} unless a client writes to it within {} ms",
@@ -306,8 +298,6 @@ void Axis::on_adopted() {
 }
 
 void Axis::on_client_gone(ClientId client) {
-  core_.now = host_.now();
-  core_.link = host_.link_state();
   if (ownership_.rules().on) {
     if (ownership_.is_owner(client))
       tell_owner(ownership_.owner()->name + (is_dds(*ownership_.owner()) ? " is gone" : " has closed its connection") +
@@ -317,11 +307,11 @@ void Axis::on_client_gone(ClientId client) {
   // Leases are off: others go on with what they were told. But where neither the drive nor anybody else would ever stop
   // the motor, it is not left running.
   const bool nothing_else_would = core_.is_virtual() && !core_.drive.stops_by_itself;
-  if (!nothing_else_would || motion_by_ != client) return;
+  if (!nothing_else_would || motion_by_.client != client) return;
   if (core_.motion.running() == MotionKind::none && !core_.facts().moving && !motion_pending()) return;
   host_.event(image_.number, EventKind::command, 0,
               "the client that commanded the motion is gone: quick stop" +
-                  (motion_by_life_ ? " (" + motion_by_life_->name + ")" : std::string()));
+                  (motion_by_.life ? " (" + motion_by_.life->name + ")" : std::string()));
   stop_by_itself(Command::quick_stop, false, [](const BatchResult&) {});
 }
 
@@ -341,7 +331,7 @@ Errc Axis::begin_jog(WriteBatch& batch) {
   batch.command = Command::run_velocity;
   batch.jogs = true;
   if (!jog_.active()) core_.velocity_beside_jog = core_.motion.wanted(Quantity::target_velocity).value_or(Wanted{});
-  jog_.start(direction, batch.client, core_.now, core_.model.jog_timeout);
+  jog_.start(direction, batch.client, core_.turn.now, core_.model.jog_timeout);
   return Errc::ok;
 }
 
@@ -354,7 +344,7 @@ bool Axis::jog_must_stop(Command direction, std::int64_t velocity) const {
   travel.velocity = velocity;
   travel.deceleration = core_.value(Quantity::profile_deceleration);
   travel.units_per_rev = core_.model.units_per_rev;
-  travel.latency = 2 * cycle_;  // the sample is as old as one, and the halt waits for one exchange
+  travel.latency = 2 * shown_.cycle();  // the sample is as old as one, and the halt waits for one exchange
   travel.limits = target->limits;
   // The drive's own count where they are a range: 0 and 0 is how drives are told to have none.
   const auto low = core_.value(Quantity::position_limit_min);

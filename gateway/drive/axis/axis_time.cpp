@@ -16,9 +16,8 @@ Instant Axis::deadline_of(const Pending& pending, const Waiting& client) {
   return may_expire ? std::min(client.start_by, client.answer_by) : client.answer_by;
 }
 
-void Axis::on_time(Instant now) {
-  core_.now = now;
-  core_.link = host_.link_state();
+void Axis::on_time() {
+  const Instant now = core_.turn.now;
   std::vector<bus::JobId> late;
   const auto is_late = [now](const Pending& p) {
     return [now, &p](const Waiting& client) { return now >= deadline_of(p, client); };
@@ -57,7 +56,7 @@ void Axis::on_time(Instant now) {
 
 Instant Axis::next_deadline() const {
   Instant next = std::min({core_.motion.deadline(), core_.fault.deadline(), ownership_.until(), jog_.until(),
-                           owed_.next_deadline(core_.now)});
+                           owed_.next_deadline(core_.turn.now)});
   for (const Pending& p : pending_)
     for (const Waiting& client : p.callbacks) next = std::min(next, deadline_of(p, client));
   for (const Due& d : due_)
@@ -68,10 +67,10 @@ Instant Axis::next_deadline() const {
 // --- What did not come in time -------------------------------------------------------------------------------------
 
 // What might still happen is withdrawn before the answer, and the answer is not late for it.
-Instant Axis::decide_by(const WriteBatch& batch, Instant now) {
+Instant Axis::decide_by(const WriteBatch& batch) const {
+  const Instant now = core_.turn.now;
   constexpr Duration kWithdrawing = std::chrono::milliseconds(100);
-  const bool withdrawable = batch.command == Command::enable || batch.mode ||
-                            (batch.command >= Command::move_absolute && batch.command <= Command::set_position);
+  const bool withdrawable = batch.command == Command::enable || batch.mode || needs_ready(batch.command);
   if (!withdrawable || batch.answer_by == kNever || batch.answer_by <= now) return batch.answer_by;
   return batch.answer_by - std::min(kWithdrawing, (batch.answer_by - now) / 4);
 }
@@ -91,12 +90,12 @@ void Axis::withdraw(const WriteBatch& asked, Command stop, const BatchResult& to
   batch.client = asked.client;
   batch.role = Role::engineer;
   batch.command = stop;
-  batch.answer_by = std::min(asked.answer_by, core_.now + kMostWaits);
+  batch.answer_by = std::min(asked.answer_by, core_.turn.now + kMostWaits);
   host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(stop),
               std::string(text(asked.command)) + " is withdrawn: " + std::string(text(stop)));
   accept_stop(batch);
   // Where nobody answers a frame, the read that shows it disabled does not tell that the withdrawal has arrived.
-  if (stop == Command::disable) withdrawn_until_ = core_.now + kWatched;
+  if (stop == Command::disable) late_enable_.withdrawn(core_.turn.now);
   Pending pending;
   pending.by_mailbox = true;  // the client's result is that of what it asked for
   pending.command_sequence = std::make_unique<CommandSequence>(core_, batch, true);
@@ -121,7 +120,7 @@ void Axis::call_back() {
   due.swap(due_);
   const auto waits = [this](const Due& d) {
     return core_.fault.withheld() && std::none_of(d.callbacks.begin(), d.callbacks.end(),
-                                                  [this](const Waiting& c) { return core_.now >= c.answer_by; });
+                                                  [this](const Waiting& c) { return core_.turn.now >= c.answer_by; });
   };
   const auto waiting = std::stable_partition(due.begin(), due.end(), std::not_fn(waits));
   due_.assign(std::make_move_iterator(waiting), std::make_move_iterator(due.end()));

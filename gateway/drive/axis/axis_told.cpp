@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who asked an axis for what, what was refused and why, and how faults end: for log and events.
+// Who asked an axis for what, what was refused and why: for log and events.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,8 +37,8 @@ bool resets(const WriteBatch& batch) {
 // everybody's: whoever owns the axis must see who has used that.
 void Axis::tell_asked(const WriteBatch& asked, const WriteBatch& carried_out) {
   if (!asked.life || reads_alone(asked)) return;
-  if (resets(asked) && shown_fault_.since != kLongAgo) shown_fault_.reset_by = asked.life->name;
-  const auto left_out = telling_.asked(carried_out, core_.now);
+  if (resets(asked)) shown_.reset_asked(asked.life->name);
+  const auto left_out = telling_.asked(carried_out, core_.turn.now);
   if (!left_out) return;
   WriteBatch shown = asked;
   // A target that was accepted and waits for the wire is the one that the start will use.
@@ -56,7 +56,7 @@ void Axis::tell_asked(const WriteBatch& asked, const WriteBatch& carried_out) {
 }
 
 void Axis::tell_owner(const std::string& what) {
-  if (const auto left_out = telling_.owner(core_.now))
+  if (const auto left_out = telling_.owner(core_.turn.now))
     host_.event(image_.number, EventKind::lease, 0, what + left_out_text(*left_out));
 }
 
@@ -64,7 +64,7 @@ void Axis::tell_owner(const std::string& what) {
 
 void Axis::tell_refused(const WriteBatch& asked, const Outcome& outcome) {
   if (!asked.life || reads_alone(asked) || told_by_its_server(asked, outcome.code)) return;
-  const auto left_out = telling_.refused(asked, outcome.code, core_.now);
+  const auto left_out = telling_.refused(asked, outcome.code, core_.turn.now);
   if (!left_out) return;
   const auto owner = ownership_.owner();
   const std::string whose = outcome.code == Errc::not_owner && owner ? "; its owner is " + owner->name : std::string();
@@ -77,11 +77,11 @@ void Axis::tell_refused(const WriteBatch& asked, const Outcome& outcome) {
 // A set-point in whose place a newer one was sent is no news; what was not reached is told with what was awaited.
 void Axis::tell_ended(const Pending& pending, const Outcome& outcome) {
   const WriteBatch& batch = pending.command_sequence->batch();
-  if (outcome.code != Errc::ok && resets(batch)) shown_fault_.reset_by.clear();
+  if (outcome.code != Errc::ok && resets(batch)) shown_.reset_failed();
   if (outcome.code == Errc::ok || outcome.code == Errc::superseded || outcome.code == Errc::not_reached) return;
   if (batch.client == 0 || reads_alone(batch)) return;
   if (pending.refusal == Errc::ok && told_by_its_server(batch, outcome.code)) return;
-  const auto left_out = telling_.refused(batch, outcome.code, core_.now);
+  const auto left_out = telling_.refused(batch, outcome.code, core_.turn.now);
   if (!left_out) return;
   const bool beside = pending.refusal != Errc::ok && outcome.code == pending.refusal;
   const bool stopped = outcome.code == Errc::stopped_by_other || outcome.code == Errc::dropped_by_stop;
@@ -91,25 +91,6 @@ void Axis::tell_ended(const Pending& pending, const Outcome& outcome) {
       image_.number, EventKind::command, static_cast<std::uint32_t>(batch.command),
       fmt::format("{}: {}{}: {}{}{}", batch.life ? batch.life->name : "a client", beside ? "what stood beside " : "",
                   what, outcome_text(batch, outcome), by, left_out_text(*left_out)));
-}
-
-// --- Faults ----------------------------------------------------------------------------------------------------------
-
-void Axis::tell_fault(const AxisImage& before) {
-  const bool fault = image_.has(AxisInput::fault);
-  if (fault && !before.has(AxisInput::fault)) {
-    const auto code = static_cast<std::uint32_t>(image_[Quantity::error_code].value);
-    if (shown_fault_.since == kLongAgo) shown_fault_ = {core_.now, code, {}};
-    shown_fault_.code = code;
-    host_.event(image_.number, EventKind::fault, code, fault_text(core_));
-  }
-  if (fault || shown_fault_.since == kLongAgo) return;
-  const ShownFault over = std::exchange(shown_fault_, {});
-  constexpr double kNsPerSecond = 1e9;
-  const double seconds = static_cast<double>((core_.now - over.since).count()) / kNsPerSecond;
-  const std::string how = over.reset_by.empty() ? "without a reset by a client" : "reset by " + over.reset_by;
-  host_.event(image_.number, EventKind::warning, 0,
-              fmt::format("fault 0x{:04X} is over after {:.1f} s, {}", over.code, seconds, how));
 }
 
 }  // namespace axisgate::drive

@@ -115,8 +115,7 @@ std::string command_text(const AxisCore& core, const WriteBatch& batch, std::uin
   if (batch.command != Command::none) add(std::string(text(batch.command)));
   if (batch.controlword) add(controlword_text(*batch.controlword));
   if (batch.mode) add(mode_text(*batch.mode));
-  const bool jogs = batch.command == Command::jog_forward || batch.command == Command::jog_reverse;
-  if (jogs || batch.jog_velocity)
+  if (is_jog(batch.command) || batch.jog_velocity)
     add(fmt::format("jog_velocity {}{}", batch.jog_velocity.value_or(jog_velocity),
                     in_words(core, Kind::velocity, batch.jog_velocity.value_or(jog_velocity))));
   if (batch.command == Command::set_position || batch.set_position_value) {

@@ -149,7 +149,7 @@ std::uint32_t alarms_of(const AxisCore& core) {
   set(AxisAlarm::stop_latched, core.motion.latched());
   set(AxisAlarm::not_homed, core.model.command(Command::home).has_value() && !core.homed);
   set(AxisAlarm::cannot_deenergise, core.cannot_deenergise());
-  set(AxisAlarm::nvm_budget, core.nvm.alarm(core.now));
+  set(AxisAlarm::nvm_budget, core.nvm.alarm(core.turn.now));
   return alarms;
 }
 
@@ -171,7 +171,7 @@ void show_model(const AxisModel& model, AxisImage& image) {
     image.limits[static_cast<std::size_t>(binding.quantity)] = binding.limits;
 }
 
-void show_state(const AxisCore& core, AxisImage& image, Instant now) {
+void show_state(const AxisCore& core, AxisImage& image) {
   const AxisFacts facts = core.facts();
   image.oldest_cyclic = kNever;
   for (const Binding& binding : core.model.bindings) {
@@ -195,7 +195,7 @@ void show_state(const AxisCore& core, AxisImage& image, Instant now) {
       sample.received = false;  // there is a number, and no register for it: the last one that fitted is not it
     }
     const Duration limit = stale_after(core, binding);
-    sample.valid = good && image.reachable() && (limit == Duration::max() || now - at <= limit);
+    sample.valid = good && image.reachable() && (limit == Duration::max() || core.turn.now - at <= limit);
     const bool cyclic = binding.poll == PollClass::fast || binding.poll == PollClass::normal;
     if (cyclic && !refused(core, binding) && !is_told_alone(core, binding))
       image.oldest_cyclic = std::min(image.oldest_cyclic, at);
@@ -212,12 +212,12 @@ void show_state(const AxisCore& core, AxisImage& image, Instant now) {
                                                  (core.motion.running() == MotionKind::velocity ? 1 << 7 : 0));
 }
 
-Instant stale_deadline(const AxisCore& core, Instant now) {
+Instant stale_deadline(const AxisCore& core) {
   Instant next = kNever;
   for (const Binding& binding : core.model.bindings) {
     const Duration limit = stale_after(core, binding);
     const Instant at = confirmed_at(core, binding);
-    if (limit == Duration::max() || at == kLongAgo || now - at > limit) continue;
+    if (limit == Duration::max() || at == kLongAgo || core.turn.now - at > limit) continue;
     next = std::min(next, at + limit + Duration{1});
   }
   return next;

@@ -14,9 +14,9 @@ inline constexpr Duration kStaleAtLeast = std::chrono::milliseconds(300);
 /// What is fixed when the gateway starts.
 void show_model(const AxisModel& model, AxisImage& image);
 /// `image.link_state` is set by the caller before.
-void show_state(const AxisCore& core, AxisImage& image, Instant now);
+void show_state(const AxisCore& core, AxisImage& image);
 /// When show_state() would show something else without a new sample: a value turns stale.
-[[nodiscard]] Instant stale_deadline(const AxisCore& core, Instant now);
+[[nodiscard]] Instant stale_deadline(const AxisCore& core);
 /// The text of the check behind the alarm, or of the alarm itself.
 [[nodiscard]] std::string alarm_text(const AxisCore& core, AxisAlarm alarm);
 

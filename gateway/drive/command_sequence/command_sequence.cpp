@@ -3,13 +3,11 @@
 
 #include <algorithm>
 
+#include "gateway/drive/plan/admission.hpp"
+
 namespace axisgate::drive {
 namespace {
 
-// Between two looks at an awaited condition, from the answer to the next request: a stop that waits for its ramp must
-// leave the wire to the commands of other drives. Doubles with each look.
-constexpr Duration kLookAgain = std::chrono::milliseconds(5);
-constexpr Duration kLookSeldom = std::chrono::milliseconds(20);
 // How long a stop may take to show before it is sent once more.
 constexpr Duration kStopShows = std::chrono::milliseconds(250);
 // A halt shows in the sampled velocity alone: so much longer than that lags.
@@ -27,9 +25,7 @@ CommandSequence::CommandSequence(AxisCore& core, const WriteBatch& batch, bool s
   // In the write batch's order the controlword comes before the command: carried out after the stop it could undo it,
   // and before it the stop would have to wait for it. A stop by controlword is part of the stop; anything else the stop
   // has made void.
-  if (stop_ && axisgate::is_stop(batch_.command) && batch_.controlword &&
-      !drive::is_stop(*batch_.controlword, batch_.single_controlword))
-    batch_.controlword.reset();
+  if (stop_ && axisgate::is_stop(batch_.command) && !stops_by_word(batch_)) batch_.controlword.reset();
 }
 
 // --- Phases --------------------------------------------------------------------------------------------------------
@@ -43,8 +39,7 @@ Plan CommandSequence::plan_of(Phase phase) {
     case Phase::mode:
       return batch_.mode ? plan_raw_mode(core_, *batch_.mode) : Plan{};
     case Phase::controlword: {
-      const bool done_as_stop =
-          stop_ && batch_.controlword && drive::is_stop(*batch_.controlword, batch_.single_controlword);
+      const bool done_as_stop = stop_ && stops_by_word(batch_);
       return batch_.controlword && !done_as_stop
                  ? plan_controlword(core_, *batch_.controlword, batch_.command != Command::none)
                  : Plan{};
@@ -70,7 +65,7 @@ Plan CommandSequence::plan_of(Phase phase) {
 // "Set-points beside a command that is refused are accepted only if they would be without it."
 void CommandSequence::drop_setpoints_of_a_refused_command() {
   const Command command = batch_.command;
-  const bool starts = command >= Command::move_absolute && command <= Command::set_position;
+  const bool starts = needs_ready(command);
   const bool needs_rest = command == Command::move_relative || command == Command::set_position;
   const AxisFacts facts = core_.facts();
   // A controlword beside it may be what makes the axis ready.
@@ -90,11 +85,11 @@ void CommandSequence::plan_phase() {
   Plan plan = plan_of(phase_);
   // A mode that a client asks for is its choice, also where it is in force already.
   if (phase_ == Phase::mode && batch_.mode && !plan.refused()) core_.mode_chosen = true;
-  planned_ = true;
-  sent_of_plan_ = false;
-  todo_ = std::move(plan.actions);
-  at_ = 0;
-  wait_until_ = kNever;
+  plan_.made = true;
+  plan_.begun = false;
+  plan_.actions = std::move(plan.actions);
+  plan_.at = 0;
+  awaiting_.end();
   if (plan.refused()) fail(plan.refusal.code, plan.refusal.detail);
 }
 
@@ -105,7 +100,7 @@ void CommandSequence::next_phase() {
     result_.command_sent = false;
   }
   phase_ = static_cast<Phase>(static_cast<std::uint8_t>(phase_) + 1);
-  planned_ = false;
+  plan_.made = false;
 }
 
 void CommandSequence::fail(Errc code, std::uint32_t detail) {
@@ -119,29 +114,30 @@ void CommandSequence::abort(Outcome outcome) {
 
 // --- The next move -------------------------------------------------------------------------------------------------
 
-CommandSequence::Move CommandSequence::granted(Instant now) {
-  if (planned_ && !sent_of_plan_) {
-    planned_ = false;
+CommandSequence::Move CommandSequence::granted() {
+  if (plan_.made && !plan_.begun) {
+    plan_.made = false;
     // Whether it may start at all is judged with the preparation; but not once the preparation has changed the mode:
     // what was at rest in mode 1 would have to prove it again in mode 6, and the mode would stay changed.
     if (phase_ == Phase::command && !preparation_sent_) phase_ = Phase::preparation;
   }
-  Move move = advance(now);
-  if (move.kind == Move::Kind::exchange && !within_nvm_budget(move.exchange, now)) {
+  Move move = advance();
+  if (move.kind == Move::Kind::exchange && !within_nvm_budget(move.exchange)) {
     fail(Errc::busy);
     return {};
   }
   if (move.kind == Move::Kind::exchange) {
-    begun_ = sent_of_plan_ = true;
+    begun_ = plan_.begun = true;
     if (in_command() && move.exchange.access != bus::Access::read) acted_ = result_.command_sent = true;
     // What it copies may come anew, by process data, before the write is acknowledged.
-    if (at_ < todo_.size() && todo_[at_].kind == Action::Kind::write && !verifying_) {
-      todo_[at_].number = number_of(todo_[at_]);
-      todo_[at_].copy_of = kNoObject;
-      ++step_;
+    if (!plan_.at_end() && plan_.action().kind == Action::Kind::write && !writes_.verifying) {
+      Action& write = plan_.actions[plan_.at];
+      write.number = number_of(write);
+      write.copy_of = kNoObject;
+      ++writes_.count;
       effect_.sending(core_);
-      last_write_ = todo_[at_];
-      write_under_way_ = true;
+      writes_.last = write;
+      writes_.under_way = true;
     }
     if (phase_ == Phase::preparation) preparation_sent_ = true;
   }
@@ -159,10 +155,10 @@ bool CommandSequence::object_is_cached() const {
 }
 
 // Stops are exempt: a worn memory cell is the smaller harm.
-bool CommandSequence::within_nvm_budget(const bus::Exchange& exchange, Instant now) {
+bool CommandSequence::within_nvm_budget(const bus::Exchange& exchange) {
   if (exchange.access == bus::Access::read || phase_ == Phase::stop) return true;
   const ObjectId id = core_.drive.find(exchange.object);
-  return core_.nvm.take(id == kNoObject ? core_.drive.nvm : core_.object(id).nvm, now);
+  return core_.nvm.take(id == kNoObject ? core_.drive.nvm : core_.object(id).nvm, core_.turn.now);
 }
 
 CommandSequence::Move CommandSequence::advance_object() const {
@@ -175,18 +171,17 @@ CommandSequence::Move CommandSequence::advance_object() const {
   if (o.size == 0 && core_.drive.resync.by_length)
     exchange.size = static_cast<std::uint8_t>(o.count == 0 ? 2 : o.count);
   if (o.size == 0 && is_canopen(core_.drive)) {
-    exchange.part = chain_open_ ? bus::Part::next : bus::Part::first;
-    if (!chain_open_) exchange.bytes = o.bytes;
+    exchange.part = object_.chain_open ? bus::Part::next : bus::Part::first;
+    if (!object_.chain_open) exchange.bytes = o.bytes;
   }
   return {Move::Kind::exchange, exchange, kLongAgo};
 }
 
-CommandSequence::Move CommandSequence::advance(Instant now) {
-  core_.now = now;
+CommandSequence::Move CommandSequence::advance() {
   while (!finished()) {
     if (phase_ == Phase::settle_stop || phase_ == Phase::settle) {
       if (const auto move = advance_settle()) return *move;
-      stop_confirmed_ = stop_confirmed_ || (phase_ == Phase::settle_stop && !stop_withheld_);
+      if (phase_ == Phase::settle_stop) stop_attempt_.state_was_read();
       if (phase_ == Phase::settle && has_lost_torque())
         fail(Errc::state_unsuitable, kDetailDeviceState);
       else
@@ -194,30 +189,30 @@ CommandSequence::Move CommandSequence::advance(Instant now) {
       continue;
     }
     if (phase_ == Phase::object) {
-      if (batch_.object && !object_done_ && !object_is_cached()) return advance_object();
+      if (batch_.object && !object_.done && !object_is_cached()) return advance_object();
       next_phase();
       continue;
     }
-    if (!planned_) {
+    if (!plan_.made) {
       plan_phase();
       continue;
     }
-    if (at_ == todo_.size()) {
+    if (plan_.at_end()) {
       next_phase();
       continue;
     }
-    const Action& action = todo_[at_];
+    const Action& action = plan_.action();
     if (action.kind == Action::Kind::mark) {
       const Action mark = action;  // reaching it may plan anew
       pop();
-      reach(mark, now);
+      reach(mark);
     } else if (action.kind == Action::Kind::wait) {
-      if (const auto move = advance_wait(action, now)) return *move;
+      if (const auto move = advance_wait(action)) return *move;
     } else if (action.kind == Action::Kind::write && core_.object(action.object).emulated) {
       const Action emulated = action;
       pop();
       // A stop never opens the gate: another one may have closed it since this halt was planned.
-      const bool opens = request_of(static_cast<std::uint16_t>(emulated.number)) == Request402::enable_operation;
+      const bool opens = enables(emulated.number);
       const AxisFacts facts = core_.facts();
       const bool stays_open = facts.enabled() && facts.commanded;
       if (emulated.object != core_.model.controlword || !opens || !is_stop() || stays_open)
@@ -226,11 +221,12 @@ CommandSequence::Move CommandSequence::advance(Instant now) {
       result_.command_sent = result_.command_sent || in_command();
     } else if (would_enable(action)) {
       // It was enabled when this was planned. The same word would now take it back there, which nobody asked for.
-      stop_withheld_ = stop_withheld_ || phase_ == Phase::stop;
-      if (phase_ == Phase::stop)
+      if (phase_ == Phase::stop) {
+        stop_attempt_.withhold();
         pop();
-      else
+      } else {
         fail(Errc::state_unsuitable, kDetailDeviceState);
+      }
     } else {
       return exchange_for(action);
     }
@@ -238,20 +234,22 @@ CommandSequence::Move CommandSequence::advance(Instant now) {
   return {};
 }
 
+bool CommandSequence::tells_enable(const Action& action) const {
+  return action.object == core_.model.controlword && enables(number_of(action));
+}
+
 // A word with the bits of operation enabled, for an axis that is not, by a write batch that does not ask for an enable.
 bool CommandSequence::would_enable(const Action& action) const {
   const bool asked = batch_.command == Command::enable || phase_ == Phase::controlword;
-  if (asked || action.kind != Action::Kind::write || verifying_ || action.object != core_.model.controlword)
-    return false;
-  if (request_of(static_cast<std::uint16_t>(number_of(action))) != Request402::enable_operation) return false;
+  if (asked || action.kind != Action::Kind::write || writes_.verifying || !tells_enable(action)) return false;
   const AxisFacts facts = core_.facts();
   return !facts.enabled() || !facts.commanded;
 }
 
 void CommandSequence::pop() {
-  ++at_;
-  verifying_ = false;
-  wait_until_ = kNever;
+  ++plan_.at;
+  writes_.verifying = false;
+  awaiting_.end();
 }
 
 std::int64_t CommandSequence::number_of(const Action& action) const {
@@ -261,24 +259,20 @@ std::int64_t CommandSequence::number_of(const Action& action) const {
 CommandSequence::Move CommandSequence::exchange_for(const Action& action) const {
   const ObjectDef& object = core_.object(core_.to_read(action.object));
   bus::Exchange exchange{core_.drive.node, bus::Access::read, object.address, object.size, 0};
-  if (action.kind == Action::Kind::write && !verifying_) {
+  if (action.kind == Action::Kind::write && !writes_.verifying) {
     exchange.access = bus::Access::write;
     exchange.raw = wire_bits(number_of(action), object.size);
   }
   return {Move::Kind::exchange, exchange, kLongAgo};
 }
 
-std::optional<CommandSequence::Move> CommandSequence::advance_wait(const Action& action, Instant now) {
-  if (wait_until_ == kNever) {
-    wait_until_ = now + action.limit;
-    look_pause_ = kLookAgain;
-    if (phase_ == Phase::stop) {
-      // However often the stop is repeated: the time it has in all began with its first look.
-      Instant& in_all = action.effect == Effect::none ? stop_until_ : effect_until_;
-      if (in_all == kNever) in_all = wait_until_;
-      wait_until_ = in_all;
-      repeat_at_ = now + (action.effect == Effect::none ? kStopShows : core_.model.velocity_lag + kSampleOfHalt);
-    }
+std::optional<CommandSequence::Move> CommandSequence::advance_wait(const Action& action) {
+  const Instant now = core_.turn.now;
+  if (!awaiting_.begun()) {
+    const bool by_motor = action.effect != Effect::none;
+    const Duration shows = by_motor ? core_.model.velocity_lag + kSampleOfHalt : kStopShows;
+    const Instant until = now + action.limit;
+    awaiting_.begin(phase_ == Phase::stop ? stop_attempt_.begin_wait(by_motor, until, now + shows) : until);
   }
   const ObjectId look_at =
       action.effect == Effect::none ? action.until.object : EffectWatch::to_read(core_, action.effect);
@@ -287,60 +281,57 @@ std::optional<CommandSequence::Move> CommandSequence::advance_wait(const Action&
     return std::nullopt;
   }
   const ObjectState& state = core_.store[look_at];
-  const bool fresh = state.known && state.exchange > last_acknowledged_;
-  if (fresh && looked_at_ != state.exchange) {
-    looked_at_ = state.exchange;
-    look_after_ = now + look_pause_;
-    look_pause_ = std::min(2 * look_pause_, kLookSeldom);
-  }
-  // A resynchronisation read may have kept the look away until the time was over: one look there is in any case.
-  const bool looked = fresh && state.sent_at + kLookSeldom >= std::min(now, wait_until_);
-  if (now >= wait_until_ && (looked || (fresh && action.limit == Duration{}))) {
+  const bool fresh = state.known && state.exchange > writes_.acknowledged_by;
+  if (fresh) awaiting_.judged(state, now);
+  // One look there is in any case.
+  const bool looked = fresh && awaiting_.is_last_look(state, now);
+  if (awaiting_.is_over(now) && (looked || (fresh && action.limit == Duration{}))) {
     if (action.optional) {
       // Nobody answers a frame, and the motor has not told either that it was heard.
-      stop_withheld_ = stop_withheld_ || (phase_ == Phase::stop && !core_.drive.composed.empty() &&
-                                          core_.is_continuous(core_.mode_in_force()) && core_.facts().moving);
+      if (phase_ == Phase::stop && !core_.drive.composed.empty() && core_.is_continuous(core_.mode_in_force()) &&
+          core_.facts().moving)
+        stop_attempt_.withhold();
       pop();
     } else {
-      fail(action.otherwise, action.otherwise == Errc::not_reached ? step_ : refusal(action.otherwise).detail);
+      fail(action.otherwise, action.otherwise == Errc::not_reached ? writes_.count : refusal(action.otherwise).detail);
     }
     return std::nullopt;
   }
   // Where nobody answers a frame, what may run out without a failure tells as well that it was lost.
   const bool tells = !action.optional || !core_.drive.composed.empty();
-  if (fresh && phase_ == Phase::stop && tells && now >= repeat_at_ && repeat_stop()) return std::nullopt;
-  if (fresh && now < look_after_) return Move{Move::Kind::wait, {}, look_after_};
+  if (fresh && phase_ == Phase::stop && tells && stop_attempt_.repeat_is_due(now) && repeat_stop()) return std::nullopt;
+  if (fresh && now < awaiting_.look_after()) return Move{Move::Kind::wait, {}, awaiting_.look_after()};
   return exchange_for(Action::read(look_at));
 }
 
 bool CommandSequence::has_come(const Action& action, const ObjectState& looked_at) {
-  if (action.effect != Effect::none) return effect_.shown(core_, action.effect, last_acknowledged_);
-  return looked_at.known && looked_at.exchange > last_acknowledged_ &&
+  if (action.effect != Effect::none) return effect_.shown(core_, action.effect, writes_.acknowledged_by);
+  return looked_at.known && looked_at.exchange > writes_.acknowledged_by &&
          action.until.holds(core_.object(action.until.object), static_cast<std::uint32_t>(looked_at.number));
 }
 
 // A reply is sent only when the image holds a statusword sampled after the last acknowledgement.
 std::optional<CommandSequence::Move> CommandSequence::advance_settle() const {
-  if (!begun_ || last_acknowledged_ == 0 || core_.model.statusword == kNoObject) return std::nullopt;
+  if (!begun_ || writes_.acknowledged_by == 0 || core_.model.statusword == kNoObject) return std::nullopt;
   const ObjectState& status = core_.store[core_.model.statusword];
-  if (status.refused || (status.known && status.exchange > last_acknowledged_)) return std::nullopt;
+  if (status.refused || (status.known && status.exchange > writes_.acknowledged_by)) return std::nullopt;
   return exchange_for(Action::read(core_.model.statusword));
 }
 
 // The drive may answer such a write all the same, or answers none at all: whether the motor could obey, its state
 // tells.
-bool CommandSequence::has_lost_torque() const { return commanded_ && !core_.facts().enabled(); }
+bool CommandSequence::has_lost_torque() const { return moved_by_write_ && !core_.facts().enabled(); }
 
 bool CommandSequence::passes_resync() {
-  if (phase_ != Phase::stop || verifying_) return false;
-  if (!planned_ || !sent_of_plan_) plan_phase();
-  return phase_ == Phase::stop && at_ < todo_.size() && todo_[at_].kind == Action::Kind::write;
+  if (phase_ != Phase::stop || writes_.verifying) return false;
+  if (!plan_.made || !plan_.begun) plan_phase();
+  return phase_ == Phase::stop && !plan_.at_end() && plan_.action().kind == Action::Kind::write;
 }
 
 bool CommandSequence::repeat_stop() {
   if (phase_ != Phase::stop || !would_repeat()) return false;
-  ++attempts_;
-  planned_ = verifying_ = false;
+  stop_attempt_.repeat();
+  plan_.made = writes_.verifying = false;
   return true;
 }
 

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "adapters/bus/exchange.hpp"
+#include "gateway/drive/command_sequence/awaiting.hpp"
+#include "gateway/drive/command_sequence/stop_attempt.hpp"
 #include "gateway/drive/plan/planner.hpp"
 
 namespace axisgate::drive {
@@ -30,10 +32,10 @@ class CommandSequence {
     Instant until = kLongAgo;
   };
   /// Goes as far as it can without the wire. The exchange of the answer is only for looking ahead.
-  [[nodiscard]] Move advance(Instant now);
+  [[nodiscard]] Move advance();
   /// As advance(), and its exchange goes on the wire now: what is only planned is planned anew, with what is known by
   /// now.
-  [[nodiscard]] Move granted(Instant now);
+  [[nodiscard]] Move granted();
   /// The result of the exchange given last. `sent_at`: when it was sent. `trusted`: the drive was not suspect; else an
   /// acknowledgement proves no write, and the object is read back.
   void on_result(const bus::ExchangeResult& result, Instant sent_at, bool trusted);
@@ -54,15 +56,17 @@ class CommandSequence {
   /// Its command or controlword was carried out, at least in part: it was neither refused nor asked for what was so.
   [[nodiscard]] bool commanded() const { return acted_; }
   /// A stop that would be sent once more if the exchange on the wire stays without an answer.
-  [[nodiscard]] bool would_repeat() const { return phase_ == Phase::stop && attempts_ + 1 < kStopAttempts; }
+  [[nodiscard]] bool would_repeat() const { return phase_ == Phase::stop && stop_attempt_.may_repeat(); }
   /// A long object is under way: another exchange with this drive would end it.
-  [[nodiscard]] bool chain_open() const { return chain_open_ && !finished(); }
+  [[nodiscard]] bool chain_open() const { return object_.chain_open && !finished(); }
   /// The stop itself is over: what is left of the write batch has no claim to go first.
-  [[nodiscard]] bool stop_is_over() const { return stop_ && !handed_over_ && phase_ > Phase::settle_stop; }
+  [[nodiscard]] bool stop_is_over() const {
+    return stop_ && !stop_attempt_.handed_over() && phase_ > Phase::settle_stop;
+  }
   /// A state read after the stop's last sending has confirmed it.
-  [[nodiscard]] bool stop_confirmed() const { return stop_confirmed_; }
+  [[nodiscard]] bool stop_confirmed() const { return stop_attempt_.confirmed(); }
   /// The rest of the write batch was queued anew, without the stop's precedence.
-  void stop_was_handed_over() { handed_over_ = true; }
+  void stop_was_handed_over() { stop_attempt_.hand_over(); }
   [[nodiscard]] const WriteBatch& batch() const { return batch_; }
   [[nodiscard]] const BatchResult& result() const { return result_; }
   [[nodiscard]] bool is_stop() const { return stop_; }
@@ -82,14 +86,13 @@ class CommandSequence {
     settle,
     finished,
   };
-  static constexpr int kStopAttempts = 3;  // design 3.4
 
   void drop_setpoints_of_a_refused_command();
   void plan_phase();
   void next_phase();
   [[nodiscard]] Plan plan_of(Phase phase);
   [[nodiscard]] Move exchange_for(const Action& action) const;
-  [[nodiscard]] std::optional<Move> advance_wait(const Action& action, Instant now);
+  [[nodiscard]] std::optional<Move> advance_wait(const Action& action);
   [[nodiscard]] bool has_come(const Action& action, const ObjectState& looked_at);
   [[nodiscard]] std::optional<Move> advance_settle() const;
   [[nodiscard]] Move advance_object() const;
@@ -97,11 +100,12 @@ class CommandSequence {
   [[nodiscard]] bool in_command() const {
     return phase_ == Phase::controlword || phase_ == Phase::preparation || phase_ == Phase::command;
   }
+  [[nodiscard]] bool tells_enable(const Action& action) const;
   [[nodiscard]] bool would_enable(const Action& action) const;
   [[nodiscard]] bool is_command_of_motion(ObjectId object) const;
   [[nodiscard]] bool has_lost_torque() const;
-  [[nodiscard]] bool within_nvm_budget(const bus::Exchange& exchange, Instant now);
-  void reach(const Action& action, Instant now);
+  [[nodiscard]] bool within_nvm_budget(const bus::Exchange& exchange);
+  void reach(const Action& action);
   [[nodiscard]] bool overtaken_by_stop(Mark mark) const;
   void pop();
   void fail(Errc code, std::uint32_t detail = 0);
@@ -120,34 +124,36 @@ class CommandSequence {
   bool by_mailbox_;
   std::uint64_t stops_before_;  ///< stops accepted by then: what a later one overtakes starts and enables nothing
   Phase phase_;
-  bool planned_ = false;
-  bool sent_of_plan_ = false;  ///< something of this plan was sent: it is carried to its end
+  StopAttempt stop_attempt_{};
+  /// The plan of the phase, as far as it is carried out.
+  struct {
+    bool made = false;
+    bool begun = false;  ///< something of it was sent: it is carried to its end
+    std::vector<Action> actions{};
+    std::size_t at = 0;
+    [[nodiscard]] bool at_end() const { return at >= actions.size(); }
+    [[nodiscard]] const Action& action() const { return actions[at]; }
+  } plan_;
+  Awaiting awaiting_{};
+  EffectWatch effect_{};
+  /// The writes of all phases.
+  struct {
+    std::uint32_t count = 0;
+    std::optional<Action> last{};
+    bool under_way = false;             ///< the last one is not answered yet
+    bool verifying = false;             ///< it was not acknowledged: its object is read back
+    std::uint64_t acknowledged_by = 0;  ///< exchange of the last one: samples asked for earlier are too old
+  } writes_;
+  /// The object of the mailbox.
+  struct {
+    bool done = false;
+    bool chain_open = false;
+  } object_;
   bool begun_ = false;
   bool acted_ = false;
-  bool handed_over_ = false;
-  bool stop_confirmed_ = false;
-  bool stop_withheld_ = false;      ///< not sent, as it could have enabled, or not seen to act
-  bool verifying_ = false;          ///< a write was not acknowledged: its object is read back
-  int attempts_ = 0;                ///< of a stop, beyond the first
+  bool moved_by_write_ = false;     ///< a set-point that moves by being written went to an enabled axis
+  bool preparation_sent_ = false;   ///< the preparation of the command was more than a judgement
   std::optional<int> mode_before_;  ///< in force before the first preparation
-  std::vector<Action> todo_;
-  std::size_t at_ = 0;
-  bool commanded_ = false;               ///< a set-point that moves by being written went to an enabled axis
-  std::uint64_t last_acknowledged_ = 0;  ///< exchange of the last write: samples asked for earlier are too old
-  std::uint32_t step_ = 0;               ///< writes sent so far
-  std::optional<Action> last_write_{};
-  bool write_under_way_ = false;   ///< not answered yet
-  bool preparation_sent_ = false;  ///< the preparation of the command was more than a judgement
-  Instant wait_until_ = kNever;    ///< of the wait under way; kNever: not begun
-  Instant stop_until_ = kNever;    ///< of the stop's waits together, however often it is repeated
-  Instant effect_until_ = kNever;  ///< and of those that the motor alone shows the end of
-  Instant repeat_at_ = kNever;     ///< of a stop: sent once more if it has not shown by then
-  EffectWatch effect_{};
-  std::uint64_t looked_at_ = 0;  ///< exchange of the sample that the wait under way has judged last
-  Instant look_after_ = kLongAgo;
-  Duration look_pause_{};
-  bool object_done_ = false;
-  bool chain_open_ = false;
 };
 
 }  // namespace axisgate::drive

@@ -24,7 +24,7 @@ bool is_not_there(std::uint32_t detail) {
 // --- Results -------------------------------------------------------------------------------------------------------
 
 void CommandSequence::on_result(const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
-  write_under_way_ = false;
+  writes_.under_way = false;
   if (finished()) return;
   if (result.code == Errc::link_lost) {
     fail(Errc::link_lost);
@@ -32,9 +32,9 @@ void CommandSequence::on_result(const bus::ExchangeResult& result, Instant sent_
     on_object(result);
   } else if (phase_ == Phase::settle || phase_ == Phase::settle_stop) {
     if (result.code == Errc::refused_by_drive) next_phase();  // what a drive never shows nothing can confirm
-  } else if (at_ < todo_.size()) {
-    const Action& action = todo_[at_];
-    if (action.kind == Action::Kind::write && !verifying_) {
+  } else if (!plan_.at_end()) {
+    const Action& action = plan_.action();
+    if (action.kind == Action::Kind::write && !writes_.verifying) {
       on_write(action, result, sent_at, trusted);
     } else {
       on_read(action.kind == Action::Kind::wait ? action.until.object : action.object, result);
@@ -51,18 +51,18 @@ bool CommandSequence::is_command_of_motion(ObjectId object) const {
 
 void CommandSequence::on_write(const Action& action, const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
   // Anything sampled from the next request on has seen this write, if it was one.
-  last_acknowledged_ = core_.store.exchange();
+  writes_.acknowledged_by = core_.store.exchange();
   switch (result.code) {
     case Errc::ok:
       // What a trigger object reads as proves nothing; whether the stop was seen, its wait tells.
       if (!trusted && core_.object(action.object).readable && !core_.object(action.object).trigger) {
         core_.store.invalidate(action.object);
-        verifying_ = true;
+        writes_.verifying = true;
         return;
       }
       core_.store.acknowledged(action.object, number_of(action), sent_at);
-      commanded_ =
-          commanded_ || (phase_ != Phase::stop && is_command_of_motion(action.object) && core_.facts().enabled());
+      moved_by_write_ =
+          moved_by_write_ || (phase_ != Phase::stop && is_command_of_motion(action.object) && core_.facts().enabled());
       if (by_mailbox_) core_.store.invalidate_all(action.object);
       pop();
       return;
@@ -82,32 +82,31 @@ void CommandSequence::on_write(const Action& action, const bus::ExchangeResult& 
 // that could enable a drive which has meanwhile restarted: that one is looked at first.
 void CommandSequence::on_lost_write(const Action& action) {
   const ObjectDef& object = core_.object(action.object);
-  const bool could_enable = action.object == core_.model.controlword &&
-                            request_of(static_cast<std::uint16_t>(number_of(action))) == Request402::enable_operation;
+  const bool could_enable = tells_enable(action);
   core_.store.invalidate(action.object);
   if (!could_enable && repeat_stop()) return;
   if (object.trigger || !object.readable || (phase_ == Phase::stop && !could_enable)) {
     fail(Errc::timed_out);
   } else {
-    verifying_ = true;
+    writes_.verifying = true;
   }
 }
 
 void CommandSequence::on_read(ObjectId object, const bus::ExchangeResult& result) {
-  const Action& action = todo_[at_];
+  const Action& action = plan_.action();
   if (result.code == Errc::refused_by_drive) {
     // What a drive never shows nothing can confirm.
     if (action.kind == Action::Kind::wait && (action.optional || action.effect != Effect::none)) {
       pop();
     } else {
-      fail(verifying_ ? Errc::timed_out : Errc::refused_by_drive, result.detail);
+      fail(writes_.verifying ? Errc::timed_out : Errc::refused_by_drive, result.detail);
     }
     return;
   }
   // A read that was not answered is asked again once the resynchronisation read is answered: it changes nothing. The
   // drive goes offline first.
   if (result.code != Errc::ok) return;
-  if (verifying_) {
+  if (writes_.verifying) {
     const ObjectDef& def = core_.object(object);
     if (core_.store[object].number == def.number(wire_bits(number_of(action), def.size))) {
       pop();
@@ -132,11 +131,11 @@ void CommandSequence::on_object(const bus::ExchangeResult& result) {
     fail(result.code, result.detail);
     return;
   }
-  chain_open_ = result.more;
-  if (chain_open_) return;
-  object_done_ = true;
+  object_.chain_open = result.more;
+  if (object_.chain_open) return;
+  object_.done = true;
   if (batch_.object->write) {
-    last_acknowledged_ = core_.store.exchange();
+    writes_.acknowledged_by = core_.store.exchange();
     core_.store.invalidate_all();
   } else if (result.bytes) {
     result_.object_bytes = result.bytes;
@@ -157,27 +156,27 @@ Outcome CommandSequence::outcome_if_late() const {
   if (!begun_) return {stop_ ? Errc::timed_out : Errc::never_started, 0};
   const bool asks_for_a_state = phase_ == Phase::stop || phase_ == Phase::mode || in_command();
   // That a look was lost since, and the drive is suspect, takes back no acknowledgement.
-  const bool acknowledged = !write_under_way_ && !verifying_;
-  return asks_for_a_state && acknowledged ? Outcome{Errc::not_reached, step_} : Outcome{Errc::timed_out, 0};
+  const bool acknowledged = !writes_.under_way && !writes_.verifying;
+  return asks_for_a_state && acknowledged ? Outcome{Errc::not_reached, writes_.count} : Outcome{Errc::timed_out, 0};
 }
 
 std::string CommandSequence::missed() const {
-  std::string out = step_ == 0 ? "nothing was sent" : fmt::format("step {}", step_);
+  std::string out = writes_.count == 0 ? "nothing was sent" : fmt::format("step {}", writes_.count);
   const auto hex = [&](ObjectId id, std::int64_t number) {
     const std::uint8_t size = core_.object(id).size;
     return fmt::format("0x{:0{}X}", wire_bits(number, size), 2 * size);
   };
-  if (last_write_)
-    out += fmt::format(" ({} = {})", core_.object(last_write_->object).name,
-                       hex(last_write_->object, last_write_->number));
-  if (at_ >= todo_.size() || todo_[at_].kind != Action::Kind::wait) return out + ": what follows was not sent in time";
-  if (todo_[at_].effect == Effect::homing) return out + ": awaited a motion or a change of its bits, read none";
-  if (todo_[at_].effect == Effect::halt) {
+  if (writes_.last)
+    out += fmt::format(" ({} = {})", core_.object(writes_.last->object).name,
+                       hex(writes_.last->object, writes_.last->number));
+  if (plan_.at_end() || plan_.action().kind != Action::Kind::wait) return out + ": what follows was not sent in time";
+  if (plan_.action().effect == Effect::homing) return out + ": awaited a motion or a change of its bits, read none";
+  if (plan_.action().effect == Effect::halt) {
     const auto speed = core_.value(Quantity::velocity_actual);
     return out + ": awaited that it slows down, read " +
            (speed ? fmt::format("velocity_actual {}", *speed) : std::string("nothing"));
   }
-  const Condition& until = todo_[at_].until;
+  const Condition& until = plan_.action().until;
   const bool negated = until.test == Condition::Test::not_equals || until.test == Condition::Test::not_in;
   out += ": awaited " + core_.object(until.object).name;
   if (until.mask != 0) out += fmt::format(" & {}", hex(until.object, until.mask));
@@ -186,16 +185,17 @@ std::string CommandSequence::missed() const {
   for (std::size_t i = 0; i < std::min(until.values.size(), kMostNamed); ++i)
     out += (i == 0 ? " " : " or ") + hex(until.object, until.values[i]);
   const ObjectState& state = core_.store[until.object];
-  return out + ", read " + (state.known ? hex(until.object, state.number) : std::string("nothing"));
+  const bool since = state.known && state.exchange > writes_.acknowledged_by;
+  return out + ", read " + (since ? hex(until.object, state.number) : std::string("nothing since"));
 }
 
 // A start waits for its drive no longer, and the drive must not come back to it; nor may a mode that comes late make
 // the motor follow what it did not follow before.
 Command CommandSequence::withdrawn_by() const {
-  if (stop_ || step_ == 0) return Command::none;
+  if (stop_ || writes_.count == 0) return Command::none;
   const bool enabled = core_.facts().enabled();
   if (batch_.command == Command::enable || (asks_to_enable(batch_) && !enabled)) return Command::disable;
-  const bool starts = batch_.command >= Command::move_absolute && batch_.command <= Command::set_position;
+  const bool starts = needs_ready(batch_.command);
   const bool follows = batch_.mode && enabled;
   return starts || follows ? Command::halt : Command::none;
 }
@@ -220,13 +220,13 @@ bool CommandSequence::overtaken_by_stop(Mark mark) const {
   }
 }
 
-void CommandSequence::reach(const Action& action, Instant now) {
+void CommandSequence::reach(const Action& action) {
   if (overtaken_by_stop(action.mark)) return;
   Motion& motion = core_.motion;
   const auto start = [&](MotionKind kind) {
     // A set-point that changes what runs is no new motion.
     const bool goes_on = batch_.command == Command::none && !batch_.controlword;
-    motion.start(kind, goes_on ? motion.id() : batch_.command_id, now, core_.store.exchange());
+    motion.start(kind, goes_on ? motion.id() : batch_.command_id, core_.turn.now, core_.store.exchange());
     core_.started(kind, action.number != 0);
   };
   switch (action.mark) {
@@ -252,12 +252,12 @@ void CommandSequence::reach(const Action& action, Instant now) {
       motion.passed(request_of(*batch_.controlword));
       break;
     case Mark::quick_stopped:
-      if (!motion.latched()) motion.stop(true, now);
+      if (!motion.latched()) motion.stop(true, core_.turn.now);
       motion.disarm();
       stops_before_ = motion.stops();
       break;
     case Mark::halted:
-      motion.stop(false, now);
+      motion.stop(false, core_.turn.now);
       stops_before_ = motion.stops();
       break;
     case Mark::run_raw:
@@ -281,7 +281,7 @@ void CommandSequence::reach(const Action& action, Instant now) {
       core_.offset_owed.reset();
       break;
     case Mark::look_again:
-      planned_ = false;
+      plan_.made = false;
       break;
   }
 }

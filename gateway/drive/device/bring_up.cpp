@@ -7,7 +7,8 @@
 
 namespace axisgate::drive {
 
-BringUp::BringUp(const DriveModel& model) : model_(model), identity_(model), node_(model) {
+BringUp::BringUp(const DriveModel& model, Duration timeout)
+    : model_(model), identity_(model), node_(model), start_(timeout) {
   const auto add = [&](ObjectId id) {
     if (id != kNoObject && std::find(reads_.begin(), reads_.end(), id) == reads_.end()) reads_.push_back(id);
   };
@@ -34,6 +35,7 @@ void BringUp::begin() {
   setup_.reset();
   identity_.begin();
   node_.begin();
+  start_.begin();
 }
 
 bool BringUp::any_enabled(const ObjectStore& store) const {

@@ -7,9 +7,11 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gateway/drive/device/node_setup.hpp"
+#include "gateway/drive/device/node_start.hpp"
 #include "gateway/drive/device/poll_plan.hpp"
 #include "gateway/drive/state/object_store.hpp"
 
@@ -17,7 +19,8 @@ namespace axisgate::drive {
 
 class BringUp {
  public:
-  explicit BringUp(const DriveModel& model);
+  /// `timeout`: of its bus.
+  BringUp(const DriveModel& model, Duration timeout);
 
   void begin();
   struct Next {
@@ -36,13 +39,24 @@ class BringUp {
   void read_back_answered() { read_back_ = false; }
   /// A Next::exchange was answered or refused.
   void answered(const bus::ExchangeResult& result);
-  /// Some axis was found enabled.
+  /// Some axis was found enabled: of its setup nothing is written until leave().
   [[nodiscard]] bool adopted() const { return adopted_; }
+  void leave() { adopted_ = false; }
   /// Setup values that the drive does not hold although they were written: they are named in an event.
   [[nodiscard]] const std::vector<ObjectId>& unheld() const { return unheld_; }
   [[nodiscard]] bool has_setup() const { return !model_.setup.empty() || !model_.factory_writes.empty() || is_node(); }
   /// How the drive differs from the configured one; empty: it does not.
   [[nodiscard]] const std::string& mismatch() const { return identity_.mismatch(); }
+  /// It refuses what its profile needs; empty: it has it all. True: that is news, to be told.
+  bool found_lacking(const std::string& what) {
+    const std::string before = std::exchange(lacks_, what);
+    return before != what && !what.empty();
+  }
+  /// It is what the configuration and its profile say.
+  [[nodiscard]] bool is_configured() const { return mismatch().empty() && lacks_.empty(); }
+  /// Whether a CANopen node stays started.
+  [[nodiscard]] NodeStart& start() { return start_; }
+  [[nodiscard]] const NodeStart& start() const { return start_; }
   /// What a CANopen node sends by itself now, and what it would not.
   [[nodiscard]] const NodeSetup& node() const { return node_; }
 
@@ -54,6 +68,7 @@ class BringUp {
   const DriveModel& model_;
   IdentityCheck identity_;
   NodeSetup node_;
+  NodeStart start_;
   std::vector<ObjectId> reads_;
   std::vector<ObjectId> confirmed_;  ///< class fast, the statuswords among them: read once more at the end
   std::size_t read_at_ = 0;
@@ -63,6 +78,7 @@ class BringUp {
   bool setup_written_ = false;
   bool read_back_ = false;
   bool adopted_ = false;
+  std::string lacks_;
   std::vector<ObjectId> unheld_;
 };
 

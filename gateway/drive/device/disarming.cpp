@@ -2,7 +2,6 @@
 #include "gateway/drive/device/disarming.hpp"
 
 #include <algorithm>
-#include <ranges>
 
 #include "gateway/model/cia402.hpp"
 
@@ -12,7 +11,8 @@ void Disarming::begin(const ObjectStore& store) {
   entries_.clear();
   cleared_ = 0;
   tries_ = 0;
-  for (const ObjectWrite& setup : std::views::reverse(model_.setup)) {
+  for (auto last = model_.setup.rbegin(); last != model_.setup.rend(); ++last) {
+    const ObjectWrite& setup = *last;
     const bool watches = std::ranges::find(model_.loss_objects, setup.object) != model_.loss_objects.end();
     const ObjectState& now = store[setup.object];
     if (watches && now.known && !now.refused && now.number == setup.raw && setup.raw != 0) entries_.push_back(setup);

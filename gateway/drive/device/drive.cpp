@@ -14,31 +14,25 @@ Drive::Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> imag
     : model_(std::move(model)),
       slot_(slot),
       bus_(bus),
-      runtime_(runtime),
       events_(events),
       store_(model_.objects),
-      plan_(model_),
-      resync_(model_.resync, model_.objects),
-      blocks_(model_),
-      constants_(model_.constants.size()),
-      bring_up_(model_),
+      reads_(model_, store_),
+      bring_up_(model_, bus.settings().timeout),
       control_(model_, store_),
+      end_(model_),
       presence_(is_canopen(model_), bus.settings().timeout),
-      node_start_(bus.settings().timeout),
-      timer_(runtime.make_timer([this] { on_time(); })),
-      mapped_(model_.objects.size(), false),
-      end_(model_) {
+      timer_(runtime.make_timer([this] { on_time(); })) {
   assert(images.size() == model_.axes.size());
-  for (const ObjectDef& object : model_.objects) width_.push_back(object.size);
   AxisHost& host = *this;
   for (std::size_t i = 0; i < images.size(); ++i)
-    axes_.push_back(std::make_unique<Axis>(model_, static_cast<bus::AxisSlot>(i), store_, *images[i], host));
-  map_unasked();
+    axes_.push_back(std::make_unique<Axis>(model_, static_cast<bus::AxisSlot>(i), store_, turn_, *images[i], host));
+  begin_turn();
   bus_.attach(slot_, *this);
   after_event();
 }
 
 std::optional<BatchResult> Drive::submit(bus::AxisSlot axis, const WriteBatch& batch, BatchCallback on_result) {
+  begin_turn();
   auto result = axes_[axis]->submit(batch, std::move(on_result));
   // Callbacks of others wait for the next turn of the loop: nobody is called from inside submit().
   bring_up_to_date();
@@ -46,6 +40,7 @@ std::optional<BatchResult> Drive::submit(bus::AxisSlot axis, const WriteBatch& b
 }
 
 void Drive::client_gone(ClientId client) {
+  begin_turn();
   for (auto& axis : axes_) axis->on_client_gone(client);
   bring_up_to_date();
 }
@@ -57,17 +52,18 @@ AxisHost::Queued Drive::queue(bus::BusJob job) {
 }
 
 void Drive::event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) {
-  events_.add(now(), axis, kind, code, std::move(text));
+  events_.add(turn_.now, axis, kind, code, std::move(text));
 }
 
 // --- What goes on the wire -----------------------------------------------------------------------------------------
 
-std::optional<bus::Exchange> Drive::on_grant(bus::JobId id, bus::Priority priority) {
-  on_wire_ = {.job = id, .sent_at = now()};
-  if (waits_for_chain(id, priority)) return std::nullopt;
-  auto exchange = keep_alive_turn(priority);
-  if (!exchange) exchange = id == 0 ? own_exchange() : exchange_of(id, priority);
-  if (exchange) exchange = whole_frame(*exchange, id, priority);
+std::optional<bus::Exchange> Drive::on_grant(const bus::Arbiter::Grant& grant) {
+  begin_turn();
+  on_wire_ = {.job = grant.id, .axis = axis_of(grant.axis), .read = {.sent_at = turn_.now}};
+  if (waits_for_chain(grant)) return std::nullopt;
+  auto exchange = keep_alive_turn(grant.priority);
+  if (!exchange) exchange = grant.id == 0 ? own_exchange() : exchange_of(grant);
+  if (exchange) exchange = whole_frame(*exchange, grant);
   if (exchange) {
     if (exchange->part != bus::Part::next) break_chain();
     widen(*exchange);
@@ -79,23 +75,23 @@ std::optional<bus::Exchange> Drive::on_grant(bus::JobId id, bus::Priority priori
 }
 
 std::optional<bus::Exchange> Drive::own_exchange() {
-  if (state_ == LinkState::unknown || state_ == LinkState::offline) return probe();
-  return resync_.suspect() ? resync(0) : poll();
+  if (turn_.link == LinkState::unknown || turn_.link == LinkState::offline) return probe();
+  if (reads_.suspect()) return resync(0);
+  return brought_up() ? reads_.poll(turn_.now) : std::nullopt;
 }
 
-std::optional<bus::Exchange> Drive::exchange_of(bus::JobId id, bus::Priority priority) {
-  Axis* owner = nullptr;
-  for (auto& axis : axes_)
-    if (axis->has(id)) owner = axis.get();
-  if (resync_.suspect() && !(owner != nullptr && owner->passes_resync(id))) {
-    on_wire_.job = 0;  // the bus job keeps its turn; this exchange is the drive's own
+std::optional<bus::Exchange> Drive::exchange_of(const bus::Arbiter::Grant& grant) {
+  const bus::JobId id = grant.id;
+  Axis* const owner = on_wire_.axis;
+  if (reads_.suspect() && !(owner != nullptr && owner->passes_resync(id))) {
+    on_wire_.becomes_own();
     return resync(id);
   }
   if (owner != nullptr) {
-    const auto look = control_.concerned() ? control_.look_before(control_turn(), priority == bus::Priority::stop)
+    const auto look = control_.concerned() ? control_.look_before(control_turn(), grant.priority == bus::Priority::stop)
                                            : std::optional<ObjectId>();
     if (look) {
-      on_wire_.job = 0;
+      on_wire_.becomes_own();
       return read_of(model_, *look);
     }
     return owner->on_grant(id);
@@ -109,11 +105,11 @@ bool Drive::chain_open() const {
   return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->chain_job() != 0; });
 }
 
-bool Drive::waits_for_chain(bus::JobId id, bus::Priority priority) {
-  if (!chain_open() || priority < bus::Priority::interactive) return false;
-  if (std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->chain_job() == id; })) return false;
+bool Drive::waits_for_chain(const bus::Arbiter::Grant& grant) {
+  if (!chain_open() || grant.priority < bus::Priority::interactive) return false;
+  if (on_wire_.axis != nullptr && on_wire_.axis->chain_job() == grant.id) return false;
   constexpr Duration kChainPause = std::chrono::milliseconds(1);
-  if (id != 0) bus_.wait(id, now() + kChainPause);
+  if (grant.id != 0) bus_.wait(grant.id, turn_.now + kChainPause);
   return true;
 }
 
@@ -125,18 +121,15 @@ void Drive::break_chain() {
 
 // A probe of a drive that is not there: its reply must not be one to something lost long ago.
 std::optional<bus::Exchange> Drive::probe() {
-  if (now() < presence_.look_due()) return std::nullopt;
-  if (resync_.suspect()) {
-    if (now() < resync_.silent_until()) {
-      presence_.look_at(resync_.silent_until());
-      return std::nullopt;
-    }
-    resync_.waited_out();
+  if (turn_.now < presence_.look_due()) return std::nullopt;
+  if (!reads_.may_probe(turn_.now)) {
+    presence_.look_at(reads_.silent_until());
+    return std::nullopt;
   }
   using Look = NodePresence::Look;
-  const Look look = presence_.look(state_ == LinkState::unknown);
+  const Look look = presence_.look(turn_.link == LinkState::unknown);
   if (look == Look::wake) {
-    presence_.look_later(now());
+    presence_.look_later(turn_.now);
     return nmt(model_.node, NmtCommand::enter_pre_operational);
   }
   if (look == Look::give_up) {
@@ -144,58 +137,56 @@ std::optional<bus::Exchange> Drive::probe() {
     return std::nullopt;
   }
   if (look == Look::call && bus_.call(model_.node)) {
-    presence_.called(now());
+    presence_.called(turn_.now);
     return std::nullopt;
   }
   presence_.asked();
-  on_wire_.probe = true;
-  return probe_read(model_);
+  return reads_.probe(on_wire_.read);
 }
 
 std::optional<bus::Exchange> Drive::resync(bus::JobId job) {
-  const auto candidate = resync_.candidate();
-  if (candidate && !resync_.exhausted()) {
-    resync_.resync_sent();
-    on_wire_.resync = true;
-    return read_of(model_, *candidate);
-  }
-  if (now() < resync_.silent_until()) {
-    if (job != 0) bus_.wait(job, resync_.silent_until());
-    return std::nullopt;
-  }
-  resync_.waited_out();
-  on_wire_.resync = true;
-  return probe_read(model_);
+  auto exchange = reads_.resync(on_wire_.read, turn_.now);
+  if (!exchange && job != 0) bus_.wait(job, reads_.silent_until());
+  return exchange;
 }
 
-std::optional<bus::Exchange> Drive::poll() {
-  if (!brought_up()) return std::nullopt;
-  const auto object = plan_.next(now());
-  if (!object) return std::nullopt;
-  return read_of(model_, *object);
+void Drive::widen(bus::Exchange& exchange) {
+  using For = DriveReads::For;
+  const bool of_bring_up = on_wire_.job == jobs_.setup && jobs_.setup != 0;
+  const For whom = of_bring_up ? For::bring_up : on_wire_.job == 0 ? For::poll : For::other;
+  reads_.widen(exchange, on_wire_.read, whom, turn_.now);
+}
+
+bus::Exchange Drive::write(ObjectId object, std::int64_t number) const {
+  bus::Exchange exchange = read_of(model_, object);
+  exchange.access = bus::Access::write;
+  exchange.size = reads_.width(object);
+  exchange.raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(number));
+  return exchange;
 }
 
 // --- What comes back -----------------------------------------------------------------------------------------------
 
 void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
+  begin_turn();
   const OnWire asked = on_wire_;
-  const bool trusted = !resync_.suspect() || asked.resync;
+  const bool trusted = !reads_.suspect() || asked.read.resync;
   if (result.code == Errc::timed_out || result.code == Errc::bad_reply) {
     const bool stop_insists =
         std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->insists(asked.job); });
     on_timeout(exchange, stop_insists);
   } else if (result.code == Errc::link_lost) {
-    resync_.lost(exchange, now());                       // its reply may still come, after the line's return
+    reads_.lost(exchange, turn_.now);                    // its reply may still come, after the line's return
   } else if (exchange.access != bus::Access::command) {  // which nobody answers
     on_answer(exchange, result);
     // Nobody asked for the neighbours: whoever asked for the one asks again, in smaller company.
-    if (split(exchange, result)) {
+    if (reads_.split(exchange, result, asked.read)) {
       after_event();
       return;
     }
   }
   const ObjectId written = exchange.access == bus::Access::write ? model_.find(exchange.object) : kNoObject;
-  control_.on_result(exchange, result, asked.keeps_alive, asked.sent_at, trusted, now());
+  control_.on_result(exchange, result, asked.keeps_alive, asked.read.sent_at, trusted, turn_.now);
   if (asked.job != 0) {
     bool owned = asked.job == jobs_.setup;
     if (owned) carry_on_bring_up(exchange, result);
@@ -204,14 +195,13 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
       end_.on_result(result, trusted, store_);
       if (!end_.next()) finish_end();
     }
-    for (auto& axis : axes_) {
-      if (!axis->has(asked.job)) continue;
+    if (asked.axis != nullptr && asked.axis->has(asked.job)) {
       owned = true;
-      axis->on_result(asked.job, result, asked.sent_at, trusted);
+      asked.axis->on_result(asked.job, result, asked.read.sent_at, trusted);
     }
     if (!owned && written != kNoObject) on_write_without_owner(exchange, result, trusted);
   }
-  if (written != kNoObject && result.code == Errc::ok) plan_.written(written, now());
+  if (written != kNoObject && result.code == Errc::ok) reads_.written(written, turn_.now);
   after_event();
 }
 
@@ -219,24 +209,22 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
 void Drive::on_write_without_owner(const bus::Exchange& exchange, const bus::ExchangeResult& result, bool trusted) {
   const ObjectId id = model_.find(exchange.object);
   if (result.code == Errc::ok && trusted)
-    store_.acknowledged(id, model_.object(id).number(exchange.raw), on_wire_.sent_at);
+    store_.acknowledged(id, model_.object(id).number(exchange.raw), on_wire_.read.sent_at);
   else if (result.code != Errc::refused_by_drive)
     store_.invalidate(id);
 }
 
 void Drive::on_timeout(const bus::Exchange& exchange, bool stop_insists) {
-  resync_.lost(exchange, now());
-  if (on_wire_.widened) silent_read_ = exchange;
-  store_.invalidate_all();
+  reads_.timed_out(exchange, on_wire_.read, turn_.now);
   const bool gone = presence_.timed_out();
-  if (state_ == LinkState::offline) {
-    presence_.look_later(now());
+  if (turn_.link == LinkState::offline) {
+    presence_.look_later(turn_.now);
     return;
   }
   // A stop has its three tries, also at a drive that was silent before it came.
   if (gone && !stop_insists) {
     go_offline();
-  } else if (state_ == LinkState::online) {
+  } else if (turn_.link == LinkState::online) {
     set_state(LinkState::suspect);
   }
 }
@@ -246,52 +234,57 @@ void Drive::go_offline() {
   jobs_.setup = 0;
   unmap_values();
   bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
-  presence_.look_later(now());
+  presence_.look_later(turn_.now);
 }
 
 void Drive::on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
   presence_.answered();
-  const bool counts = !resync_.suspect() || on_wire_.resync || on_wire_.probe;
-  // An error answer is no answered resynchronisation read; the next candidate is tried.
-  if (result.code == Errc::ok && (on_wire_.resync || on_wire_.probe)) {
-    resync_.answered();
-    // It lives, and did not answer a longer read: after the second time that counts as a refusal.
-    if (silent_read_ && on_wire_.resync) static_cast<void>(blocks_.silent(*silent_read_));
-    silent_read_.reset();
-    if (state_ == LinkState::suspect) {
-      set_state(LinkState::online);
-      for (auto& axis : axes_) axis->on_invalidated();
-    }
+  const bool counts = reads_.counts(on_wire_.read);
+  if (reads_.answered(exchange, result, on_wire_.read, turn_.now) && turn_.link == LinkState::suspect) {
+    set_state(LinkState::online);
+    for (auto& axis : axes_) axis->on_invalidated();
   }
-  if (result.code == Errc::refused_by_drive && on_wire_.resync) resync_.lost(exchange, now());
   if (counts) store_fields(exchange, result);
   // The answer to a stop may be a late one: only what cannot be begins a bring-up.
-  const bool not_there = state_ == LinkState::unknown || state_ == LinkState::offline;
-  if (not_there && !resync_.suspect()) begin_bring_up(true);
+  const bool not_there = turn_.link == LinkState::unknown || turn_.link == LinkState::offline;
+  if (not_there && !reads_.suspect()) begin_bring_up(true);
+}
+
+void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
+  const DriveReads::Taken taken = reads_.take(exchange, result, on_wire_.read, turn_.now);
+  for (const std::string& object : taken.unlike)
+    event(axes_.front()->core().model.number, EventKind::warning, 0, object);
+  if (taken.scales)
+    for (auto& axis : axes_) axis->on_scale();
+  if (taken.samples)
+    for (auto& axis : axes_) axis->on_samples();
 }
 
 // --- Link and time -------------------------------------------------------------------------------------------------
 
 void Drive::on_link(bool up) {
-  presence_.on_link(up, now());
+  begin_turn();
+  presence_.on_link(up, turn_.now);
   jobs_.setup = 0;
   unmap_values();
   set_state(up ? LinkState::unknown : LinkState::link_down);
   after_event();
 }
 
-void Drive::on_job_ended(bus::JobId id, Errc code) {
-  for (auto& axis : axes_) axis->on_job_ended(id, code);
-  if (id == jobs_.end) finish_end();
+void Drive::on_job_ended(const bus::Arbiter::Ending& ending) {
+  begin_turn();
+  if (Axis* owner = axis_of(ending.axis)) owner->on_job_ended(ending.id, ending.code);
+  if (ending.id == jobs_.end) finish_end();
   for (bus::JobId* job : {&jobs_.setup, &jobs_.cause, &jobs_.keep_alive})
-    if (id == *job) *job = 0;
+    if (ending.id == *job) *job = 0;
   after_event();
 }
 
-void Drive::set_state(LinkState state) { state_ = state; }
+void Drive::set_state(LinkState state) { turn_.link = state; }
 
 void Drive::on_time() {
-  for (auto& axis : axes_) axis->on_time(now());
+  begin_turn();
+  for (auto& axis : axes_) axis->on_time();
   after_event();
 }
 
@@ -302,37 +295,39 @@ void Drive::after_event() {
 }
 
 void Drive::bring_up_to_date() {
-  for (auto& axis : axes_) axis->observe(now());
-  if (invalidations_seen_ != store_.invalidations()) {
-    invalidations_seen_ = store_.invalidations();
-    plan_.refresh(now());
+  for (auto& axis : axes_) {
+    axis->observe();
+    const AxisCore& core = axis->core();
+    if (core.motion.end_wants_position()) reads_.first(core.object_of(Quantity::position_actual));
+    if (core.motion.rest_wants_sample(core.facts())) reads_.hurry(core.motion_object(), turn_.now);
   }
+  reads_.refresh(turn_.now);
   if (brought_up()) {
     for (auto& axis : axes_)
       for (const Check& check : model_.checks) axis->set_alarm(check.alarm, false);
     judge_checks();
     leave_adoption();
   }
-  const bool duplicated = presence_.duplicated(now());
+  const bool duplicated = presence_.duplicated(turn_.now);
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::duplicate_node, duplicated);
-  Instant next = std::min(duplicated ? presence_.duplicate_until() : kNever, node_start_.deadline(now()));
+  Instant next = std::min(duplicated ? presence_.duplicate_until() : kNever, bring_up_.start().deadline(turn_.now));
   for (auto& axis : axes_) {
-    axis->publish(now());
-    next = std::min({next, axis->next_deadline(), stale_deadline(axis->core(), now())});
-    if (axis->has_due()) next = now();
+    axis->publish();
+    next = std::min({next, axis->next_deadline(), stale_deadline(axis->core())});
+    if (axis->has_due()) next = turn_.now;
   }
   schedule_causes();
   watch_positions();
   next = std::min(next, schedule_keep_alive());
   timer_->expires_at(next);
-  if (state_ == LinkState::link_down) {
+  if (turn_.link == LinkState::link_down) {
     bus_.set_poll_due(slot_, kNever);
-  } else if (state_ == LinkState::unknown || state_ == LinkState::offline) {
+  } else if (turn_.link == LinkState::unknown || turn_.link == LinkState::offline) {
     bus_.set_poll_due(slot_, presence_.look_due());
-  } else if (resync_.suspect()) {
-    bus_.set_poll_due(slot_, resync_.exhausted() ? resync_.silent_until() : now());
+  } else if (reads_.suspect()) {
+    bus_.set_poll_due(slot_, reads_.resync_due(turn_.now));
   } else {
-    bus_.set_poll_due(slot_, brought_up() && !chain_open() ? plan_.next_due() : kNever);
+    bus_.set_poll_due(slot_, brought_up() && !chain_open() ? reads_.poll_due() : kNever);
   }
 }
 

@@ -15,18 +15,13 @@
 #include "gateway/drive/device/bring_up.hpp"
 #include "gateway/drive/device/drive_control.hpp"
 #include "gateway/drive/device/drive_end.hpp"
+#include "gateway/drive/device/drive_reads.hpp"
 #include "gateway/drive/device/node_presence.hpp"
-#include "gateway/drive/device/node_start.hpp"
-#include "gateway/drive/device/read_blocks.hpp"
-#include "gateway/drive/device/resync.hpp"
 
 namespace axisgate::drive {
 
 class Drive final : public bus::BusDrive, private AxisHost {
  public:
-  /// A position that comes by TPDO is read after so long without one while its axis moves.
-  static constexpr Duration kMovingConfirm = std::chrono::milliseconds(250);
-
   /// `images`: one per axis of the model, in its order. Everything referred to outlives the drive.
   Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
         EventRing& events);
@@ -35,7 +30,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   [[nodiscard]] const Axis& axis(bus::AxisSlot slot) const { return *axes_[slot]; }
   [[nodiscard]] std::size_t axis_count() const { return axes_.size(); }
   [[nodiscard]] const DriveModel& model() const { return model_; }
-  [[nodiscard]] LinkState link_state() const override { return state_; }
+  [[nodiscard]] LinkState link_state() const { return turn_.link; }
   [[nodiscard]] const ObjectStore& store() const { return store_; }
   void client_gone(ClientId client);
   using Closing = drive::Closing;
@@ -48,9 +43,9 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void reopen();
 
   // BusDrive
-  [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::JobId id, bus::Priority priority) override;
+  [[nodiscard]] std::optional<bus::Exchange> on_grant(const bus::Arbiter::Grant& grant) override;
   void on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result) override;
-  void on_job_ended(bus::JobId id, Errc code) override;
+  void on_job_ended(const bus::Arbiter::Ending& ending) override;
   void on_link(bool up) override;
   [[nodiscard]] std::uint8_t node() const override { return model_.node; }
   void on_unsolicited(const bus::UnsolicitedEvent& unsolicited) override;
@@ -58,15 +53,18 @@ class Drive final : public bus::BusDrive, private AxisHost {
  private:
   /// Who asked for the exchange on the wire.
   struct OnWire {
-    bus::JobId job = 0;  ///< 0: a poll or probe
-    bool resync = false;
-    bool probe = false;
-    bool widened = false;  ///< it reads neighbours that nobody asked for
-    Instant sent_at = kLongAgo;
+    bus::JobId job = 0;    ///< 0: a poll or probe
+    Axis* axis = nullptr;  ///< whose bus job it is; null: the drive's own
+    DriveReads::Asked read{};
     std::optional<bus::AxisSlot> keeps_alive{};  ///< a repetition for this axis, or the look before it
+    /// The bus job keeps its turn; this exchange is the drive's own.
+    void becomes_own() {
+      job = 0;
+      axis = nullptr;
+    }
   };
 
-  /// Orders of the drive's own; 0: there is none.
+  /// Bus jobs of the drive's own; 0: there is none.
   struct OwnJobs {
     bus::JobId setup = 0;
     bus::JobId cause = 0;
@@ -74,8 +72,12 @@ class Drive final : public bus::BusDrive, private AxisHost {
     bus::JobId end = 0;
   };
 
+  /// Each call from outside is a turn of its own: what happens in it happens at one instant.
+  void begin_turn() { turn_.now = bus_.now(); }
+  /// Null: a bus job of the drive's own, or a poll.
+  [[nodiscard]] Axis* axis_of(bus::AxisSlot slot) { return slot == bus::kNoAxis ? nullptr : axes_[slot].get(); }
+
   // AxisHost
-  [[nodiscard]] Instant now() const override { return runtime_.now(); }
   [[nodiscard]] Queued queue(bus::BusJob job) override;
   void job_waits(bus::JobId id, Instant until) override { bus_.wait(id, until); }
   void job_done(bus::JobId id) override { bus_.finish(id); }
@@ -87,34 +89,28 @@ class Drive final : public bus::BusDrive, private AxisHost {
   /// In the width that the drive answered with last.
   [[nodiscard]] bus::Exchange write(ObjectId object, std::int64_t number) const;
   void widen(bus::Exchange& exchange);
-  /// A read of several objects that was refused: true where it is tried again in smaller parts.
-  [[nodiscard]] bool split(const bus::Exchange& exchange, const bus::ExchangeResult& result);
-  void store_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result);
-  void read_constants();
-  [[nodiscard]] bool tells_state(ObjectId object) const;
   [[nodiscard]] std::optional<bus::Exchange> probe();
   /// `job`: whose turn it takes; it waits where silence must be kept instead.
   [[nodiscard]] std::optional<bus::Exchange> resync(bus::JobId job);
-  [[nodiscard]] std::optional<bus::Exchange> poll();
   [[nodiscard]] std::optional<bus::Exchange> own_exchange();
-  [[nodiscard]] std::optional<bus::Exchange> exchange_of(bus::JobId id, bus::Priority priority);
+  [[nodiscard]] std::optional<bus::Exchange> exchange_of(const bus::Arbiter::Grant& grant);
   // What it asks for itself (drive_jobs.cpp).
   [[nodiscard]] DriveControl::Turn control_turn() const;
   [[nodiscard]] std::optional<bus::Exchange> keep_alive_turn(bus::Priority priority);
-  [[nodiscard]] std::optional<bus::Exchange> whole_frame(const bus::Exchange& exchange, bus::JobId id,
-                                                         bus::Priority priority);
+  [[nodiscard]] std::optional<bus::Exchange> whole_frame(const bus::Exchange& exchange,
+                                                         const bus::Arbiter::Grant& grant);
   [[nodiscard]] Instant schedule_keep_alive();
-  [[nodiscard]] std::optional<ObjectId> cause_to_read();
+  [[nodiscard]] bool has_cause_to_read() const;
+  [[nodiscard]] std::optional<bus::Exchange> next_cause();
   [[nodiscard]] std::optional<bus::Exchange> next_of_causes();
   [[nodiscard]] bool causes_are_open() const;
   void schedule_causes();
   [[nodiscard]] std::optional<bus::Exchange> next_of_end();
   void finish_end();
   void tell_closed();
-  void map_unasked();
   [[nodiscard]] std::optional<bus::Exchange> next_of_bring_up();
   /// A long object is under way in another bus job: a bus job that can wait does, any other ends it.
-  [[nodiscard]] bool waits_for_chain(bus::JobId id, bus::Priority priority);
+  [[nodiscard]] bool waits_for_chain(const bus::Arbiter::Grant& grant);
   [[nodiscard]] bool chain_open() const;
   void break_chain();
   void store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result);
@@ -148,34 +144,23 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void after_event();
   void bring_up_to_date();
   void on_time();
-  [[nodiscard]] bool brought_up() const { return state_ == LinkState::online || state_ == LinkState::suspect; }
+  [[nodiscard]] bool brought_up() const { return turn_.link == LinkState::online || turn_.link == LinkState::suspect; }
 
   DriveModel model_;  ///< its own: constants that are read from the drive change scales and limits
   bus::DriveSlot slot_;
   bus::Bus& bus_;
-  Runtime& runtime_;
   EventRing& events_;
+  Turn turn_{.now = kLongAgo, .link = LinkState::link_down};
   ObjectStore store_;
-  PollPlan plan_;
-  Resync resync_;
-  ReadBlocks blocks_;
-  std::optional<bus::Exchange> silent_read_{};  ///< of a block, given up; whether the drive lives is not known yet
-  std::vector<std::optional<Rational>> constants_;
+  DriveReads reads_;
   BringUp bring_up_;
   DriveControl control_;
-  OwnJobs jobs_;
+  DriveEnd end_;
   NodePresence presence_;
-  NodeStart node_start_;
+  OwnJobs jobs_;
+  OnWire on_wire_;
   std::vector<std::unique_ptr<Axis>> axes_;
   std::unique_ptr<Timer> timer_;
-  LinkState state_ = LinkState::link_down;
-  OnWire on_wire_;
-  std::string lacks_;  ///< what its profile needs and it refuses
-  std::uint64_t invalidations_seen_ = 0;
-  bool adopted_ = false;
-  std::vector<std::uint8_t> width_;  ///< bytes of each object, as the drive answered last
-  std::vector<bool> mapped_;         ///< objects that come by TPDO
-  DriveEnd end_;
 };
 
 }  // namespace axisgate::drive

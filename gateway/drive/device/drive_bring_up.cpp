@@ -15,15 +15,15 @@ std::optional<bus::Exchange> Drive::next_of_bring_up() {
   if (!next) {
     // A drive that was found faulted comes online with the cause of it.
     if (causes_are_open()) {
-      if (const auto object = cause_to_read()) return next_of_causes();
-      bus_.wait(jobs_.setup, now() + kCausePause);
+      if (auto cause = next_cause()) return cause;
+      bus_.wait(jobs_.setup, turn_.now + kCausePause);
       return std::nullopt;
     }
     end_bring_up();
     return std::nullopt;
   }
   if (next->exchange) {
-    if (next->exchange->access == bus::Access::command) node_start_.told(now());
+    if (next->exchange->access == bus::Access::command) bring_up_.start().told(turn_.now);
     return next->exchange;
   }
   return next->write ? write(next->object, next->number) : read_of(model_, next->object);
@@ -36,26 +36,23 @@ void Drive::begin_bring_up(bool restarted) {
     return;
   }
   set_state(LinkState::setup);
-  store_.forget_all();
-  resync_.answered();
   presence_.found();
   unmap_values();
-  node_start_.begin();
+  reads_.restart(turn_.now);
   control_.reset();
   bring_up_.begin();
-  plan_.restart(now());
   if (restarted)
     for (auto& axis : axes_) axis->on_bring_up();
   jobs_.setup = queue_own(bus::Priority::setup);
   // A full queue empties by its deadlines: try again after a probe's pause.
   if (jobs_.setup == 0) {
     set_state(LinkState::unknown);
-    presence_.look_at(now() + bus::Backoff::kFirst);
+    presence_.look_at(turn_.now + bus::Backoff::kFirst);
   }
 }
 
 void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
-  if (state_ != LinkState::setup) return;
+  if (turn_.link != LinkState::setup) return;
   const auto next = bring_up_.next(store_);
   if (next && next->exchange) {
     // Lost: asked once more, when the resynchronisation read is answered.
@@ -79,7 +76,7 @@ void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::Exchange
   if (state_refused && !result.for_now) tell_mismatch(lacking(asked));
   // A drive that refuses its statusword is none we can speak for: it stays in setup and is asked again, slowly; and so
   // is one that is busy.
-  if (state_refused || (!was_write && result.for_now)) bus_.wait(jobs_.setup, now() + std::chrono::seconds(1));
+  if (state_refused || (!was_write && result.for_now)) bus_.wait(jobs_.setup, turn_.now + std::chrono::seconds(1));
 }
 
 std::string Drive::lacking(ObjectId object) const {
@@ -88,7 +85,7 @@ std::string Drive::lacking(ObjectId object) const {
 
 // What its profile needs and it does not have, told once; empty: it has it all.
 void Drive::tell_mismatch(const std::string& lacks) {
-  const bool news = lacks != std::exchange(lacks_, lacks) && !lacks.empty();
+  const bool news = bring_up_.found_lacking(lacks);
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::profile_mismatch, !lacks.empty());
   if (!news) return;
   tell_all(
@@ -110,23 +107,23 @@ void Drive::judge_profile() {
 
 void Drive::end_bring_up() {
   bus_.finish(std::exchange(jobs_.setup, 0));
-  adopted_ = bring_up_.adopted();
   const std::string& mismatch = bring_up_.mismatch();
   if (!mismatch.empty()) tell_all(EventKind::warning, 0, "not the configured drive: " + mismatch + ": read-only");
   for (const std::string& note : bring_up_.node().notes()) tell_all(EventKind::warning, 0, note);
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::identity_mismatch, !mismatch.empty());
   judge_profile();
-  if (!adopted_ && mismatch.empty() && lacks_.empty()) map_values();
+  if (!bring_up_.adopted() && bring_up_.is_configured()) map_values();
   for (const ObjectId id : bring_up_.unheld())
     event(axes_.front()->core().model.number, EventKind::warning, 0,
           "setup: the drive does not hold what was written to " + model_.object(id).name);
-  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, adopted_);
+  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, bring_up_.adopted());
   judge_loss_reaction();
   set_state(LinkState::online);
-  if (adopted_)
+  if (bring_up_.adopted())
     for (auto& axis : axes_) axis->on_adopted();
   for (const auto& axis : axes_)
-    event(axis->core().model.number, EventKind::boot, 0, adopted_ ? "online, found enabled: adopted" : "online");
+    event(axis->core().model.number, EventKind::boot, 0,
+          bring_up_.adopted() ? "online, found enabled: adopted" : "online");
 }
 
 void Drive::judge_checks() {
@@ -154,7 +151,7 @@ void Drive::judge_loss_reaction() {
 
 // An enable that is under way, or waits for its turn, would meet the NMT commands of a bring-up.
 bool Drive::may_be_set_up_anew() const {
-  const bool wanted = !end_.begun() && (adopted_ || node_start_.is_due(now()));
+  const bool wanted = !end_.begun() && (bring_up_.adopted() || bring_up_.start().is_due(turn_.now));
   return wanted && std::none_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->enable_is_asked(); });
 }
 
@@ -167,7 +164,7 @@ void Drive::leave_adoption() {
     return facts.enabled() || (bring_up_.has_setup() && holds_motor(facts.state));
   });
   if (enabled) return;
-  adopted_ = false;
+  bring_up_.leave();
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, false);
   if (bring_up_.has_setup()) begin_bring_up(false);
 }

@@ -19,21 +19,27 @@ bus::JobId Drive::queue_own(bus::Priority priority) {
 
 // --- What names a fault is read next, before anything but stops ----------------------------------------------------
 
-std::optional<ObjectId> Drive::cause_to_read() {
-  for (auto& axis : axes_)
-    if (const auto object = axis->cause_to_read(now())) return object;
-  return std::nullopt;
+bool Drive::has_cause_to_read() const {
+  return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->cause_to_read().has_value(); });
+}
+
+// One read for all axes that wait for it.
+std::optional<bus::Exchange> Drive::next_cause() {
+  std::optional<ObjectId> object;
+  for (auto& axis : axes_) {
+    const auto wanted = axis->cause_to_read();
+    if (!wanted || (object && wanted != object)) continue;
+    object = wanted;
+    axis->cause_asked();
+  }
+  if (!object) return std::nullopt;
+  return read_of(model_, *object);
 }
 
 std::optional<bus::Exchange> Drive::next_of_causes() {
-  const auto object = cause_to_read();
-  if (!object) {
-    bus_.finish(std::exchange(jobs_.cause, 0));
-    return std::nullopt;
-  }
-  for (auto& axis : axes_)
-    if (axis->cause_to_read(now()) == object) axis->cause_asked(now());
-  return read_of(model_, *object);
+  auto exchange = next_cause();
+  if (!exchange) bus_.finish(std::exchange(jobs_.cause, 0));
+  return exchange;
 }
 
 bool Drive::causes_are_open() const {
@@ -45,18 +51,18 @@ void Drive::schedule_causes() {
   for (auto& axis : axes_)
     if (axis->fault_is_over())
       for (const ObjectId word : axis->core().causes)
-        if (!tells_state(word)) plan_.hurry(word, now());
-  if (!brought_up() || !cause_to_read() || jobs_.cause != 0) return;
+        if (!reads_.tells_state(word)) reads_.hurry(word, turn_.now);
+  if (!brought_up() || !has_cause_to_read() || jobs_.cause != 0) return;
   jobs_.cause = queue_own(bus::Priority::cause);
 }
 
 // --- Keep-alive and control frames ---------------------------------------------------------------------------------
 
 DriveControl::Turn Drive::control_turn() const {
-  DriveControl::Turn turn{.now = now(),
-                          .online = state_ == LinkState::online,
-                          .suspect = resync_.suspect(),
-                          .adopted = adopted_,
+  DriveControl::Turn turn{.now = turn_.now,
+                          .online = turn_.link == LinkState::online,
+                          .suspect = reads_.suspect(),
+                          .adopted = bring_up_.adopted(),
                           .axes = {}};
   for (const auto& axis : axes_)
     turn.axes.push_back({.core = axis->core(),
@@ -72,21 +78,20 @@ std::optional<bus::Exchange> Drive::keep_alive_turn(bus::Priority priority) {
   if (priority == bus::Priority::stop || !control_.concerned()) return std::nullopt;
   auto due = control_.due(control_turn());
   if (!due) return std::nullopt;
-  on_wire_.job = 0;
+  on_wire_.becomes_own();
   on_wire_.keeps_alive = due->axis;
   return std::move(due->exchange);
 }
 
-std::optional<bus::Exchange> Drive::whole_frame(const bus::Exchange& exchange, bus::JobId id, bus::Priority priority) {
+std::optional<bus::Exchange> Drive::whole_frame(const bus::Exchange& exchange, const bus::Arbiter::Grant& grant) {
   if (!control_.concerned()) return exchange;
-  auto whole = control_.whole(control_turn(), exchange, priority == bus::Priority::stop);
+  auto whole = control_.whole(control_turn(), exchange, grant.priority == bus::Priority::stop);
   if (whole) return whole;
   if (on_wire_.keeps_alive) {
-    control_.failed(*on_wire_.keeps_alive, now());
+    control_.failed(*on_wire_.keeps_alive, turn_.now);
     return std::nullopt;
   }
-  for (auto& axis : axes_)
-    if (axis->has(id)) axis->on_job_ended(id, Errc::state_unsuitable);
+  if (Axis* owner = axis_of(grant.axis)) owner->on_job_ended(grant.id, Errc::state_unsuitable);
   return std::nullopt;
 }
 
@@ -95,18 +100,19 @@ Instant Drive::schedule_keep_alive() {
   // The queue was full: its own exchanges carry what is due meanwhile, and a place is asked for again.
   constexpr Duration kPlaceRetry = std::chrono::milliseconds(5);
   const Instant next = control_.concerned() ? control_.next_due(control_turn()) : kNever;
-  if (next > now()) {
+  if (next > turn_.now) {
     if (jobs_.keep_alive != 0) bus_.finish(std::exchange(jobs_.keep_alive, 0));
     return next;
   }
   if (jobs_.keep_alive != 0) return kNever;
   jobs_.keep_alive = queue_own(bus::Priority::command);
-  return jobs_.keep_alive != 0 ? kNever : now() + kPlaceRetry;
+  return jobs_.keep_alive != 0 ? kNever : turn_.now + kPlaceRetry;
 }
 
 // --- The end on purpose --------------------------------------------------------------------------------------------
 
 void Drive::close(Closing why, std::function<void()> closed) {
+  begin_turn();
   for (auto& axis : axes_) axis->close();
   // A bring-up would arm what is to be disarmed, and start nodes. What it has not read nobody knows: it is left.
   if (jobs_.setup != 0) bus_.finish(std::exchange(jobs_.setup, 0));
@@ -116,11 +122,12 @@ void Drive::close(Closing why, std::function<void()> closed) {
 }
 
 void Drive::reopen() {
+  begin_turn();
   const bool disarmed = end_.take_back() && brought_up();
   if (jobs_.end != 0) bus_.finish(std::exchange(jobs_.end, 0));
   for (auto& axis : axes_) axis->reopen();
   if (disarmed && bring_up_.has_setup()) begin_bring_up(false);
-  if (state_ == LinkState::unknown) presence_.look_at(now());  // a bring-up that was not begun meanwhile
+  if (turn_.link == LinkState::unknown) presence_.look_at(turn_.now);  // a bring-up that was not begun meanwhile
   after_event();
 }
 
@@ -129,7 +136,7 @@ std::optional<bus::Exchange> Drive::next_of_end() {
   const bool stops =
       std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return !axis->idle() || axis->owes_stop(); });
   if (stops) {
-    bus_.wait(jobs_.end, now() + DriveEnd::kStopsFirst);
+    bus_.wait(jobs_.end, turn_.now + DriveEnd::kStopsFirst);
     return std::nullopt;
   }
   const auto next = end_.next();

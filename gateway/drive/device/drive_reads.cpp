@@ -1,40 +1,114 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a drive reads in one request, and what becomes of the numbers that come back.
+#include "gateway/drive/device/drive_reads.hpp"
+
 #include <algorithm>
 
-#include "gateway/drive/device/drive.hpp"
 #include "gateway/drive/device/requests.hpp"
 #include "gateway/model/scale.hpp"
 
 namespace axisgate::drive {
 
-bus::Exchange Drive::write(ObjectId object, std::int64_t number) const {
-  bus::Exchange exchange = read_of(model_, object);
-  exchange.access = bus::Access::write;
-  exchange.size = width_[object];
-  exchange.raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(number));
-  return exchange;
+DriveReads::DriveReads(DriveModel& model, ObjectStore& store)
+    : model_(model),
+      store_(store),
+      plan_(model),
+      resync_(model.resync, model.objects),
+      blocks_(model),
+      constants_(model.constants.size()),
+      mapped_(model.objects.size(), false) {
+  for (const ObjectDef& object : model.objects) width_.push_back(object.size);
+  map_unasked();
 }
 
-bool Drive::tells_state(ObjectId object) const {
-  return std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->core().tells_state(object); });
+// --- What is read next -----------------------------------------------------------------------------------------------
+
+void DriveReads::restart(Instant now) {
+  store_.forget_all();
+  resync_.answered();
+  plan_.restart(now);
 }
 
-// What comes along in the same request at little cost: in bring-up all that is not known yet, in a poll all that is due
-// as well, and of the state never a part without the rest.
-void Drive::widen(bus::Exchange& exchange) {
-  if (on_wire_.resync || on_wire_.probe) return;
-  const bool polled = on_wire_.job == 0;
-  const bool setup = on_wire_.job == jobs_.setup && jobs_.setup != 0;
+std::optional<bus::Exchange> DriveReads::poll(Instant now) const {
+  const auto object = plan_.next(now);
+  if (!object) return std::nullopt;
+  return read_of(model_, *object);
+}
+
+bool DriveReads::tells_state(ObjectId object) const {
+  return std::any_of(model_.axes.begin(), model_.axes.end(),
+                     [object](const AxisModel& axis) { return drive::tells_state(axis, object); });
+}
+
+void DriveReads::widen(bus::Exchange& exchange, Asked& asked, For whom, Instant now) const {
+  if (asked.resync || asked.probe) return;
   blocks_.widen(exchange, [&](ObjectId id) {
     if (store_[id].refused) return false;
-    return setup || tells_state(id) || (polled && plan_.due(id, now()));
+    return whom == For::bring_up || tells_state(id) || (whom == For::poll && plan_.due(id, now));
   });
-  on_wire_.widened = exchange.access == bus::Access::read && !exchange.more.empty() && !blocks_.one_answer(exchange);
+  asked.widened = exchange.access == bus::Access::read && !exchange.more.empty() && !blocks_.one_answer(exchange);
 }
 
-bool Drive::split(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
-  if (!on_wire_.widened || resync_.suspect()) return false;
+void DriveReads::hurry_state(const AxisModel& axis, Instant now) {
+  for (const ObjectId id : axis.state_sources) plan_.hurry(id, now);
+}
+
+void DriveReads::refresh(Instant now) {
+  if (invalidations_seen_ == store_.invalidations()) return;
+  invalidations_seen_ = store_.invalidations();
+  plan_.refresh(now);
+}
+
+// --- Late replies ----------------------------------------------------------------------------------------------------
+
+std::optional<bus::Exchange> DriveReads::resync(Asked& asked, Instant now) {
+  const auto candidate = resync_.candidate();
+  if (candidate && !resync_.exhausted()) {
+    resync_.resync_sent();
+    asked.resync = true;
+    return read_of(model_, *candidate);
+  }
+  if (now < resync_.silent_until()) return std::nullopt;
+  resync_.waited_out();
+  asked.resync = true;
+  return probe_read(model_);
+}
+
+bool DriveReads::may_probe(Instant now) {
+  if (!resync_.suspect()) return true;
+  if (now < resync_.silent_until()) return false;
+  resync_.waited_out();
+  return true;
+}
+
+bus::Exchange DriveReads::probe(Asked& asked) const {
+  asked.probe = true;
+  return probe_read(model_);
+}
+
+// --- What comes back -------------------------------------------------------------------------------------------------
+
+void DriveReads::timed_out(const bus::Exchange& exchange, const Asked& asked, Instant now) {
+  resync_.lost(exchange, now);
+  if (asked.widened) silent_read_ = exchange;
+  store_.invalidate_all();
+}
+
+// An error answer is no answered resynchronisation read; the next candidate is tried.
+bool DriveReads::answered(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
+                          Instant now) {
+  const bool proves = result.code == Errc::ok && (asked.resync || asked.probe);
+  if (proves) {
+    resync_.answered();
+    // It lives, and did not answer a longer read: after the second time that counts as a refusal.
+    if (silent_read_ && asked.resync) static_cast<void>(blocks_.silent(*silent_read_));
+    silent_read_.reset();
+  }
+  if (result.code == Errc::refused_by_drive && asked.resync) resync_.lost(exchange, now);
+  return proves;
+}
+
+bool DriveReads::split(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked) {
+  if (!asked.widened || resync_.suspect()) return false;
   if (result.code != Errc::refused_by_drive) {
     blocks_.answered(exchange);
     return false;
@@ -43,12 +117,13 @@ bool Drive::split(const bus::Exchange& exchange, const bus::ExchangeResult& resu
 }
 
 // Unsupported: not asked again until the next bring-up. The state is asked for ever: without it there is no axis.
-void Drive::store_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
+void DriveReads::take_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
+                              Instant now) {
   const ObjectId id = model_.find(exchange.object);
   if (id == kNoObject) return;
-  if (on_wire_.widened && !result.for_now) return;  // which of them it was is not known yet
-  plan_.done(id, now());
-  for (const bus::Neighbour& neighbour : exchange.more) plan_.done(model_.find(neighbour.object), now());
+  if (asked.widened && !result.for_now) return;  // which of them it was is not known yet
+  plan_.done(id, now);
+  for (const bus::Neighbour& neighbour : exchange.more) plan_.done(model_.find(neighbour.object), now);
   if (result.for_now || plain_read(model_).object == exchange.object || model_.needs_for_state(id)) return;
   const auto refuse = [this](ObjectId object) {
     if (object == kNoObject) return;
@@ -71,42 +146,50 @@ std::uint8_t asked_width(const bus::Exchange& exchange, const bus::ObjectAddress
 
 }  // namespace
 
-void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
-  if (exchange.access != bus::Access::read) return;
-  if (result.code == Errc::refused_by_drive) return store_refusal(exchange, result);
-  for (const bus::ReplyField& field : result.fields) {
-    const ObjectId id = model_.find(field.object);
-    if (id == kNoObject) continue;
-    const ObjectDef& object = model_.object(id);
-    // A width other than the profile's is a wrong profile, not a value (JD sheet, K7): it is not shown. A
-    // resynchronisation read reads registers as they come.
-    if (field.size == object.size) {
-      width_[id] = field.size;
-      store_.read(id, object.number(field.raw), on_wire_.sent_at);
-    } else if (object.any_width && field.size < object.size) {
-      width_[id] = field.size;
-      ObjectDef narrow;
-      narrow.size = field.size;
-      narrow.is_signed = object.is_signed;
-      store_.read(id, narrow.number(field.raw), on_wire_.sent_at);
-    } else if (on_wire_.resync || asked_width(exchange, field.object) != object.size) {
-      continue;  // the mailbox asks in its client's width: what comes proves nothing of the profile
-    } else if (!store_[id].refused) {
-      store_.refused(id);
-      if (!model_.needs_for_state(id)) plan_.drop(id);
-      event(axes_.front()->core().model.number, EventKind::warning, 0,
-            object.name + ": the drive answers " + std::to_string(field.size) + " bytes, the profile says " +
-                std::to_string(object.size) + ": not used");
-      continue;
-    }
-    plan_.done(id, now());
-    for (const ObjectId alias : object.aliases) plan_.done(alias, now());
+DriveReads::Taken DriveReads::take(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
+                                   Instant now) {
+  Taken taken;
+  if (exchange.access != bus::Access::read) return taken;
+  if (result.code == Errc::refused_by_drive) {
+    take_refusal(exchange, result, asked, now);
+    return taken;
   }
-  read_constants();
-  for (auto& axis : axes_) axis->on_samples();
+  for (const bus::ReplyField& field : result.fields) take_field(exchange, field, asked, taken, now);
+  taken.scales = read_constants();
+  taken.samples = true;
+  return taken;
 }
 
-void Drive::read_constants() {
+void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField& field, const Asked& asked,
+                            Taken& taken, Instant now) {
+  const ObjectId id = model_.find(field.object);
+  if (id == kNoObject) return;
+  const ObjectDef& object = model_.object(id);
+  // A width other than the profile's is a wrong profile, not a value (JD sheet, K7): it is not shown. A
+  // resynchronisation read reads registers as they come.
+  if (field.size == object.size) {
+    width_[id] = field.size;
+    store_.read(id, object.number(field.raw), asked.sent_at);
+  } else if (object.any_width && field.size < object.size) {
+    width_[id] = field.size;
+    ObjectDef narrow;
+    narrow.size = field.size;
+    narrow.is_signed = object.is_signed;
+    store_.read(id, narrow.number(field.raw), asked.sent_at);
+  } else if (asked.resync || asked_width(exchange, field.object) != object.size) {
+    return;  // the mailbox asks in its client's width: what comes proves nothing of the profile
+  } else if (!store_[id].refused) {
+    store_.refused(id);
+    if (!model_.needs_for_state(id)) plan_.drop(id);
+    taken.unlike.push_back(object.name + ": the drive answers " + std::to_string(field.size) +
+                           " bytes, the profile says " + std::to_string(object.size) + ": not used");
+    return;
+  }
+  plan_.done(id, now);
+  for (const ObjectId alias : object.aliases) plan_.done(alias, now);
+}
+
+bool DriveReads::read_constants() {
   bool changed = false;
   for (std::size_t i = 0; i < constants_.size(); ++i) {
     const auto value = value_of(model_.constants[i], [&](ObjectId id) {
@@ -116,11 +199,56 @@ void Drive::read_constants() {
     constants_[i] = value;
     changed = true;
   }
-  if (!changed) return;
+  if (!changed) return false;
   for (AxisModel& axis : model_.axes)
     for (Binding& binding : axis.bindings)
       if (binding.recipe.waits()) apply_recipe(binding, constants_, model_.object(binding.object));
-  for (auto& axis : axes_) axis->on_scale();
+  return true;
+}
+
+// --- What comes unasked ----------------------------------------------------------------------------------------------
+
+void DriveReads::map(ObjectId object, std::optional<Duration> event) {
+  mapped_[object] = true;
+  plan_.map(object, event, model_.canopen.confirm);
+  store_.set_period(object, event.value_or(model_.canopen.confirm));
+}
+
+// What a drive sends by itself, whatever we tell it: mapped for good.
+void DriveReads::map_unasked() {
+  for (const ObjectId id : model_.unasked.objects) {
+    mapped_[id] = true;
+    if (model_.unasked.every > Duration{} && !tells_state(id)) store_.set_period(id, model_.unasked.every);
+  }
+}
+
+void DriveReads::unmap(Instant now) {
+  for (std::size_t i = 0; i < mapped_.size(); ++i) {
+    if (!mapped_[i]) continue;
+    mapped_[i] = false;
+    store_.set_period(static_cast<ObjectId>(i), Duration{});
+  }
+  plan_.unmap_all(now);
+}
+
+void DriveReads::outdate_mapped() {
+  for (std::size_t i = 0; i < mapped_.size(); ++i)
+    if (mapped_[i]) store_.outdate(static_cast<ObjectId>(i));
+}
+
+void DriveReads::take_unasked(const bus::ReplyFields& fields, Instant now) {
+  for (const bus::ReplyField& field : fields) {
+    const ObjectId id = model_.find(field.object);
+    if (id == kNoObject || !mapped_[id] || field.size != model_.object(id).size) continue;
+    store_.read(id, model_.object(id).number(field.raw), now);
+    plan_.received(id, now);
+  }
+}
+
+void DriveReads::watch_position(const AxisModel& axis, bool moves, Instant now) {
+  const Binding* position = axis.binding(Quantity::position_actual);
+  if (position == nullptr || position->object == kNoObject || !mapped_[position->object]) return;
+  plan_.confirm_within(position->object, moves ? std::optional(kMovingConfirm) : std::nullopt, now);
 }
 
 }  // namespace axisgate::drive

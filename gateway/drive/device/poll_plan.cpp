@@ -111,6 +111,11 @@ void PollPlan::hurry(ObjectId object, Instant now) {
   if (e != nullptr && !e->dropped) e->due = std::min(e->due, now);
 }
 
+void PollPlan::first(ObjectId object) {
+  Entry* e = entry(object);
+  if (e != nullptr && !e->dropped) e->due = kLongAgo;
+}
+
 const PollPlan::Entry* PollPlan::earliest() const {
   const auto found =
       std::min_element(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.due < b.due; });

@@ -38,6 +38,8 @@ class PollPlan {
   void confirm_within(ObjectId object, std::optional<Duration> limit, Instant now);
   /// It is read as soon as its turn comes: something was heard that it will tell of.
   void hurry(ObjectId object, Instant now);
+  /// It is read next, before all that is overdue: an answer waits for it.
+  void first(ObjectId object);
   /// The object to read now: the one longest overdue. None before next_due().
   [[nodiscard]] std::optional<ObjectId> next(Instant now) const;
   [[nodiscard]] bool due(ObjectId object, Instant now) const;

@@ -13,6 +13,9 @@ constexpr Duration kHomingSettle = std::chrono::milliseconds(500);
 // How long a drive that does not acknowledge a set-point may take to show that it moves. A move to where the axis
 // stands already shows nothing: it counts as done after this.
 constexpr Duration kStartShows = std::chrono::milliseconds(500);
+// At the end of a motion the position is read next. A drive that puts it off is not waited for longer: what is shown
+// then carries its age. (Not the velocity: a drive may tell it late, see velocity_lag.)
+constexpr Duration kPositionComes = std::chrono::milliseconds(500);
 
 enum Target : std::size_t { kPosition, kVelocity, kTorque };
 
@@ -87,22 +90,26 @@ void Motion::start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t
   settled_from_ = now + velocity_lag_;
   started_by_ = exchange;
   homing_until_ = kNever;
+  ended_by_.reset();
   raw_run_ = found_ = arrived_ = false;
   stopping_ = false;
   awaits_fall_ = kind == MotionKind::discrete && !acknowledges_;
 }
 
 void Motion::mode_changed() {
-  if (kind_ != MotionKind::none) state_ = MotionState::aborted;
+  if (kind_ != MotionKind::none) state_ = ended_by_ ? MotionState::completed : MotionState::aborted;
   kind_ = MotionKind::none;
+  ended_by_.reset();
   raw_run_ = found_ = false;
 }
 
 // What survives: nothing. A fault, a drive restart, a disable, the loss of the drive and a stop end every motion for
 // good; velocity, torque and start are needed anew.
 void Motion::end(MotionState how) {
-  if (kind_ != MotionKind::none) state_ = how;
+  // What was at its target before has been completed, whatever comes before its position is read.
+  if (kind_ != MotionKind::none) state_ = ended_by_ ? MotionState::completed : how;
   kind_ = MotionKind::none;
+  ended_by_.reset();
   homing_until_ = kNever;
   raw_run_ = arrived_ = false;
   wanted_[kVelocity].reset();
@@ -114,15 +121,25 @@ void Motion::complete(Instant now) {
   kind_ = MotionKind::none;
   state_ = MotionState::completed;
   arrived_ = true;
+  ended_by_.reset();
   homing_until_ = kNever;
   settled_from_ = now + velocity_lag_;
+}
+
+void Motion::complete_with_position(const AxisFacts& facts) {
+  if (!ended_by_) {
+    ended_by_ = facts.statusword_exchange;
+    position_until_ = facts.at + kPositionComes;
+  }
+  const bool newer = facts.position_exchange.value_or(*ended_by_) >= *ended_by_;
+  if (newer || facts.at >= position_until_) complete(facts.at);
 }
 
 void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
   seen_ = facts.at;
   rests_ = at_rest(facts);
   acknowledges_ = facts.acknowledges;
-  if (!facts.reachable || (!facts.moving && facts.at >= settled_from_)) stopping_ = false;
+  if (!facts.reachable || stands(facts)) stopping_ = false;
   // Targets written while it is disabled or faulted are kept for the start that follows: only the change ends things.
   const bool newly_faulted = facts.faulted() && !was_faulted_;
   const bool newly_lost = !facts.reachable && was_reachable_;
@@ -143,13 +160,15 @@ void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
   }
   const bool seen_after_start = facts.statusword_exchange > started_by_ && !target_reached_masked_;
   if (awaits_fall_ && seen_after_start &&
-      (!facts.target_reached || (!facts.moving && facts.at - started_ >= kStartShows)))
+      (!facts.target_reached || (stands(facts) && facts.at - started_ >= kStartShows)))
     awaits_fall_ = false;
   if (kind_ == MotionKind::discrete && seen_after_start) {
-    if (facts.target_reached && !awaits_fall_)
-      complete(facts.at);
-    else if (facts.motion_failed)
-      end(MotionState::failed);
+    if (facts.target_reached && !awaits_fall_) {
+      complete_with_position(facts);
+    } else {
+      ended_by_.reset();  // it has left the window again
+      if (facts.motion_failed) end(MotionState::failed);
+    }
   }
   if (kind_ == MotionKind::homing && seen_after_start) observe_homing(facts, homing_timeout);
 }
@@ -164,11 +183,13 @@ void Motion::observe_homing(const AxisFacts& facts, Duration timeout) {
   homing_until_ = started_ + timeout;
   if (facts.homing_failed) {
     end(MotionState::failed);
-  } else if (facts.reference && !facts.moving && facts.at - started_ >= kHomingSettle) {
-    complete(facts.at);
+  } else if (facts.reference && stands(facts) && facts.at - started_ >= kHomingSettle) {
+    complete_with_position(facts);
   } else if (facts.at >= homing_until_) {
     end(MotionState::failed);
     homing_timed_out_ = true;
+  } else {
+    ended_by_.reset();
   }
 }
 
@@ -179,6 +200,7 @@ Instant Motion::deadline() const {
     if (instant > seen_) next = std::min(next, instant);
   };
   at(settled_from_);
+  if (ended_by_) at(position_until_);
   if (awaits_fall_ && kind_ == MotionKind::discrete) at(started_ + kStartShows);
   if (kind_ != MotionKind::homing) return next;
   at(started_ + kHomingSettle);
@@ -195,11 +217,20 @@ bool Motion::take_homing_timeout() {
 bool Motion::at_rest(const AxisFacts& facts) const {
   // What follows a velocity or torque turns, or is about to: a raw run's sampled velocity may be of before.
   if (kind_ != MotionKind::none || facts.follows) return false;
-  // In mode 1 the drive itself says so, before the sampled velocity does.
-  if (facts.mode == 1 && facts.enabled() && facts.target_reached) return true;
+  // In mode 1 the drive itself says so, before the sampled velocity does; but not of a stop, of which some show bit 10
+  // while they still slow down.
+  if (facts.mode == 1 && facts.enabled() && facts.target_reached && !stopping_) return true;
   // Its motion has ended where it should: the sampled velocity may be of before.
-  if (arrived_ && facts.at < settled_from_) return true;
-  return !facts.moving && facts.at >= settled_from_;
+  if (arrived_ && facts.moving_at.value_or(facts.at) < settled_from_) return true;
+  return stands(facts);
+}
+
+bool Motion::stands(const AxisFacts& facts) const {
+  return !facts.moving && facts.moving_at.value_or(facts.at) >= settled_from_;
+}
+
+bool Motion::rest_wants_sample(const AxisFacts& facts) const {
+  return stopping_ && facts.at >= settled_from_ && facts.moving_at.value_or(facts.at) < settled_from_;
 }
 
 AxisState Motion::axis_state(const AxisFacts& facts) const {

@@ -27,6 +27,7 @@ struct AxisFacts {
   /// however long its ramp takes, and only shows it still.
   bool commanded = true;
   bool moving = false;
+  std::optional<Instant> moving_at{};  ///< when that was asked for; none: nothing is sampled for it, it is of now
   /// The velocity or torque set-point in the drive makes it turn, as far as it tells.
   bool follows = false;
   bool target_reached = false;
@@ -34,8 +35,9 @@ struct AxisFacts {
   bool reference_tells = true;  ///< what says that it is homed means that in the mode in force
   bool reference = false;       ///< the drive says that it is homed
   bool homing_failed = false;
-  bool motion_failed = false;             ///< a move has ended elsewhere than at its target
-  std::uint64_t statusword_exchange = 0;  ///< the exchange that gave the newest statusword
+  bool motion_failed = false;                        ///< a move has ended elsewhere than at its target
+  std::uint64_t statusword_exchange = 0;             ///< the exchange that gave the newest statusword
+  std::optional<std::uint64_t> position_exchange{};  ///< and the newest position; none: nothing tells of it
 
   [[nodiscard]] bool enabled() const { return reachable && state == State402::operation_enabled; }
   [[nodiscard]] bool faulted() const { return state == State402::fault || state == State402::fault_reaction_active; }
@@ -97,7 +99,7 @@ class Motion {
   void mask_target_reached() { target_reached_masked_ = true; }
   void unmask_target_reached() { target_reached_masked_ = false; }
   [[nodiscard]] bool target_reached_masked() const {
-    return target_reached_masked_ || (awaits_fall_ && kind_ == MotionKind::discrete);
+    return target_reached_masked_ || (awaits_fall_ && kind_ == MotionKind::discrete) || ended_by_.has_value();
   }
 
   /// The drive has acknowledged a start in this exchange; a motion under way is aborted by it.
@@ -123,6 +125,11 @@ class Motion {
   [[nodiscard]] bool take_homing_timeout();
   /// A value that came by itself shows its end, and may be of before its start (D33): only a read made now settles it.
   [[nodiscard]] bool end_wants_sample(const AxisFacts& facts) const;
+  /// The drive has told that it is at its target, and the position shown is of before: it is read next, and only then
+  /// is the motion completed. Who acts on the end of a move looks where the axis is.
+  [[nodiscard]] bool end_wants_position() const { return ended_by_.has_value(); }
+  /// Whether it stands after a stop only a velocity sampled now can tell.
+  [[nodiscard]] bool rest_wants_sample(const AxisFacts& facts) const;
   /// When observe() must be called even without samples.
   [[nodiscard]] Instant deadline() const;
 
@@ -144,6 +151,10 @@ class Motion {
  private:
   void end(MotionState how);
   void complete(Instant now);
+  /// The statusword shows the end of the motion: completes it once the position shown is no older.
+  void complete_with_position(const AxisFacts& facts);
+  /// A velocity sampled since the newest start, stop or end can be told by it shows that the axis stands.
+  [[nodiscard]] bool stands(const AxisFacts& facts) const;
   void observe_homing(const AxisFacts& facts, Duration timeout);
   [[nodiscard]] bool move_under_way(const AxisFacts& facts) const;
 
@@ -167,6 +178,9 @@ class Motion {
   Instant settled_from_ =
       kLongAgo;  ///< the sampled velocity tells the truth of the newest start, stop or end from then on
   std::uint64_t started_by_ = 0;  ///< exchange: only statuswords sampled after it tell of this motion
+  std::optional<std::uint64_t>
+      ended_by_;                     ///< exchange whose statusword showed the end, while an older position is shown
+  Instant position_until_ = kNever;  ///< and how long the end waits for a newer one
   Instant homing_until_ = kNever;
   bool acknowledges_ = true;  ///< the drive says that it took a set-point, as far as seen last
   /// It does not: bit 10 may still tell of the move before, until it was seen to fall or the axis stands all the same.

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "gateway/core/clock.hpp"
 #include "gateway/model/cia402.hpp"
@@ -54,6 +55,10 @@ class OwedStop {
   [[nodiscard]] bool owed() const { return stop_.has_value(); }
   /// Until the axis is seen to be stopped nothing but stops and reads passes: the drive was lost since.
   [[nodiscard]] bool gates() const { return owed() && by_loss_; }
+  /// It is to be told that nothing but stops and reads passes: once for each stop that is owed.
+  [[nodiscard]] bool take_news() { return gates() && !std::exchange(told_, true); }
+  /// The same was told of the stop that has ceased to be owed: once.
+  [[nodiscard]] bool take_told() { return std::exchange(told_, false); }
   /// What must be sent now: the axis was read enabled since the last attempt.
   [[nodiscard]] std::optional<StopKind> due(Instant now) const;
   /// When due() may change without anything being told.
@@ -71,6 +76,7 @@ class OwedStop {
   bool uncertain_ = false;     ///< restarted, or away for long
   bool sent_ = false;          ///< at least once
   bool read_enabled_ = false;  ///< since the last attempt
+  bool told_ = false;          ///< an event has told of it: its end is told as well
   std::uint64_t after_ = 0;    ///< only samples of later exchanges count
   Instant not_before_ = kLongAgo;
 };

@@ -196,19 +196,20 @@ bool reads_alone(const WriteBatch& batch) {
          batch.command == Command::none && !batch.set_position_value;
 }
 
-bool holds_stop(const WriteBatch& batch) {
-  return is_stop(batch.command) || (batch.controlword && is_stop(*batch.controlword, batch.single_controlword));
+bool stops_by_word(const WriteBatch& batch) {
+  return batch.controlword && is_stop(*batch.controlword, batch.single_controlword);
 }
+
+bool holds_stop(const WriteBatch& batch) { return is_stop(batch.command) || stops_by_word(batch); }
 
 bool stops_alone(const WriteBatch& batch) {
   return holds_stop(batch) && batch.setpoints.empty() && !batch.mode && !batch.object && !batch.set_position_value &&
          !batch.jog_velocity && (batch.command == Command::none || is_stop(batch.command)) &&
-         (!batch.controlword || is_stop(*batch.controlword, batch.single_controlword));
+         (!batch.controlword || stops_by_word(batch));
 }
 
 bool asks_to_enable(const WriteBatch& batch) {
-  return batch.command == Command::enable ||
-         (batch.controlword && request_of(*batch.controlword) == Request402::enable_operation);
+  return batch.command == Command::enable || (batch.controlword && enables(*batch.controlword));
 }
 
 WriteBatch stop_alone(const WriteBatch& batch) {
@@ -219,7 +220,7 @@ WriteBatch stop_alone(const WriteBatch& batch) {
   out.jog_velocity.reset();
   out.object.reset();
   if (!is_stop(out.command)) out.command = Command::none;
-  if (out.controlword && !is_stop(*out.controlword, out.single_controlword)) out.controlword.reset();
+  if (!stops_by_word(out)) out.controlword.reset();
   return out;
 }
 
@@ -230,7 +231,7 @@ bool stop_latches(const AxisCore& core, const WriteBatch& batch) {
 }
 
 bool starts_motion(const AxisCore& core, const WriteBatch& batch) {
-  if (batch.command >= Command::move_absolute && batch.command <= Command::home) return true;
+  if (starts_motion(batch.command)) return true;
   return batch.controlword && (*batch.controlword & ~core.controlword() & controlword::kStart) != 0;
 }
 

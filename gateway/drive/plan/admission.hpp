@@ -18,6 +18,8 @@ namespace axisgate::drive {
 [[nodiscard]] std::optional<std::uint16_t> refused_row(const AxisCore& core, const WriteBatch& batch, Errc code);
 /// The write batch reads an object and does nothing else.
 [[nodiscard]] bool reads_alone(const WriteBatch& batch);
+/// Its controlword is a stop by design 3.4.
+[[nodiscard]] bool stops_by_word(const WriteBatch& batch);
 /// The write batch holds a stop by design 3.4.
 [[nodiscard]] bool holds_stop(const WriteBatch& batch);
 /// The write batch holds a stop and nothing else.

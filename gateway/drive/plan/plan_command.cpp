@@ -313,7 +313,7 @@ void add_steps(const AxisCore& core, const Steps& steps, Plan& plan) {
 }
 
 Plan plan_preparation(const AxisCore& core, Command command) {
-  const bool is_motion = command >= Command::move_absolute && command <= Command::set_position;
+  const bool is_motion = needs_ready(command);
   if (is_motion && !core.motion.may_start(core.facts())) return Plan::refuse(Errc::state_unsuitable);
   if (const Errc code = admissible(core, command); code != Errc::ok) return Plan::refuse(code);
   Plan plan;

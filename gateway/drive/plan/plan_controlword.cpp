@@ -17,7 +17,7 @@ Condition torque_on(const AxisCore& core) {
 bool starts_move(const AxisFacts& facts, std::uint16_t follow_bits, std::uint16_t before, std::uint16_t word) {
   if (facts.mode != 1) return false;
   const bool follows = (word & controlword::kStart) != 0 && (word & follow_bits) != 0;
-  if (!facts.enabled()) return follows && request_of(word) == Request402::enable_operation;
+  if (!facts.enabled()) return follows && enables(word);
   return rising(before, word, controlword::kStart) || (follows && rising(before, word, follow_bits));
 }
 

@@ -60,13 +60,13 @@ Plan plan_set_position(const AxisCore& core, int mode_before) {
       {{Quantity::homing_offset, 0, offset}, {Quantity::homing_method, kMethodPresentPosition, method}}};
   // The mode that moves was left before; no step may bring it back, nor leave a start in the controlword for it.
   constexpr int kHoming = 6;
-  constexpr std::int64_t kEnabledBits = 0x000F;
+  constexpr std::int64_t kCommandBits = 0x000F;
   Plan steps;
   if (!add_command_steps(core, Command::set_position, steps)) return steps;
   if (core.mode_in_force() != kHoming || writes_at(core, steps, core.model.mode))
     return Plan::refuse(Errc::state_unsuitable);
-  if (writes_at(core, steps, core.model.controlword) && last_controlword(core, steps) != kEnabledBits)
-    steps.add(Action::write(core.model.controlword, kEnabledBits));
+  if (writes_at(core, steps, core.model.controlword) && last_controlword(core, steps) != kCommandBits)
+    steps.add(Action::write(core.model.controlword, kCommandBits));
   Plan plan;
   plan.add(Action::at(Mark::borrow_homing));
   for (const Borrowed& b : borrowed)

@@ -92,7 +92,7 @@ void add_running_target(const AxisCore& core, ObjectId id, std::int64_t raw, Pla
     // One refused read proves nothing. What the drive does not have holds nothing, but that its answer has to say.
     write.optional = state.refused;
     plan.add(write);
-  } else if (!state.cached || core.now - state.sent_at > kFresh) {
+  } else if (!state.cached || core.turn.now - state.sent_at > kFresh) {
     plan.add(Action::read(id));
     look_again = true;
   } else if (state.number != raw) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "gateway/drive/plan/admission.hpp"
 #include "gateway/drive/plan/planner.hpp"
 
 namespace axisgate::drive {
@@ -25,7 +26,7 @@ Condition not_enabled(const AxisCore& core) {
 bool would_enable(const AxisCore& core, const Steps& steps) {
   return std::any_of(steps.begin(), steps.end(), [&](const Step& s) {
     return s.verb == Step::Verb::write && s.object == core.model.controlword && s.source == Step::Source::literal &&
-           request_of(static_cast<std::uint16_t>(s.literal)) == Request402::enable_operation;
+           enables(s.literal);
   });
 }
 
@@ -59,13 +60,13 @@ Plan halt(const AxisCore& core) {
   if (would_enable(core, *steps)) {
     const ObjectState& status = core.store[core.model.statusword];
     const ObjectState& word = core.store[core.model.controlword];
-    if (core.link != LinkState::online || !status.known || !word.known || word.unsure) return quick_stop(core);
+    if (core.turn.link != LinkState::online || !status.known || !word.known || word.unsure) return quick_stop(core);
     if (!status.cached) {
       plan.add(Action::read(core.model.statusword));
       plan.add(Action::at(Mark::look_again));
       return plan;
     }
-    const bool asked_for = request_of(core.controlword()) == Request402::enable_operation;
+    const bool asked_for = enables(core.controlword());
     if (!asked_for || !core.facts().enabled()) {
       plan.add(Action::read(core.model.statusword));
       plan.add(Action::wait(not_enabled(core), kStopLimit));
@@ -112,8 +113,7 @@ Condition torque_off(const AxisCore& core) {
 
 Plan plan_stop(const AxisCore& core, const WriteBatch& batch) {
   const bool commanded = is_stop(batch.command);
-  if (!batch.controlword || !is_stop(*batch.controlword, batch.single_controlword))
-    return by_command(core, batch.command);
+  if (!stops_by_word(batch)) return by_command(core, batch.command);
   Plan plan = by_controlword(core, *batch.controlword);
   // Both: in the order of the write batch. A halt asks for less than any stop by controlword does.
   if (commanded && batch.command != Command::halt) static_cast<void>(append(plan, by_command(core, batch.command)));

@@ -40,6 +40,17 @@ std::optional<std::int64_t> AxisCore::value(Quantity quantity) const {
   return binding->to_register(store[binding->object].number);
 }
 
+ObjectId AxisCore::object_of(Quantity quantity) const {
+  const Binding* binding = model.binding(quantity);
+  const bool there = binding != nullptr && binding->object != kNoObject && !store[binding->object].refused;
+  return there ? binding->object : kNoObject;
+}
+
+ObjectId AxisCore::motion_object() const {
+  if (!model.moving) return object_of(Quantity::velocity_actual);
+  return store[model.moving->object].refused ? kNoObject : model.moving->object;
+}
+
 int AxisCore::mode_in_force() const {
   const ObjectId id = model.mode_display != kNoObject ? model.mode_display : model.mode;
   if (id == kNoObject || !store[id].known) return 0;
@@ -56,16 +67,17 @@ std::uint16_t AxisCore::controlword() const {
 
 AxisFacts AxisCore::facts() const {
   AxisFacts facts;
-  facts.at = now;
+  facts.at = turn.now;
   facts.reachable = reachable();
   const ObjectState& status = store[model.statusword];
   const auto word = static_cast<std::uint16_t>(status.known ? status.number : 0);
   facts.state = status.known ? state_of(word) : State402::not_ready_to_switch_on;
   facts.statusword_exchange = status.exchange;
+  if (const ObjectId id = object_of(Quantity::position_actual); id != kNoObject)
+    facts.position_exchange = store[id].exchange;
   facts.target_reached = (word & statusword::kTargetReached) != 0;
   const ObjectId word_object = model.controlword;
-  facts.commanded = word_object == kNoObject || !store[word_object].known ||
-                    request_of(controlword()) == Request402::enable_operation;
+  facts.commanded = word_object == kNoObject || !store[word_object].known || enables(controlword());
   facts.mode = mode_in_force();
   facts.own_velocity_mode = model.is_own_velocity_mode(facts.mode);
   facts.acknowledges = model.cia402.setpoint_acknowledge;
@@ -79,6 +91,7 @@ AxisFacts AxisCore::facts() const {
   } else if (const auto velocity = value(Quantity::velocity_actual)) {
     facts.moving = std::llabs(*velocity) > model.standstill_velocity;
   }
+  if (const ObjectId id = motion_object(); id != kNoObject && !store[id].emulated) facts.moving_at = store[id].sent_at;
   facts.follows = follows(facts);
   return facts;
 }
@@ -98,7 +111,7 @@ bool AxisCore::follows(const AxisFacts& facts) const {
 
 std::optional<VirtualAxis::Seen> AxisCore::seen() const {
   VirtualAxis::Seen out;
-  out.at = now;
+  out.at = turn.now;
   out.exchange = UINT64_MAX;
   for (const ObjectId id : model.state_sources) {
     if (store[id].refused) continue;
@@ -169,7 +182,7 @@ void AxisCore::started(MotionKind kind, bool relative) {
     goal = store[target->object].number;
     if (relative) goal = *goal + store[actual->object].number;  // read at standstill, just before the start
   }
-  machine.started(kind, goal, now, store.exchange());
+  machine.started(kind, goal, turn.now, store.exchange());
   refresh_virtual();
 }
 
@@ -205,7 +218,7 @@ Wanted AxisCore::running_target(Quantity quantity) const { return motion.wanted(
 
 // --- Faults --------------------------------------------------------------------------------------------------------
 
-bool AxisCore::tells_state(ObjectId id) const {
+bool tells_state(const AxisModel& model, ObjectId id) {
   return std::find(model.state_sources.begin(), model.state_sources.end(), id) != model.state_sources.end();
 }
 
@@ -215,7 +228,7 @@ bool AxisCore::names_cause(ObjectId id) const {
 
 void AxisCore::watch_fault() {
   const ObjectState& status = store[model.statusword];
-  FaultWatch::Seen seen{.at = now,
+  FaultWatch::Seen seen{.at = turn.now,
                         .known = status.known,
                         .faulted = status.known && facts().faulted(),
                         .statusword = to_read(model.statusword),

@@ -13,14 +13,22 @@
 
 namespace axisgate::drive {
 
+/// The axis's statusword is made from this object, or is it.
+[[nodiscard]] bool tells_state(const AxisModel& model, ObjectId id);
+
+/// The turn of the loop in which a drive is called: all who decide see the same instant and the same link.
+struct Turn {
+  Instant now = kLongAgo;
+  LinkState link = LinkState::unknown;  ///< the drive's
+};
+
 struct AxisCore {
   const DriveModel& drive;
   const AxisModel& model;
   ObjectStore& store;
+  const Turn& turn;  ///< its drive's
   Motion motion{model.velocity_lag};
-  Instant now = kLongAgo;                       ///< of the turn in which this is looked at
   std::uint32_t alarms = 0;                     ///< AxisAlarm bits found by checks and by what was seen
-  LinkState link = LinkState::unknown;          ///< the drive's
   FaultWatch fault{};                           ///< when a fault is shown, and what must be read before
   CauseObjects causes = cause_objects(model);   ///< what names the cause of one
   std::optional<std::int64_t> homing_method{};  ///< written or configured since bring-up
@@ -34,7 +42,7 @@ struct AxisCore {
   NvmBudget nvm{};
 
   /// link_state online or suspect.
-  [[nodiscard]] bool reachable() const { return link == LinkState::online || link == LinkState::suspect; }
+  [[nodiscard]] bool reachable() const { return turn.link == LinkState::online || turn.link == LinkState::suspect; }
   [[nodiscard]] AxisFacts facts() const;
   [[nodiscard]] bool is_virtual() const { return model.virtual_axis.has_value(); }
   /// Virtual axes: makes the statusword from the newest samples.
@@ -52,9 +60,13 @@ struct AxisCore {
   /// A sample of this object names the cause of the fault that there is now, not of one before.
   [[nodiscard]] bool names_cause(ObjectId id) const;
   /// The statusword is made from it, or is it.
-  [[nodiscard]] bool tells_state(ObjectId id) const;
+  [[nodiscard]] bool tells_state(ObjectId id) const { return drive::tells_state(model, id); }
   /// The newest number of the quantity in register units; none where there is no good one.
   [[nodiscard]] std::optional<std::int64_t> value(Quantity quantity) const;
+  /// The object that a quantity is read from or written to, where the drive has it; else kNoObject.
+  [[nodiscard]] ObjectId object_of(Quantity quantity) const;
+  /// What tells whether it moves, likewise.
+  [[nodiscard]] ObjectId motion_object() const;
   /// The unified number of the mode in force, 0 where it is unknown or the drive's number stands for none.
   [[nodiscard]] int mode_in_force() const;
   /// In this mode a target velocity or torque acts at once.

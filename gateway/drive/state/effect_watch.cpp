@@ -12,19 +12,8 @@ constexpr std::int64_t kSlower = 50;  // one part of the speed in so many
 // What a standing servo hunts, as the drive counts; as profiles have it for "within".
 constexpr std::int64_t kHunts = 10;
 
-ObjectId object_of(const AxisCore& core, Quantity quantity) {
-  const Binding* binding = core.model.binding(quantity);
-  const bool there = binding != nullptr && binding->object != kNoObject && !core.store[binding->object].refused;
-  return there ? binding->object : kNoObject;
-}
-
 ObjectId object_of(const AxisCore& core, const std::optional<Condition>& condition) {
   return condition && !core.store[condition->object].refused ? condition->object : kNoObject;
-}
-
-/// What tells whether it moves.
-ObjectId motion_object(const AxisCore& core) {
-  return core.model.moving ? object_of(core, core.model.moving) : object_of(core, Quantity::velocity_actual);
 }
 
 bool fresh(const AxisCore& core, ObjectId id, std::uint64_t after) {
@@ -38,14 +27,15 @@ bool must_move(std::int64_t method) { return (method >= 1 && method <= 14) || (m
 }  // namespace
 
 void EffectWatch::sending(const AxisCore& core) {
-  sent_at_ = core.now;
+  sent_at_ = core.turn.now;
   const AxisFacts facts = core.facts();
   before_ = {.moving = facts.moving, .homed = facts.reference, .homing_failed = facts.homing_failed};
-  if (const ObjectId id = object_of(core, Quantity::position_actual); id != kNoObject && core.store[id].known)
+  if (const ObjectId id = core.object_of(Quantity::position_actual); id != kNoObject && core.store[id].known)
     before_.position = core.store[id].number;
-  const ObjectId id = object_of(core, Quantity::velocity_actual);
+  const ObjectId id = core.object_of(Quantity::velocity_actual);
   const auto speed = core.value(Quantity::velocity_actual);
-  if (id != kNoObject && speed && core.store[id].cached && core.now - core.store[id].sent_at <= core.model.velocity_lag)
+  if (id != kNoObject && speed && core.store[id].cached &&
+      core.turn.now - core.store[id].sent_at <= core.model.velocity_lag)
     fastest_ = std::max(fastest_, std::abs(*speed));
 }
 
@@ -56,8 +46,8 @@ ObjectId EffectWatch::to_read(const AxisCore& core, Effect effect) {
     id = core.to_read(id);
     if (oldest == kNoObject || core.store[id].exchange < core.store[oldest].exchange) oldest = id;
   };
-  consider(motion_object(core));
-  consider(object_of(core, effect == Effect::halt ? Quantity::velocity_actual : Quantity::position_actual));
+  consider(core.motion_object());
+  consider(core.object_of(effect == Effect::halt ? Quantity::velocity_actual : Quantity::position_actual));
   if (effect == Effect::homing && !core.is_virtual()) consider(object_of(core, core.model.homed));
   return oldest;
 }
@@ -69,23 +59,23 @@ bool EffectWatch::shown(const AxisCore& core, Effect effect, std::uint64_t after
 // A sampled velocity of 0 may be of before a start that the halt has ended; one that falls is of now.
 bool EffectWatch::halts(const AxisCore& core, std::uint64_t after) {
   const auto speed = core.value(Quantity::velocity_actual);
-  if (speed && fresh(core, object_of(core, Quantity::velocity_actual), after)) {
+  if (speed && fresh(core, core.object_of(Quantity::velocity_actual), after)) {
     fastest_ = std::max(fastest_, std::abs(*speed));
     const std::int64_t slower = std::max(fastest_ / kSlower, core.model.standstill_velocity);
     if (fastest_ - std::abs(*speed) >= slower) return true;
   }
-  const ObjectId moves = motion_object(core);
-  const bool sampled = moves == object_of(core, Quantity::velocity_actual);
+  const ObjectId moves = core.motion_object();
+  const bool sampled = moves == core.object_of(Quantity::velocity_actual);
   return fresh(core, moves, after) && !core.facts().moving &&
-         (!sampled || core.now - sent_at_ >= core.model.velocity_lag);
+         (!sampled || core.turn.now - sent_at_ >= core.model.velocity_lag);
 }
 
 // It moves, its bits have changed, or it is elsewhere. What moved before nobody can tell from what homes; and a drive
 // that was homed, and need not move for it, may have homed again.
 bool EffectWatch::homes(const AxisCore& core, std::uint64_t after) const {
   const AxisFacts facts = core.facts();
-  if (fresh(core, motion_object(core), after) && facts.moving) return true;
-  const ObjectId position = object_of(core, Quantity::position_actual);
+  if (fresh(core, core.motion_object(), after) && facts.moving) return true;
+  const ObjectId position = core.object_of(Quantity::position_actual);
   if (before_.position && !before_.moving && fresh(core, position, after) &&
       std::abs(core.store[position].number - *before_.position) > kHunts)
     return true;
@@ -95,7 +85,7 @@ bool EffectWatch::homes(const AxisCore& core, std::uint64_t after) const {
 }
 
 bool halt_shows(const AxisCore& core) {
-  const ObjectId id = motion_object(core);
+  const ObjectId id = core.motion_object();
   const bool keeps_torque = core.is_virtual() && core.model.virtual_axis->gate_only;
   if (id == kNoObject || (!core.facts().enabled() && !keeps_torque)) return false;
   return core.motion.stopping() || core.facts().moving || !core.store[id].cached;

@@ -209,7 +209,9 @@ class Objects {
     return at == section.keys.end() ? std::string() : at->second.text;
   }
 
-  void fault(std::size_t line, std::string message) { out_.faults.push_back({line, std::move(message)}); }
+  void fault(std::size_t line, std::string message) {
+    if (out_.faults.size() < kMaxEdsFaults) out_.faults.push_back({line, std::move(message)});
+  }
 
   const Sections& sections_;
   Eds& out_;

@@ -218,7 +218,7 @@ void check_state_places(Reading& reading) {
   for (const auto& [key, condition] :
        {std::pair("enabled", &state.enabled), std::pair("fault", &state.fault), std::pair("moving", &state.moving)}) {
     if (!condition->has_value()) continue;
-    reading.each_meaning((*condition)->object, [&](const Object& object) {
+    reading.each_meaning((*condition)->object, [&reading, &key = key](const Object& object) {
       for (const auto& [protocol, unused] : reading.profile.protocols)
         if (!object.places.contains(protocol))
           reading.fault(pointer_to("/state", key), "object \"" + object.name + "\" has no address on " + protocol);

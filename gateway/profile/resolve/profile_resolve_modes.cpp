@@ -128,7 +128,7 @@ void resolve_modes(Resolving& r, bus::AxisSlot slot) {
   if (!keepalive || !keepalive->is_on(r.input.protocol)) return;
   for (const auto& [mode, name] : keepalive->resend) {
     const bool offered =
-        std::any_of(axis.modes.begin(), axis.modes.end(), [&](const auto& m) { return m.first == mode; });
+        std::any_of(axis.modes.begin(), axis.modes.end(), [&mode = mode](const auto& m) { return m.first == mode; });
     if (const ObjectId id = r.id(name, slot); offered && id != kNoObject) axis.keep_alive.emplace_back(mode, id);
   }
 }

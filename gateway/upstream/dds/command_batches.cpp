@@ -28,9 +28,7 @@ constexpr std::array kMembers{
 constexpr std::uint32_t kOtherMotion =
     kHasMode | kHasTargetPosition | kHasTargetVelocity | kHasTargetTorque | kHasHomingMethod | kHasSetPositionValue;
 
-bool starts_jog(Command command) { return command == Command::jog_forward || command == Command::jog_reverse; }
-bool jogs(Command command) { return starts_jog(command) || command == Command::jog_end; }
-bool hands_over(Command command) { return command == Command::release || command == Command::take_over; }
+bool jogs(Command command) { return is_jog(command) || command == Command::jog_end; }
 
 Command command_of(const CommandRecord& record) { return Command{record.command}; }
 
@@ -143,7 +141,7 @@ bool starts(const CommandRecord& record, bool held) {
     case Command::home:
       return true;
     default:
-      return starts_jog(command_of(record)) && !held;
+      return is_jog(command_of(record)) && !held;
   }
 }
 

@@ -17,16 +17,9 @@ namespace {
 // schemas/axisgate.idl
 constexpr std::uint8_t kAlreadySeen = 21, kNameTaken = 22;
 
-bool is_press(const CommandRecord& record) {
-  const auto command = Command{record.command};
-  return command == Command::jog_forward || command == Command::jog_reverse;
-}
+bool is_press(const CommandRecord& record) { return is_jog(Command{record.command}); }
 
-bool runs(const AxisImage& axis, Command jog) {
-  constexpr unsigned kForward = 8, kReverse = 9;  // coils that read back which way it jogs
-  const unsigned coils = shown_level_coils(axis);
-  return (coils >> (jog == Command::jog_forward ? kForward : kReverse) & 1U) != 0;
-}
+bool runs(const AxisImage& axis, Command jog) { return (unsigned{shown_level_coils(axis)} >> jog_coil(jog) & 1U) != 0; }
 
 }  // namespace
 

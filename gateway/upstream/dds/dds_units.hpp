@@ -6,12 +6,12 @@
 #pragma once
 
 #include <array>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cstdint>
 #include <optional>
 
 #include "gateway/image/quantity.hpp"
 #include "gateway/upstream/dds/dds_settings.hpp"
-#include "gateway/upstream/dds/double_double.hpp"
 
 namespace axisgate::dds {
 
@@ -29,10 +29,11 @@ class DdsUnits {
   [[nodiscard]] double turn() const { return turn_; }
 
  private:
-  /// SI = register * numerator / denominator.
+  /// 113 bits: what is scaled by a rational and by pi becomes the double nearest to the exact result.
+  using Exact = boost::multiprecision::cpp_bin_float_quad;
   struct Scale {
-    DoubleDouble numerator{1};
-    DoubleDouble denominator{1};
+    Exact si = 1;         ///< of one register unit
+    Exact registers = 1;  ///< of one SI unit
   };
   [[nodiscard]] const Scale& scale(Kind kind) const { return scales_[static_cast<std::size_t>(kind)]; }
 

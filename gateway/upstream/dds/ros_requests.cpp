@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -96,7 +97,7 @@ JointView RosRequests::view_of(const AxisImage& axis, const Joint& joint) const 
   const double position =
       units_of(axis.number).to_si(Quantity::position_actual, shown_value(axis, Quantity::position_actual));
   // An angle of the motor: on an axis in metres, the way that it is there.
-  const double tolerance = settings_.sync_tolerance / kTwoPi.high * units_of(axis.number).turn();
+  const double tolerance = settings_.sync_tolerance / (2 * std::numbers::pi) * units_of(axis.number).turn();
   return joint_view(axis, good ? position : kNan, tolerance, joint.life->id);
 }
 

@@ -14,6 +14,14 @@ namespace axisgate::dds {
 using Guid = std::array<std::uint8_t, 16>;
 inline constexpr std::size_t kGuidPrefix = 12;
 
+using GuidPrefix = std::array<std::uint8_t, kGuidPrefix>;
+
+[[nodiscard]] inline GuidPrefix participant_of(const Guid& guid) {
+  GuidPrefix out{};
+  std::copy_n(guid.begin(), kGuidPrefix, out.begin());
+  return out;
+}
+
 [[nodiscard]] inline bool same_participant(const Guid& a, const Guid& b) {
   return std::equal(a.begin(), a.begin() + kGuidPrefix, b.begin());
 }

@@ -1,49 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/axis_command_reader.hpp"
 
-#include <fastdds/rtps/RTPSDomain.h>
-#include <fastdds/rtps/attributes/HistoryAttributes.h>
-#include <fastdds/rtps/attributes/ReaderAttributes.h>
-#include <fastrtps/attributes/TopicAttributes.h>
-#include <fastrtps/qos/ReaderQos.h>
-
-#include "gateway/upstream/dds_link/exit_codes.hpp"
-#include "gateway/upstream/dds_process/start_error.hpp"
 #include "gateway/upstream/dds_process/steady.hpp"
 #include "gateway/upstream/dds_process/to_idl.hpp"
 
 namespace axisgate::dds {
 namespace {
 
-namespace fdds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
-
-/// Samples that wait for one before them that was lost, and memory for a usual one.
-constexpr std::int32_t kMostOutOfOrder = 4096;
-constexpr std::uint32_t kUsualPayload = 256;
-
-rtps::HistoryAttributes history_attributes() {
-  return {rtps::DYNAMIC_REUSABLE_MEMORY_MODE, kUsualPayload, 0, kMostOutOfOrder};
-}
-
-rtps::ReaderAttributes reader_attributes(bool exclusive) {
-  rtps::ReaderAttributes out;
-  out.endpoint.reliabilityKind = rtps::RELIABLE;
-  out.endpoint.durabilityKind = rtps::VOLATILE;
-  out.endpoint.topicKind = rtps::WITH_KEY;
-  out.endpoint.ownershipKind = exclusive ? fdds::EXCLUSIVE_OWNERSHIP_QOS : fdds::SHARED_OWNERSHIP_QOS;
-  // DDS-Security finds a topic's rules by this name; a DataReader has it from its topic.
-  out.endpoint.properties.properties().emplace_back("topic_name", kCommandTopicName);
-  return out;
-}
-
-eprosima::fastrtps::ReaderQos announced_qos(bool exclusive) {
-  eprosima::fastrtps::ReaderQos out;
-  out.m_reliability.kind = fdds::RELIABLE_RELIABILITY_QOS;
-  out.m_durability.kind = fdds::VOLATILE_DURABILITY_QOS;
-  out.m_ownership.kind = exclusive ? fdds::EXCLUSIVE_OWNERSHIP_QOS : fdds::SHARED_OWNERSHIP_QOS;
-  return out;
-}
 
 bool stops(std::uint8_t command) {
   constexpr std::uint8_t kDisable = 2, kHalt = 4, kJogEnd = 33;  // schemas/axisgate.idl; 3 is quick_stop
@@ -52,8 +16,7 @@ bool stops(std::uint8_t command) {
 
 }  // namespace
 
-AxisCommandReader::History::History(const CommandIntake& intake)
-    : ReaderHistory(history_attributes()), intake_(intake) {}
+AxisCommandReader::History::History(const CommandIntake& intake) : ReaderHistory(command_history()), intake_(intake) {}
 
 bool AxisCommandReader::History::received_change(rtps::CacheChange_t* change, std::size_t missing) {
   return intake_.has_room() && ReaderHistory::received_change(change, missing);
@@ -61,19 +24,14 @@ bool AxisCommandReader::History::received_change(rtps::CacheChange_t* change, st
 
 AxisCommandReader::AxisCommandReader(RtpsParticipant& participant, CommandTopic topic, CommandIntake& intake,
                                      WriterWatch& watch, Wake& wake)
-    : exclusive_(topic == CommandTopic::command), intake_(intake), watch_(watch), wake_(wake), history_(intake) {
-  rtps::ReaderAttributes attributes = reader_attributes(exclusive_);
-  reader_ = rtps::RTPSDomain::createRTPSReader(&*participant, attributes, &history_, this);
-  eprosima::fastrtps::TopicAttributes described(kCommandTopicName, type_.getName(), rtps::WITH_KEY);
-  described.auto_fill_type_object = false;
-  described.auto_fill_type_information = false;
-  if (reader_ == nullptr || !(*participant).registerReader(reader_, described, announced_qos(exclusive_)))
-    throw StartError(kExitParticipant, "the reader of topic axisgate/axis_command cannot be made");
-}
+    : exclusive_(topic == CommandTopic::command),
+      intake_(intake),
+      watch_(watch),
+      wake_(wake),
+      history_(intake),
+      reader_(participant.make_reader({topic, 0}, history_, *this)) {}
 
-AxisCommandReader::~AxisCommandReader() {
-  if (reader_ != nullptr) rtps::RTPSDomain::removeRTPSReader(reader_);
-}
+AxisCommandReader::~AxisCommandReader() { RtpsParticipant::end_reader(reader_); }
 
 void AxisCommandReader::onReaderMatched(rtps::RTPSReader*, rtps::MatchingInfo& info) {
   const Guid writer = to_guid(info.remoteEndpointGuid);

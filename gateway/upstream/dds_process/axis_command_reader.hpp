@@ -50,7 +50,7 @@ class AxisCommandReader : private eprosima::fastrtps::rtps::ReaderListener {
   Wake& wake_;
   GuardedType<AxisCommandPubSubType> type_;
   History history_;
-  eprosima::fastrtps::rtps::RTPSReader* reader_;
+  eprosima::fastrtps::rtps::RTPSReader& reader_;
 };
 
 }  // namespace axisgate::dds

@@ -18,7 +18,7 @@ constexpr std::int32_t kMostSamplesPerAxis = 64;
 constexpr std::int32_t kMostHeartbeats = 256;
 
 fastdds::DataReaderQos object_qos() {
-  fastdds::DataReaderQos qos = reader_qos(CommandTopic::object, kMostSamplesPerAxis);
+  fastdds::DataReaderQos qos = object_reader_qos(kMostSamplesPerAxis);
   qos.history().kind = fastdds::KEEP_ALL_HISTORY_QOS;
   return qos;
 }
@@ -46,7 +46,7 @@ CommandReaders::CommandReaders(Participant& participant, std::uint32_t domain, W
       rtps_(domain, participant.qos()),
       exclusive_(rtps_, CommandTopic::command, intake_, watch, wake),
       shared_(rtps_, CommandTopic::shared_command, intake_, watch, wake),
-      objects_(participant.make_reader(kObjectTopicName, type_of(CommandTopic::object),
+      objects_(participant.make_reader(kObjectTopicName, object_type(),
                                        participant.reader_qos_of("object_request", object_qos()), this)),
       heartbeats_(participant.make_reader(kHeartbeatTopicName,
                                           fastdds::TypeSupport(new GuardedType<HeartbeatPubSubType>()),

@@ -22,6 +22,8 @@ class CommandReaders : private fastdds::DataReaderListener {
 
   /// At most `most` samples, commands first; fewer: there are no more.
   [[nodiscard]] std::vector<Record> take(std::size_t most);
+  /// Of the readers of axis_command.
+  [[nodiscard]] RtpsParticipant& participant_of_commands() { return rtps_; }
 
  private:
   void on_data_available(fastdds::DataReader* reader) override;

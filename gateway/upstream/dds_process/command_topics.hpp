@@ -17,29 +17,22 @@ namespace axisgate::dds {
 
 inline constexpr const char* kCommandTopicName = "axisgate/axis_command";
 inline constexpr const char* kStateTopicName = "axisgate/axis_state";
+inline constexpr const char* kGatewayTopicName = "axisgate/gateway_state";
 inline constexpr const char* kHeartbeatTopicName = "axisgate/heartbeat";
 inline constexpr const char* kObjectTopicName = "axisgate/object_request";
 /// Any axis number may be asked for: one that does not exist is to be answered, not to block the others.
 inline constexpr std::int32_t kMostInstances = 65536;
 
-[[nodiscard]] inline const char* name_of(CommandTopic topic) {
-  return topic == CommandTopic::object ? kObjectTopicName : kCommandTopicName;
-}
-
-[[nodiscard]] inline eprosima::fastdds::dds::TypeSupport type_of(CommandTopic topic) {
-  if (topic != CommandTopic::object)
-    return eprosima::fastdds::dds::TypeSupport(new GuardedType<AxisCommandPubSubType>());
+[[nodiscard]] inline eprosima::fastdds::dds::TypeSupport object_type() {
   return eprosima::fastdds::dds::TypeSupport(new GuardedType<ObjectRequestPubSubType>());
 }
 
-/// Reliable, volatile, ownership as the topic has it.
-[[nodiscard]] inline eprosima::fastdds::dds::DataReaderQos reader_qos(CommandTopic topic,
-                                                                      std::int32_t samples_per_instance) {
+/// Of object_request: reliable, volatile.
+[[nodiscard]] inline eprosima::fastdds::dds::DataReaderQos object_reader_qos(std::int32_t samples_per_instance) {
   namespace fdds = eprosima::fastdds::dds;
   fdds::DataReaderQos qos;
   qos.reliability().kind = fdds::RELIABLE_RELIABILITY_QOS;
   qos.durability().kind = fdds::VOLATILE_DURABILITY_QOS;
-  qos.ownership().kind = topic == CommandTopic::command ? fdds::EXCLUSIVE_OWNERSHIP_QOS : fdds::SHARED_OWNERSHIP_QOS;
   qos.resource_limits().max_instances = kMostInstances;
   qos.resource_limits().max_samples_per_instance = samples_per_instance;
   qos.resource_limits().max_samples = kMostInstances * samples_per_instance;

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Readers that hear no more than whether writers are alive: one for each lease that a writer of commands states.
 // Promises the library's own verdict on each such writer; the readers of commands ask for no lease, since they would
-// not be matched with writers that state none, and the library then watches nobody for them. Never takes a sample for
-// use.
+// not be matched with writers that state none, and the library then watches nobody for them. Each is of the participant
+// whose reader takes the commands, so that a writer meets that one first: what it wrote to a reader of its lease alone
+// would be lost. Never takes a sample for use.
 #pragma once
 
 #include <map>
 #include <memory>
 
 #include "gateway/upstream/dds_process/participant.hpp"
+#include "gateway/upstream/dds_process/rtps_participant.hpp"
 #include "gateway/upstream/dds_process/wake.hpp"
 #include "gateway/upstream/dds_process/writer_watch.hpp"
 
@@ -19,7 +21,8 @@ inline constexpr std::size_t kMaxLeasesHeard = 24;
 
 class LivelinessReaders {
  public:
-  LivelinessReaders(Participant& participant, WriterWatch& watch, Wake& wake);
+  /// `commands`: of the readers of axis_command; `objects`: of that of object_request.
+  LivelinessReaders(RtpsParticipant& commands, Participant& objects, WriterWatch& watch, Wake& wake);
   ~LivelinessReaders();
   LivelinessReaders(const LivelinessReaders&) = delete;
   LivelinessReaders& operator=(const LivelinessReaders&) = delete;
@@ -29,7 +32,10 @@ class LivelinessReaders {
 
  private:
   class Ear;
-  Participant& participant_;
+  class CommandEar;
+  class ObjectEar;
+  RtpsParticipant& commands_;
+  Participant& objects_;
   WriterWatch& watch_;
   Wake& wake_;
   std::map<LivelinessLease, std::unique_ptr<Ear>> ears_;

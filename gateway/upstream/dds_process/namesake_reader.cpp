@@ -26,11 +26,16 @@ fastdds::DataReaderQos namesake_qos() {
 
 }  // namespace
 
-NamesakeReader::NamesakeReader(Participant& participant, NamesakeWatch& watch, Wake& wake)
-    : participant_(participant), watch_(watch), wake_(wake) {}
+NamesakeReader::NamesakeReader(Participant& participant, bool behind_a_server, NamesakeWatch& watch, Wake& wake)
+    : participant_(participant), watch_(watch), wake_(wake) {
+  if (!behind_a_server) return;
+  const fastdds::TypeSupport type(new GuardedType<GatewayStatePubSubType>());
+  gateways_ = &participant_.make_reader(kGatewayTopicName, type, namesake_qos(), this);
+}
 
 NamesakeReader::~NamesakeReader() {
   if (reader_ != nullptr) participant_.end_reader(*reader_);
+  if (gateways_ != nullptr) participant_.end_reader(*gateways_);
 }
 
 void NamesakeReader::update() {
@@ -43,13 +48,33 @@ void NamesakeReader::update() {
   }
 }
 
-void NamesakeReader::on_data_available(fastdds::DataReader* reader) {
-  AxisState sample;
+template <typename Sample, typename Heard>
+void NamesakeReader::take_all(fastdds::DataReader& reader, const Heard& heard) {
+  Sample sample;
   fastdds::SampleInfo info;
-  while (reader->take_next_sample(&sample, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
-    if (info.valid_data)
-      watch_.on_state(to_guid(info.sample_identity.writer_guid()), sample.gateway_key(), sample.axis());
+  while (reader.take_next_sample(&sample, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+    const auto& writer = info.sample_identity.writer_guid();
+    if (info.valid_data && writer.guidPrefix != reader.guid().guidPrefix) heard(to_guid(writer), sample);
   }
+}
+
+void NamesakeReader::on_data_available(fastdds::DataReader* reader) {
+  if (reader->get_topicdescription()->get_name() == kStateTopicName) {
+    take_all<AxisState>(*reader, [&](const Guid& writer, const AxisState& sample) {
+      watch_.on_state(writer, sample.gateway_key(), sample.axis());
+    });
+  } else {
+    take_all<GatewayState>(*reader, [&](const Guid& writer, const GatewayState& sample) {
+      watch_.on_gateway(writer, sample.gateway_key());
+    });
+  }
+  wake_.set();
+}
+
+void NamesakeReader::on_subscription_matched(fastdds::DataReader* reader,
+                                             const fastdds::SubscriptionMatchedStatus& info) {
+  if (reader->get_topicdescription()->get_name() == kStateTopicName || info.current_count_change > 0) return;
+  watch_.on_gateway_gone(to_guid(eprosima::fastrtps::rtps::iHandle2GUID(info.last_publication_handle)));
   wake_.set();
 }
 

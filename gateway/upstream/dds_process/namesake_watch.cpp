@@ -27,6 +27,16 @@ void NamesakeWatch::on_removed(const Guid& writer) {
   others_.erase(found);
 }
 
+void NamesakeWatch::on_gateway(const Guid& writer, std::uint32_t key) {
+  const std::lock_guard lock(mutex_);
+  if (key == key_ && gateways_.size() < kMaxNamesakesKnown) gateways_.insert(writer);
+}
+
+void NamesakeWatch::on_gateway_gone(const Guid& writer) {
+  const std::lock_guard lock(mutex_);
+  gateways_.erase(writer);
+}
+
 void NamesakeWatch::on_state(const Guid& writer, std::uint32_t key, std::uint16_t axis) {
   const std::lock_guard lock(mutex_);
   const auto found = others_.find(writer);
@@ -36,7 +46,7 @@ void NamesakeWatch::on_state(const Guid& writer, std::uint32_t key, std::uint16_
 
 bool NamesakeWatch::any() const {
   const std::lock_guard lock(mutex_);
-  return !others_.empty();
+  return !others_.empty() || !gateways_.empty();
 }
 
 std::vector<NamesakeRecord> NamesakeWatch::take() {

@@ -28,6 +28,10 @@ class NamesakeWatch {
   void on_discovered(const Guid& writer, const std::vector<std::uint8_t>& user_data, const std::string& where);
   void on_removed(const Guid& writer);
 
+  /// A sample of gateway_state of that writer was read; and its end.
+  void on_gateway(const Guid& writer, std::uint32_t key);
+  void on_gateway_gone(const Guid& writer);
+
   /// A state of that writer was read.
   void on_state(const Guid& writer, std::uint32_t key, std::uint16_t axis);
   /// Somebody of our key is there, though perhaps silent: states are to be read.
@@ -43,6 +47,7 @@ class NamesakeWatch {
   const std::uint32_t key_;
   mutable std::mutex mutex_;
   std::map<Guid, Other> others_;
+  std::set<Guid> gateways_;  ///< writers of gateway_state that have our key
   std::vector<NamesakeRecord> changes_;
 };
 

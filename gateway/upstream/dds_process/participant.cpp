@@ -178,13 +178,14 @@ fastdds::Topic* Participant::find_or_make_topic(const std::string& topic, fastdd
 
 fastdds::DataWriter& Participant::make_writer(const std::string& topic, const std::string& name,
                                               fastdds::TypeSupport type, fastdds::DataWriterQos qos,
-                                              const std::vector<std::uint8_t>& user_data) {
+                                              const std::vector<std::uint8_t>& user_data,
+                                              fastdds::DataWriterListener* listener) {
   const std::string profile = "axisgate_" + name;
   if (in_qos_file(profile) && publisher_->get_datawriter_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
     throw StartError(kExitParticipant, fmt::format("--qos-file: profile {} is no data_writer profile", profile));
   }
   if (!user_data.empty()) qos.user_data().data_vec(user_data);
-  fastdds::DataWriter* made = publisher_->create_datawriter(find_or_make_topic(topic, std::move(type)), qos);
+  fastdds::DataWriter* made = publisher_->create_datawriter(find_or_make_topic(topic, std::move(type)), qos, listener);
   if (made == nullptr) {
     throw StartError(kExitParticipant,
                      fmt::format("the writer of topic {} cannot be made: is its QoS consistent?", topic));

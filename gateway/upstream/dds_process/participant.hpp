@@ -7,6 +7,7 @@
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
@@ -30,7 +31,8 @@ class Participant {
   /// `name` as in the QoS file, without "axisgate_". `user_data`: what others read of it when they discover it.
   [[nodiscard]] fastdds::DataWriter& make_writer(const std::string& topic, const std::string& name,
                                                  fastdds::TypeSupport type, fastdds::DataWriterQos qos,
-                                                 const std::vector<std::uint8_t>& user_data = {});
+                                                 const std::vector<std::uint8_t>& user_data = {},
+                                                 fastdds::DataWriterListener* listener = nullptr);
   [[nodiscard]] fastdds::DataReader& make_reader(const std::string& topic, fastdds::TypeSupport type,
                                                  const fastdds::DataReaderQos& qos,
                                                  fastdds::DataReaderListener* listener);

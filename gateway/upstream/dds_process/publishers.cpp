@@ -29,18 +29,18 @@ void write(fastdds::DataWriter& writer, Sample sample) {
 
 }  // namespace
 
-Publishers::Publishers(Participant& participant, const GatewayId& gateway)
+Publishers::Publishers(Participant& participant, const GatewayId& gateway, Wake& wake)
     : gateway_(gateway),
       axis_state_(participant.make_writer(kStateTopicName, "axis_state", type<AxisStatePubSubType>(),
                                           writer_qos(1, kMostStates, true), gateway_user_data(gateway.key))),
       axis_event_(participant.make_writer("axisgate/axis_event", "axis_event", type<AxisEventPubSubType>(),
                                           writer_qos(kEventsKept, kMostStates, true))),
-      gateway_state_(participant.make_writer("axisgate/gateway_state", "gateway_state", type<GatewayStatePubSubType>(),
+      gateway_state_(participant.make_writer(kGatewayTopicName, "gateway_state", type<GatewayStatePubSubType>(),
                                              writer_qos(1, 1, true))),
-      command_reply_(participant.make_writer("axisgate/command_reply", "command_reply", type<CommandReplyPubSubType>(),
-                                             writer_qos(kRepliesKept, kMostStates, false))),
-      object_reply_(participant.make_writer("axisgate/object_reply", "object_reply", type<ObjectReplyPubSubType>(),
-                                            writer_qos(kRepliesKept, kMostStates, false))) {}
+      command_reply_(participant, "command_reply", type<CommandReplyPubSubType>(),
+                     writer_qos(kRepliesKept, kMostStates, false), gateway_, wake),
+      object_reply_(participant, "object_reply", type<ObjectReplyPubSubType>(),
+                    writer_qos(kRepliesKept, kMostStates, false), gateway_, wake) {}
 
 bool Publishers::publish(const Record& record, SteadyNs now, ClockDifference difference) {
   if (const auto* state = std::get_if<StateRecord>(&record)) {
@@ -50,13 +50,18 @@ bool Publishers::publish(const Record& record, SteadyNs now, ClockDifference dif
   } else if (const auto* gateway = std::get_if<GatewayRecord>(&record)) {
     write(gateway_state_, to_idl(*gateway, now, difference, gateway_));
   } else if (const auto* reply = std::get_if<ReplyRecord>(&record)) {
-    write(command_reply_, to_idl(*reply, gateway_));
+    command_reply_.write(*reply, now);
   } else if (const auto* object = std::get_if<ObjectReplyRecord>(&record)) {
-    write(object_reply_, to_idl(*object, gateway_));
+    object_reply_.write(*object, now);
   } else {
     return false;
   }
   return true;
+}
+
+void Publishers::publish_held(SteadyNs now) {
+  command_reply_.write_held(now);
+  object_reply_.write_held(now);
 }
 
 }  // namespace axisgate::dds

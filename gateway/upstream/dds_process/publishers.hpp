@@ -4,25 +4,32 @@
 // Never reads anything, and never disposes an instance: a drive that is gone is told by its link_state.
 #pragma once
 
+#include <algorithm>
+
 #include "gateway/upstream/dds_process/participant.hpp"
+#include "gateway/upstream/dds_process/reply_writer.hpp"
 #include "gateway/upstream/dds_process/to_idl.hpp"
 
 namespace axisgate::dds {
 
 class Publishers {
  public:
-  Publishers(Participant& participant, const GatewayId& gateway);
+  Publishers(Participant& participant, const GatewayId& gateway, Wake& wake);
 
   /// False: the record is none of those that go out.
   bool publish(const Record& record, SteadyNs now, ClockDifference difference);
+  /// Replies that have waited for their clients' readers.
+  void publish_held(SteadyNs now);
+  /// When publish_held() has more, whatever happens.
+  [[nodiscard]] SteadyNs due() const { return std::min(command_reply_.due(), object_reply_.due()); }
 
  private:
   GatewayId gateway_;
   fastdds::DataWriter& axis_state_;
   fastdds::DataWriter& axis_event_;
   fastdds::DataWriter& gateway_state_;
-  fastdds::DataWriter& command_reply_;
-  fastdds::DataWriter& object_reply_;
+  ReplyWriter command_reply_;
+  ReplyWriter object_reply_;
 };
 
 }  // namespace axisgate::dds

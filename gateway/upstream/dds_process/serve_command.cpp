@@ -15,6 +15,7 @@
 #include "gateway/upstream/dds_link/exit_codes.hpp"
 #include "gateway/upstream/dds_process/command_readers.hpp"
 #include "gateway/upstream/dds_process/dds_log.hpp"
+#include "gateway/upstream/dds_process/dead_segments.hpp"
 #include "gateway/upstream/dds_process/link_socket.hpp"
 #include "gateway/upstream/dds_process/liveliness_readers.hpp"
 #include "gateway/upstream/dds_process/memory_limit.hpp"
@@ -48,13 +49,13 @@ class Server {
         namesakes_(gateway_key(options.gateway_name)),
         discovery_(watch_, namesakes_, wake_),
         participant_(options.participant, &discovery_),
-        publishers_(participant_, gateway_id(options.gateway_name)),
-        namesake_reader_(participant_, namesakes_, wake_) {
+        publishers_(participant_, gateway_id(options.gateway_name), wake_),
+        namesake_reader_(participant_, !options.participant.discovery_servers.empty(), namesakes_, wake_) {
     if (options.ros2)
       ros_.emplace(participant_, wake_, options.gateway_name, options.min_period_ms * kMillisecond, options.commands);
     if (options.commands) {
       readers_.emplace(participant_, options.participant.domain, watch_, wake_);
-      liveliness_.emplace(participant_, watch_, wake_);
+      liveliness_.emplace(readers_->participant_of_commands(), participant_, watch_, wake_);
     }
   }
 
@@ -64,6 +65,7 @@ class Server {
     SteadyNs next_memory_check = steady_now();
     for (;;) {
       wait(next_beat);
+      publishers_.publish_held(steady_now());
       if (steady_now() >= next_memory_check) {
         check_memory();
         next_memory_check = steady_now() + kMemoryPeriod;
@@ -99,7 +101,7 @@ class Server {
     // Samples and changes wait while the gateway does not read: only its socket can change that.
     const nfds_t count = link_.idle() ? 2 : 1;
     const SteadyNs now = steady_now();
-    SteadyNs until = now + kMemoryPeriod;
+    SteadyNs until = std::min(now + kMemoryPeriod, publishers_.due());
     if (readers_) until = std::min(until, next_beat);
     if (ros_) until = std::min(until, ros_->due());
     if (more_) until = now;
@@ -180,6 +182,7 @@ int serve(const ServeOptions& options, LinkSocket& link) {
   DdsLog log(wake);
   take_over_library_log(log);
   int code = kExitInternal;
+  if (options.participant.shared_memory) remove_dead_segments("/dev/shm");
   try {
     Server server(options, link, log, wake);
     code = server.run();

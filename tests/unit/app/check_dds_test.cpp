@@ -60,8 +60,25 @@ TEST_F(CheckDds, TellsWhichTopicsThereAre) {
   EXPECT_THAT(said(),
               HasSubstr("ROS 2           /joint_states and /diagnostics, /joint_commands, and of each axis enable"));
   EXPECT_THAT(said(), HasSubstr("a stream of positions begins within 0.01 rad of its axis\n"));
+  settings->gateway.name = "cell_7";
+  EXPECT_THAT(said(), HasSubstr("ROS 2           /cell_7/joint_states and /diagnostics, /cell_7/joint_commands, and"));
   settings->commands = false;
-  EXPECT_THAT(said(), HasSubstr("ROS 2           /joint_states and /diagnostics\n"));
+  EXPECT_THAT(said(), HasSubstr("ROS 2           /cell_7/joint_states and /diagnostics\n"));
+}
+
+TEST_F(CheckDds, TellsTheTopicsOfAnAxisWhoseNameIsNoneToRos2) {
+  settings->ros2 = true;
+  settings->commands = true;
+  settings->gateway.name = "cell_7";
+  axis.name = "x-axis 1";
+  EXPECT_THAT(of_the_axis(), HasSubstr("joint \"x-axis 1\"; its topics begin with /cell_7/x_axis_1/\n"));
+  axis.lease.on = false;
+  EXPECT_THAT(of_the_axis(), HasSubstr("/cell_7/x_axis_1/\n"));
+  axis.name = "x_axis";
+  EXPECT_EQ(of_the_axis(), "");
+  settings->ros2 = false;
+  axis.name = "x-axis";
+  EXPECT_EQ(of_the_axis(), "");
 }
 
 TEST_F(CheckDds, TellsHowParticipantsFindEachOther) {

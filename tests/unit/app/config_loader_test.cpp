@@ -216,6 +216,14 @@ TEST_F(ConfigLoader, ToldOfAFileThatIsNotThereNamesIt) {
   EXPECT_THAT(text(faults[0]), HasSubstr("/nowhere/gateway.json: cannot be read: No such file or directory"));
 }
 
+// The power went while somebody saved it: no beginning of a good file is a file.
+TEST_F(ConfigLoader, NoHalfOfAFileIsTaken) {
+  const std::string whole = one_drive();
+  ASSERT_EQ(whole.find_last_not_of(" \n"), whole.rfind('}'));
+  for (std::size_t size = 0; size < whole.rfind('}') + 1; ++size)
+    EXPECT_THAT(load_bad(whole.substr(0, size)), Not(IsEmpty())) << size;
+}
+
 TEST_F(ConfigLoader, NothingThatJsonCanSayEndsItByException) {
   for (
       const char* wrong :

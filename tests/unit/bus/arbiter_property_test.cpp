@@ -105,9 +105,11 @@ class RandomRun {
       reference_.on_decline();
       arbiter_.decline();
     } else {
+      const bool lost = random_.chance(1, 4);
+      if (lost) now_ += milliseconds(random_.below(40));
       const Instant silent_until = now_ + milliseconds(random_.below(3));
-      reference_.on_over(silent_until);
-      arbiter_.exchange_over(silent_until);
+      reference_.on_over(silent_until, lost);
+      arbiter_.exchange_over(silent_until, lost);
     }
     if (granted_ != 0 && random_.chance(1, 2)) finish(granted_);
   }

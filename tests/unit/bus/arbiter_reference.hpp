@@ -69,9 +69,12 @@ class ArbiterReference {
     for (const auto& [id, known] : known_) EXPECT_FALSE(ready(known, now)) << "job " << id << " is stranded";
     for (DriveSlot drive = 0; drive < kDrives; ++drive) EXPECT_FALSE(poll_ready(drive, now)) << "a poll is stranded";
   }
-  void on_over(Instant silent_until) {
+  void on_over(Instant silent_until, bool lost = false) {
     busy_ = false;
     silent_until_ = silent_until;
+    lost_[granted_.drive] = lost;
+    const Duration taken = silent_until - granted_at_;
+    owed_ = lost ? std::max(owed_, taken) : std::max(owed_ - taken, Duration{});
   }
   void on_decline() {
     busy_ = false;
@@ -92,7 +95,10 @@ class ArbiterReference {
       const Known& known = known_.at(id);
       if (!drive || known.job.drive == *drive) end(id, known.started ? started : waiting);
     }
-    if (!drive) on_over(kLongAgo);
+    if (drive) return;
+    busy_ = false;
+    silent_until_ = kLongAgo;
+    owed_ = {};
   }
   void on_ending(const std::optional<Arbiter::Ending>& ending, Instant now) {
     expire(now);
@@ -170,16 +176,27 @@ class ArbiterReference {
       return k.second.started && o.priority == known.job.priority && same_queue;
     });
   }
+  /// Its drive has lost an exchange, and those that were answered since have not had as much time.
+  [[nodiscard]] bool deferred(DriveSlot drive, Priority priority) const {
+    return lost_[drive] && owed_ > Duration{} && priority > Priority::cause;
+  }
+  /// Whether the rules among equals hold between the two; and that nobody who answers waits for who did not.
+  [[nodiscard]] bool comparable(const Arbiter::Grant& grant, DriveSlot drive, Priority priority) const {
+    const bool mine = deferred(grant.drive, grant.priority);
+    const bool others = deferred(drive, priority);
+    EXPECT_FALSE(mine && !others) << "drive " << int{drive} << " waited for one that does not answer";
+    return mine == others;
+  }
   void check_poll(const Arbiter::Grant& grant, Instant now) {
     EXPECT_TRUE(poll_ready(grant.drive, now)) << "a poll before its time";
     due_[grant.drive] = kNever;
     for (const auto& [id, known] : known_) {
-      if (!ready(known, now)) continue;
+      if (!ready(known, now) || !comparable(grant, known.job.drive, known.job.priority)) continue;
       EXPECT_GT(known.job.priority, Priority::cause) << "a stop, or the cause of a fault, waited for a poll";
       EXPECT_GE(others_, bus::kOthersPerPoll) << "a poll went before job " << id << " and was not owed";
     }
     for (DriveSlot drive = 0; drive < kDrives; ++drive) {
-      if (poll_ready(drive, now)) {
+      if (poll_ready(drive, now) && comparable(grant, drive, Priority::poll)) {
         EXPECT_LE((served_[{grant.drive, Priority::poll}]), (served_[{drive, Priority::poll}])) << "turns";
       }
     }
@@ -190,13 +207,14 @@ class ArbiterReference {
     EXPECT_EQ(grant.drive, mine.job.drive);
     EXPECT_EQ(grant.priority, mine.job.priority);
     EXPECT_TRUE(ready(mine, now));
-    if (mine.job.priority > Priority::cause && others_ >= bus::kOthersPerPoll) {
-      for (DriveSlot drive = 0; drive < kDrives; ++drive) {
-        EXPECT_FALSE(poll_ready(drive, now)) << "poll did not get its share";
-      }
+    for (DriveSlot drive = 0; drive < kDrives; ++drive) {
+      if (!poll_ready(drive, now) || !comparable(grant, drive, Priority::poll)) continue;
+      EXPECT_FALSE(mine.job.priority > Priority::cause && others_ >= bus::kOthersPerPoll)
+          << "poll did not get its share";
     }
     for (const auto& [id, known] : known_) {
       if (id == grant.id || !ready(known, now)) continue;
+      if (!comparable(grant, known.job.drive, known.job.priority)) continue;
       EXPECT_LE(mine.job.priority, known.job.priority) << "job " << id << " is more urgent";
       if (known.job.priority != mine.job.priority) continue;
       if (mine.job.priority == Priority::stop && mine.started != known.started) {
@@ -223,6 +241,8 @@ class ArbiterReference {
   std::vector<Instant> not_before_ = std::vector<Instant>(kDrives, kLongAgo);
   std::vector<Instant> due_ = std::vector<Instant>(kDrives, kNever);
   std::map<std::pair<DriveSlot, Priority>, std::uint64_t> served_;
+  std::vector<bool> lost_ = std::vector<bool>(kDrives, false);
+  Duration owed_{};
   std::uint64_t grants_ = 0;
   int others_ = 0;
   bool busy_ = false;

@@ -177,6 +177,62 @@ TEST_F(ArbiterTest, a_flood_of_stops_of_one_drive_holds_up_another_by_one_exchan
   EXPECT_EQ(serve(), of_other);
 }
 
+/// Drives 0 and 1 want the wire for commands all the time, drives 2 and 3 are to be polled all the time; an answer
+/// takes 20 ms. Which drives had it, one digit each; small letters for exchanges that were lost.
+std::string who_had_the_wire(int exchanges, Duration timeout, std::initializer_list<DriveSlot> late) {
+  Arbiter arbiter(4);
+  Instant now = Instant{} + 1h;
+  std::string seen;
+  for (const DriveSlot drive : {DriveSlot{0}, DriveSlot{1}}) static_cast<void>(arbiter.submit(command(drive), now));
+  for (int i = 0; i < exchanges; ++i) {
+    for (const DriveSlot drive : {DriveSlot{2}, DriveSlot{3}}) arbiter.set_poll_due(drive, now);
+    const auto grant = arbiter.next(now);
+    if (!grant) break;
+    const bool lost = std::ranges::find(late, grant->drive) != late.end();
+    seen += static_cast<char>((lost ? 'a' : '0') + grant->drive);
+    now += lost ? timeout : 20ms;
+    arbiter.exchange_over(now, lost);
+  }
+  return seen;
+}
+
+TEST_F(ArbiterTest, a_drive_that_does_not_answer_leaves_the_others_as_much_time_as_it_takes) {
+  EXPECT_EQ(who_had_the_wire(12, 100ms, {}), "010120101301") << "where all answer, classes and turns decide";
+  EXPECT_EQ(who_had_the_wire(18, 100ms, {0}), "a11121a11311a12111");
+  EXPECT_EQ(who_had_the_wire(18, 60ms, {0}), "a1112a1113a1112a11")
+      << "a shorter timeout, more often; polls keep their fifth";
+  EXPECT_EQ(who_had_the_wire(18, 100ms, {0, 1}), "ab23232a32323b2323") << "two of them share that half";
+}
+
+TEST_F(ArbiterTest,
+       a_drive_that_does_not_answer_goes_on_where_nobody_else_wants_the_wire_and_as_before_when_it_answers) {
+  const JobId late = submit(command(0));
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(arbiter.next(now)->id, late);
+    now += 100ms;
+    arbiter.exchange_over(now, true);
+  }
+  arbiter.set_poll_due(1, now);
+  EXPECT_EQ(exchange(), 0u) << "a poll of a drive that answers goes first";
+  ASSERT_EQ(arbiter.next(now)->id, late);
+  now += 20ms;
+  arbiter.exchange_over(now);
+  arbiter.set_poll_due(1, now);
+  EXPECT_EQ(exchange(), late) << "it has answered: its command goes first, as all do";
+}
+
+TEST_F(ArbiterTest, a_stop_and_a_fault_s_cause_of_a_drive_that_does_not_answer_go_at_once) {
+  submit(command(0));
+  ASSERT_TRUE(arbiter.next(now));
+  now += 100ms;
+  arbiter.exchange_over(now, true);
+  submit(command(1));
+  const JobId cause = submit(job(Priority::cause, 0, bus::kNoAxis));
+  const JobId halt = submit(stop(0, 1));
+  EXPECT_EQ(serve(), halt);
+  EXPECT_EQ(serve(), cause);
+}
+
 TEST_F(ArbiterTest, a_bus_job_that_declines_frees_the_wire_at_once_and_is_asked_again_after_a_pause_or_its_own_wait) {
   const JobId idle = submit(command(0));
   const JobId other = submit(command(1));

@@ -94,10 +94,11 @@ class DiaryDrive final : public bus::BusDrive {
  public:
   DiaryDrive(std::uint8_t node, Diary& diary) : node_(node), diary_(diary) {}
 
-  std::optional<Exchange> on_grant(JobId id, Priority priority) override {
+  std::optional<Exchange> on_grant(const bus::Arbiter::Grant& grant) override {
+    const JobId id = grant.id;
     granted = id;
     diary_.push_back(fmt::format("drive {}: grant {}", node_, id == 0 ? "poll" : std::to_string(id)));
-    if (grant_hook) return grant_hook(id, priority);
+    if (grant_hook) return grant_hook(id, grant.priority);
     return exchange();
   }
   void on_result(const Exchange& exchange, const ExchangeResult& result) override {
@@ -105,7 +106,8 @@ class DiaryDrive final : public bus::BusDrive {
     diary_.push_back(fmt::format("drive {}: {}", node_, word(result.code)));
     if (result_hook) result_hook(result);
   }
-  void on_job_ended(JobId id, Errc code) override {
+  void on_job_ended(const bus::Arbiter::Ending& ending) override {
+    const auto [id, code] = std::pair(ending.id, ending.code);
     diary_.push_back(fmt::format("drive {}: job {} {}", node_, id, word(code)));
     if (ended_hook) ended_hook(id, code);
   }

@@ -46,6 +46,29 @@ TEST_F(BusTest, an_exchange_without_an_answer_times_out_and_the_line_settles) {
   EXPECT_THAT(wire->sent, SizeIs(2));
 }
 
+TEST_F(BusTest, noise_in_place_of_the_answers_of_one_drive_is_told_with_its_number) {
+  link_up();
+  const auto ask = [&](DriveSlot drive, bool noise) {
+    bus->finish(submit(drive));
+    const JobId job = submit(drive);
+    runtime.advance_by(kSettle);
+    wire->counted.bad_frames += noise;
+    runtime.advance_by(kTimeout);
+    bus->finish(job);
+  };
+  ask(0, true);
+  ask(0, true);
+  ask(0, false);
+  ask(0, true);
+  ask(1, true);
+  ask(0, true);
+  EXPECT_THAT(log_lines, testing::IsEmpty()) << "silence between them: no number is there twice";
+  ask(0, true);
+  ask(0, true);
+  EXPECT_THAT(log_lines, ElementsAre(testing::AllOf(testing::StartsWith("warning bus lift: node 1: noise came"),
+                                                    testing::HasSubstr("two drives with this number"))));
+}
+
 TEST_F(BusTest, a_drive_with_nothing_to_send_gives_its_turn_to_the_next) {
   link_up();
   drives[0].grant_hook = [this](JobId id, Priority) -> std::optional<Exchange> {

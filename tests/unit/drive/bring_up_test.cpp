@@ -109,7 +109,7 @@ struct SetupRun {
     store = drive::ObjectStore(2);
   }
   drive::BringUp run() {
-    drive::BringUp bring_up(model);
+    drive::BringUp bring_up(model, 100ms);
     bring_up.begin();
     for (int i = 0; i < 20; ++i) {
       const auto next = bring_up.next(store);

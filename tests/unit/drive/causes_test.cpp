@@ -24,32 +24,29 @@ class NamedBy : public testing::Test {
  protected:
   NamedBy() : rig_(KincoType::jd) {
     store_.begin_exchange();
-    core_.now = now_;
-    core_.link = LinkState::online;
     image_.link_state = LinkState::online;
   }
   [[nodiscard]] const drive::DriveModel& model() { return rig_.stage.gateway().drive_of(1)->axis(0).core().drive; }
   drive::ObjectId object(std::uint16_t index) { return model().find({index, 0}); }
   void read(std::uint16_t index, std::int64_t number) {
     store_.begin_exchange();
-    store_.read(object(index), number, now_);
+    store_.read(object(index), number, turn_.now);
     look();
   }
   void pass(Duration time) {
-    now_ += time;
+    turn_.now += time;
     look();
   }
   void look() {
-    core_.now = now_;
     core_.watch_fault();
-    drive::show_state(core_, image_, now_);
+    drive::show_state(core_, image_);
   }
   [[nodiscard]] std::int64_t shown(Quantity quantity) { return image_[quantity].value; }
 
   Rig rig_;
-  Instant now_ = Instant{} + 1h;
+  drive::Turn turn_{.now = Instant{} + 1h, .link = LinkState::online};
   drive::ObjectStore store_{model().objects};
-  drive::AxisCore core_{model(), model().axes[0], store_};
+  drive::AxisCore core_{model(), model().axes[0], store_, turn_};
   AxisImage image_;
 };
 

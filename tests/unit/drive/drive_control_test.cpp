@@ -23,13 +23,9 @@ constexpr Instant kNow = Instant{} + 1h;
 struct Told {
   explicit Told(Speech speech) : model(keya_model({.speech = speech, .keep_alive = kPeriod})) {
     for (std::size_t slot = 0; slot < 2; ++slot)
-      cores.push_back({.drive = model, .model = model.axes[slot], .store = store});
+      cores.push_back({.drive = model, .model = model.axes[slot], .store = store, .turn = in_sight});
     store.begin_exchange();
-    for (drive::AxisCore& core : cores) {
-      core.now = kNow;
-      core.link = LinkState::online;
-      core.begin_mode();
-    }
+    for (drive::AxisCore& core : cores) core.begin_mode();
     show(kNow);
     for (drive::AxisCore& core : cores) core.refresh_virtual();
   }
@@ -52,6 +48,7 @@ struct Told {
 
   drive::DriveModel model;
   drive::ObjectStore store{model.objects};
+  drive::Turn in_sight{.now = kNow, .link = LinkState::online};
   std::vector<drive::AxisCore> cores;
   DriveControl control{model, store};
 };

@@ -16,11 +16,10 @@ class MakersFacts : public testing::Test {
  protected:
   MakersFacts() : model(kinco()), store(model.objects) {
     store.begin_exchange();
-    store.read(core.model.statusword, 0x0637, core.now);
-    store.read(core.model.controlword, 0x103F, core.now);
-    store.read(core.model.mode, 1, core.now);
-    store.read(core.model.mode_display, 1, core.now);
-    core.link = LinkState::online;
+    store.read(core.model.statusword, 0x0637, turn.now);
+    store.read(core.model.controlword, 0x103F, turn.now);
+    store.read(core.model.mode, 1, turn.now);
+    store.read(core.model.mode_display, 1, turn.now);
   }
   static DriveModel kinco() {
     ResolveInput input;
@@ -33,7 +32,8 @@ class MakersFacts : public testing::Test {
 
   DriveModel model;
   ObjectStore store;
-  AxisCore core{model, model.axes[0], store};
+  Turn turn{.now = kLongAgo, .link = LinkState::online};
+  AxisCore core{model, model.axes[0], store, turn};
 };
 
 TEST_F(MakersFacts, ATargetThatTheDriveWouldFollowIsHeldBack) {
@@ -46,7 +46,7 @@ TEST_F(MakersFacts, AModeOfItsOwnIsAVelocityModeWhereTheProfileSaysSo) {
   EXPECT_TRUE(core.is_continuous(-3));
   EXPECT_FALSE(core.is_continuous(-4)) << "that follows pulses";
   EXPECT_TRUE(core.is_continuous(3));
-  store.read(core.model.mode_display, -3, core.now);
+  store.read(core.model.mode_display, -3, turn.now);
   EXPECT_EQ(followed_target(core.facts()), Quantity::target_velocity);
   model.axes[0].cia402.velocity_modes = {};
   EXPECT_FALSE(core.is_continuous(-3));
@@ -63,7 +63,11 @@ TEST_F(MakersFacts, AVelocityIsBelievedWhenItsLagIsOver) {
     motion.stop(false, facts.at);
     motion.observe(facts, milliseconds(60000));
     EXPECT_EQ(motion.at_rest(facts), lag == Duration{}) << "its sample may be of before";
+    facts.moving_at = facts.at;
     facts.at += lag;
+    motion.observe(facts, milliseconds(60000));
+    EXPECT_EQ(motion.at_rest(facts), lag == Duration{}) << "nor does it tell more by growing old";
+    facts.moving_at = facts.at;
     motion.observe(facts, milliseconds(60000));
     EXPECT_TRUE(motion.at_rest(facts));
   }

@@ -43,15 +43,13 @@ std::string fault_name(DriveFault fault) {
   return text;
 }
 
-// Not here: a drive that answers twice. Nothing in its second reply tells it from the reply to the next request of the
-// same length.
 INSTANTIATE_TEST_SUITE_P(
     Each, RtuLineFault,
     testing::Combine(testing::ValuesIn(kRtuKinds),
                      testing::Values(DriveFault::lose, DriveFault::mute, DriveFault::noise_before,
                                      DriveFault::noise_after, DriveFault::corrupt, DriveFault::split,
                                      DriveFault::wrong_station, DriveFault::half, DriveFault::wrong_length,
-                                     DriveFault::glued, DriveFault::restart)),
+                                     DriveFault::glued, DriveFault::duplicate, DriveFault::restart)),
     [](const auto& of) { return name(std::get<0>(of.param)) + "_" + fault_name(std::get<1>(of.param)); });
 
 class RtuNeighbours : public testing::TestWithParam<RtuKind> {};

@@ -51,16 +51,15 @@ class SetPosition : public testing::Test {
 
   SetPosition() : model(foreign(kStarts)), store(model.objects) {
     store.begin_exchange();
-    store.read(core.model.statusword, 0x0637, core.now);
-    store.read(core.model.controlword, 0x000F, core.now);
+    store.read(core.model.statusword, 0x0637, turn.now);
+    store.read(core.model.controlword, 0x000F, turn.now);
     in_mode(1);
-    core.link = LinkState::online;
     core.set_position_value = 4000;
     core.motion.enabled();
   }
   void in_mode(std::int64_t mode) {
-    store.read(core.model.mode, mode, core.now);
-    if (core.model.mode_display != kNoObject) store.read(core.model.mode_display, mode, core.now);
+    store.read(core.model.mode, mode, turn.now);
+    if (core.model.mode_display != kNoObject) store.read(core.model.mode_display, mode, turn.now);
   }
   [[nodiscard]] static long place_of(const Plan& plan, ObjectId object, std::int64_t number) {
     const auto at = std::find_if(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
@@ -71,7 +70,8 @@ class SetPosition : public testing::Test {
 
   DriveModel model;
   ObjectStore store;
-  AxisCore core{model, model.axes[0], store};
+  Turn turn{.now = kLongAgo, .link = LinkState::online};
+  AxisCore core{model, model.axes[0], store, turn};
 };
 
 TEST_F(SetPosition, TheModeThatMovesIsLeftBeforeTheFirstStep) {

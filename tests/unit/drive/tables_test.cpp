@@ -237,7 +237,8 @@ TEST(Admission, KnowsAStopWhereverItStands) {
 TEST(Admission, TellsTheArbiterWhatABatchIs) {
   const DriveModel model = polled();
   ObjectStore store(model.objects.size());
-  AxisCore core{model, model.axes[0], store};
+  const Turn turn;
+  AxisCore core{model, model.axes[0], store, turn};
   WriteBatch batch;
   batch.start_by = kStart;
   batch.object = ObjectRequest{false, 0x2001, 0, 2, 0};

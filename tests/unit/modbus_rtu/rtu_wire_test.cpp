@@ -62,6 +62,32 @@ TEST_F(RtuWireTest, a_request_given_up_shall_not_leave_and_what_was_heard_before
   EXPECT_THAT(replies, ElementsAre(kStatusValue));
 }
 
+TEST_F(RtuWireTest, an_answer_that_is_said_twice_does_not_answer_the_next_request) {
+  wire->send(read_of(0x3200));
+  runtime.advance_by(12ms);
+  link->bring(kStatus);
+  wire->send(read_of(0x3200));
+  runtime.advance_by(4ms);  // as long as the answer alone takes
+  link->bring(kStatus);
+  EXPECT_THAT(replies, SizeIs(1)) << "the request has not even reached the drive";
+  EXPECT_EQ(late(), 1u);
+  runtime.advance_by(8ms);
+  link->bring("01 03 02 C0 38");
+  EXPECT_THAT(replies, ElementsAre(kStatusValue, value_of(0x3200, 2, 0xC038)));
+  wire->send(read_of(0x3200));
+  runtime.advance_by(12ms);
+  link->bring("01 03 02 C0 38");
+  EXPECT_THAT(replies, SizeIs(3)) << "in its time the same value is an answer";
+}
+
+TEST_F(RtuWireTest, a_line_without_a_rate_of_its_own_is_believed_at_once) {
+  for (int i = 0; i < 3; ++i) {
+    wire->send(read_of(0x3200));
+    link->bring(kStatus);
+  }
+  EXPECT_THAT(replies, ElementsAre(kStatusValue, kStatusValue, kStatusValue));
+}
+
 TEST_F(RtuWireTest, a_frame_that_does_not_fit_is_counted_and_the_answer_still_awaited) {
   wire->send(read_of(0x3200));
   link->bring("02 03 02 00 01");        // another drive

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What happens to clients that are too many, not allowed, too slow, gone or not speaking Modbus.
 #include <gmock/gmock.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
 
 #include "tests/unit/modbus_server/served.hpp"
 
@@ -118,6 +121,43 @@ TEST(ModbusServerLimits, AClientThatVanishesLeavesRoom) {
   }
   EXPECT_EQ(served.server->counters().closed_by_peer, 2U);
   EXPECT_EQ(served.server->counters().refused_full, 0U);
+}
+
+/// The descriptor of the one connection whose near end is at that port.
+int connection_at(std::uint16_t port) {
+  for (int descriptor = 0; descriptor < 4096; ++descriptor) {
+    sockaddr_storage near{}, far{};
+    socklen_t near_size = sizeof near, far_size = sizeof far;
+    if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&near), &near_size) != 0 ||
+        ::getpeername(descriptor, reinterpret_cast<sockaddr*>(&far), &far_size) != 0)
+      continue;
+    const auto at = near.ss_family == AF_INET6 ? reinterpret_cast<const sockaddr_in6&>(near).sin6_port
+                                               : reinterpret_cast<const sockaddr_in&>(near).sin_port;
+    if (ntohs(at) == port) return descriptor;
+  }
+  return -1;
+}
+
+// No packet says that a host has lost its power: the system asks, and gives the connection up.
+TEST(ModbusServerLimits, AHostThatVanishesIsAskedForByTheSystemAndGivenUp) {
+  Served served;
+  served.start();
+  TestClient client(served);
+  expect_served(client);
+  const int accepted = connection_at(served.server->ports().front());
+  ASSERT_GE(accepted, 0);
+  const auto option = [&](int level, int name) {
+    int value = 0;
+    socklen_t size = sizeof value;
+    EXPECT_EQ(::getsockopt(accepted, level, name, &value, &size), 0);
+    return value;
+  };
+  EXPECT_NE(option(SOL_SOCKET, SO_KEEPALIVE), 0);
+  const int seconds =
+      option(IPPROTO_TCP, TCP_KEEPIDLE) + option(IPPROTO_TCP, TCP_KEEPINTVL) * option(IPPROTO_TCP, TCP_KEEPCNT);
+  EXPECT_LE(seconds, 30) << "an idle one";
+  EXPECT_GT(option(IPPROTO_TCP, TCP_USER_TIMEOUT), 0);
+  EXPECT_LE(option(IPPROTO_TCP, TCP_USER_TIMEOUT), 30'000) << "one that owes an acknowledgement";
 }
 
 TEST(ModbusServerLimits, ClientsLeaveInAnyOrder) {

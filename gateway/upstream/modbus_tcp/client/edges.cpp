@@ -14,14 +14,7 @@ bool is_so(Command command, const Writing& writing) {
   return command == Command::fault_reset && !writing.needs_zero;
 }
 
-bool is_start(Command command) { return command >= Command::move_absolute && command <= Command::home; }
-
 }  // namespace
-
-bool is_stop_controlword(std::uint16_t controlword) {
-  const unsigned steps = controlword & 0x0FU;
-  return (controlword & 0x02U) == 0 || (controlword & 0x04U) == 0 || steps == 6 || steps == 7;
-}
 
 // --- Values --------------------------------------------------------------------------------------------------------
 
@@ -86,10 +79,10 @@ Verdict EdgeMemory::controlword(std::uint16_t value, const Writing& writing) {
 
 Verdict EdgeMemory::command(Command value, const Writing& writing) {
   const auto number = static_cast<std::uint16_t>(value);
-  const Kind kind{.stop = axisgate::is_stop(value),
+  const Kind kind{.stop = is_stop(value),
                   .relative = value == Command::move_relative,
                   .is_so = is_so(value, writing),
-                  .held_start = is_start(value)};
+                  .held_start = starts_motion(value)};
   // "0 in `command` does nothing and arms it."
   const Verdict verdict = value == Command::none ? Verdict::nothing : judge(command_, number, kind, writing);
   return conclude(command_, number, verdict, writing);
@@ -100,7 +93,7 @@ Verdict EdgeMemory::command_with_id(Command value, std::uint16_t id, CommandIds&
   const bool kept = ids.last.has_value();
   const bool differs = !kept || id != *ids.last;
   Verdict verdict = Verdict::nothing;
-  if (axisgate::is_stop(value)) {
+  if (is_stop(value)) {
     const bool other_command = !command_.written || command_.value != number;
     if (differs || other_command || writing.form == WriteForm::single) verdict = Verdict::acts;
   } else if (value != Command::none && differs) {
@@ -140,11 +133,11 @@ CoilAsks EdgeMemory::coil(const CoilRow& coil, bool value, const Writing& writin
   Item& item = coils_.at(coil.offset);
   const Command asked = value ? coil.on : coil.off;
   Verdict verdict = Verdict::nothing;
-  if (coil.level && !axisgate::is_stop(asked == Command::disable ? Command::none : asked)) {
+  if (coil.level && !is_stop(asked == Command::disable ? Command::none : asked)) {
     verdict = judge_level(item, coil, value, writing);
   } else if (asked != Command::none) {
     const Kind kind{
-        .stop = axisgate::is_stop(asked), .relative = asked == Command::move_relative, .is_so = is_so(asked, writing)};
+        .stop = is_stop(asked), .relative = asked == Command::move_relative, .is_so = is_so(asked, writing)};
     verdict = judge(item, value ? 1 : 0, kind, writing);
   }
   const bool swallowed = !value && writing.form == WriteForm::block && item.is_on() && item.disowned;
@@ -214,7 +207,7 @@ void EdgeMemory::disown(std::uint64_t request) {
   for (const CoilRow& coil : coil_rows()) {
     Item& item = coils_.at(coil.offset);
     // A stop is carried out whoever owns the axis.
-    if (item.is_on() && item.since == request && !axisgate::is_stop(coil.on)) item.disowned = true;
+    if (item.is_on() && item.since == request && !is_stop(coil.on)) item.disowned = true;
   }
 }
 

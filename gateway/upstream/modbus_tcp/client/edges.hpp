@@ -22,8 +22,8 @@ namespace axisgate::modbus_tcp {
 enum class WriteForm : std::uint8_t { single, block };
 
 /// Offsets of the jog coils in the unit's coils (design 3.4).
-inline constexpr std::uint16_t kJogForward = 8;
-inline constexpr std::uint16_t kJogReverse = 9;
+inline constexpr std::uint16_t kJogForward = jog_coil(Command::jog_forward);
+inline constexpr std::uint16_t kJogReverse = jog_coil(Command::jog_reverse);
 
 /// How and when an item is written, by whom, and what the axis is like.
 struct Writing {
@@ -53,7 +53,7 @@ struct CommandIds {
 };
 
 /// Bit 1 = 0, bit 2 = 0, or bits 0..3 = 6 or 7: a stop, where it acts (design 3.4, "Stops").
-[[nodiscard]] bool is_stop_controlword(std::uint16_t controlword);
+[[nodiscard]] constexpr bool is_stop_controlword(std::uint16_t controlword) { return is_stop(controlword, true); }
 
 /// What one request writes to the two jog coils; no value: it does not hold this one.
 struct JogWrite {

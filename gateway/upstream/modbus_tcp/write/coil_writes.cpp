@@ -19,10 +19,8 @@ constexpr std::array kOrder{Command::quick_stop,  Command::disable,       Comman
 /// Both sides of a jog coil, and each of the others, ask for one thing at most.
 using Acting = boost::container::static_vector<Command, kCoils + 1>;
 
-bool starts_motion(Command command) {
-  return command == Command::home || command == Command::move_absolute || command == Command::move_relative ||
-         command == Command::run_velocity || command == Command::jog_forward || command == Command::jog_reverse;
-}
+/// A button's press is a start as well.
+bool starts(Command command) { return starts_motion(command) || is_jog(command); }
 
 bool has(const Acting& acting, Command command) {
   return std::find(acting.begin(), acting.end(), command) != acting.end();
@@ -32,7 +30,7 @@ bool has(const Acting& acting, Command command) {
 std::uint16_t first_start(const Acting& acting) {
   std::uint16_t first = kCoils;
   for (const Command command : acting)
-    if (starts_motion(command)) first = std::min(first, coil_of(command));
+    if (starts(command)) first = std::min(first, coil_of(command));
   return first;
 }
 
@@ -42,7 +40,7 @@ bool any_of(const Acting& acting, bool (*is)(Command)) { return std::any_of(acti
 bool dropped_by_stop(Command command, const Acting& acting) {
   const bool off = has(acting, Command::quick_stop) || has(acting, Command::disable);
   if (command == Command::enable) return off;
-  return starts_motion(command) &&
+  return starts(command) &&
          (off || has(acting, Command::halt) || has(acting, Command::jog_end) || has(acting, Command::end_run));
 }
 
@@ -90,7 +88,7 @@ Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, Wr
   if (jogs.start) asked.acting.push_back(*jogs.start);
   asked.not_new = asked.not_new || jogs.not_new;
   const bool stops = any_of(asked.acting, is_stop) || jogs.ends || has(asked.acting, Command::end_run);
-  if (!stops && !any_of(asked.acting, starts_motion)) asked.jog_again = jogs.again;
+  if (!stops && !any_of(asked.acting, starts)) asked.jog_again = jogs.again;
   return asked;
 }
 
@@ -140,7 +138,7 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
   const Writing writing = writing_to(axis, onlooker, single ? WriteForm::single : WriteForm::block);
   const Asked asked = ask(request, first->offset, axis, writing, rows, edges);
   // Two starts at once: no one can say which motion was meant.
-  if (std::count_if(asked.acting.begin(), asked.acting.end(), starts_motion) > 1)
+  if (std::count_if(asked.acting.begin(), asked.acting.end(), starts) > 1)
     return refuse(Errc::bad_value, first_start(asked.acting));
 
   WritePlan plan;

@@ -137,8 +137,7 @@ class BatchMaker {
       if (verdict == Verdict::acts) {
         batch_.controlword = word;
         batch_.single_controlword = single_;
-        constexpr std::uint16_t kStoppingBits = 0x0006;  // one of them 0: a stop of anybody's
-        note_acting((word & kStoppingBits) != kStoppingBits);
+        note_acting(is_stop(word, false));
       }
     }
     if (const RowWrite* const row = found_.of(Source::command)) {

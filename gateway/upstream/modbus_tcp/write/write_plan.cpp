@@ -6,9 +6,6 @@
 namespace axisgate::modbus_tcp {
 namespace {
 
-/// The two bits whose 0 stops: enable voltage and, inverted, quick stop.
-constexpr std::uint16_t kStoppingBits = 0x0006;
-
 bool stops_through(const RegisterRow& row, const Request& request) {
   const bool is_controlword = row.source == Source::quantity && row.quantity == Quantity::controlword;
   if (request.function == Function::mask_write_register) {

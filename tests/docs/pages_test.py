@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The manual hangs together: every link leads somewhere, every page is in the index, every drive has its page, and what is printed is what
+the files say today. AXISGATE_WRITE_PAGES=1 prints it anew.
+
+pages_test.py SOURCE_FOLDER [unittest's arguments]
+"""
+import os
+import re
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from drive_tables import printed, profile
+
+SOURCE = Path(sys.argv.pop(1)).absolute()
+LINK = re.compile(r"(?<!!)\[[^\]]*\]\(([^)\s]+)\)")
+PRINTED = re.compile(r"(<!-- printed: (.*?) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+
+
+def pages():
+    return [*sorted(SOURCE.glob("*.md")), *sorted(SOURCE.glob("docs/**/*.md")), *sorted(SOURCE.glob("deploy/**/*.md"))]
+
+
+def outside_code(text):
+    return re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE)
+
+
+def anchors(path):
+    """As GitHub makes them from headings."""
+    found = re.findall(r"^#+ (.*)$", outside_code(path.read_text(encoding="utf-8")), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in found}
+
+
+def dead_links(path):
+    for target in LINK.findall(outside_code(path.read_text(encoding="utf-8"))):
+        if "://" in target or target.startswith("mailto:"):
+            continue
+        name, _, anchor = target.partition("#")
+        other = (path.parent / name).resolve() if name else path
+        if not other.exists():
+            yield f"{target} is not there"
+        elif anchor and other.suffix == ".md" and anchor not in anchors(other):
+            yield f"{target}: no heading is called so"
+
+
+class Manual(unittest.TestCase):
+    def test_every_link_leads_somewhere(self):
+        self.assertEqual([f"{path.relative_to(SOURCE)}: {why}" for path in pages() for why in dead_links(path)], [])
+
+    def test_a_dead_link_is_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "page.md"
+            path.write_text("# One head\n[a](page.md#one-head) [b](other.md) [c](#two) `[d](x)`\n```\n[e](y)\n```\n", encoding="utf-8")
+            self.assertEqual([why.split()[0] for why in dead_links(path)], ["other.md", "#two:", "x"])
+
+    def test_every_page_is_in_the_index(self):
+        index = SOURCE / "docs/README.md"
+        linked = {(index.parent / target.partition("#")[0]).resolve() for target in LINK.findall(index.read_text(encoding="utf-8"))}
+        self.assertEqual([str(path.relative_to(SOURCE)) for path in sorted(SOURCE.glob("docs/**/*.md")) if path != index and path not in linked], [])
+
+    def test_every_drive_has_its_page(self):
+        drives = {path.stem for path in (SOURCE / "schemas/drives").glob("*.json") if not profile(SOURCE, path.stem).get("base_only")
+                  or "title" in profile(SOURCE, path.stem) and path.stem not in ("cia402", "kinco")}
+        self.assertEqual({path.stem for path in (SOURCE / "docs/drives").glob("*.md")}, drives)
+
+    def test_every_page_with_commands_is_tried(self):
+        """Those about DDS by stories of their own."""
+        story = (SOURCE / "tests/integration/manual_test.py").read_text(encoding="utf-8")
+        with_commands = [os.path.relpath(path, SOURCE / "docs") for path in pages() if re.search("^```sh$", path.read_text(encoding="utf-8"), re.MULTILINE)]
+        self.assertGreater(len(with_commands), 8)
+        untried = [name for name in with_commands if f'self.read("{name}"' not in story and not name.startswith(("dds/", "../deploy/examples/dds/"))]
+        self.assertEqual(untried, ["../CONTRIBUTING.md"], "CONTRIBUTING.md is about building, which the tests cannot do within themselves")
+
+    def test_what_is_printed_is_what_the_files_say(self):
+        counted = 0
+        for path in pages():
+            text = path.read_text(encoding="utf-8")
+            made = PRINTED.sub(lambda found: f"{found[1]}\n{printed(SOURCE, found[2])}\n\n{found[4]}", text)
+            counted += len(PRINTED.findall(text))
+            if os.environ.get("AXISGATE_WRITE_PAGES") and made != text:
+                path.write_text(made, encoding="utf-8")
+            else:
+                self.assertEqual(text, made, f"{path.relative_to(SOURCE)}: write it anew with AXISGATE_WRITE_PAGES=1 and this test")
+        self.assertGreater(counted, 30)
+
+
+if __name__ == "__main__":
+    unittest.main()

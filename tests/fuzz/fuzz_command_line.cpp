@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// A command line, one argument a line of the input. It is parsed, and not carried out.
+#include <iostream>
+
+#include "gateway/commands/command_line.hpp"
+#include "tests/fuzz/input.hpp"
+#include "tests/fuzz/targets.hpp"
+
+namespace axisgate::fuzz {
+namespace {
+
+void command_line(Bytes content) {
+  std::vector<std::string> words{"axisgate"};
+  std::string word;
+  for (const Byte byte : content) {
+    if (byte == 0) break;  // no argument holds one
+    if (byte != '\n') {
+      word += static_cast<char>(byte);
+    } else {
+      words.push_back(std::exchange(word, {}));
+    }
+  }
+  if (!word.empty()) words.push_back(word);
+  std::vector<const char*> arguments;
+  for (const std::string& each : words) arguments.push_back(each.c_str());
+  // Help and complaints are not looked at.
+  std::streambuf* const out = std::cout.rdbuf(nullptr);
+  std::streambuf* const err = std::cerr.rdbuf(nullptr);
+  const app::CommandLine line = app::parse_command_line(static_cast<int>(arguments.size()), arguments.data());
+  std::cout.rdbuf(out);
+  std::cerr.rdbuf(err);
+  must(line.run != nullptr || line.exit_code == 0 || line.exit_code == app::kWrongCommandLine,
+       "a command line is carried out, or wrong");
+}
+
+}  // namespace
+}  // namespace axisgate::fuzz
+
+int axisgate_fuzz_command_line(const std::uint8_t* data, std::size_t size) {
+  axisgate::fuzz::command_line({data, size});
+  return 0;
+}

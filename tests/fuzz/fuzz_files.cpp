@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What people write: profiles, configurations and EDS files. Each mistake is told, and none is a crash.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "gateway/config/config_loader.hpp"
+#include "gateway/profile/eds/eds.hpp"
+#include "gateway/profile/eds/eds_compare.hpp"
+#include "gateway/profile/read/profile_loader.hpp"
+#include "tests/fuzz/input.hpp"
+#include "tests/fuzz/targets.hpp"
+
+namespace axisgate::fuzz {
+namespace {
+
+const std::string kProfiles = AXISGATE_SOURCE_DIR "/schemas/drives";
+
+/// A file in memory alone, with a path.
+class MemoryFile {
+ public:
+  explicit MemoryFile(Bytes content) : descriptor_(::memfd_create("fuzz", MFD_CLOEXEC)) {
+    must(descriptor_ >= 0, "a file in memory can be made");
+    must(::write(descriptor_, content.data(), content.size()) == static_cast<ssize_t>(content.size()),
+         "and takes its content");
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { ::close(descriptor_); }
+  [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+void profile(Bytes content) {
+  const MemoryFile file(content);
+  const drive::LoadedProfile loaded = drive::load_profile(file.path(), {kProfiles});
+  for (const drive::Fault& fault : loaded.faults) must(!fault.message.empty(), "a mistake has its words");
+}
+
+void configuration(Bytes content) {
+  const MemoryFile file(content);
+  const app::LoadResult loaded = app::load_config(file.path(), {kProfiles});
+  if (const auto* faults = std::get_if<std::vector<app::ConfigFault>>(&loaded)) {
+    must(!faults->empty(), "what is refused has its reason");
+    for (const app::ConfigFault& fault : *faults) must(!app::text(fault).empty(), "a mistake has its words");
+  } else {
+    const auto& good = std::get<app::LoadedConfig>(loaded);
+    must(good.models.size() == good.config.buses.size(), "each bus has the models of its drives");
+  }
+}
+
+void eds(Bytes content) {
+  const drive::Eds sheet = drive::parse_eds({reinterpret_cast<const char*>(content.data()), content.size()});
+  must(sheet.objects.size() <= drive::kMaxEdsObjects, "objects have their bound");
+  must(sheet.faults.size() <= drive::kMaxEdsFaults, "mistakes have their bound");
+  static const drive::LoadedProfile kProfile = drive::load_profile(kProfiles + "/leadshine-ld2-can.json", {kProfiles});
+  for (const auto& each : drive::contradictions(kProfile.profile, sheet))
+    must(!each.message.empty(), "a contradiction has its words");
+}
+
+}  // namespace
+}  // namespace axisgate::fuzz
+
+int axisgate_fuzz_profile(const std::uint8_t* data, std::size_t size) {
+  axisgate::fuzz::profile({data, size});
+  return 0;
+}
+int axisgate_fuzz_configuration(const std::uint8_t* data, std::size_t size) {
+  axisgate::fuzz::configuration({data, size});
+  return 0;
+}
+int axisgate_fuzz_eds(const std::uint8_t* data, std::size_t size) {
+  axisgate::fuzz::eds({data, size});
+  return 0;
+}

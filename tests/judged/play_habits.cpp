@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the programs that are out there do again and again, each in several requests.
+#include "tests/judged/playing.hpp"
+
+namespace axisgate::test::judged {
+
+using namespace model;
+
+namespace {
+
+constexpr std::int64_t kLongestHabitMs = 1500;
+constexpr std::uint8_t kEnables = 1, kFirstStart = 3, kStarts = 5, kStops = 8;  // of kCommands
+
+/// A single start, of this client.
+Step press(const Step& step, Deed deed = Deed::command) {
+  constexpr std::array<std::uint8_t, 3> kStartCoils{1, 2, 3};
+  Step out{.deed = deed, .client = step.client, .position = step.position, .speed = step.speed};
+  out.command = static_cast<std::uint8_t>(kFirstStart + step.command % kStarts);
+  if (deed == Deed::coil) out.number = kStartCoils.at(step.command % kStartCoils.size());
+  out.on = true;
+  return out;
+}
+
+}  // namespace
+
+// Each of them goes out before the one before is answered, so that they meet in every order.
+void Play::send_crossed(const Step& step) {
+  constexpr std::array<std::uint8_t, 6> kCrossed{kEnables, kFirstStart, 6, kStops, kStops + 1, kStops + 2};
+  unsigned drawn = step.command + 18U * (step.number + 24U * (step.position + 6U * step.speed));
+  for (unsigned i = 0; i < 3U + step.id % 3U; ++i, drawn /= static_cast<unsigned>(kCrossed.size())) {
+    Step one{.deed = Deed::command, .command = kCrossed.at(drawn % kCrossed.size())};
+    one.client = static_cast<std::uint8_t>((step.client + (step.on ? 0 : i)) % kDds);
+    send(one.client, writers_->write_of(one), true);
+    pass(kStepMs * (step.id % 4));
+  }
+}
+
+void Play::hold_button(const Step& step) {
+  constexpr std::int64_t kAgainMs = 200;
+  constexpr std::uint8_t kOtherToo = 3, kBothAtOnce = 4;  // of Step::id
+  if (!obey::has_speeds(program_.subject)) return;
+  const std::uint16_t number = step.number % 2 == 0 ? coil::jog_forward : coil::jog_reverse;
+  const std::uint16_t other = step.number % 2 == 0 ? coil::jog_reverse : coil::jog_forward;
+  const bool both = step.id == kBothAtOnce;
+  send(step.client, both ? coil_block(coil::jog_forward, {0, 0}) : one_coil(number, false), false);
+  if (step.id == kOtherToo) send(step.client, one_coil(other, false), false);
+  for (std::int64_t gone = 0; gone <= kLengths.at(step.length) && gone < kLongestHabitMs && !over(); gone += kAgainMs) {
+    send(step.client, both ? coil_block(coil::jog_forward, {1, 1}) : one_coil(number, true), step.at_once);
+    if (step.id == kOtherToo && gone == kAgainMs) send(step.client, one_coil(other, true), step.at_once);
+    pass(kAgainMs);
+  }
+  if (step.on) send(step.client, one_coil(number, false), false);
+}
+
+// One tool for each request, as mbpoll is used, or a person at a panel: set it, press it, and once more.
+void Play::use_tool(const Step& step) {
+  constexpr std::array<std::int64_t, 4> kBetween{0, 50, 300, 1200};
+  constexpr std::uint8_t kEachAnew = 3;  // of Step::id
+  const auto anew = [&] {
+    if (step.id >= kEachAnew) replace(step.client, false);
+  };
+  const Step target = press(step, step.on ? Deed::coil : Deed::command);
+  const bool runs = step.on ? target.number == 2 : kCommands.at(target.command) == kRun;
+  for (unsigned i = 0; i < 2U + step.number % 2U && !over(); ++i) {
+    // The same start with another target, with the same one, or with none.
+    if (i == 0 || step.number % 3 != 0) {
+      Step set = target;
+      set.deed = Deed::target;
+      set.position = static_cast<std::uint8_t>(step.position + (step.number % 3 == 1 ? i : 0));
+      set.speed = static_cast<std::uint8_t>(step.speed + (step.number % 3 == 1 ? i : 0));
+      set.on = !runs;
+      send(step.client, writers_->write_of(set), step.at_once);
+      anew();
+    }
+    send(step.client, writers_->write_of(target), step.at_once);
+    anew();
+    pass(kBetween.at(step.length % kBetween.size()));
+  }
+}
+
+void Play::use_monitor(const Step& step) {
+  constexpr std::int64_t kEachMs = 100, kLongestMs = 4000;
+  for (std::int64_t gone = 0; gone < kLengths.at(step.length) && gone < kLongestMs && !over(); gone += kEachMs) {
+    read(step.client);
+    pass(kEachMs);
+  }
+}
+
+void Play::take_away(const Step& step) {
+  constexpr std::uint8_t kTakesOver = 15;  // of kCommands
+  Step start = press(step, Deed::order);
+  start.id = 2;
+  send(step.client, writers_->write_of(start), step.at_once);
+  pass(kPauses.at(step.length % kPauses.size()));
+  const auto rival = static_cast<std::uint8_t>((step.client + 1U + step.number % 2U) % kDds);
+  send(rival, writers_->write_of({.deed = Deed::command, .client = rival, .command = kTakesOver}), step.at_once);
+}
+
+// A14: what is let go, or stopped, while the drive cannot be asked. Before that it may have been started.
+void Play::press_out_of_sight(const Step& step) {
+  constexpr std::uint8_t kStarted = 2, kHeld = 4;  // of Step::id
+  const std::uint16_t button = step.number % 2 == 0 ? coil::jog_forward : coil::jog_reverse;
+  const bool jogs = step.id == kHeld && obey::has_speeds(program_.subject);
+  if (jogs) {
+    send(step.client, one_coil(button, false), false);
+    send(step.client, one_coil(button, true), step.at_once);
+  } else if (step.id >= kStarted) {
+    Step start = press(step, Deed::order);
+    start.id = 2;
+    send(step.client, writers_->write_of(start), step.at_once);
+  }
+  pass(kPauses.at(step.length % kPauses.size()));
+  outage({.deed = step.number % 4 < 2 ? Deed::cut : Deed::unplug, .at_once = true, .length = step.length});
+  pass(kPauses.at(step.command % 5U));
+  Step let_go{.deed = Deed::command, .client = step.client};
+  let_go.command = static_cast<std::uint8_t>(kStops + step.number % 3);
+  if (jogs)
+    send(step.client, one_coil(button, false), step.on);
+  else if (step.number % 6 == 5)
+    send(step.client, one_coil(coil::enable, false), step.on);
+  else
+    send(step.client, writers_->write_of(let_go), step.on);
+  pass(std::min(kLengths.at(step.length), kLongestHabitMs));
+  mend();
+}
+
+// A13: panels that only have function 6; of others a target in one request. With another write between, or a half of
+// another row, the first one is dropped.
+void Play::write_halves(const Step& step) {
+  constexpr std::array<std::int64_t, 5> kBetween{0, 50, 50, 400, 1500};
+  constexpr std::uint8_t kWhole = 8;
+  const Write whole = writers_->write_of(step);
+  const bool all_the_same = !plant_.listener.staged_halves && step.number % kWhole != 0;
+  if (all_the_same || whole.words.size() != 2) return send(step.client, whole, step.at_once);
+  const auto half = [&](std::uint16_t row, bool second) {
+    const std::size_t at = second ? 1 : 0;
+    send(step.client, {fc::write_register, static_cast<std::uint16_t>(row + at), {whole.words[at]}}, step.at_once);
+  };
+  half(whole.first, step.on);
+  pass(kBetween.at(step.id));
+  if (step.number % 4 == 1) send(step.client, one(row::heartbeat, step.number), step.at_once);
+  const bool both = obey::has_positions(program_.subject) && obey::has_speeds(program_.subject);
+  if (step.number % 4 == 2 && both)
+    half(whole.first == row::target_position ? row::target_velocity : row::target_position, !step.on);
+  half(whole.first, !step.on);
+  if (step.length % 2 == 1) send(step.client, writers_->write_of(press(step)), step.at_once);
+}
+
+}  // namespace axisgate::test::judged
