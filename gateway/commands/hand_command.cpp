@@ -189,7 +189,7 @@ void Hand::pump() {
 void Hand::turn() {
   if (now() - last_turn_ > HandPlan::kKeyLapse) {
     if (key_mode_) key_mode_->forget_keys();
-    plan_.on_stall();
+    plan_.on_stall(now());
   }
   last_turn_ = now();
   turn_timer_->expires_at(last_turn_ + kTurnPeriod);

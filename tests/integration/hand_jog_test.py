@@ -137,6 +137,7 @@ class ItDies(Jogs):
         network = self.network()
         program = self.ready(1, network.address)
         self.hold(program, 1)
+        self.let_pass(0.1)  # what was typed until now is no press of later
         program.process.send_signal(signal.SIGSTOP)
         self.assert_stopped_for_good(1)
         before = network.presses()

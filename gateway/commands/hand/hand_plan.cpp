@@ -306,6 +306,7 @@ void HandPlan::on_keys(const std::vector<HandKey>& keys, Instant now) {
       let_go();
       continue;
     }
+    if (now < keys_count_from_) continue;
     const Button wanted = key == HandKey::forward ? Button::forward : Button::reverse;
     if (button_ != Button::none && button_ != wanted) {
       let_go();  // the next repeat of this key presses the other one
@@ -328,7 +329,10 @@ void HandPlan::let_go() {
   button_ = Button::none;
 }
 
-void HandPlan::on_stall() { let_go(); }
+void HandPlan::on_stall(Instant now) {
+  let_go();
+  keys_count_from_ = now + kKeyLapse;
+}
 
 // Time.
 

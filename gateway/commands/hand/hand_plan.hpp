@@ -49,8 +49,9 @@ class HandPlan {
   /// `answered`: what answered() was when the look was asked for.
   void on_view(const HandView& view, std::uint32_t answered, Instant now);
   void on_keys(const std::vector<HandKey>& keys, Instant now);
-  /// The process could not look at its keys for longer than kKeyLapse: nobody knows what was held.
-  void on_stall();
+  /// The process could not look at its keys for longer than kKeyLapse: nobody knows what was held. A terminal may still
+  /// deliver what was typed meanwhile, so no key presses a button for another kKeyLapse.
+  void on_stall(Instant now);
   void on_time(Instant now);
   [[nodiscard]] Instant due() const;
 
@@ -142,6 +143,7 @@ class HandPlan {
   Button button_ = Button::none;
   int buttons_waiting_ = 0;
   Instant last_key_ = kLongAgo;
+  Instant keys_count_from_ = kLongAgo;  ///< older ones may have been typed while nobody looked
   Instant next_beat_ = kNever;
   Instant stand_by_ = kNever;
   std::optional<double> still_at_;  ///< turns

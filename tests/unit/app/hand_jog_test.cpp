@@ -64,8 +64,26 @@ TEST_F(ByHand, AProcessThatStoodStillLetsGo) {
   jogging();
   press(HandKey::forward);
   static_cast<void>(written());
-  plan_->on_stall();
+  plan_->on_stall(now_);
   EXPECT_THAT(written(), ElementsAre(coil(8, false)));
+}
+
+TEST_F(ByHand, WhatWasTypedDuringAStallAndIsDeliveredLatePressesNothing) {
+  jogging();
+  plan_->on_stall(now_);
+  for (int key = 0; key < 5; ++key) press(HandKey::forward);
+  EXPECT_THAT(written(), IsEmpty());
+  pass(HandPlan::kKeyLapse);
+  press(HandKey::forward);
+  EXPECT_THAT(written(), ElementsAre(coil(8, true)));
+}
+
+TEST_F(ByHand, QThatWasTypedDuringAStallEndsIt) {
+  jogging();
+  plan_->on_stall(now_);
+  press(HandKey::quit);
+  given_back(43);
+  EXPECT_EQ(plan_->exit_code(), 0);
 }
 
 TEST_F(ByHand, QLetsGoWaitsAndGivesBack) {
