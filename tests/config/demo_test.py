@@ -17,7 +17,8 @@ import unittest
 
 SOURCE, BUILD = (os.path.abspath(folder) for folder in sys.argv[1:3])
 sys.path.insert(0, f"{SOURCE}/tests/integration")
-from processes import Ports  # noqa: E402 where the stories have it
+from disturbance import UndisturbedTest  # noqa: E402 where the stories have it
+from processes import Ports  # noqa: E402
 
 LONGEST = 60
 PORTS = Ports()
@@ -45,7 +46,7 @@ def until(what, condition):
     raise AssertionError(f"{what}: not within {LONGEST} s")
 
 
-class Demo(unittest.TestCase):
+class Demo(UndisturbedTest):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
@@ -88,7 +89,7 @@ class Demo(unittest.TestCase):
         self.assertEqual(os.listdir(self.folder.name), [])
 
     def test_without_a_terminal_it_prints_tables_and_ends_by_itself(self):
-        ended = subprocess.run(self.command("--seconds", "5"), env=self.environment, stdin=subprocess.DEVNULL, capture_output=True,
+        ended = subprocess.run(self.command("--seconds", "10"), env=self.environment, stdin=subprocess.DEVNULL, capture_output=True,
                                text=True, timeout=LONGEST, check=False)
         self.assertEqual(ended.returncode, 0, ended.stderr + ended.stdout)
         self.assertGreaterEqual(ended.stdout.count("axes online 5 of 5"), 3)

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kCommands = "axisgate/axis_command";
 constexpr const char* kObjects = "axisgate/object_request";
-constexpr std::chrono::milliseconds kShortLease{2000};  // longer than a busy machine stands still
+constexpr std::chrono::milliseconds kShortLease{5000};  // longer than a busy machine stands still
 
 AxisCommand command(std::uint16_t axis, std::uint64_t request_id) {
   AxisCommand sample;

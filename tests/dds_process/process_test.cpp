@@ -83,14 +83,16 @@ TEST(Process, EndsAtItsMemoryLimit) {
   auto writer = peer.writer<ObjectRequest>("axisgate/object_request", {.exclusive = false, .heartbeats = false});
   ASSERT_TRUE(writer->wait_matched());
   // The gateway does not read: what it does not take stays with axisgate-dds, 64 samples an axis.
-  constexpr int kRequests = 8000;
+  // Some may be lost on their way, where the machine is busy: so it goes on until there were enough.
+  const auto give_up = std::chrono::steady_clock::now() + 4 * kPatience;
   ObjectRequest sample;
   sample.data(std::vector<Byte>(kMaxObjectBytes));
-  for (int i = 0; i < kRequests && !child.hung_up(); ++i) {
-    sample.axis(static_cast<std::uint16_t>(i / 50));
+  for (int i = 0; !child.hung_up() && std::chrono::steady_clock::now() < give_up; ++i) {
+    sample.axis(static_cast<std::uint16_t>(i / 50 % 500));
     sample.request_id(static_cast<std::uint64_t>(i) + 1);
     writer->write(sample);
   }
+  ASSERT_TRUE(child.hung_up());
   EXPECT_EQ(child.exit_code(), kExitMemory);
   EXPECT_THAT(child.error_output(), HasSubstr("--memory-limit-mib"));
 }
@@ -144,11 +146,21 @@ INSTANTIATE_TEST_SUITE_P(Each, CommandLine,
                                          BadLine{{"topics", "--once", "--discovery-server", "127.0.0.1"},
                                                  "127.0.0.1"}));
 
+/// `topics --once` of an axis that is there. It waits for 5 s; a busy machine may take longer to find it.
+std::pair<int, std::string> topics_once(std::vector<std::string> options = {}) {
+  constexpr int kTries = 6;
+  options.insert(options.begin(), {"topics", "--once", "--domain", std::to_string(test_domain())});
+  std::pair<int, std::string> told;
+  for (int i = 0; i < kTries; ++i)
+    if (told = Child::run(options); told.first == 0) break;
+  return told;
+}
+
 TEST(Topics, PrintsWhatIsThereOnce) {
   Child child;
   child.send(
       StateRecord{.axis = 12, .name = "turntable", .position = 1.5, .link_state = 2, .supported = 7, .valid = 3});
-  const auto [code, text] = Child::run({"topics", "--once", "--domain", std::to_string(test_domain())});
+  const auto [code, text] = topics_once();
   EXPECT_EQ(code, 0);
   EXPECT_THAT(text, HasSubstr("turntable"));
   EXPECT_THAT(text, HasSubstr("online"));
@@ -158,7 +170,7 @@ TEST(Topics, PrintsWhatIsThereOnce) {
 TEST(Topics, PrintsJsonForPrograms) {
   Child child;
   child.send(StateRecord{.axis = 12, .name = "turntable", .position = 1.5});
-  const auto [code, text] = Child::run({"topics", "--once", "--json", "--domain", std::to_string(test_domain())});
+  const auto [code, text] = topics_once({"--json"});
   EXPECT_EQ(code, 0);
   EXPECT_THAT(text, HasSubstr(R"({"gateway_key":0,"gateway":"","axis":12,"name":"turntable",)"));
 }

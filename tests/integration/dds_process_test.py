@@ -172,6 +172,7 @@ class Memory(DdsStory):
         # As if the limit of the configuration were this small: it could not even start with it.
         resource.prlimit(before, resource.RLIMIT_DATA, (1 << 20, 1 << 20))
         crowd = self.peer_of(FAST)
+        since = reader.now()
 
         def ended():
             crowd.say("reader", "axis_state")
@@ -180,9 +181,8 @@ class Memory(DdsStory):
         until("what comes in does not find room", ended)
         self.gateway.wait_for("axisgate-dds reached its memory limit")
         until("another process is there", self.dds_process)
-        since = reader.now()
         reader.wait("matched", "axis_state", lambda told: told["count"] > 0, since)
-        reader.sample("axis_state", since=since, axis=1)
+        reader.sample("axis_state", since=reader.now(), axis=1)
         self.set_running(Axis(self.peer(), 1))
 
 

@@ -3,7 +3,6 @@
 import fcntl
 import os
 import signal
-import socket
 import subprocess
 import time
 
@@ -59,11 +58,12 @@ class Told(End):
         for axis in (self.axis(1), self.axis(2)):
             self.run_velocity(axis)
         writes = {drive: self.sim.writes(drive) for drive in DRIVES.values()}
-        waiting = socket.create_connection(("127.0.0.1", self.ports[0]), timeout=NEVER)
-        self.addCleanup(waiting.close)
+        waiting = self.connect()
+        waiting.gateway()  # accepted, and not only queued by the system
         self.assertEqual(self.end(number), 0)
         self.assertRegex(self.gateway.text(), f"signal {int(number)}: ending; the drives keep what they do")
-        self.assertEqual(waiting.recv(1), b"", "clients are told by their connection")
+        with self.assertRaises(Closed, msg="clients are told by their connection"):
+            waiting.gateway()
         with self.assertRaises(Closed):
             self.client.gateway()
         with self.assertRaises(Closed):

@@ -109,6 +109,7 @@ class FoundRunning(KeyaStory):
             self.run_both()
             self.kill_the_gateway()
             self.start_another_gateway()
+            self.gateway.wait_for("axis 1.*: online")  # what it has found is told there
             if self.gateway.found("axis 1: online, found enabled: adopted"):
                 break  # the machine was fast enough
         else:

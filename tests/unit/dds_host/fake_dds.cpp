@@ -124,7 +124,7 @@ int ask_much() {
 int chatter() {
   ready();
   for (int i = 0; i < 500; ++i) say("line " + std::to_string(i) + "\nwith another line");
-  usleep(700'000);  // until a line is free again
+  usleep(2'000'000);  // until a line is free again, also for a gateway that stood still meanwhile
   say("last");
   return read_on();
 }
