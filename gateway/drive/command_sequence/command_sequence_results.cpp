@@ -227,7 +227,7 @@ void CommandSequence::reach(const Action& action) {
     // A set-point that changes what runs is no new motion.
     const bool goes_on = batch_.command == Command::none && !batch_.controlword;
     motion.start(kind, goes_on ? motion.id() : batch_.command_id, core_.turn.now, core_.store.exchange());
-    core_.started(kind, action.number != 0);
+    core_.started(kind, action.number != 0, action.ends_at);
   };
   switch (action.mark) {
     case Mark::enabled:
@@ -261,6 +261,7 @@ void CommandSequence::reach(const Action& action) {
       stops_before_ = motion.stops();
       break;
     case Mark::run_raw:
+      core_.sent_to.reset();
       motion.run_raw();
       break;
     case Mark::mode_changed:
