@@ -153,7 +153,8 @@ void CommandSequence::on_object(const bus::ExchangeResult& result) {
 // --- Not reached ---------------------------------------------------------------------------------------------------
 
 Outcome CommandSequence::outcome_if_late() const {
-  if (!begun_) return {stop_ ? Errc::timed_out : Errc::never_started, 0};
+  // Nothing was sent, so no acknowledgement is lost. A stop waits on, and is owed.
+  if (!begun_) return {stop_ ? Errc::not_reached : Errc::never_started, 0};
   const bool asks_for_a_state = phase_ == Phase::stop || phase_ == Phase::mode || in_command();
   // That a look was lost since, and the drive is suspect, takes back no acknowledgement.
   const bool acknowledged = !writes_.under_way && !writes_.verifying;
