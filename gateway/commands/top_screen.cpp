@@ -51,8 +51,8 @@ std::string terminal_frame(std::string_view text, std::size_t columns, std::size
   for (std::size_t line_number = 0; !text.empty() && line_number < rows; ++line_number) {
     const std::size_t end = text.find('\n');
     if (line_number != 0) frame += "\r\n";
-    const std::string_view line = text.substr(0, end).substr(0, columns);
-    const Attention asks = colours ? attention(line) : Attention::none;
+    const std::string_view whole = text.substr(0, end), line = whole.substr(0, columns);
+    const Attention asks = colours ? attention(whole) : Attention::none;
     if (asks != Attention::none) frame += asks == Attention::act ? kRed : kYellow;
     frame += line;
     if (asks != Attention::none) frame += kPlain;

@@ -39,8 +39,7 @@ constexpr std::array<Row, kErrcCount> kRows{{
     {Errc::timed_out, "no acknowledgement, outcome unknown", gateway_target_failed, CommandResult::outcome_unknown},
     {Errc::link_lost, "link lost, outcome unknown", gateway_target_failed, CommandResult::outcome_unknown},
     {Errc::bad_reply, "reply does not fit the request", gateway_target_failed, CommandResult::outcome_unknown},
-    {Errc::not_reached, "acknowledged, but the state was not reached", server_device_failure,
-     CommandResult::not_reached},
+    {Errc::not_reached, "the state was not reached in time", server_device_failure, CommandResult::not_reached},
     {Errc::not_new, "not new: write 0 first", server_device_busy, CommandResult::not_new},
 }};
 

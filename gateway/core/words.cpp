@@ -76,6 +76,16 @@ std::string names_of_bits(WordKind kind, std::uint32_t bits) {
   return out;
 }
 
+std::string list_of(WordKind kind) {
+  constexpr std::uint32_t kFirstOfDds = 16;  // results above are of DDS replies alone
+  std::string out;
+  for (const Word& word : words()) {
+    if (word.kind != kind || (kind == result && word.number >= kFirstOfDds)) continue;
+    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", number_text(word), word.name);
+  }
+  return kind == axis_alarm || kind == gateway_alarm ? "bit " + out : out;
+}
+
 std::string number_text(const Word& word) {
   if (word.kind == abort_code) return fmt::format("0x{:08X}", word.number);
   return word.kind == error_code ? fmt::format("0x{:04X}", word.number) : fmt::format("{}", word.number);

@@ -50,6 +50,9 @@ struct Word {
 [[nodiscard]] std::string_view name_of(WordKind kind, std::uint32_t number);
 /// Names of the bits that are set, with ", " between; a bit without a name as "bit 17"; empty: none is set.
 [[nodiscard]] std::string names_of_bits(WordKind kind, std::uint32_t bits);
+/// All of a kind as a register's meaning tells them: "0 none, 1 active, 2 completed", of alarms "bit 0 not_homed, 1
+/// ..."; of results those that a register shows.
+[[nodiscard]] std::string list_of(WordKind kind);
 /// How a request ended, as its client has seen it: "value outside limits (exception 0x03 illegal data value)", "refused
 /// by the drive (exception 0x04 server device failure, result 3 refused by drive, detail 0x06010002 read only)".
 [[nodiscard]] std::string modbus_text(const Outcome& outcome);

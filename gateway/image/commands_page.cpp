@@ -2,7 +2,9 @@
 #include "gateway/image/commands_page.hpp"
 
 #include <array>
+#include <map>
 
+#include "gateway/core/error.hpp"
 #include "gateway/core/words.hpp"
 #include "gateway/image/command.hpp"
 
@@ -12,6 +14,8 @@ namespace {
 using enum MotorDoes;
 
 constexpr std::array kWithIds{
+    Cycle{"PLC", "command 0, command_id 0", 0, kAsBefore, 0, stands,
+          "a block of zeros, as a scanner sends it before its program runs, asks for nothing"},
     Cycle{"PLC", "command 0, command_id 1", 0, kAsBefore, 0, stands,
           "so a program begins: nothing is asked, and the id is remembered"},
     Cycle{"PLC", "command 1, command_id 2", 0, 2, 1, stands, "another id: enable"},
@@ -68,7 +72,7 @@ constexpr std::array kWithPanel{
     Cycle{"PLC", "command 1, command_id 2", 0, 2, 1, stands, "the PLC owns it now"},
     Cycle{"panel", "target_position 10000", 6, 7, 1, stands, "only the owner's set-points are accepted"},
     Cycle{"PLC", "target_position 50000, command 6, command_id 3", 0, 2, 2, starts, ""},
-    Cycle{"panel", "coil 2", 0, 2, 5, stops, "a stop is open to every operator: quick_stop by its coil"},
+    Cycle{"panel", "coil 2 = 1", 0, 2, 5, stops, "a stop is open to every operator: quick_stop by its coil"},
     Cycle{"PLC", "", 0, 2, 5, stands,
           "the same id starts nothing again: the start was done, and motion_state is 3, aborted"},
     Cycle{"PLC", "command_id 4", 4, 9, 5, stands, "nor does a new one while the stop is latched"},
@@ -76,6 +80,21 @@ constexpr std::array kWithPanel{
     Cycle{"PLC", "command 6, command_id 6", 0, 2, 2, starts, ""},
     Cycle{"PLC", "", 0, 2, 1, arrives, ""},
     Cycle{"PLC", "command 2, command_id 7", 0, 2, 0, stands, "disabled: from here its lease runs out, scan or not"},
+};
+
+constexpr std::array kOneRow{
+    Cycle{"PLC", "target_position 200000", 0, 2, 0, stands, "a set-point is kept for the start, also while disabled"},
+    Cycle{"PLC", "coil 0 = 1", 0, 2, 1, stands, "a level coil; on an empty memory a single 1 enables"},
+    Cycle{"PLC", "command 6", 0, 2, 2, starts, ""},
+    Cycle{"panel", "coil 2 = 1", 0, 2, 5, stops, "quick_stop"},
+    Cycle{"PLC", "command 6", 6, 10, 5, stands, "somebody else has ended it, so the same command is not new: 0 first"},
+    Cycle{"PLC", "coil 0 = 1", 6, 10, 5, stands, "nor is a level that stays 1"},
+    Cycle{"PLC", "coil 0 = 0", 0, 2, 5, stands, "0 disables, and the latch stays"},
+    Cycle{"PLC", "coil 0 = 1", 0, 2, 1, stands, "0 to 1 enables, which clears the latch"},
+    Cycle{"PLC", "command 0", 0, kAsBefore, 1, stands, "0 asks for nothing, and makes the next 6 new"},
+    Cycle{"PLC", "command 6", 0, 2, 2, starts, "to the target that was accepted last"},
+    Cycle{"PLC", "command 0", 0, kAsBefore, 1, arrives, "it ends no motion"},
+    Cycle{"PLC", "coil 0 = 0", 0, 2, 0, stands, "disable"},
 };
 
 constexpr std::array kTables{
@@ -86,8 +105,13 @@ constexpr std::array kTables{
                false, true, kWithoutIds},
     CycleTable{"A one-shot client",
                "mbpoll, or a script that opens a connection for each request: one row at a time, no lease (`\"lease\": "
-               "null`).",
+               "null`). Not on iD286pro, nor on a Keya over RS485: what nothing else would stop is stopped when the "
+               "connection that has started it ends; there the listener needs `\"client\": \"address\"`.",
                CycleTable::How::single, true, false, kOneShot},
+    CycleTable{"A client that writes one row at a time",
+               "One connection that stays, rows and coils in requests of their own, no lease; and a panel with a stop "
+               "button.",
+               CycleTable::How::single, false, false, kOneRow},
     CycleTable{"PLC and panel on one axis", "A scanner with ids that owns the axis, and a panel with a stop button.",
                CycleTable::How::scanner, false, true, kWithPanel},
 };
@@ -158,6 +182,26 @@ constexpr std::array kCommands{
                 "it stands"},
 };
 
+/// Which exception comes with which result, and why: the outcomes of gateway/core/error, in the order of both.
+std::string outcomes() {
+  std::map<std::pair<unsigned, unsigned>, std::string> rows;
+  for (int number = 0; number < kErrcCount; ++number) {
+    const auto code = static_cast<Errc>(number);
+    std::string& reasons =
+        rows[{static_cast<unsigned>(modbus_exception(code)), static_cast<unsigned>(command_result(code))}];
+    reasons += (reasons.empty() ? "" : "; ") + std::string(axisgate::text(code));
+  }
+  std::string out = "| answer | result (25) | because |\n|---|---|---|\n";
+  for (const auto& [outcome, reasons] : rows) {
+    const auto& [answer, result] = outcome;
+    const std::string named = answer == 0 ? "normal"
+                                          : "0x0" + std::string(1, "0123456789AB"[answer]) + " " +
+                                                std::string(name_of(WordKind::exception, answer));
+    out += cells({named, numbered(WordKind::result, result), reasons});
+  }
+  return out;
+}
+
 }  // namespace
 
 std::span<const CycleTable> cycle_tables() { return kTables; }
@@ -187,17 +231,43 @@ motion_state (32) tells. `axisgate explain result 9` says more of a result.
 - Edge coils are commands without id. Level coils 7, 8 and 9, and coil 0 after a stop or fault, act on 1 only after a 0.
 - Stops (2, 3, 4, coils 2 and 3) act if command or id differ from what is remembered, in a single write always.
 
+**What it is answered with.** An exception tells the kind, register 25 the result. A block that is not new is answered normally:
+only its result is 10.
+
+)" + outcomes() +
+         R"(
 **What does not act says so**: result 10; a single write is answered 0x06 as well. Repeating what has acted leaves the result alone.
 
 **Set-points** (41 to 53) are no starts. The one accepted last is what every start uses. In a block, 0 leaves rows 41, 47, 48, 50,
 52, 58, 62, 64, 66, 70 and 76 as they are; alone it is refused (0x03). A block of zeros asks for nothing.
+
+**Raw controlwords** (40) follow the rules of a command without id, and in a block on an empty memory are only remembered. A word with
+bit 1 or bit 2 at 0 is a stop of any operator; so is one whose bits 0 to 3 are 6 or 7, of a client that does not own the axis in a
+single write alone. Going to 0 in a block is a stop. While a stop is latched only stops pass, and the two steps out of it: 6 or 7,
+then 15. A CiA 402 drive is sent the word as it is. On iD286pro and Keya bit 4 rising is a start (mode 1: move_absolute, with bit 6
+move_relative; mode 6: home), and bit 8 rising a halt; falling they do nothing.
+
+**Jog.** Coil 8 or 9 at 1 turns the axis at `jog_velocity` as long as its owner writes the 1 again within `jog_timeout_ms` (500);
+reads and other writes do not count. It ends by a halt: when the 1 is 0 or too late, with both coils at 1, and at a position limit of
+an axis that is homed. Only another 0 to 1 begins anew.
 
 **The stop latch** is set by quick_stop and by a lease's end. Until an enable that is accepted later, commands 6 to 11 and jog are
 refused: 0x04, result 9.
 
 **Who may.** A write that asks for something claims the axis for its client (register 28), for the time of its lease (29). Others are
 refused then: 0x06, result 7; their stops are not. When the owner falls silent the axis is stopped and latched. While it is disabled
-only what asks for something renews the lease.
+only what asks for something renews the lease. What is refused claims nothing.
+
+| `renew` of the lease | what renews it |
+|---|---|
+| `any` | any request of the owner; with `"client": "address"` any write |
+| `write` | a write to this axis |
+| `heartbeat` | a changed number in register 56 of the axis, or 8 of the gateway |
+
+**What nobody holds any more.** When the connection of an owner has ended, its lease goes on until its time is over. Any write or
+changed heartbeat of the same address and role takes it over, and nothing happens to the motor. An axis that the gateway finds enabled
+at its start is *adopted*: any operator's write but a block of zeros takes it over; if none comes in the lease's time, the axis is
+stopped as its `on_expiry` says.
 
 **Owed stops.** A stop that could not be sent, or was not seen to act, is owed: when the drive is back the stop comes first, and all
 but stops and reads is refused: 0x06, result 9.

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/image/register_rows.hpp"
 
+#include <string>
+
+#include "gateway/core/words.hpp"
+#include "gateway/image/command.hpp"
+
 namespace axisgate {
 namespace {
 
@@ -36,6 +41,35 @@ RegisterRow in(Kind kind, RegisterRow made) {
   return made;
 }
 
+std::string list_of_commands() {
+  std::string out;
+  for (std::uint16_t number = 1; number <= kLastCommand; ++number) {
+    const auto command = static_cast<Command>(number);
+    out += (out.empty() ? "" : ", ") + std::to_string(number) + " " + std::string(text(command));
+    if (command == Command::save_parameters) out += " (engineer)";
+  }
+  return out;
+}
+
+/// What the numbers of a row are called: the table of words says it, for every place where they are shown.
+struct Lists {
+  std::string link_state = list_of(WordKind::link_state);
+  std::string result = list_of(WordKind::result);
+  std::string axis_state = list_of(WordKind::axis_state) +
+                           "; 5: or a stop is latched; 7: link_state is not 2 or 3, and the motor may be running";
+  std::string motion_state = list_of(WordKind::motion_state);
+  std::string axis_alarms = list_of(WordKind::axis_alarm);
+  std::string mode = "CiA 402: " + list_of(WordKind::mode) + "; negative: the drive's own";
+  std::string command = list_of_commands();
+  std::string gateway_state = list_of(WordKind::gateway_state);
+  std::string gateway_alarms = list_of(WordKind::gateway_alarm);
+};
+
+const Lists& lists() {
+  static const Lists kLists;
+  return kLists;
+}
+
 }  // namespace
 
 std::vector<RegisterRow> axis_register_rows() {
@@ -55,17 +89,12 @@ std::vector<RegisterRow> axis_register_rows() {
       of(15, drive_temperature),
       of(16, motor_temperature),
       of(17, dc_voltage),
-      shows(18, "link_state", u16, Source::link_state,
-            "0 unknown, 1 setup, 2 online, 3 suspect, 4 offline, 5 link_down"),
+      shows(18, "link_state", u16, Source::link_state, lists().link_state),
       shows(19, "age_ms", u16, Source::age_ms, "age of the oldest cyclic value, saturating", "ms"),
       shows(20, "supported", u32, Source::supported, "this drive on this protocol has the quantity"),
       shows(22, "valid", u32, Source::valid, "the value is good now"),
       shows(24, "sequence", u16, Source::sequence, "steps when anything of the axis changes but ages"),
-      shows(
-          25, "command_result", u16, Source::command_result,
-          "0 none, 1 pending, 2 done, 3 refused by drive, 4 outcome unknown, 5 superseded, 6 never started, "
-          "7 not owner, 8 stopped by another client, 9 state unsuitable, 10 not new: nothing was done, 11 not reached: "
-          "the drive has acknowledged everything, and the state did not come in time"),
+      shows(25, "command_result", u16, Source::command_result, lists().result),
       shows(26, "command_detail", u32, Source::command_detail,
             "SDO abort code, Modbus exception or the drive's own code; of result 11 the step, from 1, 0: nothing was "
             "sent; of a block write refused with 0x01, 0x02 or 0x03: 0x0A000000 + offset of the first row, or coil, "
@@ -74,22 +103,14 @@ std::vector<RegisterRow> axis_register_rows() {
       shows(29, "lease_remaining_ms", u16, Source::lease_remaining_ms,
             "until the lease runs out as things stand, saturating; 0: none runs", "ms"),
       shows(30, "command_id_seen", u16, Source::command_id_seen, "the last command_id from this client's address"),
-      shows(31, "axis_state", u16, Source::axis_state,
-            "0 disabled, 1 standstill, 2 discrete motion, 3 continuous motion, 4 homing, 5 stopping or stop-latched, "
-            "6 error stop, 7 unknown: link_state is not 2 or 3, and the motor may be running"),
-      shows(32, "motion_state", u16, Source::motion_state,
-            "0 none, 1 active, 2 completed, 3 aborted by another command or stop, 4 failed"),
+      shows(31, "axis_state", u16, Source::axis_state, lists().axis_state),
+      shows(32, "motion_state", u16, Source::motion_state, lists().motion_state),
       shows(33, "motion_id", u16, Source::motion_id, "command_id of that motion"),
-      shows(34, "axis_alarms", u32, Source::axis_alarms,
-            "bit 0 no_comm_watchdog, 1 adopted_running, 2 identity_mismatch, 3 local_control, 4 limit_inputs_open, "
-            "5 not_homed, 6 cannot_deenergise, 7 stop_latched, 8 duplicate_node, 9 nvm_budget, 10 clamped, "
-            "11 stop_options, 12 profile_mismatch"),
+      shows(34, "axis_alarms", u32, Source::axis_alarms, lists().axis_alarms),
       shows(36, "supported_commands", u32, Source::supported_commands, "bit = command number"),
       shows(38, "supported_modes", u16, Source::supported_modes, "as 6502h, low word"),
       of(40, controlword, kOperator, "reads the controlword in effect"),
-      of(41, mode, kOperator,
-         "CiA 402: 1 profile position, 3 profile velocity, 4 torque, 6 homing, 7 interpolated, 8 csp, 9 csv, 10 cst; "
-         "negative: the drive's own"),
+      of(41, mode, kOperator, lists().mode),
       of(42, target_position, kOperator),
       of(44, target_velocity, kOperator),
       of(46, target_torque, kOperator),
@@ -97,10 +118,7 @@ std::vector<RegisterRow> axis_register_rows() {
       of(48, profile_velocity, kOperator),
       of(50, profile_acceleration, kOperator),
       of(52, profile_deceleration, kOperator),
-      takes(54, "command", u16, Source::command, kOperator,
-            "1 enable, 2 disable, 3 quick_stop, 4 halt, 5 fault_reset, 6 move_absolute, 7 move_relative, "
-            "8 run_velocity, 9 run_torque, 10 home, 11 set_position, 12 save_parameters (engineer), 13 release, "
-            "14 take_over"),
+      takes(54, "command", u16, Source::command, kOperator, lists().command),
       takes(55, "command_id", u16, Source::command_id, kOperator),
       takes(56, "heartbeat", u16, Source::heartbeat, kOperator, "a changed value renews a lease with renew heartbeat"),
       in(Kind::velocity, takes(58, "jog_velocity", u32, Source::jog_velocity, kOperator,
@@ -150,14 +168,10 @@ std::vector<RegisterRow> gateway_register_rows() {
   return {
       shows(0, "map_version", u16, Source::map_version),
       shows(1, "axis_count", u16, Source::axis_count),
-      shows(2, "gateway_state", u16, Source::gateway_state, "0 starting, 1 running, 2 degraded, 3 stopping"),
+      shows(2, "gateway_state", u16, Source::gateway_state, lists().gateway_state),
       shows(3, "axes_online", u16, Source::axes_online),
       shows(4, "uptime_s", u32, Source::uptime_s, {}, "s"),
-      shows(6, "alarms", u16, Source::gateway_alarms,
-            "bit 0 an axis offline, 1 a bus down, 2 drive fault, 3 identity mismatch, 4 no_comm_watchdog, "
-            "5 a check failed, 6 adopted_running, 7 DDS process down, 8 configuration not the one on disk, "
-            "9 certificate expires, 10 event loop slow, 11 EEPROM write budget, 12 bus overloaded, "
-            "13 name taken"),
+      shows(6, "alarms", u16, Source::gateway_alarms, lists().gateway_alarms),
       shows(7, "role", u16, Source::role, "of this client: 0 none, 1 viewer, 2 operator, 3 engineer"),
       takes(8, "heartbeat", u16, Source::gateway_heartbeat, kViewer,
             "a changed value renews this client's leases with renew heartbeat"),

@@ -22,15 +22,16 @@ struct Named {
   std::int64_t value = 0;
 };
 
-/// "command 6, command_id 3"
+/// "command 6, command_id 3", "coil 2 = 1"
 std::vector<Named> named_values(std::string_view text) {
   std::vector<Named> out;
   while (!text.empty()) {
     const std::size_t comma = text.find(", ");
     const std::string_view each = text.substr(0, comma);
     text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 2);
-    const std::size_t blank = each.find(' ');
-    Named named{std::string(each.substr(0, blank))};
+    const std::size_t blank = each.rfind(' ');
+    const std::size_t end_of_name = each.substr(0, blank).ends_with(" =") ? blank - 2 : blank;
+    Named named{std::string(each.substr(0, end_of_name))};
     const std::string_view digits = each.substr(blank + 1);
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), named.value);
     if (error != std::errc() || end != digits.data() + digits.size()) throw std::logic_error(std::string(each));
@@ -116,7 +117,9 @@ class Replay {
       client.disconnect();
       client.connect();
     }
-    if (write.name == "coil") return client.coil(static_cast<std::uint16_t>(write.value), true);
+    constexpr std::string_view kCoil = "coil ";
+    if (write.name.starts_with(kCoil))
+      return client.coil(static_cast<std::uint16_t>(std::stoi(write.name.substr(kCoil.size()))), write.value != 0);
     if (write.name == "target_position") target_ = write.value;
     return client.row(offset_of(write.name), write.value);
   }
@@ -149,12 +152,15 @@ class Replay {
 class Cycles : public testing::TestWithParam<Subject> {};
 
 TEST_P(Cycles, AreWhatTheirTablesSay) {
-  for (const CycleTable& table : cycle_tables()) Replay(table, GetParam()).play();
+  // As the table of the one-shot client says, and SECURITY.md.
+  const bool ends_with_its_client = !is_cia402(GetParam()) && !minds_silence(GetParam());
+  for (const CycleTable& table : cycle_tables())
+    if (!(table.new_connection_each && ends_with_its_client)) Replay(table, GetParam()).play();
 }
 
 // A test of tables that say nothing would pass.
 TEST(CycleTables, MoveAndStopAMotorAndEachIsRefusedOnce) {
-  ASSERT_EQ(cycle_tables().size(), 4U);
+  ASSERT_EQ(cycle_tables().size(), 5U);
   for (const CycleTable& table : cycle_tables()) {
     std::set<MotorDoes> seen;
     for (const Cycle& cycle : table.cycles) seen.insert(cycle.motor);
@@ -162,7 +168,7 @@ TEST(CycleTables, MoveAndStopAMotorAndEachIsRefusedOnce) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, Cycles, testing::ValuesIn(subjects(is_cia402)), named);
+INSTANTIATE_TEST_SUITE_P(Every, Cycles, testing::ValuesIn(subjects(has_positions)), named);
 
 }  // namespace
 }  // namespace axisgate::test::obey

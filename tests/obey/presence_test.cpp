@@ -68,9 +68,21 @@ class Mismatch : public testing::TestWithParam<Lacking> {
       count += event.axis == 1 && event.text.find("profile_mismatch") != std::string::npos;
     return count;
   }
-  /// The mailbox reads, and writes nothing.
+  Answer answer_of(RequestNumber request) {
+    std::optional<Answer> answer;
+    plant_->stage.run_until([&] { return (answer = plant_->a.answer_of(request)).has_value(); }, 10s);
+    if (!answer) throw std::runtime_error("43/13 was not answered");
+    return *answer;
+  }
+  /// The mailbox reads, and so does 43/13; neither writes anything.
   void expect_readable_alone() {
     const ObjectPlace& there = GetParam().there;
+    EXPECT_EQ(answer_of(plant_->a.ask_for_object(there.index, there.sub)), kOk);
+    note_begin();
+    Write reference{.function = fc::general_reference, .first = 80};
+    reference.words = {2, there.index, there.sub, GetParam().size, 0, 15};
+    EXPECT_EQ(plant_->a.write(reference), kNotNow) << "an enable by 43/13, where it is a controlword";
+    EXPECT_EQ(changes_sent(), 0U);
     ASSERT_EQ(plant_->a.rows(81, 83, {{81, there.index}, {82, there.sub}, {83, GetParam().size}}), kOk);
     EXPECT_EQ(plant_->a.row(80, 1), kOk);
     plant_->run(1s);

@@ -130,6 +130,58 @@ TEST_P(Stops, AreDoneWhenTheMotorWasSeenToObey) {
   EXPECT_EQ(a_.word(shown::axis_state), kStopLatched);
 }
 
+// 3.4: until an enable that is accepted after the stop. What the words of stop_latched tell people to do is done here.
+TEST_P(Stops, StayLatchedThroughADisable) {
+  constexpr std::uint16_t kRowOfAlarms = 34;
+  constexpr unsigned kLatchAlarm = 7;
+  constexpr std::int64_t kReset = 5, kNoState = 9, kEnableOperation = 15;
+  const auto bit = [&](std::uint16_t row, std::int64_t number) {
+    return (static_cast<std::uint32_t>(a_.wide(row)) >> number & 1U) != 0;
+  };
+  const auto latched = [&] { return bit(kRowOfAlarms, kLatchAlarm); };
+  const auto expect_latched = [&] {
+    EXPECT_TRUE(latched());
+    for (std::int64_t command = kMove; command <= kSetPosition; ++command) {
+      if (!bit(shown::supported_commands, command)) continue;
+      EXPECT_EQ(a_.command(0), kOk);
+      EXPECT_EQ(a_.command(command), kFailed) << command;
+      EXPECT_EQ(a_.result(), kNoState) << command;
+    }
+    EXPECT_EQ(plant_.velocity(), 0);
+  };
+  start_with_ids();
+  ASSERT_EQ(a_.command(kQuickStop, 3), kOk);
+  ASSERT_TRUE(plant_.comes_to_stand());
+  expect_latched();
+  EXPECT_EQ(a_.command(kDisable), kOk);
+  expect_latched();
+  EXPECT_EQ(a_.coil(coil::enable, false), kOk);
+  expect_latched();
+  // A fault reset clears faults, and a 15 without a 6 or 7 before it enables nobody.
+  EXPECT_EQ(a_.command(kReset), kOk);
+  EXPECT_FALSE(a_.row(row::controlword, kEnableOperation).ok());
+  expect_latched();
+  EXPECT_EQ(a_.command(kEnable), kOk);
+  EXPECT_FALSE(latched());
+  // "command 0 first if the last command was 1"
+  ASSERT_EQ(b_.command(kQuickStop), kOk);
+  ASSERT_TRUE(latched());
+  EXPECT_EQ(a_.command(kEnable), kNotNow);
+  EXPECT_TRUE(latched());
+  EXPECT_EQ(a_.command(0), kOk);
+  EXPECT_EQ(a_.command(kEnable), kOk);
+  EXPECT_FALSE(latched());
+  // "coil 0: first 0"
+  ASSERT_EQ(a_.coil(coil::enable, true), kOk);
+  ASSERT_EQ(b_.command(kQuickStop), kOk);
+  EXPECT_EQ(a_.coil(coil::enable, true), kNotNow);
+  EXPECT_TRUE(latched());
+  EXPECT_EQ(a_.coil(coil::enable, false), kOk);
+  EXPECT_TRUE(latched());
+  EXPECT_EQ(a_.coil(coil::enable, true), kOk);
+  EXPECT_FALSE(latched());
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, Stops, testing::ValuesIn(kSubjects), named);
 
 }  // namespace

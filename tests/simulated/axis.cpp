@@ -13,7 +13,9 @@ FinePosition floor_divide(FinePosition value, FinePosition by) { return value / 
 void Axis::step(Dec speed, bool position_loop, int direction) {
   speed_ = speed;
   demand_ += speed;
-  FinePosition wanted = physical_ + direction * (demand_ - actual_);
+  FinePosition lag = demand_ - actual_;
+  if (position_loop) lag -= std::clamp(lag, -short_by_, short_by_);
+  FinePosition wanted = physical_ + direction * lag;
   if (jammed_) wanted = physical_;
   if (mechanics_.positive_stop) wanted = std::min(wanted, *mechanics_.positive_stop * fine_per_count);
   if (mechanics_.negative_stop) wanted = std::max(wanted, *mechanics_.negative_stop * fine_per_count);

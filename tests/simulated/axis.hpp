@@ -33,6 +33,9 @@ class Axis {
   void redefine(FinePosition actual);  // the position counter only; nothing moves
   void forget_demand() { demand_ = actual_; }
   void jam(bool jammed) { jammed_ = jammed; }
+  // From now on the position loop follows only what is further away than this: its static error.
+  void fall_short(FinePosition by) { short_by_ = by; }
+  FinePosition short_by() const { return short_by_; }
 
  private:
   const Mechanics& mechanics_;
@@ -42,6 +45,7 @@ class Axis {
   FinePosition demand_ = 0;
   FinePosition actual_ = 0;
   FinePosition physical_ = 0;
+  FinePosition short_by_ = 0;
   bool jammed_ = false;
   bool stalled_ = false;
   std::optional<FinePosition> index_passed_;

@@ -89,7 +89,7 @@ bool KeyaMotor::still() const {
   if (axis_.speed() != 0 || axis_.actual_speed() != 0) return false;
   if (!enabled_) return true;
   if (mode_ == KeyaMode::speed || mode_ == KeyaMode::torque) return value_ == 0;
-  return target_ == axis_.demand() && axis_.actual() == axis_.demand();
+  return target_ == axis_.demand() && std::abs(axis_.actual() - axis_.demand()) <= axis_.short_by();
 }
 
 std::uint16_t KeyaMotor::current() const {

@@ -44,6 +44,7 @@ class KeyaMotor {
   void set_count(std::int32_t count);
   void show_current(std::optional<std::uint16_t> amperes) { shown_current_ = amperes; }
   void jam(bool jammed) { axis_.jam(jammed); }
+  void fall_short(std::int64_t counts) { axis_.fall_short(counts * fine_per_count); }
 
  private:
   Dec wanted_speed(Time at) const;

@@ -229,6 +229,21 @@ std::string render_table(const TopReading& reading, std::size_t columns) {
   return out;
 }
 
+namespace {
+
+/// One of its alarms is named: in a line of its own after "alarms: ", in the wide layout in the last column.
+bool names_an_alarm(std::string_view line) {
+  if (line.find("alarms: ") != std::string_view::npos) return !line.ends_with("alarms: none");
+  const std::size_t before = line.rfind("  ");
+  if (before == std::string_view::npos) return false;
+  const std::string_view first = line.substr(before + 2, line.find(',', before) - before - 2);
+  return first.starts_with("bit ") || std::ranges::any_of(words(), [&](const Word& word) {
+           return word.kind == WordKind::axis_alarm && word.name == first;
+         });
+}
+
+}  // namespace
+
 Attention attention(std::string_view line) {
   const auto says = [&](WordKind kind, auto number) {
     return line.find("  " + std::string(name_of(kind, static_cast<std::uint32_t>(number)))) != std::string_view::npos;
@@ -237,10 +252,9 @@ Attention attention(std::string_view line) {
   if (says(axis_state, AxisState::error_stop) || says(link_state, LinkState::offline) ||
       says(link_state, LinkState::link_down))
     return Attention::act;
-  if (says(link_state, LinkState::suspect) || says(axis_state, AxisState::stopping) ||
-      line.find("alarms: ") != std::string_view::npos)
-    return line.ends_with("alarms: none") ? Attention::none : Attention::look;
-  return Attention::none;
+  const bool look =
+      says(link_state, LinkState::suspect) || says(axis_state, AxisState::stopping) || names_an_alarm(line);
+  return look ? Attention::look : Attention::none;
 }
 
 }  // namespace axisgate::app

@@ -153,7 +153,8 @@ void CommandSequence::on_object(const bus::ExchangeResult& result) {
 // --- Not reached ---------------------------------------------------------------------------------------------------
 
 Outcome CommandSequence::outcome_if_late() const {
-  if (!begun_) return {stop_ ? Errc::timed_out : Errc::never_started, 0};
+  // Nothing was sent, so no acknowledgement is lost. A stop waits on, and is owed.
+  if (!begun_) return {stop_ ? Errc::not_reached : Errc::never_started, 0};
   const bool asks_for_a_state = phase_ == Phase::stop || phase_ == Phase::mode || in_command();
   // That a look was lost since, and the drive is suspect, takes back no acknowledgement.
   const bool acknowledged = !writes_.under_way && !writes_.verifying;
@@ -227,7 +228,7 @@ void CommandSequence::reach(const Action& action) {
     // A set-point that changes what runs is no new motion.
     const bool goes_on = batch_.command == Command::none && !batch_.controlword;
     motion.start(kind, goes_on ? motion.id() : batch_.command_id, core_.turn.now, core_.store.exchange());
-    core_.started(kind, action.number != 0);
+    core_.started(kind, action.number != 0, action.ends_at);
   };
   switch (action.mark) {
     case Mark::enabled:
@@ -261,6 +262,7 @@ void CommandSequence::reach(const Action& action) {
       stops_before_ = motion.stops();
       break;
     case Mark::run_raw:
+      core_.sent_to.reset();
       motion.run_raw();
       break;
     case Mark::mode_changed:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace axisgate::drive {
 namespace {
@@ -137,7 +138,8 @@ void Motion::complete_with_position(const AxisFacts& facts) {
 
 void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
   seen_ = facts.at;
-  rests_ = at_rest(facts);
+  const bool rested = std::exchange(rests_, at_rest(facts));
+  if (rests_ && !rested) rests_since_ = facts.at;
   acknowledges_ = facts.acknowledges;
   if (!facts.reachable || stands(facts)) stopping_ = false;
   // Targets written while it is disabled or faulted are kept for the start that follows: only the change ends things.

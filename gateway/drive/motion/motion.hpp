@@ -95,6 +95,10 @@ class Motion {
   [[nodiscard]] bool may_start(const AxisFacts& facts) const { return facts.enabled() && facts.commanded && !latched_; }
   /// Standstill, as a relative move and set_position need it, and as axis_state shows it of an enabled axis.
   [[nodiscard]] bool at_rest(const AxisFacts& facts) const;
+  /// It has been seen at rest from then on; kNever: not by the newest samples.
+  [[nodiscard]] Instant rests_since() const { return rests_ ? rests_since_ : kNever; }
+  /// The motion started last was completed, and nothing has ended anything since.
+  [[nodiscard]] bool arrived() const { return arrived_; }
   /// A motion command was accepted: target_reached reads 0 from now until unmask().
   void mask_target_reached() { target_reached_masked_ = true; }
   void unmask_target_reached() { target_reached_masked_ = false; }
@@ -167,7 +171,8 @@ class Motion {
   std::uint64_t losses_ = 0;
   bool raw_run_ = false;
   bool stopping_ = false;
-  bool rests_ = false;    ///< by the newest samples, with no set-point that it follows
+  bool rests_ = false;  ///< by the newest samples, with no set-point that it follows
+  Instant rests_since_ = kLongAgo;
   bool arrived_ = false;  ///< the motion started last was completed, and nothing has ended anything since
   bool target_reached_masked_ = false;
   bool homing_timed_out_ = false;

@@ -43,6 +43,7 @@ struct Action {
   bool optional = false;         ///< no failure: a wait that runs out, a write of what the drive says it does not have
   Errc otherwise = Errc::not_reached;
   Mark mark{};
+  std::optional<std::int64_t> ends_at{};  ///< Mark::start_discrete: in register units; none: the drive reckons it
 
   [[nodiscard]] static Action write(ObjectId object, std::int64_t number) {
     Action a;

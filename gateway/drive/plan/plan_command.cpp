@@ -162,7 +162,14 @@ Plan plan_move(const AxisCore& core, Command command) {
   if (const Errc code = judge_move(core, relative); code != Errc::ok) return Plan::refuse(code);
   if (relative && steps_of(core, Command::move_relative) == nullptr) {
     // No relative move documented as edge-triggered: carried out as an absolute one.
-    wanted = Wanted{wanted->value + core.value(Quantity::position_actual).value_or(0)};
+    const auto base = core.setpoint_position();
+    if (!base) {
+      Plan look;
+      look.add(Action::read(core.object_of(Quantity::position_actual)));
+      look.add(Action::at(Mark::look_again));
+      return look;
+    }
+    wanted = Wanted{wanted->value + *base};
     command = Command::move_absolute;
   }
   const Binding* target = core.model.binding(Quantity::target_position);
@@ -187,6 +194,7 @@ Plan plan_move(const AxisCore& core, Command command) {
   append(plan, std::move(steps));
   Action start = Action::at(Mark::start_discrete);
   start.number = distance ? 1 : 0;
+  if (!distance) start.ends_at = wanted->exact ? target->to_register(*raw) : wanted->value;
   plan.add(std::move(start));
   return plan;
 }
@@ -267,9 +275,10 @@ Errc judge_move(const AxisCore& core, bool relative) {
   if (target == nullptr || !wanted) return Errc::state_unsuitable;
   std::int64_t end = wanted->value;
   if (relative) {
-    const auto actual = core.value(Quantity::position_actual);
-    if (!actual) return Errc::state_unsuitable;
-    end += *actual;
+    const auto known = core.setpoint_position();
+    const auto base = known ? known : core.value(Quantity::position_actual);
+    if (!base) return Errc::state_unsuitable;
+    end += *base;
   }
   return target->limits.holds(end) ? Errc::ok : Errc::bad_value;
 }
@@ -310,6 +319,22 @@ void add_steps(const AxisCore& core, const Steps& steps, Plan& plan) {
         break;
     }
   }
+}
+
+bool refused_by_state(const AxisCore& core, Command command) {
+  const bool needs_rest = command == Command::move_relative || command == Command::set_position;
+  const AxisFacts facts = core.facts();
+  return needs_ready(command) && !(core.motion.may_start(facts) && (!needs_rest || core.motion.at_rest(facts)));
+}
+
+bool accepts_nothing(const AxisCore& core, const WriteBatch& batch) {
+  if (batch.command == Command::none || is_stop(batch.command) || batch.mode || batch.controlword || batch.object ||
+      batch.set_position_value || batch.jog_velocity)
+    return false;
+  const bool with_command =
+      std::all_of(batch.setpoints.begin(), batch.setpoints.end(), [](const Setpoint& sp) { return sp.with_command; });
+  if (!batch.setpoints.empty() && !(with_command && refused_by_state(core, batch.command))) return false;
+  return plan_preparation(core, batch.command).refused();
 }
 
 Plan plan_preparation(const AxisCore& core, Command command) {

@@ -173,7 +173,9 @@ void AxisCore::make(ObjectId id, std::int64_t number) {
   refresh_virtual();
 }
 
-void AxisCore::started(MotionKind kind, bool relative) {
+void AxisCore::started(MotionKind kind, bool relative, std::optional<std::int64_t> ends_at) {
+  sent_to.reset();
+  if (ends_at) sent_to = {*ends_at, store.invalidations()};
   if (!is_virtual()) return;
   std::optional<std::int64_t> goal;
   const Binding* target = model.binding(Quantity::target_position);
@@ -212,6 +214,17 @@ std::optional<Wanted> AxisCore::target_position() const {
   if (const auto wanted = motion.wanted(Quantity::target_position)) return wanted;
   if (const auto cached = value(Quantity::target_position)) return Wanted{*cached};
   return std::nullopt;
+}
+
+std::optional<std::int64_t> AxisCore::setpoint_position() const {
+  const Binding* target = model.binding(Quantity::target_position);
+  if (sent_to && motion.arrived() && sent_to->invalidations == store.invalidations() && target != nullptr &&
+      target->object != kNoObject && store[target->object].known &&
+      target->to_raw(sent_to->position, object(target->object)) == store[target->object].number)
+    return sent_to->position;
+  const ObjectId actual = object_of(Quantity::position_actual);
+  const bool sampled = actual != kNoObject && store[actual].known && store[actual].sent_at >= motion.rests_since();
+  return sampled ? value(Quantity::position_actual) : std::nullopt;
 }
 
 Wanted AxisCore::running_target(Quantity quantity) const { return motion.wanted(quantity).value_or(Wanted{}); }

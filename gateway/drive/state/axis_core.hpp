@@ -39,6 +39,13 @@ struct AxisCore {
   bool homed = false;                   ///< latched (design 3.1, discrete input 6)
   std::int32_t set_position_value = 0;  ///< row 78, the gateway's own
   VirtualAxis machine{};                ///< of a virtual axis alone
+  /// Where the motion started last was sent, in register units, and the store's invalidations() then: the drive may
+  /// hold another target since.
+  struct SentTo {
+    std::int64_t position = 0;
+    std::uint64_t invalidations = 0;
+  };
+  std::optional<SentTo> sent_to{};
   NvmBudget nvm{};
 
   /// link_state online or suspect.
@@ -51,8 +58,8 @@ struct AxisCore {
   void begin_mode();
   /// Carries out the write of an `emulated` object.
   void make(ObjectId id, std::int64_t number);
-  /// The drive has acknowledged a start. `relative`: the target is a distance.
-  void started(MotionKind kind, bool relative);
+  /// The drive has acknowledged a start. `relative`: the target is a distance. `ends_at`: see Action.
+  void started(MotionKind kind, bool relative, std::optional<std::int64_t> ends_at);
   /// What must be read to know this object: itself, or, of an `emulated` statusword, the oldest of its samples.
   [[nodiscard]] ObjectId to_read(ObjectId id) const;
   /// New samples, or time has passed: whether there is a fault, and what names it.
@@ -79,6 +86,10 @@ struct AxisCore {
   [[nodiscard]] bool held_back(Quantity target) const;
   /// The position a move uses: what a client asked for last, else what the drive holds.
   [[nodiscard]] std::optional<Wanted> target_position() const;
+  /// Where a relative move begins that is carried out as an absolute one: at the target of the move that was completed
+  /// last, as long as the drive holds it, however short of it the motor stands; else at a position sampled since it
+  /// stands. None: there is no such sample yet.
+  [[nodiscard]] std::optional<std::int64_t> setpoint_position() const;
   /// The bus cannot take this virtual axis's torque away, and it is not enabled.
   [[nodiscard]] bool cannot_deenergise() const;
   /// Velocity and torque: what a client has asked for since the last stop, fault, disable or loss, else 0.

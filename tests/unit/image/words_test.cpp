@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "gateway/core/error.hpp"
+#include "gateway/image/map_page.hpp"
 #include "gateway/image/process_image.hpp"
 
 namespace axisgate {
@@ -50,11 +51,23 @@ TEST(Words, CoverEverythingThatIsShown) {
     EXPECT_NE(find_word(WordKind::result, result), nullptr) << code;
   }
   for (unsigned alarm = 0; alarm < kAxisAlarmCount; ++alarm) EXPECT_NE(text(static_cast<AxisAlarm>(alarm)), "?");
-  for (unsigned state = 0; state <= static_cast<unsigned>(AxisState::error_stop); ++state)
+  for (unsigned state = 0; state <= static_cast<unsigned>(AxisState::unknown); ++state)
     EXPECT_NE(text(static_cast<AxisState>(state)), "?");
   for (unsigned state = 0; state <= static_cast<unsigned>(LinkState::link_down); ++state)
     EXPECT_NE(text(static_cast<LinkState>(state)), "?");
   EXPECT_NE(find_word(WordKind::gateway_alarm, static_cast<std::uint32_t>(GatewayAlarm::bus_overloaded)), nullptr);
+}
+
+// A register's meaning calls a number what `top`, the log and `axisgate explain` call it.
+TEST(Words, AreWhatTheRegisterMapTells) {
+  using enum WordKind;
+  EXPECT_EQ(list_of(motion_state), "0 none, 1 active, 2 completed, 3 aborted, 4 failed");
+  EXPECT_THAT(list_of(result), testing::EndsWith("11 not_reached")) << "those of DDS are in no register";
+  EXPECT_THAT(list_of(gateway_alarm), testing::StartsWith("bit 0 axis offline, 1 bus down, "));
+  const std::string page = register_map_page();
+  for (const WordKind kind :
+       {axis_state, motion_state, link_state, mode, axis_alarm, gateway_state, gateway_alarm, result})
+    EXPECT_THAT(page, testing::HasSubstr(list_of(kind))) << title(kind);
 }
 
 TEST(Words, AreFoundAsSomebodyTypesThem) {

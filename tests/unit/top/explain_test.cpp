@@ -16,7 +16,8 @@ TEST(Explain, SaysMeaningCausesAndRemedy) {
   EXPECT_THAT(out, HasSubstr("stop_latched (axis alarm 7: bits of registers 34 and 35 of the axis)\n"));
   EXPECT_THAT(out, HasSubstr("  meaning: "));
   EXPECT_THAT(out, HasSubstr("  causes:  "));
-  EXPECT_THAT(out, HasSubstr("  remedy:  disable; or command 0, then enable\n"));
+  EXPECT_THAT(out, HasSubstr("  remedy:  enable; command 0 first if the last command was 1 (coil 0: first 0); a "
+                             "disable clears nothing\n"));
 }
 
 TEST(Explain, KnowsTheFaultsOfEveryDriveThatHasTheCode) {

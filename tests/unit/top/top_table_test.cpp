@@ -226,6 +226,24 @@ TEST(TopScreen, ColoursLinesThatAskForAttentionWithoutCuttingTheirColour) {
   EXPECT_THAT(terminal_frame(table, 60, 50), Not(HasSubstr("\x1b[31m")));
 }
 
+TEST(TopScreen, ColoursAnAxisWithAlarmsInBothLayoutsAndNoOther) {
+  AxisReading alarmed = good_axis(2);
+  put32(alarmed, 34, bit(AxisAlarm::not_homed));
+  AxisReading newer = good_axis(3);
+  put32(newer, 34, 1U << 31);  // of a gateway that knows more alarms
+  const TopReading reading = reading_of({good_axis(1), alarmed, newer});
+  std::vector<Attention> wide;
+  for (const std::string& line : lines_of(render_table(reading))) wide.push_back(attention(line));
+  using enum Attention;
+  EXPECT_THAT(wide, ElementsAre(none, none, none, look, look));
+  EXPECT_THAT(terminal_frame(render_table(reading), 60, 50, true), HasSubstr("\x1b[33m   2  online"))
+      << "also where the window cuts the alarms off";
+  std::vector<std::string> narrow;
+  for (const std::string& line : lines_of(render_table(reading, kNarrow)))
+    if (attention(line) == look) narrow.push_back(line);
+  EXPECT_THAT(narrow, ElementsAre(EndsWith("alarms: not_homed"), EndsWith("alarms: bit 31")));
+}
+
 TEST(TopScreen, AFrameIsCutToTheWindowAndWipesWhatWasThereBefore) {
   const std::string frame = terminal_frame("abcdef\nx\nthird\n", 4, 2);
   EXPECT_EQ(frame, "\x1b[Habcd\x1b[K\r\nx\x1b[K\x1b[J");
