@@ -30,14 +30,14 @@ Log stderr_log(LogLevel most_detailed) {
         }
         const std::string before =
             lost == 0 ? std::string() : fmt::format("({} lines lost here: nobody took them)\n", lost);
-        lost = 0;
         const auto now = std::chrono::system_clock::now();
         const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
         const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
         const std::string line = before + fmt::format("{:%Y-%m-%d %H:%M:%S}.{:03} {} {}: {}\n", fmt::localtime(seconds),
                                                       ms, text(level), source, message);
         // One call, so that lines of two processes on one terminal do not mix.
-        std::fwrite(line.data(), 1, line.size(), stderr);
+        // A full disk takes none of it, and says so only now.
+        lost = std::fwrite(line.data(), 1, line.size(), stderr) == line.size() ? 0 : lost + 1;
       },
       most_detailed);
 }

@@ -35,6 +35,9 @@ void dead_neighbour(const BenchOptions& options, LineProtocol protocol);
 void stop_latency(const BenchOptions& options, LineProtocol protocol);
 /// P5: FC 3 reads per second, beside a bare Asio echo server with the same sizes. Goal: 0.9.
 void modbus_reads(const BenchOptions& options);
+/// What clients who are not slow wait for a read among 1,000 that ask 10 times a second, 200 of them slow; and
+/// connections made per second: both beside a bare Asio echo server.
+void crowd(const BenchOptions& options);
 /// P6: exchanges on the bus with reading clients, beside those without. Goal: 1.
 void shared_polling(const BenchOptions& options, LineProtocol protocol);
 /// P8: memory and processor time of the gateway.

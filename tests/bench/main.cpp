@@ -39,6 +39,8 @@ constexpr std::array kBenches{
     Bench{"delayed", "P2: share of a bare loop's rate with a drive that answers after 5 ms", on<delayed_drive, kKinco>},
     Bench{"stops", "P4: exchanges before a stop, behind 32 busy clients", on<stop_latency, kKinco>},
     Bench{"reads", "P5: Modbus reads per second beside a bare Asio echo server", modbus_reads},
+    Bench{"crowd", "reads among 1000 clients, 200 of them slow, and connections per second, beside an echo server",
+          crowd},
     Bench{"sharing", "P6: exchanges on the bus with 0, 1 and 32 reading clients", on<shared_polling, kKinco>},
     Bench{"footprint", "P8: memory and processor time", footprint},
     Bench{"rtu-immediate", "P2 on Modbus RTU, beside libmodbus in a loop", on<immediate_drive, kRtu>},

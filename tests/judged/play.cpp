@@ -74,6 +74,7 @@ Outcome Play::run() {
     if (over()) break;
     act(step);
   }
+  while (!over() && now_ms() < program_.nemesis.until_ms) pass(kStepMs);
   mend();
   for (const obey::Strike how : obey::kStrikes) plant_.strike(how, 0);
   for (std::int64_t waited = 0;
@@ -84,6 +85,8 @@ Outcome Play::run() {
   outcome_.virtual_ms = now_ms();
   outcome_.lost_count = contract_->lost_count();
   outcome_.traffic = watches_->cable.traffic();
+  plague_.count_strikes();
+  outcome_.injected = plague_.injected();
   if (!over()) return std::move(outcome_);
   outcome_.story.push_back(*outcome_.violation);
   outcome_.last_second = watches_->cable.last_second();
@@ -113,7 +116,7 @@ void Play::watch_trouble() {
   }
   const bool strikes =
       std::ranges::any_of(obey::kStrikes, [this](obey::Strike how) { return plant_.still_strikes(how); });
-  if (!online || strikes || watches_->cable.lies_in_wait()) {
+  if (!online || strikes || plague_.strikes_now() || watches_->cable.lies_in_wait()) {
     online_since_ms_ = -1;
     return;
   }
@@ -132,10 +135,29 @@ void Play::begin_trouble() {
 
 void Play::pass(std::int64_t ms) {
   for (std::int64_t gone = 0; gone < ms && !over(); gone += kStepMs) {
+    be_haunted();
     plant_.run(std::chrono::milliseconds(kStepMs));
     look();
     watch_trouble();
     collect();
+  }
+}
+
+void Play::be_haunted() {
+  const bool began = plague_.began();
+  if (const auto wrong = plague_.rage(now_ms())) violated(*wrong);
+  if (!began && plague_.began()) outcome_.story.push_back(stamp() + ": " + text(program_.nemesis));
+  if (plague_.strikes_now()) {
+    watches_->line_is_troubled(program_.nemesis.says_twice());
+    if (!contract_->in_trouble()) begin_trouble();
+  }
+  if (const Duration stall = plague_.stalls_now(); stall > Duration{}) {
+    outcome_.story.push_back(stamp() + ": the event loop stands for " +
+                             std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(stall).count()) +
+                             " ms");
+    begin_trouble();
+    watches_->loop_stood();
+    plant_.stage.runtime().stall(stall);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/judged/cable_watch.hpp"
+#include "tests/judged/nemesis.hpp"
 #include "tests/judged/program.hpp"
 #include "tests/model/contract.hpp"
 #include "tests/obey/plant.hpp"
@@ -23,6 +24,7 @@ struct Outcome {
   std::int64_t virtual_ms = 0;
   std::size_t writes = 0;
   Traffic traffic{};
+  Injected injected{};
   std::vector<std::string> last_second{};  ///< the frames before a violation
 };
 

@@ -11,6 +11,7 @@
 
 #include "tests/judged/clients.hpp"
 #include "tests/judged/history.hpp"
+#include "tests/judged/plague.hpp"
 #include "tests/judged/play.hpp"
 #include "tests/judged/watches.hpp"
 #include "tests/judged/writers.hpp"
@@ -25,7 +26,8 @@ class Play {
         neighbour_(seed % 2 == 0),
         other_bus_(seed % 4 == 3),
         plant_(program.subject, options_of(program, seed)),
-        clients_(plant_) {}
+        clients_(plant_),
+        plague_(plant_, program_.nemesis, seed) {}
 
   Outcome run();
 
@@ -69,6 +71,7 @@ class Play {
   void look_up(std::size_t client);
   void watch_trouble();
   void begin_trouble();
+  void be_haunted();
   void mend();
   void replace(std::size_t client, bool silently);
   void read(std::size_t client);
@@ -84,6 +87,7 @@ class Play {
   bool neighbour_, other_bus_;
   obey::Plant plant_;
   Clients clients_;
+  Plague plague_;
   std::optional<Writers> writers_;
   std::optional<model::Contract> contract_;
   std::optional<Watches> watches_;

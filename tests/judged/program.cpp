@@ -70,7 +70,8 @@ rc::Shrinkable<std::vector<Step>> steps_of(Subject subject, Weather weather, std
 }
 
 Program draw(Subject subject, Weather weather, bool leases, std::uint64_t seed) {
-  return {subject, flavour_of(subject, seed), leases, steps_of(subject, weather, seed).value()};
+  return {subject, flavour_of(subject, seed), leases, steps_of(subject, weather, seed).value(),
+          weather == Weather::rough ? draw_nemesis(subject, seed) : Nemesis{}};
 }
 
 std::string text(const Step& step) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/judged/nemesis.hpp"
 #include "tests/model/write.hpp"
 #include "tests/obey/subject.hpp"
 
@@ -79,6 +80,7 @@ struct Program {
   Flavour flavour = Flavour::moves;
   bool leases = false;
   std::vector<Step> steps{};
+  Nemesis nemesis{};
 };
 
 // Few of them, so that what was written before is written again.

@@ -239,9 +239,12 @@ void Judge::set_position(Verdict& verdict) {
     verdict = {"refused: set_position", {3, 4, 6}};
     me().command.refused = true;
     if (readings_.other()) claim();
+    // 3.3: "it stops at the first failure": a stop may have found it behind the drive's other mode.
+    world_.other_mode = world_.other_mode || readings_.other();
     return;
   }
   claim();
+  world_.other_mode = true;  // some drives take it in a mode of its own
   verdict = {"acts: set_position", {0}};
   // A raw run that its own request has begun.
   if (world_.motor == Motor::runs) {

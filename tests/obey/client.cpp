@@ -104,6 +104,12 @@ class Client::Connection {
              const modbus_tcp::Peer& peer, OnAnswer on_answer);
 
   void send(RequestNumber number, const std::vector<std::uint8_t>& pdu);
+  void say(const std::vector<std::uint8_t>& bytes) {
+    any_bytes_ = true;
+    unread_.push_back(bytes);
+    turn();
+  }
+  [[nodiscard]] std::size_t replies() const { return replies_; }
   void close();
   /// What comes is read by nobody.
   void silence() {
@@ -130,6 +136,8 @@ class Client::Connection {
   std::map<std::uint16_t, Asked> asked_;  ///< by transaction
   std::uint16_t transaction_ = 0;
   bool in_session_ = false;
+  bool any_bytes_ = false;  ///< were said: no answer is looked into
+  std::size_t replies_ = 0;
   std::unique_ptr<modbus_tcp::Session> session_;
 };
 
@@ -198,6 +206,8 @@ void Client::Connection::receive() {
     const auto end = incoming_.begin() + 6 + load_be16(incoming_, 4);
     const std::vector<std::uint8_t> adu(incoming_.begin(), end);
     incoming_.erase(incoming_.begin(), end);
+    ++replies_;
+    if (any_bytes_) continue;
     port_.on_modbus(false, adu);
     take_answer(adu);
   }
@@ -292,6 +302,12 @@ RequestNumber Client::begin(const std::vector<std::uint8_t>& pdu) {
   if (connected()) connection_->send(last_, pdu);
   return last_;
 }
+
+void Client::say(const std::vector<std::uint8_t>& bytes) {
+  if (connected()) connection_->say(bytes);
+}
+
+std::size_t Client::replies() const { return connection_ ? connection_->replies() : 0; }
 
 RequestNumber Client::begin(const Write& write) {
   return begin(pdu_of(settings().low_word_first ? low_word_first(write) : write, base()));

@@ -93,6 +93,10 @@ class Client {
   /// By 43/13, the whole of any object. Returns at once.
   RequestNumber ask_for_object(std::uint16_t index, std::uint8_t subindex);
 
+  /// Any bytes, which may be no request. From then on what comes back on this connection is told by replies() alone.
+  void say(const std::vector<std::uint8_t>& bytes);
+  [[nodiscard]] std::size_t replies() const;
+
   /// As `allow` would make it; of the next connection.
   void be(Role role, std::uint8_t rank = 0) {
     peer_.role = role;

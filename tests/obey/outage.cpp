@@ -68,6 +68,20 @@ bool Plant::strike(Strike how, std::uint64_t times, Duration late_by) {
   });
 }
 
+bool Plant::strike_often(Strike how, double probability, Duration late_by) {
+  return stage.at_link(0, [=](auto& link) {
+    if (!link.line().has(fault_of(how))) return false;
+    simulated::DriveFaults& faults = link.line().faults(0);
+    if (how == Strike::late_reply) faults.late_by = late_by;
+    faults.set_rate(fault_of(how), probability);
+    return true;
+  });
+}
+
+std::uint64_t Plant::struck(Strike how) {
+  return stage.at_link(0, [how](auto& link) { return link.line().faults(0).struck(fault_of(how)); });
+}
+
 void Plant::restart_drive(Duration off) {
   drive_off_ = off > Duration{};
   if (!drive_off_) join_wire();  // before it says that it is back

@@ -84,6 +84,10 @@ class Plant {
   void mend_wire();
   /// False: on such a line it cannot strike.
   bool strike(Strike how, std::uint64_t times = 1, Duration late_by = std::chrono::milliseconds(300));
+  /// From now on it strikes each reply with this probability; 0: no more. False: on such a line it cannot strike.
+  bool strike_often(Strike how, double probability, Duration late_by = std::chrono::milliseconds(300));
+  /// So often it has struck.
+  [[nodiscard]] std::uint64_t struck(Strike how);
   /// The drive loses its power, for so long.
   void restart_drive(Duration off = {});
   /// A fault whose cause is gone already.

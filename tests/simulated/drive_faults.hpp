@@ -66,10 +66,16 @@ class DriveFaults {
     Switch& chosen = switches_[number(fault)];
     if (chosen.next > 0) {
       --chosen.next;
+      ++struck_[number(fault)];
       return true;
     }
-    return random.chance(chosen.rate);
+    if (!random.chance(chosen.rate)) return false;
+    ++struck_[number(fault)];
+    return true;
   }
+
+  // How often it has struck since the drive was made; clear() forgets nothing of that.
+  std::uint64_t struck(DriveFault fault) const { return struck_[number(fault)]; }
 
   // Random bytes, at most `longest_noise`.
   std::vector<std::uint8_t> noise(Random& random) const {
@@ -86,6 +92,7 @@ class DriveFaults {
   static std::size_t number(DriveFault fault) { return static_cast<std::size_t>(fault); }
 
   std::array<Switch, drive_fault_count> switches_{};
+  std::array<std::uint64_t, drive_fault_count> struck_{};
 };
 
 }  // namespace axisgate::simulated

@@ -55,6 +55,8 @@ class ManualRuntime final : public Runtime {
     now_ = target;
   }
   void advance_by(Duration step) { advance_to(now_ + step); }
+  /// The event loop stands: the clock goes on and nothing fires. What is due by then fires late, with the next advance.
+  void stall(Duration time) { now_ += time; }
   /// What is due now, without moving the clock: a turn of the event loop.
   void run_due() { advance_to(now_); }
   /// Jumps to the next deadline and fires it; false where no timer is armed.

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/process/stderr_log.hpp"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+
+namespace axisgate::app {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Standard error leads elsewhere while this lives.
+class Elsewhere {
+ public:
+  explicit Elsewhere(int to) : own_(::dup(STDERR_FILENO)) { ::dup2(to, STDERR_FILENO); }
+  ~Elsewhere() {
+    ::dup2(own_, STDERR_FILENO);
+    ::close(own_);
+    std::clearerr(stderr);
+  }
+  Elsewhere(const Elsewhere&) = delete;
+  Elsewhere& operator=(const Elsewhere&) = delete;
+  /// From now on, as where somebody makes room on a disk.
+  static void lead(int to) { ::dup2(to, STDERR_FILENO); }
+
+ private:
+  int own_;
+};
+
+struct Pipe {
+  Pipe() {
+    EXPECT_EQ(::pipe(ends.data()), 0);
+    ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  }
+  ~Pipe() {
+    for (const int end : ends) ::close(end);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  [[nodiscard]] std::string read() const {
+    std::string all;
+    std::array<char, 4096> part{};
+    for (ssize_t got = 0; (got = ::read(ends[0], part.data(), part.size())) > 0;)
+      all.append(part.data(), static_cast<std::size_t>(got));
+    return all;
+  }
+  std::array<int, 2> ends{};
+};
+
+TEST(StderrLog, CountsTheLinesThatAFullDiskHasNotTaken) {
+  const int full = ::open("/dev/full", O_WRONLY);
+  ASSERT_GE(full, 0);
+  const Pipe pipe;
+  std::string told;
+  {
+    const Elsewhere elsewhere(full);
+    const Log log = stderr_log(LogLevel::info);
+    for (int line = 0; line < 3; ++line) log.write(LogLevel::info, "bus lift", "lost");
+    Elsewhere::lead(pipe.ends[1]);
+    log.write(LogLevel::info, "bus lift", "there is room again");
+    log.write(LogLevel::info, "bus lift", "and still");
+    told = pipe.read();
+  }
+  ::close(full);
+  EXPECT_THAT(told, HasSubstr("(3 lines lost here: nobody took them)\n"));
+  EXPECT_THAT(told, HasSubstr("bus lift: there is room again\n"));
+  EXPECT_THAT(told.substr(told.find("room again")), Not(HasSubstr("lost here")));
+}
+
+TEST(StderrLog, CountsTheLinesThatNobodyReads) {
+  const Pipe pipe;
+  std::string first, told;
+  int written = 0;
+  {
+    const Elsewhere elsewhere(pipe.ends[1]);
+    const Log log = stderr_log(LogLevel::info);
+    // More than any pipe holds: not one of them waits.
+    constexpr int kLines = 4'000;
+    const std::string words(400, 'x');
+    for (; written < kLines; ++written) log.write(LogLevel::info, "bus lift", words);
+    first = pipe.read();
+    log.write(LogLevel::info, "bus lift", "it is read again");
+    told = pipe.read();
+  }
+  const auto taken = static_cast<int>(std::count(first.begin(), first.end(), '\n'));
+  EXPECT_GT(taken, 0);
+  EXPECT_LT(taken, written);
+  EXPECT_THAT(told, HasSubstr("(" + std::to_string(written - taken) + " lines lost here: nobody took them)\n"));
+  EXPECT_THAT(told, HasSubstr("it is read again\n"));
+}
+
+}  // namespace
+}  // namespace axisgate::app
