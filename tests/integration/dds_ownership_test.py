@@ -173,8 +173,8 @@ class Shared(Equals):
     def test_a_stronger_one_takes_their_axis(self):
         for vendor in self.each_vendor():
             plain = self.commander(vendor, "shared")
+            strong = self.commander(vendor, "strength", 1)  # before the lease begins: to find each other takes some seconds at times
             self.run_by_dds(plain, 1)
-            strong = self.commander(vendor, "strength", 1)
             strong.do(1, "run_velocity", target_velocity=-200 * RPM)
             self.until_it_turns_at(1, -200)
             self.assert_one_answer(plain, plain.ask(1, "run_velocity", target_velocity=200 * RPM), NOT_OWNER)
