@@ -405,7 +405,10 @@ int main(int argc, char** argv) {
       checked("assert", dds_assert_liveliness(topic_of(word(&line, 1))->writer));
     else if (strcmp(word(&line, 0), "delete") == 0)
       delete_writer(&line);
-    else
+    else if (strcmp(word(&line, 0), "tell") == 0) {
+      begin_line("told", word(&line, 1));
+      end_line();
+    } else
       fprintf(stderr, "cyclone_peer: what is '%s'?\n", word(&line, 0));
   }
   checked("end", dds_delete(whole != 0 ? whole : participant));

@@ -330,6 +330,10 @@ class Peer {
   }
   void assert_liveliness(const Line& line) { writers_.at(word(&line, 1)).writer->assert_liveliness(); }
   void delete_writer(const Line& line) { publisher_->delete_datawriter(writers_.at(word(&line, 1)).writer); }
+  void tell(const Line& line) {
+    begin_line("told", word(&line, 1));
+    end_line();
+  }
 
  private:
   static const TopicKind& kind_of(const Line& line) {
@@ -374,11 +378,9 @@ int main(int argc, char** argv) {
   Peer peer(static_cast<std::uint32_t>(std::strtoul(argv[1], nullptr, 10)), argc == 3);
   begin_line("ready", "");
   end_line();
-  const std::map<std::string, void (Peer::*)(const Line&)> verbs{{"reader", &Peer::make_reader},
-                                                                 {"writer", &Peer::make_writer},
-                                                                 {"write", &Peer::write},
-                                                                 {"assert", &Peer::assert_liveliness},
-                                                                 {"delete", &Peer::delete_writer}};
+  const std::map<std::string, void (Peer::*)(const Line&)> verbs{
+      {"reader", &Peer::make_reader},       {"writer", &Peer::make_writer},   {"write", &Peer::write},
+      {"assert", &Peer::assert_liveliness}, {"delete", &Peer::delete_writer}, {"tell", &Peer::tell}};
   static Line line;
   while (read_line(&line) && word(&line, 0) != std::string("quit")) {
     const auto verb = verbs.find(word(&line, 0));

@@ -10,6 +10,7 @@
 //   write TOPIC MEMBER=VALUE...                                  a sample; members that are not named are 0
 //   assert TOPIC, delete TOPIC                                   of the writer: its liveliness, its end
 //   wherever TOPIC is one of several, such as the topics of ROS 2: KIND:NAME, the name as it is on the wire
+//   tell WORD                     tells it: what was asked before is done
 //   quit                          leaves the domain in good order, as at the end of stdin
 //
 // MS is the lease; automatic: the library renews it, manual: samples and `assert` do. raw (Fast DDS alone): the sample's

@@ -11,6 +11,8 @@ CYCLONE_HERE = "<General><Interfaces><NetworkInterface address='127.0.0.1'/></In
     "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>20</MaxAutoParticipantIndex>" \
     "<Peers><Peer address='127.0.0.1'/></Peers></Discovery>"
 
+DONE = "result (2,|21, detail 0x2$)"  # 21: the first reply was lost, and it was so
+
 
 class Writers(DdsStory):
     lines_of = ("serial",)
@@ -29,13 +31,13 @@ class Writers(DdsStory):
             target = 3.0 * turn
             program = self.keep(Program(f"command_{vendor}", [
                 "env", f"CYCLONEDDS_URI={CYCLONE_HERE}", os.path.join(PEERS, f"command_{vendor}"), str(self.domain), "cell_7", "1", str(target)]))
-            program.wait_for("command 1: result (2|21), ")
-            program.wait_for("command 6: result (2|21), ")
+            program.wait_for(f"command 1: {DONE}")
+            program.wait_for(f"command 6: {DONE}")
             until("it is there", lambda target=target: abs(self.position() - target) < 0.005)
             self.assertIn("enabled", self.watched(1).inputs())
             program.send(signal.SIGINT)
             self.assertEqual(program.ended(), 0, program.text())
-            program.wait_for("command 2: result (2|21), ")
+            program.wait_for(f"command 2: {DONE}")
             until("it is disabled", lambda: "enabled" not in self.watched(1).inputs())
         self.at = None
 

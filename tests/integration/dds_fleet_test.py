@@ -57,6 +57,15 @@ class Fleet(DdsStory):
         table = until("its own are shown", lambda: self.command_line("topics", paths[3], "--once").stdout)
         self.assertIn("cell_3", table)
         self.assertNotIn("cell_4", table, "without --all it is the configuration's own")
+        topics.terminate()
+        until("the table has them all", lambda: self.rows_of_the_table(paths[0]) == (
+            {(f"cell_{gateway}", AXES) for gateway in range(GATEWAYS)}, wanted))
+
+    def rows_of_the_table(self, path):
+        """What `topics --all` shows without --json: gateways and how many axes each has, and the axes that have a name and a link."""
+        gateways, _, axes = self.command_line("topics", path, "--all", "--once").stdout.partition("\n\n")
+        return ({(row[0], int(row[2])) for line in gateways.splitlines()[1:] if (row := line.split())[1] != "gone"},
+                {(row[0], int(row[1])) for line in axes.splitlines()[1:] if (row := line.split())[2] == f"axis_{row[1]}" and row[3:]})
 
     def test_two_gateways_of_one_name_know_it(self):
         gateways = []

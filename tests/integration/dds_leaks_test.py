@@ -9,6 +9,11 @@ import subprocess
 
 from dds_stage import CYCLONE, DdsStory, main
 from processes import until
+from stage import Gateway
+
+GATEWAYS = 4
+# Of each: the pause before a start doubles with each kill, so 20 of one gateway would take minutes.
+KILLS = int(os.environ.get("AXISGATE_KILLS", "5"))
 
 
 def setUpModule():
@@ -16,35 +21,57 @@ def setUpModule():
 
 
 class Killed(DdsStory):
+    """Four gateways, each killed five times: 20 kills. Their lines are not plugged in: the DDS half is all the same."""
+
     lines_of = ("serial",)
     dds = {"ros2": True}  # with shared memory
-    kills = int(os.environ.get("AXISGATE_KILLS", "6"))  # the pause before each start doubles
+
+    def start_gateways(self):
+        self.gateways = []
+        for number in range(GATEWAYS):
+            self.gateway_name = f"cell_{number}"
+            self.configure(name=f"{self.gateway_name}.json")
+            self.gateways.append(self.keep(Gateway(self.config)).wait_until_it_listens())
+
+    def processes(self):
+        """The axisgate-dds of each gateway that has one."""
+        found = {}
+        for self.gateway in self.gateways:
+            if (process := self.dds_process()) is not None:
+                found[self.gateway] = process
+        return found
 
     def left(self):
-        """Descriptors of the gateway, UDP ports that anybody holds, files of shared memory, dead children."""
-        listed = subprocess.run(["ps", "--no-headers", "-o", "stat", "--ppid", str(self.gateway.pid)],
-                                capture_output=True, text=True, check=False).stdout
+        """Descriptors of the gateways, UDP ports that anybody holds, files of shared memory, and all that the gateways have started."""
         with open("/proc/net/udp", encoding="ascii") as file:
             ports = len(list(file)) - 1
-        return {"descriptors": len(os.listdir(f"/proc/{self.gateway.pid}/fd")), "ports": ports, "files": len(os.listdir("/dev/shm")),
-                "zombies": sum(line.startswith("Z") for line in listed.split())}
+        parents = ",".join(str(gateway.pid) for gateway in self.gateways)
+        children = subprocess.run(["ps", "--no-headers", "-o", "pid", "--ppid", parents], capture_output=True, text=True, check=False).stdout
+        return {"descriptors": sum(len(os.listdir(f"/proc/{gateway.pid}/fd")) for gateway in self.gateways), "ports": ports,
+                "files": len(os.listdir("/dev/shm")), "children": len(children.split())}
 
-    def once_more(self):
+    def until_their_topics_come(self, since):
+        for number in range(GATEWAYS):
+            self.reader.sample("axis_state", since=since, axis=1, gateway=f"cell_{number}")
+
+    def kill_each(self):
         """Killed, started anew, and its topics come back."""
-        before, place = self.dds_process(), self.reader.now()
-        os.kill(before, signal.SIGKILL)
-        until("another process is there", lambda: self.dds_process() not in (None, before))
-        self.reader.wait("matched", "axis_state", lambda told: told["count"] > 0, place)
-        self.reader.sample("axis_state", since=self.reader.now(), axis=1)
+        before = self.processes()
+        self.assertEqual(len(before), GATEWAYS)
+        for process in before.values():
+            os.kill(process, signal.SIGKILL)
+        until("each has another process", lambda: len({*self.processes().items()} - {*before.items()}) == GATEWAYS)
+        self.until_their_topics_come(self.reader.now())
 
     def test_nothing_is_left_behind(self):
-        self.begin()
+        self.start_gateways()
         self.reader = self.peer_of(CYCLONE).read("axis_state")
-        self.once_more()  # what the library keeps from one life to the next is there then
+        self.until_their_topics_come(0)
+        self.kill_each()  # what the library keeps from one life to the next is there then
         before = self.left()
-        for _ in range(self.kills - 1):
-            self.once_more()
-        until("no more than after the first one", lambda: all(count <= before[what] for what, count in self.left().items()), 10)
+        for _ in range(KILLS - 1):
+            self.kill_each()
+        until(f"no more than after the first ones: {before}", lambda: all(count <= before[what] for what, count in self.left().items()))
 
 
 if __name__ == "__main__":

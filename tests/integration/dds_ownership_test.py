@@ -3,7 +3,7 @@
 import collections
 import itertools
 
-from dds_stage import CYCLONE, DONE, FAST, LEASE, NOT_OWNER, RPM, VENDORS, DdsStory, main
+from dds_stage import CYCLONE, DONE, FAST, LEASE, NO_AXIS, NOT_NOW, NOT_OWNER, RPM, VENDORS, DdsStory, main
 from lease_stage import ANOTHER, ME, NOBODY
 from modbus import BUSY, Axis
 from processes import until
@@ -173,8 +173,8 @@ class Shared(Equals):
     def test_a_stronger_one_takes_their_axis(self):
         for vendor in self.each_vendor():
             plain = self.commander(vendor, "shared")
+            strong = self.commander(vendor, "strength", 1)  # before the lease begins: to find each other takes some seconds at times
             self.run_by_dds(plain, 1)
-            strong = self.commander(vendor, "strength", 1)
             strong.do(1, "run_velocity", target_velocity=-200 * RPM)
             self.until_it_turns_at(1, -200)
             self.assert_one_answer(plain, plain.ask(1, "run_velocity", target_velocity=200 * RPM), NOT_OWNER)
@@ -182,25 +182,47 @@ class Shared(Equals):
 
 
 class ManyRequests(DdsStory):
-    """20,000 commands of two writers of each vendor, none without its one reply."""
+    """20,000 commands of two writers of each vendor, none without its one reply, and that the right one: of an axis that is not there, and of
+    one that the first of them owns."""
 
     lines_of = ("serial",)
     each = 5000
-    under_way = 50  # a reader of replies keeps 64 of an axis
+    # In one go, to the axis that is not there and to the one that is. A reader keeps 64 replies of an axis, and the second has those of all
+    # four; the owner waits for the drive each time.
+    owner_asks, another_asks = (61, 1), (50, 12)
+    # So many requests are remembered for 10 s; beyond, a new one is refused as busy.
+    remembered = 8192
 
     def test_each_of_them_has_one_reply(self):
         self.begin()
-        peers = [self.commander(vendor, *how) for vendor in VENDORS for how in ((), ("strength", 3))]
-        asked = {peer: [] for peer in peers}
-        while len(asked[peers[0]]) < self.each:
+        peers = [self.commander(vendor, *how) for vendor in VENDORS for how in (("strength", 3), ())]
+        owner = peers[0]
+        owner.do(1, "enable")
+        wanted = {peer: {} for peer in peers}
+        while len(wanted[owner]) < self.each:
+            places = {peer: peer.now() for peer in peers}
+            last = {}
+            # They also knocked, and of one round any may come first.
+            busy = [NOT_NOW] if sum(map(len, wanted.values())) + 10 * sum(self.another_asks) > self.remembered else []
             for peer in peers:
-                asked[peer] += [peer.ask(peer.nowhere, "enable") for _ in range(self.under_way)]
+                nowhere, there = self.owner_asks if peer is owner else self.another_asks
+                for _ in range(nowhere):
+                    wanted[peer][peer.ask(peer.nowhere, "enable")] = [NO_AXIS, *busy]
+                for _ in range(there):
+                    wanted[peer][peer.ask(1, target_velocity=100 * RPM)] = [DONE if peer is owner else NOT_OWNER, *busy]
+                last[peer] = max(wanted[peer])
             for peer in peers:
-                peer.answer(asked[peer][-1])
+                for request in (last[peer] - (self.owner_asks if peer is owner else self.another_asks)[1], last[peer]):
+                    peer.answer(request, places[peer])
         for peer in peers:
-            replies = [told["data"] for told in peer.all("sample", "command_reply") if told["data"]["writer"] == peer.guids["axis_command"]]
-            counts = collections.Counter(reply["request_id"] for reply in replies)
-            self.assertEqual({counts[number] for number in asked[peer]}, {1})
+            self.at = peer.name
+            results = collections.defaultdict(list)
+            for reply in peer.samples("command_reply", writer=peer.guids["axis_command"]):
+                results[reply["request_id"]].append(reply["result"])
+            wrong = {request: results[request] for request, allowed in wanted[peer].items()
+                     if len(results[request]) != 1 or results[request][0] not in allowed}
+            self.assertEqual(wrong, {})
+        self.at = None
 
 
 if __name__ == "__main__":

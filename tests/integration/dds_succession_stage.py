@@ -33,6 +33,13 @@ class Succession(DdsStory):
         peer.name = f"{vendor} {'master' if wrapper else 'successor'} {len(self.programs)}"
         return peer
 
+    def cut(self):
+        on_host("link", "set", HOST, "down")
+
+    def mend(self):
+        on_host("link", "set", HOST, "up")
+        on_host("route", "replace", "default", "via", OTHER_ADDRESS)
+
     def pair(self, vendors):
         """A master on the other host, whose motor turns, and its successor to be, on the gateway's."""
         master = self.node(vendors[0], *in_host()).command_with(*MASTER.get(self.relation, ("strength", 5)))
@@ -49,12 +56,11 @@ class Succession(DdsStory):
             self.addCleanup(master.send, signal.SIGCONT)
             master.send(signal.SIGSTOP)
         else:
-            on_host("link", "set", HOST, "down")
+            self.cut()
 
     def come_back(self, way, master):
         """As far as it can."""
         if way == "stand":
             master.send(signal.SIGCONT)
         if way == "cut":
-            on_host("link", "set", HOST, "up")
-            on_host("route", "replace", "default", "via", OTHER_ADDRESS)
+            self.mend()

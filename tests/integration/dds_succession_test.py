@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Masters of both vendors that go in three ways, and successors of both that are as strong, stronger, weaker, or plain publishers: the
-successor's stop is heard at once, its enable when the axis is free, and a master that comes back is treated as its strength has it.
-
-A cut cable is measured by tests/bench/dds/deaths alone: after it the replies to a master with Cyclone DDS 0.10.2 may take more than a minute to
-come (docs/dds/masters.md)."""
+successor's stop is heard at once, its enable when the axis is free, and a master that comes back is treated as its strength has it. The
+fourth way, a cut cable, is dds_cable_test.py."""
 from dds_succession_stage import Succession, make_network  # first: see own_network
 
 import itertools

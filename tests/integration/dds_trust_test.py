@@ -4,7 +4,7 @@ import os
 import signal
 import time
 
-from dds_stage import CYCLONE, DONE, FAST, NEVER_STARTED, RPM, VENDORS, DdsStory, main
+from dds_stage import CYCLONE, DONE, FAST, NEVER_STARTED, NOT_NOW, RPM, STATE_UNSUITABLE, VENDORS, DdsStory, main
 from lease_stage import MACHINES
 from modbus import DISABLED, Axis
 from processes import until
@@ -158,20 +158,29 @@ class Strangers(DdsStory):
     """A stop of one that owns nothing, beside an owner that commands without pause."""
 
     lines_of = ("serial",)
+    commands = 20  # more than the eight that may wait at an axis: the rest is refused as busy
 
-    def test_is_heard_at_once_beside_a_live_and_stronger_owner(self):
+    def test_is_in_effect_before_all_that_a_live_and_stronger_owner_asks_after_it(self):
         self.begin()
+        process = self.dds_process()
+        self.addCleanup(os.kill, process, signal.SIGCONT)
         for vendor, other in ((FAST, CYCLONE), (CYCLONE, FAST)):
             self.at = vendor
             owner = self.commander(vendor, "strength", 9)
             stranger = self.commander(other, "shared")
             self.run_by_dds(owner, 1)
-            asked = [owner.ask(1, target_velocity=(200 + i % 50) * RPM) for i in range(50)]
-            begun = time.monotonic()
-            stranger.do(1, "quick_stop")
-            print(f"a stop of a {other} stranger: {1000 * (time.monotonic() - begun):.1f} ms to its reply")
+            before = [owner.ask(1, target_velocity=(200 + i) * RPM) for i in range(self.commands)]
+            # What two programs send at the same time comes in any order. Held back, it waits in the order in which it was sent.
+            os.kill(process, signal.SIGSTOP)
+            stop = stranger.ask(1, "quick_stop")
+            stranger.until_written()
+            after = [owner.ask(1, "run_velocity", target_velocity=(200 + i) * RPM) for i in range(self.commands)]
+            owner.until_written()
+            os.kill(process, signal.SIGCONT)
+            self.assertEqual(stranger.answer(stop)[0], DONE)
+            self.assertLessEqual({owner.answer(request)[0] for request in after}, {STATE_UNSUITABLE, NOT_NOW})
             self.until_it_stands(1)
-            for request in asked:
+            for request in before:
                 owner.answer(request)
             self.let_go(owner, 1)
         self.at = None

@@ -112,6 +112,8 @@ class Wire(DdsStory):
 class Cdr:
     """Plain CDR, little-endian (DDSI-RTPS 10): every number at a multiple of its size after the encapsulation header."""
 
+    HEADER = bytes((0, 1, 0, 0))
+
     def __init__(self):
         self.body = b""
 
@@ -120,7 +122,7 @@ class Cdr:
         self.body += b"\0" * (-len(self.body) % size) + struct.pack("<" + form, value)
 
     def text(self, value):
-        self.number("I", len(value) + 1)
+        self.number("I", len(value.encode()) + 1)
         self.body += value.encode() + b"\0"
 
     def sequence(self, each, values):
@@ -132,7 +134,38 @@ class Cdr:
         self.number("d", value)
 
     def payload(self):
-        return (b"\0\1\0\0" + self.body).hex()
+        return (self.HEADER + self.body).hex()
+
+
+class FromCdr:
+    """The same, read. Each byte must be one that belongs there: padding is 0, and behind the last member there is nothing."""
+
+    def __init__(self, payload):
+        whole = bytes.fromhex(payload)
+        assert whole[:4] == Cdr.HEADER, payload
+        self.body, self.at = whole[4:], 0
+
+    def take(self, count):
+        taken, self.at = self.body[self.at:self.at + count], self.at + count
+        assert len(taken) == count, f"{count} bytes are more than there are"
+        return taken
+
+    def number(self, form):
+        size = struct.calcsize(form)
+        assert not any(self.take(-self.at % size))
+        return struct.unpack("<" + form, self.take(size))[0]
+
+    def text(self):
+        whole = self.take(self.number("I"))
+        assert whole.index(0) == len(whole) - 1, whole
+        return whole[:-1].decode()
+
+    def sequence(self, each):
+        return [each() for _ in range(self.number("I"))]
+
+    def end(self):
+        """To whole words, as RTPS has it."""
+        assert self.at <= len(self.body) < self.at + 4 and not any(self.body[self.at:])
 
 
 def joint_state(data):
@@ -148,6 +181,39 @@ def joint_state(data):
     cdr.sequence(cdr.text, data["name"])
     for name in ("position", "velocity", "effort"):
         cdr.sequence(cdr.double, data[name])
+    return cdr.payload()
+
+
+def diagnostic_array(payload):
+    """diagnostic_msgs/msg/DiagnosticArray, read from its bytes as its published definition has it:
+
+    DiagnosticArray: std_msgs/Header header (builtin_interfaces/Time stamp (int32 sec, uint32 nanosec), string frame_id),
+    DiagnosticStatus[] status. DiagnosticStatus: byte level, string name, string message, string hardware_id, KeyValue[] values.
+    KeyValue: string key, string value
+    """
+    cdr = FromCdr(payload)
+    stamp, frame = (cdr.number("i"), cdr.number("I")), cdr.text()
+
+    def status():
+        return {"level": cdr.number("B"), **{name: cdr.text() for name in ("name", "message", "hardware_id")},
+                "values": dict(cdr.sequence(lambda: (cdr.text(), cdr.text())))}
+
+    statuses = {entry["name"]: entry for entry in cdr.sequence(status)}
+    cdr.end()
+    return stamp, frame, statuses
+
+
+def std_bool(data):
+    """std_msgs/msg/Bool: bool data."""
+    cdr = Cdr()
+    cdr.number("?", data)
+    return cdr.payload()
+
+
+def std_empty():
+    """std_msgs/msg/Empty has no member; ROS 2 gives such a message one (rosidl: uint8 structure_needs_at_least_one_member)."""
+    cdr = Cdr()
+    cdr.number("B", 0)
     return cdr.payload()
 
 
@@ -174,6 +240,62 @@ class Ros2(DdsStory):
         there = self.watched(1).get("position_actual")
         for reader in readers:
             reader.sample("joint_states", lambda data: math.isclose(data["position"][0], there * 2 * math.pi / 10000, abs_tol=0.01))
+
+
+class Ros2ByBytes(DdsStory):
+    """The other messages of ROS 2, in bytes that are made and read here alone: no IDL of ours has a part in it."""
+
+    lines_of = ("serial",)
+    dds = {"ros2": True, "shared_memory": False}
+    gateway_name = "cell_7"
+
+    def test_diagnostics_are_what_ros_2_expects(self):
+        self.begin()
+        raw = self.peer_of(FAST).read("diagnostics", "raw")
+        heard = []
+
+        def axis_is_told():
+            for told in raw.all("sample", "diagnostics", since=len(heard)):
+                heard.append(told)
+                stamp, frame, statuses = diagnostic_array(told["data"]["payload"])
+                self.assertGreater(stamp[0], 1_000_000_000)
+                self.assertLess(stamp[1], 1_000_000_000)
+                self.assertEqual(frame, "")
+                for status in statuses.values():
+                    self.assertEqual(status["hardware_id"], "cell_7")
+                    self.assertIn(status["level"], range(4))
+                if "cell_7: serial" in statuses and statuses["cell_7: serial"]["message"].startswith("online"):
+                    return statuses
+            return None
+
+        statuses = until("the axis is told of", axis_is_told)
+        axis, gateway = statuses["cell_7: serial"], statuses["cell_7: gateway"]
+        self.assertEqual(axis["values"]["axis"], "1")
+        self.assertEqual(axis["values"]["link"], "online")
+        self.assertEqual(gateway["values"]["axes"], "1")
+        self.assertTrue(gateway["message"])
+
+    def test_bool_and_empty_are_read_as_ros_2_writes_them(self):
+        self.begin()
+        node, enable, quick_stop = self.peer_of(FAST), "flag:rt/cell_7/serial/enable", "signal:rt/cell_7/serial/quick_stop"
+        for topic in (enable, quick_stop):
+            node.writer(topic, "raw")
+
+        def publish(topic, payload, done):
+            """As often as it takes: what is published before the reader knows the writer is for nobody."""
+            def look():
+                node.say("write", topic, f"payload={payload}")
+                return done()
+
+            until(f"{topic}: {payload}", look)
+
+        def inputs():
+            return self.watched(1).inputs()
+
+        publish(enable, std_bool(True), lambda: "enabled" in inputs())
+        publish(enable, std_bool(False), lambda: "enabled" not in inputs())
+        publish(enable, std_bool(True), lambda: "enabled" in inputs() and "stop_latched" not in inputs())
+        publish(quick_stop, std_empty(), lambda: "stop_latched" in inputs())
 
 
 class NotAsked(DdsStory):

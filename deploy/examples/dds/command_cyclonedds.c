@@ -51,7 +51,8 @@ static int ask(uint8_t what, uint32_t mask) {
       if (memcmp(reply.writer, heartbeat.client, sizeof reply.writer) != 0) continue;
       printf("command %u: result %u, detail 0x%x\n", what, reply.result, reply.detail);
       fflush(stdout);
-      return reply.result == 2 || reply.result == 21; /* done; or it was carried out, and its first reply is lost */
+      if (reply.result != 21) return reply.result == 2; /* 2: done */
+      if (reply.detail >= 2) return reply.detail == 2;  /* 21: its reply was lost, and this was its result */
     }
   }
   return printf("command %u: no reply\n", what), 0;

@@ -51,12 +51,12 @@ int ask(std::uint8_t what, std::uint32_t mask = 0) {
       if (reply.writer() != heartbeat.client() || reply.request_id() != command.request_id()) continue;
       std::printf("command %u: result %u, detail 0x%x\n", what, reply.result(), reply.detail());
       std::fflush(stdout);
-      return reply.result() == 2 || reply.result() == 21;  // done; or it was carried out, and its first reply is lost
+      if (reply.result() != 21) return reply.result() == 2;  // 2: done
+      if (reply.detail() >= 2) return reply.detail() == 2;   // 21: its reply was lost, and this was its result
     }
   }
   return std::printf("command %u: no reply\n", what), 0;
 }
-
 template <typename Type>
 Topic* topic(const char* name) {
   TypeSupport type(new Type);
@@ -74,8 +74,7 @@ int main(int argc, char** argv) {
   here.transport().user_transports.push_back(udp);
   participant = DomainParticipantFactory::get_instance()->create_participant(std::atoi(argv[1]), here);
   if (participant == nullptr) return 1;
-  DataWriterQos qos;
-  qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
+  DataWriterQos qos;  // reliable, as it comes
   qos.ownership().kind = EXCLUSIVE_OWNERSHIP_QOS;
   qos.ownership_strength().value = 10;  // a stronger writer takes the axis, a weaker or equal one does not
   qos.liveliness().kind = MANUAL_BY_TOPIC_LIVELINESS_QOS;
