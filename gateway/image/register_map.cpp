@@ -116,8 +116,7 @@ bool supports(Command command, std::uint32_t supported_commands) {
 }
 
 bool supports(const CoilRow& coil, std::uint32_t supported_commands) {
-  const bool jogs = coil.on == Command::jog_forward || coil.on == Command::jog_reverse;
-  return supports(jogs ? Command::run_velocity : coil.on, supported_commands);
+  return supports(is_jog(coil.on) ? Command::run_velocity : coil.on, supported_commands);
 }
 
 std::string_view unit_of(const RegisterRow& row, std::string_view position_unit) {

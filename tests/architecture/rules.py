@@ -249,21 +249,29 @@ def field_words(root):
 LICENCE = "SPDX-License-Identifier: Apache-2.0"
 
 
+# How a comment opens and closes; by the end of a file's name. What is not named here opens with #.
+COMMENTS = {("// ", ""): (".cpp", ".hpp", ".c", ".h", ".cpp.in", ".hpp.in", ".mjs", ".idl"), ("(* ", " *)"): (".st",),
+            ("<!-- ", " -->"): (".urdf", ".xacro")}
+HASHED = (".py", ".cmake", ".sh", ".service", ".rules", ".yaml", ".yml", "CMakeLists.txt", "Containerfile", ".clang-format", ".clang-tidy")
+
+
 def licence(root):
-    """Every source file says its licence in its first line, or in the one behind #!."""
-    for folder in (root, *(root / name for name in SOURCE_FOLDERS + (".ci",))):
-        for path in sorted(folder.rglob("*") if folder != root else folder.glob("CMakeLists.txt")):
-            name = path.relative_to(root).as_posix()
-            if not path.is_file() or "__pycache__" in path.parts or "/eds/" in name:
-                continue
-            begin = path.read_bytes()[:300].decode(errors="replace").splitlines()
-            script = bool(begin) and begin[0].startswith("#!")
-            slashes = name.endswith((".cpp", ".hpp", ".c", ".h", ".cpp.in", ".hpp.in", ".mjs"))
-            if not (script or slashes or path.suffix in {".py", ".cmake", ".sh"} or path.name == "CMakeLists.txt"):
-                continue
-            wanted = f"{'//' if slashes else '#'} {LICENCE}"
-            if begin[script:][:1] != [wanted]:
-                yield f"{name}:{1 + script}: the line before all others, behind #!, is: {wanted}"
+    """Every source file says its licence in its first line, or in the one behind #! or <?xml."""
+    tops = (root / name for name in ("CMakeLists.txt", ".clang-format", ".clang-tidy"))
+    below = (path for folder in SOURCE_FOLDERS + (".ci",) for path in sorted((root / folder).rglob("*")))
+    for path in (*tops, *below):
+        name = path.relative_to(root).as_posix()
+        if not path.is_file() or "__pycache__" in path.parts:
+            continue
+        begin = path.read_bytes()[:300].decode(errors="replace").splitlines()
+        behind = bool(begin) and begin[0].startswith(("#!", "<?xml"))
+        marks = next((marks for marks, ends in COMMENTS.items() if name.endswith(ends)), None)
+        if marks is None and not (name.endswith(HASHED) or (behind and begin[0].startswith("#!"))):
+            continue
+        opens, closes = marks or ("# ", "")
+        wanted = f"{opens}{LICENCE}{closes}"
+        if begin[behind:][:1] != [wanted]:
+            yield f"{name}:{1 + behind}: the line before all others, behind #! or <?xml, is: {wanted}"
 
 
 FAULTS = 29

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An EDS (electronic data sheet, CiA 306-1): the maker's own list of a drive's CANopen objects, as far as a profile can
 // be held against it. Promises to read what such files are in practice: any case of names, hexadecimal, octal and
 // decimal numbers, $NODEID formulas, compact arrays, foreign characters; and to name each line that it cannot read.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A profile held against the maker's EDS: every place where the two cannot both be right.
 // Promises each contradiction with its place in the profile and its section in the EDS, and silence about what only one
 // of them says. Never says which of the two is wrong.

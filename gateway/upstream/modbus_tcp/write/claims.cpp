@@ -17,11 +17,9 @@ bool coil_claims(Command command) {
     case Command::move_relative:
     case Command::home:
     case Command::run_velocity:
-    case Command::jog_forward:
-    case Command::jog_reverse:
       return true;
     default:
-      return false;
+      return is_jog(command);
   }
 }
 
