@@ -30,6 +30,7 @@ RtuWire::RtuWire(std::string name, std::vector<RtuNode> nodes, LineSpeed speed, 
       watch_(runtime, {.reopen = [this](std::string_view why) { link_->reopen(why); }, .drop = [this] { abandon(); }}),
       link_(std::move(link)) {
   assert(!nodes_.empty() && link_ != nullptr);
+  given_up_.fill(kLongAgo);
 }
 
 RtuWire::~RtuWire() = default;
@@ -56,8 +57,13 @@ void RtuWire::send(const bus::Exchange& exchange) {
 
 void RtuWire::abandon() {
   if (outstanding_) link_->withdraw(outstanding_->number);
-  outstanding_.reset();
+  give_up();
   last_answer_.clear();  // what comes early from now on may be the answer to this one
+}
+
+void RtuWire::give_up() {
+  if (outstanding_ && !outstanding_->broadcast) given_up_[outstanding_->exchange.node] = runtime_.now();
+  outstanding_.reset();
 }
 
 const bus::Statistics& RtuWire::statistics() const {
@@ -75,14 +81,14 @@ void RtuWire::broadcast_over() {
 }
 
 void RtuWire::on_link_up() {
-  outstanding_.reset();
+  give_up();
   last_answer_.clear();
   timed_ = true;
   watch_.on_link_up();
 }
 
 void RtuWire::on_link_down(std::string_view why) {
-  outstanding_.reset();
+  give_up();
   watch_.on_link_down(why);
 }
 
@@ -92,10 +98,18 @@ void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
     const Judgement judgement = judge(frame, outstanding_->exchange, node_of(outstanding_->exchange.node));
     const auto* result = std::get_if<bus::ExchangeResult>(&judgement);
     const bool mine = result != nullptr && newest == outstanding_->number;
-    if (mine && !said_again(frame)) {
+    const bool too_soon = mine && timed_ && early(frame);
+    const bool said_again = too_soon && !last_answer_.empty() && std::ranges::equal(frame, last_answer_);
+    if (mine && !said_again) {
       if (decode_) log_frame("<-", frame, describe_reply(frame));
       watch_.on_answer();
       last_answer_.assign(frame.begin(), frame.end());
+      // Of a drive that may owe an answer it says nothing about the line, and is nothing to compare the next one with.
+      if (too_soon && may_owe(outstanding_->exchange.node)) {
+        last_answer_.clear();
+      } else if (too_soon) {
+        timed_ = false;
+      }
       end(*result);
       return;
     }
@@ -107,15 +121,12 @@ void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
 
 /// Sooner than request and answer can have crossed the line, it is no answer: the same as the answer before, it is that
 /// one said again. A line where anything else comes as soon has no rate of its own (a pseudo-terminal, a device
-/// server).
-bool RtuWire::said_again(Bytes frame) {
+/// server), unless its drive may owe it from before.
+bool RtuWire::early(Bytes frame) const {
   const Duration crossing =
       wire_time(speed_.baud, speed_.parity_bits, outstanding_->request_bytes, frame.size() + kCrcSize);
   // A tenth less: no two clocks agree. The silence before an answer does not count, since some slaves keep none.
-  if (!timed_ || runtime_.now() - outstanding_->sent_at >= crossing - crossing / 10) return false;
-  if (!last_answer_.empty() && std::ranges::equal(frame, last_answer_)) return true;
-  timed_ = false;
-  return false;
+  return runtime_.now() - outstanding_->sent_at < crossing - crossing / 10;
 }
 
 void RtuWire::on_bad_frame(ExchangeNumber, std::size_t bytes) {

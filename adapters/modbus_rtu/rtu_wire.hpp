@@ -6,6 +6,7 @@
 // and never judges a value.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,8 +49,13 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   void on_frame(ExchangeNumber newest, Bytes frame) override;
   void on_bad_frame(ExchangeNumber newest, std::size_t bytes) override;
 
+  /// How long a drive may owe the answer to a request given up: four times the worst_reply of our profiles.
+  static constexpr Duration kMayBeOwed = std::chrono::seconds(2);
+
+  void give_up();
   void end(const bus::ExchangeResult& result);
-  [[nodiscard]] bool said_again(Bytes frame);
+  [[nodiscard]] bool early(Bytes frame) const;
+  [[nodiscard]] bool may_owe(std::uint8_t unit) const { return runtime_.now() < given_up_[unit] + kMayBeOwed; }
   void broadcast_over();
   [[nodiscard]] bool is_broadcast(std::uint8_t unit) const;
   [[nodiscard]] const RtuNode& node_of(std::uint8_t unit) const;
@@ -64,8 +70,9 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   bus::WireEvents* events_ = nullptr;
   ExchangeNumber last_number_ = 0;
   std::optional<Outstanding> outstanding_;
-  Frame last_answer_;  ///< none where anything was given up since
-  bool timed_ = true;  ///< nothing has come sooner than the line could carry it
+  Frame last_answer_;  ///< none where anything was given up since, or it may have been a late one
+  bool timed_ = true;  ///< nothing has come sooner than the line could carry it, but what may have been a late answer
+  std::array<Instant, 256> given_up_{};  ///< by unit: the last time
   bool decode_ = false;
   mutable bus::Statistics statistics_;
   // Last, so that they go first: none may call into a wire that is half gone.

@@ -80,6 +80,51 @@ TEST_F(RtuWireTest, an_answer_that_is_said_twice_does_not_answer_the_next_reques
   EXPECT_THAT(replies, SizeIs(3)) << "in its time the same value is an answer";
 }
 
+// Nothing in the frame tells which register it speaks of: whatever the next one asks for, the copy would be its value.
+TEST_F(RtuWireTest, an_answer_that_is_said_twice_is_no_value_of_the_next_register_whenever_it_comes_too_soon) {
+  for (int gap = 0; gap <= 7; ++gap) {
+    wire->send(read_of(0x3200));
+    runtime.advance_by(12ms);
+    link->bring(kStatus);
+    wire->send(read_of(0x3300));
+    runtime.advance_by(std::chrono::milliseconds(gap));
+    link->bring(kStatus);
+    EXPECT_EQ(late(), static_cast<unsigned>(gap) + 1) << gap << " ms after its request";
+    runtime.advance_by(12ms);
+    link->bring("01 03 02 C0 38");
+    EXPECT_EQ(replies.back(), value_of(0x3300, 2, 0xC038)) << gap << " ms after its request";
+  }
+}
+
+TEST_F(RtuWireTest, an_early_answer_that_may_be_owed_from_before_does_not_end_the_watch_for_answers_said_twice) {
+  const std::string acknowledged = "01 06 31 00 00 0F";
+  wire->send(write_of(0x3100, 0x0F, 2, 1));
+  runtime.advance_by(220ms);
+  wire->abandon();
+  wire->send(write_of(0x3100, 0x0F, 2, 1));
+  runtime.advance_by(1ms);
+  link->bring(acknowledged);
+  EXPECT_THAT(replies, SizeIs(1)) << "the acknowledgement of the first try";
+  wire->send(read_of(0x3200));
+  runtime.advance_by(12ms);
+  link->bring(kStatus);
+  wire->send(read_of(0x3300));
+  runtime.advance_by(4ms);
+  link->bring(kStatus);
+  EXPECT_THAT(replies, SizeIs(2));
+  EXPECT_EQ(late(), 1u);
+}
+
+TEST_F(RtuWireTest, a_line_without_a_rate_of_its_own_is_believed_at_once_after_a_request_given_up_too) {
+  wire->send(read_of(0x3200));
+  wire->abandon();
+  for (int i = 0; i < 3; ++i) {
+    wire->send(read_of(0x3200));
+    link->bring(kStatus);
+  }
+  EXPECT_THAT(replies, ElementsAre(kStatusValue, kStatusValue, kStatusValue));
+}
+
 TEST_F(RtuWireTest, a_line_without_a_rate_of_its_own_is_believed_at_once) {
   for (int i = 0; i < 3; ++i) {
     wire->send(read_of(0x3200));
