@@ -30,12 +30,22 @@ struct DdsRequests::Run {
   AxisNumber axis;
   CommandPlan plan;
   Done done;
+  std::uint64_t stops = 0;   ///< of the axis through this session, when it began
+  Endings::Point since = 0;  ///< when it began
   std::size_t next = 0;
+  /// There was a stop, by whichever way: what is left of it was asked before.
+  [[nodiscard]] bool stopped(const StopOrder& order, const ProcessImage& image) const {
+    if (next == plan.batches.size()) return false;
+    const AxisImage* const there = image.find(axis);
+    return order.count(axis) != stops ||
+           (there != nullptr && there->endings.interrupted(since, plan.batches[next].client));
+  }
 };
 
 DdsRequests::DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image,
                          CommandPort& commands, DdsClients& clients, const SignsOfLife& signs,
-                         const Namesakes& namesakes, ReplyQueue& replies, std::function<void()> wake, TellLine tell)
+                         const Namesakes& namesakes, StopOrder& stop_order, ReplyQueue& replies,
+                         std::function<void()> wake, TellLine tell)
     : settings_(settings),
       units_(units),
       image_(image),
@@ -43,6 +53,7 @@ DdsRequests::DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, 
       clients_(clients),
       signs_(signs),
       namesakes_(namesakes),
+      stop_order_(stop_order),
       replies_(replies),
       wake_(std::move(wake)),
       tell_(std::move(tell)),
@@ -116,6 +127,10 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
                                   now);
   if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return refuse(asked, what, *result, now);
   const auto& life = std::get<std::shared_ptr<const ClientLife>>(admitted);
+  if (!exempt && stop_order_.overtaken(asked.axis, asked.received)) {
+    press_in_vain(asked);
+    return refuse(asked, what, dds_result(Errc::dropped_by_stop), now);
+  }
   const AxisImage* const axis = image_.find(asked.axis);
 
   // Only the stop or the release is carried out of what is too old, or not surely meant for us.
@@ -138,6 +153,7 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
   if (record.request_id == 0) plan.afterwards = Errc::bad_value;
   if (record.mask != asked.mask) plan.afterwards = Errc::never_started;
   press(record, axis, held);
+  if (stops(record)) stop_order_.stopped(record.axis, record.received);
   // Where the participant has written objects of this axis first, by its other writer, that one makes way: for as long
   // as the claim is judged, its lease is one that its own participant may take.
   const auto& owner = axis->lease.owner;
@@ -155,6 +171,8 @@ void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {
   const bool fresh = signs_.fresh(record.written, now);
   const Admitted admitted = admit({.key = {record.writer, record.axis, record.request_id}, .fresh = fresh}, now);
   if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return refuse(record, what, *result, now);
+  if (record.write && stop_order_.overtaken(record.axis, record.received))
+    return refuse(record, what, dds_result(Errc::dropped_by_stop), now);
   auto life = std::get<std::shared_ptr<const ClientLife>>(admitted);
   const AxisImage* const axis = image_.find(record.axis);
   // Objects are asked for by a writer of their own: where its participant commands the axis by another, it is that
@@ -208,7 +226,10 @@ std::optional<BatchResult> DdsRequests::carry_on(const std::shared_ptr<Run>& run
     const auto at_once = run->commands.submit(run->axis, batch, [run](const BatchResult& result) {
       const auto self = run->of.lock();
       if (self == nullptr) return;  // nobody is there to be told, nor to ask for the rest
-      const auto end = carry_on(run, result);
+      BatchResult so_far = result;
+      if (so_far.outcome.code == Errc::ok && run->stopped(self->stop_order_, self->image_))
+        so_far.outcome = refusal(Errc::dropped_by_stop);
+      const auto end = carry_on(run, so_far);
       if (!end) return;
       self->replies_.end();
       run->done(*self, *end);
@@ -223,6 +244,8 @@ std::optional<BatchResult> DdsRequests::carry_on(const std::shared_ptr<Run>& run
 
 void DdsRequests::start(AxisNumber axis, CommandPlan plan, Done done) {
   const auto run = std::make_shared<Run>(Run{self_, commands_, axis, std::move(plan), std::move(done)});
+  run->stops = stop_order_.count(axis);
+  if (const AxisImage* const there = image_.find(axis)) run->since = there->endings.now();
   replies_.begin();
   const auto result = carry_on(run, {});
   if (!result) return;
@@ -253,8 +276,19 @@ void DdsRequests::reply(const ObjectRequestRecord& record, std::uint8_t result) 
 void DdsRequests::press(const CommandRecord& record, const AxisImage* axis, bool held) {
   DdsClient* const client = clients_.find(record.writer);
   if (client == nullptr || axis == nullptr) return;
-  if (Command{record.command} == Command::jog_end) client->held.erase(record.axis);
+  if (Command{record.command} == Command::jog_end) {
+    client->held.erase(record.axis);
+    client->released[record.axis] = record.received;
+  }
   if (is_press(record) && !held) client->held[record.axis] = {Command{record.command}, record.request_id, true};
+}
+
+void DdsRequests::press_in_vain(const CommandRecord& record) {
+  DdsClient* const client = clients_.find(record.writer);
+  if (client == nullptr || !is_press(record)) return;
+  const auto released = client->released.find(record.axis);
+  if (released != client->released.end() && released->second > record.received) return;
+  client->held.try_emplace(record.axis, HeldJog{Command{record.command}, record.request_id, false});
 }
 
 Outcome DdsRequests::of_jog(const CommandRecord& record, bool held, const Outcome& outcome) {
@@ -272,8 +306,11 @@ Outcome DdsRequests::of_jog(const CommandRecord& record, bool held, const Outcom
   if (jog.request_id != record.request_id) return outcome;
   jog.starting = false;
   // One that was refused has begun nothing, and may be pressed again. But one that is held while another client owns
-  // the axis starts nothing on the day on which the axis is free.
-  if (outcome.code != Errc::ok && outcome.code != Errc::not_owner) client->held.erase(found);
+  // the axis starts nothing on the day on which the axis is free, and one that a stop has ended is not pressed anew by
+  // being held.
+  const bool is_held = outcome.code == Errc::ok || outcome.code == Errc::not_owner ||
+                       outcome.code == Errc::dropped_by_stop || outcome.code == Errc::stopped_by_other;
+  if (!is_held) client->held.erase(found);
   return outcome;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What DDS writers ask of axes, on its way through the command port: one reply for each sample.
-// Promises that a request which was seen before is not run again, that results which come when the session is gone harm
-// nobody, and that a stop is never refused for want of room. Never repeats anything.
+// Promises that a request which was seen before is not run again, that nothing which a stop has overtaken is carried
+// out after it, that results which come when the session is gone harm nobody, and that a stop is never refused for want
+// of room. Never repeats anything.
 #pragma once
 
 #include <functional>
@@ -18,6 +19,7 @@
 #include "gateway/upstream/dds/namesakes.hpp"
 #include "gateway/upstream/dds/reply_queue.hpp"
 #include "gateway/upstream/dds/request_memory.hpp"
+#include "gateway/upstream/dds/stop_order.hpp"
 
 namespace axisgate::dds {
 
@@ -28,8 +30,8 @@ class DdsRequests {
  public:
   /// `wake`: a reply has come that nobody waits for in this turn. `tell`: a line for the log, of what is refused here.
   DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image, CommandPort& commands,
-              DdsClients& clients, const SignsOfLife& signs, const Namesakes& namesakes, ReplyQueue& replies,
-              std::function<void()> wake, TellLine tell);
+              DdsClients& clients, const SignsOfLife& signs, const Namesakes& namesakes, StopOrder& stop_order,
+              ReplyQueue& replies, std::function<void()> wake, TellLine tell);
   DdsRequests(const DdsRequests&) = delete;
   DdsRequests& operator=(const DdsRequests&) = delete;
 
@@ -58,6 +60,8 @@ class DdsRequests {
   [[nodiscard]] static std::optional<BatchResult> carry_on(const std::shared_ptr<Run>& run, BatchResult last);
 
   void press(const CommandRecord& record, const AxisImage* axis, bool held);
+  /// A stop was sent before it: the button may be held still, and then its repetitions are no press.
+  void press_in_vain(const CommandRecord& record);
   void end_command(const CommandRecord& record, bool held, const BatchResult& result);
   [[nodiscard]] Outcome of_jog(const CommandRecord& record, bool held, const Outcome& outcome);
   void reply(const CommandRecord& record, std::uint8_t result, std::uint32_t detail = 0);
@@ -75,6 +79,7 @@ class DdsRequests {
   DdsClients& clients_;
   const SignsOfLife& signs_;
   const Namesakes& namesakes_;
+  StopOrder& stop_order_;
   ReplyQueue& replies_;
   std::function<void()> wake_;
   TellLine tell_;
