@@ -16,6 +16,14 @@ namespace {
 
 // schemas/axisgate.idl
 constexpr std::uint8_t kAlreadySeen = 21, kNameTaken = 22;
+constexpr std::uint8_t kPending = static_cast<std::uint8_t>(CommandResult::pending);
+
+template <typename Request>
+RequestKey key_of(const Request& record) {
+  return {record.writer, record.axis, record.request_id};
+}
+std::uint8_t number_of(const CommandRecord& record) { return record.command; }
+std::uint8_t number_of(const ObjectRequestRecord&) { return 0; }
 
 bool is_press(const CommandRecord& record) { return is_jog(Command{record.command}); }
 
@@ -57,7 +65,7 @@ DdsRequests::DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, 
       replies_(replies),
       wake_(std::move(wake)),
       tell_(std::move(tell)),
-      memory_(kMaxRequestsKept, kRequestsKept) {}
+      memory_(RequestBounds{}, kRequestsKept) {}
 
 // --- Taking a request ------------------------------------------------------------------------------------------------
 
@@ -82,21 +90,27 @@ bool DdsRequests::is_for_us(const GatewayId& gateway, const Guid& writer, bool l
 }
 
 DdsRequests::Admitted DdsRequests::admit(const Asked& asked, Instant now) {
-  if (!settings_.commands) return dds_result(Errc::role_forbidden);
+  if (!settings_.commands) return NotAdmitted{dds_result(Errc::role_forbidden)};
   // Nor is it remembered, or a sign of life: whoever was cut off may ask once more.
-  if (!asked.fresh && !asked.lets_go) return dds_result(Errc::never_started);
+  if (!asked.fresh && !asked.lets_go) return NotAdmitted{dds_result(Errc::never_started)};
   const RequestKey& key = asked.key;
+  const NotAdmitted busy{dds_result(Errc::queue_full)};
   const DdsClient* const client = clients_.on_sample(key.writer, asked.strength, asked.fresh, now);
-  if (client == nullptr && !asked.stops) return dds_result(Errc::queue_full);
+  if (client == nullptr && !asked.stops) return busy;
   // What is refused here is not remembered, nor is a stop that came when there was no room: it is one as often as it
   // comes.
-  if (!replies_.admits() && !asked.stops) return dds_result(Errc::queue_full);
+  if (!replies_.admits() && !asked.stops) return busy;
   if (key.request_id != 0) {
-    const RequestMemory::Seen seen = memory_.see(key, now);
-    if (seen == RequestMemory::Seen::again) return kAlreadySeen;
-    if (seen == RequestMemory::Seen::full && !asked.stops) return dds_result(Errc::queue_full);
+    const RequestMemory::Seen seen = memory_.see(key, asked.command, now);
+    if (seen.known == RequestMemory::Known::full && !asked.stops) return busy;
+    if (seen.known == RequestMemory::Known::again) {
+      // A stop acts if the command or the id differs from what its writer has asked of the axis last.
+      const bool differs = seen.command != asked.command || !seen.newest;
+      if (!asked.stops || !differs) return NotAdmitted{kAlreadySeen, seen.result == 0 ? kPending : seen.result};
+      memory_.acts(key, asked.command);
+    }
   } else if (!asked.stops) {
-    return dds_result(Errc::bad_value);
+    return NotAdmitted{dds_result(Errc::bad_value)};
   }
   return client != nullptr ? std::shared_ptr<const ClientLife>(client->life) : clients_.stranger(key.writer, now);
 }
@@ -117,19 +131,20 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
   const bool exempt = lets_go(asked);
   if (!is_for_us(asked.gateway, asked.writer, exempt, now)) return;
   const bool named = asked.gateway == settings_.gateway;
-  if (!named && !exempt) return refuse(asked, what, dds_result(Errc::bad_value), now);
+  if (!named && !exempt) return refuse(asked, what, {dds_result(Errc::bad_value)}, now);
   const bool fresh = signs_.fresh(asked.written, now);
-  const Admitted admitted = admit({.key = {asked.writer, asked.axis, asked.request_id},
+  const Admitted admitted = admit({.key = key_of(asked),
+                                   .command = asked.command,
                                    .strength = asked.strength,
                                    .stops = stops(asked),
                                    .lets_go = exempt,
                                    .fresh = fresh && named},
                                   now);
-  if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return refuse(asked, what, *result, now);
+  if (const auto* const why = std::get_if<NotAdmitted>(&admitted)) return refuse(asked, what, *why, now);
   const auto& life = std::get<std::shared_ptr<const ClientLife>>(admitted);
   if (!exempt && stop_order_.overtaken(asked.axis, asked.received)) {
     press_in_vain(asked);
-    return refuse(asked, what, dds_result(Errc::dropped_by_stop), now);
+    return end(asked, what, Errc::dropped_by_stop, now);
   }
   const AxisImage* const axis = image_.find(asked.axis);
 
@@ -143,12 +158,12 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
     const auto found = client->held.find(record.axis);
     held = found != client->held.end() && found->second.direction == Command{record.command};
   }
-  if (namesakes_.taken() && starts(record, held)) return refuse(record, what, kNameTaken, now);
+  if (namesakes_.taken() && starts(record, held)) return end(record, what, kNameTaken, now);
   static const DdsUnits kUsual;
   const auto units = units_.find(record.axis);
   PlannedCommand planned = plan_command(record, new_batch(life, fresh && named, now), axis,
                                         units == units_.end() ? kUsual : units->second, held);
-  if (const auto* const refused = std::get_if<Errc>(&planned)) return refuse(record, what, dds_result(*refused), now);
+  if (const auto* const refused = std::get_if<Errc>(&planned)) return end(record, what, *refused, now);
   auto& plan = std::get<CommandPlan>(planned);
   if (record.request_id == 0) plan.afterwards = Errc::bad_value;
   if (record.mask != asked.mask) plan.afterwards = Errc::never_started;
@@ -167,12 +182,12 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
 void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {
   const std::string_view what = record.write ? "a write of an object" : "";
   if (!is_for_us(record.gateway, record.writer, false, now)) return;
-  if (record.gateway != settings_.gateway) return refuse(record, what, dds_result(Errc::bad_value), now);
+  if (record.gateway != settings_.gateway) return refuse(record, what, {dds_result(Errc::bad_value)}, now);
   const bool fresh = signs_.fresh(record.written, now);
-  const Admitted admitted = admit({.key = {record.writer, record.axis, record.request_id}, .fresh = fresh}, now);
-  if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return refuse(record, what, *result, now);
+  const Admitted admitted = admit({.key = key_of(record), .fresh = fresh}, now);
+  if (const auto* const why = std::get_if<NotAdmitted>(&admitted)) return refuse(record, what, *why, now);
   if (record.write && stop_order_.overtaken(record.axis, record.received))
-    return refuse(record, what, dds_result(Errc::dropped_by_stop), now);
+    return end(record, what, Errc::dropped_by_stop, now);
   auto life = std::get<std::shared_ptr<const ClientLife>>(admitted);
   const AxisImage* const axis = image_.find(record.axis);
   // Objects are asked for by a writer of their own: where its participant commands the axis by another, it is that
@@ -183,20 +198,33 @@ void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {
     if (of_this_session && owner->connected && owner->origin == life->origin) life = owner;
   }
   const PlannedObject planned = plan_object(record, new_batch(life, fresh, now), axis);
-  if (const auto* const refused = std::get_if<Errc>(&planned)) return refuse(record, what, dds_result(*refused), now);
+  if (const auto* const refused = std::get_if<Errc>(&planned)) return end(record, what, *refused, now);
   // The bytes that are written belong to the write batch now; the reply needs none of them.
   ObjectRequestRecord asked = record;
   asked.data.clear();
   start(record.axis, {{std::get<WriteBatch>(planned)}, Errc::ok},
         [asked = std::move(asked)](DdsRequests& self, const BatchResult& result) {
-          self.replies_.add(object_reply(asked, result));
+          const ObjectReplyRecord reply = object_reply(asked, result);
+          self.memory_.ended(key_of(asked), number_of(asked), reply.result);
+          self.replies_.add(reply);
         });
 }
 
 template <typename Request>
-void DdsRequests::refuse(const Request& record, std::string_view what, std::uint8_t result, Instant now) {
-  if (!what.empty()) tell_refused(record.writer, record.axis, what, result, now);
-  reply(record, result);
+void DdsRequests::refuse(const Request& record, std::string_view what, NotAdmitted why, Instant now) {
+  if (!what.empty()) tell_refused(record.writer, record.axis, what, why.result, now);
+  reply(record, why.result, why.detail);
+}
+
+template <typename Request>
+void DdsRequests::end(const Request& record, std::string_view what, std::uint8_t result, Instant now) {
+  memory_.ended(key_of(record), number_of(record), result);
+  refuse(record, what, {result}, now);
+}
+
+template <typename Request>
+void DdsRequests::end(const Request& record, std::string_view what, Errc code, Instant now) {
+  end(record, what, dds_result(code), now);
 }
 
 // What the axes themselves refuse is an event of theirs. A request that was seen before has had its line.
@@ -255,19 +283,22 @@ void DdsRequests::start(AxisNumber axis, CommandPlan plan, Done done) {
 
 void DdsRequests::end_command(const CommandRecord& record, bool held, const BatchResult& result) {
   const Outcome outcome = is_press(record) ? of_jog(record, held, result.outcome) : result.outcome;
-  reply(record, dds_result(outcome.code), outcome.detail);
+  const std::uint8_t code = dds_result(outcome.code);
+  memory_.ended(key_of(record), number_of(record), code);
+  reply(record, code, outcome.detail);
 }
 
 void DdsRequests::reply(const CommandRecord& record, std::uint8_t result, std::uint32_t detail) {
   replies_.add(ReplyRecord{record.axis, record.request_id, record.writer, result, detail});
 }
 
-void DdsRequests::reply(const ObjectRequestRecord& record, std::uint8_t result) {
+void DdsRequests::reply(const ObjectRequestRecord& record, std::uint8_t result, std::uint32_t detail) {
   ObjectReplyRecord refusal;
   refusal.axis = record.axis;
   refusal.request_id = record.request_id;
   refusal.writer = record.writer;
   refusal.result = result;
+  refusal.detail = detail;
   replies_.add(refusal);
 }
 

@@ -45,13 +45,19 @@ class DdsRequests {
   /// What counts of a request before anybody looks at what it asks.
   struct Asked {
     RequestKey key;
+    std::uint8_t command = 0;                ///< of axis_command
     std::optional<std::int32_t> strength{};  ///< of its writer; none: of a topic without ownership
     bool stops = false;                      ///< it finds room where there is none
     bool lets_go = false;                    ///< neither its age nor its name counts
     bool fresh = true;                       ///< and so a sign of life
   };
-  /// Who asks, or the result of a request that is not judged any further.
-  using Admitted = std::variant<std::shared_ptr<const ClientLife>, std::uint8_t>;
+  /// The result of a request that is not judged any further.
+  struct NotAdmitted {
+    std::uint8_t result = 0;
+    std::uint32_t detail = 0;
+  };
+  /// Who asks, or why it ends here.
+  using Admitted = std::variant<std::shared_ptr<const ClientLife>, NotAdmitted>;
   [[nodiscard]] Admitted admit(const Asked& asked, Instant now);
   /// False: another gateway's, or nobody's, and not answered. Of one that is meant for us by half, and may not be: 17.
   [[nodiscard]] bool is_for_us(const GatewayId& gateway, const Guid& writer, bool lets_go, Instant now);
@@ -65,10 +71,15 @@ class DdsRequests {
   void end_command(const CommandRecord& record, bool held, const BatchResult& result);
   [[nodiscard]] Outcome of_jog(const CommandRecord& record, bool held, const Outcome& outcome);
   void reply(const CommandRecord& record, std::uint8_t result, std::uint32_t detail = 0);
-  void reply(const ObjectRequestRecord& record, std::uint8_t result);
-  /// The one way in which a request ends before it comes to an axis. `what`: for the log; empty: no line.
+  void reply(const ObjectRequestRecord& record, std::uint8_t result, std::uint32_t detail);
+  /// The ways in which a request ends before it comes to an axis: not admitted, and so not remembered or seen before;
+  /// or admitted, and its result is remembered. `what`: for the log; empty: no line.
   template <typename Request>
-  void refuse(const Request& record, std::string_view what, std::uint8_t result, Instant now);
+  void refuse(const Request& record, std::string_view what, NotAdmitted why, Instant now);
+  template <typename Request>
+  void end(const Request& record, std::string_view what, Errc code, Instant now);
+  template <typename Request>
+  void end(const Request& record, std::string_view what, std::uint8_t result, Instant now);
   void tell_refused(const Guid& writer, AxisNumber axis, std::string_view what, std::uint8_t result, Instant now);
   void tell(const Guid& writer, const std::string& what, Instant now);
 

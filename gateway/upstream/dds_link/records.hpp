@@ -23,8 +23,9 @@ inline constexpr std::size_t kMaxPacket = 64 * 1024;
 inline constexpr std::size_t kMaxName = 64;
 inline constexpr std::size_t kMaxText = 256;
 inline constexpr std::size_t kMaxBusesShown = 100;
-inline constexpr std::size_t kMaxJoints = 512;  ///< of one sample of joint_commands
-inline constexpr std::size_t kMaxBeats = 64;    ///< DDS writers that may command at the same time
+inline constexpr std::size_t kMaxJoints = 512;        ///< of one sample of joint_commands
+inline constexpr std::uint16_t kMaxAxisNumber = 499;  ///< of one gateway
+inline constexpr std::size_t kMaxBeats = 64;          ///< of one record
 
 /// On the steady clock, in nanoseconds: it is the same one in both processes. 0: unknown.
 using SteadyNs = std::int64_t;
