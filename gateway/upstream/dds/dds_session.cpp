@@ -105,6 +105,7 @@ void DdsSession::take_axes(const std::vector<AxisUnits>& units, Instant now) {
   impl_->units = units_of(units);
   impl_->add_axes(now);
   impl_->states.all_due(now);
+  impl_->look_at_name();
   impl_->wake_up();
 }
 

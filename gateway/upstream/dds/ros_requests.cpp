@@ -60,6 +60,12 @@ Command command_of(RosAction action) {
   return Command::none;
 }
 
+/// It is not so already.
+bool changes(Command command, const AxisImage& axis) {
+  if (command == Command::enable) return !axis.has(AxisInput::enabled);
+  return command != Command::fault_reset || axis.has(AxisInput::fault);
+}
+
 }  // namespace
 
 RosRequests::RosRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image,
@@ -109,13 +115,13 @@ std::map<std::string_view, const AxisImage*> RosRequests::axes_by_name() const {
   return out;
 }
 
-WriteBatch RosRequests::new_batch(const Joint& joint) const {
+WriteBatch RosRequests::new_batch(const Joint& joint, bool renews) const {
   WriteBatch batch;
   batch.client = joint.life->id;
   batch.role = joint.life->role;
   batch.life = joint.life;
   batch.is_write = true;
-  batch.beats = true;
+  batch.renews = batch.beats = renews;
   batch.start_by = joint.newest + settings_.start_deadline;
   batch.answer_by = joint.newest + settings_.reply_deadline;
   return batch;
@@ -252,10 +258,15 @@ void RosRequests::on_action(const RosActionRecord& record, Instant now) {
     return complain(
         fmt::format("ros2: {} of {}: a stop that came after it was carried out first", text(command), axis->name), now);
   }
+  // A stop is carried out whatever its age. What is old, or asks for what is so already, says nothing of the program
+  // that keeps a motor running.
+  const bool fresh = signs_.fresh(record.written, now);
+  const bool renews = fresh && changes(command, *axis);
   Joint& joint = joint_of(record.axis);
-  heard(joint, now);
+  joint.newest = now;
+  if (renews) heard(joint, now);
   if (!is_stop(command)) joint.stream.begin_anew();
-  WriteBatch batch = new_batch(joint);
+  WriteBatch batch = new_batch(joint, renews);
   batch.command = command;
   batch.claims = !is_stop(command);
   submit_alone(record.axis, batch);

@@ -43,13 +43,13 @@ class RosRequests {
   struct Joint {
     std::shared_ptr<ClientLife> life{};
     JointStream stream{};
-    Instant newest = kLongAgo;  ///< when the newest sample for this axis came
+    Instant newest = kLongAgo;  ///< when the newest sample for this axis came, renewing or not
   };
   [[nodiscard]] Joint& joint_of(AxisNumber axis);
   [[nodiscard]] const DdsUnits& units_of(AxisNumber axis) const;
   [[nodiscard]] JointView view_of(const AxisImage& axis, const Joint& joint) const;
   [[nodiscard]] std::map<std::string_view, const AxisImage*> axes_by_name() const;
-  [[nodiscard]] WriteBatch new_batch(const Joint& joint) const;
+  [[nodiscard]] WriteBatch new_batch(const Joint& joint, bool renews = true) const;
   void heard(Joint& joint, Instant now);
   void take_target(const AxisImage& axis, double position, double velocity, const JointCommandsRecord& from,
                    Instant now);
