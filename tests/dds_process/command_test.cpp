@@ -71,6 +71,7 @@ TEST(Command, ReachesTheGatewayWithAllItsMembersAndItsWriter) {
   std::optional<CommandRecord> got = child.next<CommandRecord>();
   ASSERT_TRUE(got);
   EXPECT_NE(std::exchange(got->written, 0), 0);
+  EXPECT_NE(std::exchange(got->received, 0), 0);
   EXPECT_EQ(got, (CommandRecord{.writer = writer->guid(),
                                 .gateway = {0xCAFEBABE, "cell_7"},
                                 .axis = 499,
@@ -156,6 +157,7 @@ TEST(ObjectRequests, AndTheirReplyTravelWithUpTo4096Bytes) {
   std::optional<ObjectRequestRecord> got = child.next<ObjectRequestRecord>();
   ASSERT_TRUE(got);
   EXPECT_NE(std::exchange(got->written, 0), 0);
+  EXPECT_NE(std::exchange(got->received, 0), 0);
   EXPECT_EQ(got, (ObjectRequestRecord{.writer = writer->guid(),
                                       .axis = 4,
                                       .request_id = 11,

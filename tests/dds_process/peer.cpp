@@ -62,6 +62,10 @@ template <>
 struct TypeOf<sensor_msgs::msg::dds_::JointState_> {
   using Type = sensor_msgs::msg::dds_::JointState_PubSubType;
 };
+template <>
+struct TypeOf<std_msgs::msg::dds_::Empty_> {
+  using Type = std_msgs::msg::dds_::Empty_PubSubType;
+};
 
 template <typename Sample>
 class FastReader : public Reader<Sample> {
@@ -209,7 +213,8 @@ std::unique_ptr<Writer<Sample>> Peer::writer(const std::string& topic, const Wri
   qos.history().kind = fastdds::KEEP_ALL_HISTORY_QOS;
   qos.reliable_writer_qos().times.heartbeatPeriod =
       settings.heartbeats ? Duration_t(0, 20'000'000) : eprosima::fastrtps::c_TimeInfinite;
-  qos.resource_limits().max_samples = 0;
+  // Of a topic without keys Fast DDS 2.9.1 takes 0 for no samples at all.
+  qos.resource_limits().max_samples = std::is_same_v<Sample, std_msgs::msg::dds_::Empty_> ? 16 : 0;
   qos.resource_limits().max_instances = 0;
   qos.resource_limits().max_samples_per_instance = 0;
   qos.liveliness().kind = kind_of(settings.liveliness);
@@ -232,6 +237,7 @@ template std::unique_ptr<Reader<sensor_msgs::msg::dds_::JointState_>> Peer::read
                                                                                    const ReaderSettings&);
 template std::unique_ptr<Writer<AxisCommand>> Peer::writer(const std::string&, const WriterSettings&);
 template std::unique_ptr<Writer<Heartbeat>> Peer::writer(const std::string&, const WriterSettings&);
+template std::unique_ptr<Writer<std_msgs::msg::dds_::Empty_>> Peer::writer(const std::string&, const WriterSettings&);
 template std::unique_ptr<Writer<ObjectRequest>> Peer::writer(const std::string&, const WriterSettings&);
 
 }  // namespace axisgate::dds::test

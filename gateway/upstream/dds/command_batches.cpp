@@ -4,9 +4,21 @@
 #include <array>
 
 #include "gateway/image/register_map.hpp"
+#include "gateway/upstream/dds_link/stop_commands.hpp"
 
 namespace axisgate::dds {
 namespace {
+
+/// The numbers that axisgate-dds lets pass are those of the stops.
+constexpr bool one_set_of_stops() {
+  for (unsigned number = 0; number <= UINT8_MAX; ++number) {
+    const auto command = static_cast<std::uint8_t>(number);
+    const bool stop = is_stop(Command{command}) || Command{command} == Command::jog_end;
+    if (is_stop_command(command) != stop) return false;
+  }
+  return true;
+}
+static_assert(one_set_of_stops());
 
 struct Member {
   std::uint32_t has;
@@ -125,9 +137,7 @@ CommandPlan plan_jog(Command command, const WriteBatch& from, WriteBatch beside,
 
 }  // namespace
 
-bool stops(const CommandRecord& record) {
-  return is_stop(command_of(record)) || command_of(record) == Command::jog_end;
-}
+bool stops(const CommandRecord& record) { return is_stop_command(record.command); }
 
 bool lets_go(const CommandRecord& record) { return stops(record) || command_of(record) == Command::release; }
 

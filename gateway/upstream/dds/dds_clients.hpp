@@ -33,6 +33,7 @@ struct HeldJog {
 struct DdsClient {
   std::shared_ptr<ClientLife> life;
   std::map<AxisNumber, HeldJog> held{};
+  std::map<AxisNumber, SteadyNs> released{};  ///< when the newest jog_end was received, of axes that are there
   bool commands = false;                   ///< it writes axis_command; else it may be one that asks for objects alone
   Instant returns_by = kNever;             ///< kNever: it was told of since the link is up
   std::optional<std::uint32_t> counter{};  ///< of its last heartbeat

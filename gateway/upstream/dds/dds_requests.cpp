@@ -16,6 +16,14 @@ namespace {
 
 // schemas/axisgate.idl
 constexpr std::uint8_t kAlreadySeen = 21, kNameTaken = 22;
+constexpr std::uint8_t kPending = static_cast<std::uint8_t>(CommandResult::pending);
+
+template <typename Request>
+RequestKey key_of(const Request& record) {
+  return {record.writer, record.axis, record.request_id};
+}
+std::uint8_t number_of(const CommandRecord& record) { return record.command; }
+std::uint8_t number_of(const ObjectRequestRecord&) { return 0; }
 
 bool is_press(const CommandRecord& record) { return is_jog(Command{record.command}); }
 
@@ -30,12 +38,22 @@ struct DdsRequests::Run {
   AxisNumber axis;
   CommandPlan plan;
   Done done;
+  std::uint64_t stops = 0;   ///< of the axis through this session, when it began
+  Endings::Point since = 0;  ///< when it began
   std::size_t next = 0;
+  /// There was a stop, by whichever way: what is left of it was asked before.
+  [[nodiscard]] bool stopped(const StopOrder& order, const ProcessImage& image) const {
+    if (next == plan.batches.size()) return false;
+    const AxisImage* const there = image.find(axis);
+    return order.count(axis) != stops ||
+           (there != nullptr && there->endings.interrupted(since, plan.batches[next].client));
+  }
 };
 
 DdsRequests::DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image,
                          CommandPort& commands, DdsClients& clients, const SignsOfLife& signs,
-                         const Namesakes& namesakes, ReplyQueue& replies, std::function<void()> wake, TellLine tell)
+                         const Namesakes& namesakes, StopOrder& stop_order, ReplyQueue& replies,
+                         std::function<void()> wake, TellLine tell)
     : settings_(settings),
       units_(units),
       image_(image),
@@ -43,10 +61,11 @@ DdsRequests::DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, 
       clients_(clients),
       signs_(signs),
       namesakes_(namesakes),
+      stop_order_(stop_order),
       replies_(replies),
       wake_(std::move(wake)),
       tell_(std::move(tell)),
-      memory_(kMaxRequestsKept, kRequestsKept) {}
+      memory_(RequestBounds{}, kRequestsKept) {}
 
 // --- Taking a request ------------------------------------------------------------------------------------------------
 
@@ -71,21 +90,27 @@ bool DdsRequests::is_for_us(const GatewayId& gateway, const Guid& writer, bool l
 }
 
 DdsRequests::Admitted DdsRequests::admit(const Asked& asked, Instant now) {
-  if (!settings_.commands) return dds_result(Errc::role_forbidden);
+  if (!settings_.commands) return NotAdmitted{dds_result(Errc::role_forbidden)};
   // Nor is it remembered, or a sign of life: whoever was cut off may ask once more.
-  if (!asked.fresh && !asked.lets_go) return dds_result(Errc::never_started);
+  if (!asked.fresh && !asked.lets_go) return NotAdmitted{dds_result(Errc::never_started)};
   const RequestKey& key = asked.key;
+  const NotAdmitted busy{dds_result(Errc::queue_full)};
   const DdsClient* const client = clients_.on_sample(key.writer, asked.strength, asked.fresh, now);
-  if (client == nullptr && !asked.stops) return dds_result(Errc::queue_full);
+  if (client == nullptr && !asked.stops) return busy;
   // What is refused here is not remembered, nor is a stop that came when there was no room: it is one as often as it
   // comes.
-  if (!replies_.admits() && !asked.stops) return dds_result(Errc::queue_full);
+  if (!replies_.admits() && !asked.stops) return busy;
   if (key.request_id != 0) {
-    const RequestMemory::Seen seen = memory_.see(key, now);
-    if (seen == RequestMemory::Seen::again) return kAlreadySeen;
-    if (seen == RequestMemory::Seen::full && !asked.stops) return dds_result(Errc::queue_full);
+    const RequestMemory::Seen seen = memory_.see(key, asked.command, now);
+    if (seen.known == RequestMemory::Known::full && !asked.stops) return busy;
+    if (seen.known == RequestMemory::Known::again) {
+      // A stop acts if the command or the id differs from what its writer has asked of the axis last.
+      const bool differs = seen.command != asked.command || !seen.newest;
+      if (!asked.stops || !differs) return NotAdmitted{kAlreadySeen, seen.result == 0 ? kPending : seen.result};
+      memory_.acts(key, asked.command);
+    }
   } else if (!asked.stops) {
-    return dds_result(Errc::bad_value);
+    return NotAdmitted{dds_result(Errc::bad_value)};
   }
   return client != nullptr ? std::shared_ptr<const ClientLife>(client->life) : clients_.stranger(key.writer, now);
 }
@@ -106,16 +131,21 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
   const bool exempt = lets_go(asked);
   if (!is_for_us(asked.gateway, asked.writer, exempt, now)) return;
   const bool named = asked.gateway == settings_.gateway;
-  if (!named && !exempt) return refuse(asked, what, dds_result(Errc::bad_value), now);
+  if (!named && !exempt) return refuse(asked, what, {dds_result(Errc::bad_value)}, now);
   const bool fresh = signs_.fresh(asked.written, now);
-  const Admitted admitted = admit({.key = {asked.writer, asked.axis, asked.request_id},
+  const Admitted admitted = admit({.key = key_of(asked),
+                                   .command = asked.command,
                                    .strength = asked.strength,
                                    .stops = stops(asked),
                                    .lets_go = exempt,
                                    .fresh = fresh && named},
                                   now);
-  if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return refuse(asked, what, *result, now);
+  if (const auto* const why = std::get_if<NotAdmitted>(&admitted)) return refuse(asked, what, *why, now);
   const auto& life = std::get<std::shared_ptr<const ClientLife>>(admitted);
+  if (!exempt && stop_order_.overtaken(asked.axis, asked.received)) {
+    press_in_vain(asked);
+    return end(asked, what, Errc::dropped_by_stop, now);
+  }
   const AxisImage* const axis = image_.find(asked.axis);
 
   // Only the stop or the release is carried out of what is too old, or not surely meant for us.
@@ -128,16 +158,17 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
     const auto found = client->held.find(record.axis);
     held = found != client->held.end() && found->second.direction == Command{record.command};
   }
-  if (namesakes_.taken() && starts(record, held)) return refuse(record, what, kNameTaken, now);
+  if (namesakes_.taken() && starts(record, held)) return end(record, what, kNameTaken, now);
   static const DdsUnits kUsual;
   const auto units = units_.find(record.axis);
   PlannedCommand planned = plan_command(record, new_batch(life, fresh && named, now), axis,
                                         units == units_.end() ? kUsual : units->second, held);
-  if (const auto* const refused = std::get_if<Errc>(&planned)) return refuse(record, what, dds_result(*refused), now);
+  if (const auto* const refused = std::get_if<Errc>(&planned)) return end(record, what, *refused, now);
   auto& plan = std::get<CommandPlan>(planned);
   if (record.request_id == 0) plan.afterwards = Errc::bad_value;
   if (record.mask != asked.mask) plan.afterwards = Errc::never_started;
   press(record, axis, held);
+  if (stops(record)) stop_order_.stopped(record.axis, record.received);
   // Where the participant has written objects of this axis first, by its other writer, that one makes way: for as long
   // as the claim is judged, its lease is one that its own participant may take.
   const auto& owner = axis->lease.owner;
@@ -151,10 +182,12 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
 void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {
   const std::string_view what = record.write ? "a write of an object" : "";
   if (!is_for_us(record.gateway, record.writer, false, now)) return;
-  if (record.gateway != settings_.gateway) return refuse(record, what, dds_result(Errc::bad_value), now);
+  if (record.gateway != settings_.gateway) return refuse(record, what, {dds_result(Errc::bad_value)}, now);
   const bool fresh = signs_.fresh(record.written, now);
-  const Admitted admitted = admit({.key = {record.writer, record.axis, record.request_id}, .fresh = fresh}, now);
-  if (const auto* const result = std::get_if<std::uint8_t>(&admitted)) return refuse(record, what, *result, now);
+  const Admitted admitted = admit({.key = key_of(record), .fresh = fresh}, now);
+  if (const auto* const why = std::get_if<NotAdmitted>(&admitted)) return refuse(record, what, *why, now);
+  if (record.write && stop_order_.overtaken(record.axis, record.received))
+    return end(record, what, Errc::dropped_by_stop, now);
   auto life = std::get<std::shared_ptr<const ClientLife>>(admitted);
   const AxisImage* const axis = image_.find(record.axis);
   // Objects are asked for by a writer of their own: where its participant commands the axis by another, it is that
@@ -165,20 +198,33 @@ void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {
     if (of_this_session && owner->connected && owner->origin == life->origin) life = owner;
   }
   const PlannedObject planned = plan_object(record, new_batch(life, fresh, now), axis);
-  if (const auto* const refused = std::get_if<Errc>(&planned)) return refuse(record, what, dds_result(*refused), now);
+  if (const auto* const refused = std::get_if<Errc>(&planned)) return end(record, what, *refused, now);
   // The bytes that are written belong to the write batch now; the reply needs none of them.
   ObjectRequestRecord asked = record;
   asked.data.clear();
   start(record.axis, {{std::get<WriteBatch>(planned)}, Errc::ok},
         [asked = std::move(asked)](DdsRequests& self, const BatchResult& result) {
-          self.replies_.add(object_reply(asked, result));
+          const ObjectReplyRecord reply = object_reply(asked, result);
+          self.memory_.ended(key_of(asked), number_of(asked), reply.result);
+          self.replies_.add(reply);
         });
 }
 
 template <typename Request>
-void DdsRequests::refuse(const Request& record, std::string_view what, std::uint8_t result, Instant now) {
-  if (!what.empty()) tell_refused(record.writer, record.axis, what, result, now);
-  reply(record, result);
+void DdsRequests::refuse(const Request& record, std::string_view what, NotAdmitted why, Instant now) {
+  if (!what.empty()) tell_refused(record.writer, record.axis, what, why.result, now);
+  reply(record, why.result, why.detail);
+}
+
+template <typename Request>
+void DdsRequests::end(const Request& record, std::string_view what, std::uint8_t result, Instant now) {
+  memory_.ended(key_of(record), number_of(record), result);
+  refuse(record, what, {result}, now);
+}
+
+template <typename Request>
+void DdsRequests::end(const Request& record, std::string_view what, Errc code, Instant now) {
+  end(record, what, dds_result(code), now);
 }
 
 // What the axes themselves refuse is an event of theirs. A request that was seen before has had its line.
@@ -208,7 +254,10 @@ std::optional<BatchResult> DdsRequests::carry_on(const std::shared_ptr<Run>& run
     const auto at_once = run->commands.submit(run->axis, batch, [run](const BatchResult& result) {
       const auto self = run->of.lock();
       if (self == nullptr) return;  // nobody is there to be told, nor to ask for the rest
-      const auto end = carry_on(run, result);
+      BatchResult so_far = result;
+      if (so_far.outcome.code == Errc::ok && run->stopped(self->stop_order_, self->image_))
+        so_far.outcome = refusal(Errc::dropped_by_stop);
+      const auto end = carry_on(run, so_far);
       if (!end) return;
       self->replies_.end();
       run->done(*self, *end);
@@ -223,6 +272,8 @@ std::optional<BatchResult> DdsRequests::carry_on(const std::shared_ptr<Run>& run
 
 void DdsRequests::start(AxisNumber axis, CommandPlan plan, Done done) {
   const auto run = std::make_shared<Run>(Run{self_, commands_, axis, std::move(plan), std::move(done)});
+  run->stops = stop_order_.count(axis);
+  if (const AxisImage* const there = image_.find(axis)) run->since = there->endings.now();
   replies_.begin();
   const auto result = carry_on(run, {});
   if (!result) return;
@@ -232,19 +283,22 @@ void DdsRequests::start(AxisNumber axis, CommandPlan plan, Done done) {
 
 void DdsRequests::end_command(const CommandRecord& record, bool held, const BatchResult& result) {
   const Outcome outcome = is_press(record) ? of_jog(record, held, result.outcome) : result.outcome;
-  reply(record, dds_result(outcome.code), outcome.detail);
+  const std::uint8_t code = dds_result(outcome.code);
+  memory_.ended(key_of(record), number_of(record), code);
+  reply(record, code, outcome.detail);
 }
 
 void DdsRequests::reply(const CommandRecord& record, std::uint8_t result, std::uint32_t detail) {
   replies_.add(ReplyRecord{record.axis, record.request_id, record.writer, result, detail});
 }
 
-void DdsRequests::reply(const ObjectRequestRecord& record, std::uint8_t result) {
+void DdsRequests::reply(const ObjectRequestRecord& record, std::uint8_t result, std::uint32_t detail) {
   ObjectReplyRecord refusal;
   refusal.axis = record.axis;
   refusal.request_id = record.request_id;
   refusal.writer = record.writer;
   refusal.result = result;
+  refusal.detail = detail;
   replies_.add(refusal);
 }
 
@@ -253,8 +307,19 @@ void DdsRequests::reply(const ObjectRequestRecord& record, std::uint8_t result) 
 void DdsRequests::press(const CommandRecord& record, const AxisImage* axis, bool held) {
   DdsClient* const client = clients_.find(record.writer);
   if (client == nullptr || axis == nullptr) return;
-  if (Command{record.command} == Command::jog_end) client->held.erase(record.axis);
+  if (Command{record.command} == Command::jog_end) {
+    client->held.erase(record.axis);
+    client->released[record.axis] = record.received;
+  }
   if (is_press(record) && !held) client->held[record.axis] = {Command{record.command}, record.request_id, true};
+}
+
+void DdsRequests::press_in_vain(const CommandRecord& record) {
+  DdsClient* const client = clients_.find(record.writer);
+  if (client == nullptr || !is_press(record)) return;
+  const auto released = client->released.find(record.axis);
+  if (released != client->released.end() && released->second > record.received) return;
+  client->held.try_emplace(record.axis, HeldJog{Command{record.command}, record.request_id, false});
 }
 
 Outcome DdsRequests::of_jog(const CommandRecord& record, bool held, const Outcome& outcome) {
@@ -272,8 +337,11 @@ Outcome DdsRequests::of_jog(const CommandRecord& record, bool held, const Outcom
   if (jog.request_id != record.request_id) return outcome;
   jog.starting = false;
   // One that was refused has begun nothing, and may be pressed again. But one that is held while another client owns
-  // the axis starts nothing on the day on which the axis is free.
-  if (outcome.code != Errc::ok && outcome.code != Errc::not_owner) client->held.erase(found);
+  // the axis starts nothing on the day on which the axis is free, and one that a stop has ended is not pressed anew by
+  // being held.
+  const bool is_held = outcome.code == Errc::ok || outcome.code == Errc::not_owner ||
+                       outcome.code == Errc::dropped_by_stop || outcome.code == Errc::stopped_by_other;
+  if (!is_held) client->held.erase(found);
   return outcome;
 }
 

@@ -10,6 +10,7 @@
 #include "gateway/upstream/dds/ros_requests.hpp"
 #include "gateway/upstream/dds/state_feed.hpp"
 #include "gateway/upstream/dds/state_record.hpp"
+#include "gateway/upstream/dds/stop_order.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -34,8 +35,9 @@ struct DdsSession::Impl {
         clients(settings.role, signs, image, commands),
         namesakes(image),
         requests(
-            settings, units, image, commands, clients, signs, namesakes, replies, [this] { wake_up(); }, told.line),
-        ros(settings, units, image, commands, signs, namesakes, told.line),
+            settings, units, image, commands, clients, signs, namesakes, stop_order, replies, [this] { wake_up(); },
+            told.line),
+        ros(settings, units, image, commands, signs, namesakes, stop_order, told.line),
         events(ring),
         states(settings.min_period, settings.max_period) {
     add_axes(kLongAgo);
@@ -81,6 +83,7 @@ struct DdsSession::Impl {
   DdsClients clients;
   Namesakes namesakes;
   bool name_taken = false;  ///< as it was told last
+  StopOrder stop_order;
   ReplyQueue replies{kMaxRepliesWaiting};
   DdsRequests requests;
   RosRequests ros;
@@ -102,6 +105,7 @@ void DdsSession::take_axes(const std::vector<AxisUnits>& units, Instant now) {
   impl_->units = units_of(units);
   impl_->add_axes(now);
   impl_->states.all_due(now);
+  impl_->look_at_name();
   impl_->wake_up();
 }
 

@@ -22,9 +22,8 @@ inline constexpr Duration kGatewayPeriod = std::chrono::seconds(1);
 inline constexpr std::size_t kMaxWriters = kMaxBeats;
 /// What leases of DDS clients last longer once, when axisgate-dds has died (design 4).
 inline constexpr Duration kGrace = std::chrono::seconds(3);
-/// How long a request id is remembered, and how many of all writers together: beyond that new requests are refused.
+/// How long a request id is remembered; how many are: RequestBounds. Beyond, new requests are refused (queue_full).
 inline constexpr Duration kRequestsKept = std::chrono::seconds(10);
-inline constexpr std::size_t kMaxRequestsKept = 8192;
 /// Replies and events that wait for the socket.
 inline constexpr std::size_t kMaxRepliesWaiting = 256;
 /// All that the ring has: at a start with many axes more happens than a process that starts beside them can take.

@@ -8,12 +8,24 @@ void Namesakes::on_record(const NamesakeRecord& record) {
     others_.erase(record.writer);
     return;
   }
-  if (image_.find(record.axis) == nullptr) return;  // it has axes of its own: nobody can mistake them
-  if (const auto known = others_.find(record.writer); known != others_.end()) {
-    known->second.seen = true;
-  } else if (others_.size() < kMaxNamesakes) {
-    others_[record.writer] = {record.axis, record.where};
+  if (record.axis == 0 || record.axis > kMaxAxisNumber) return;
+  const auto known = others_.find(record.writer);
+  if (known == others_.end() && others_.size() >= kMaxNamesakes) return;
+  Other& other = known == others_.end() ? others_[record.writer] : known->second;
+  other.axes.set(record.axis);
+  other.where = record.where;
+  other.seen = true;
+}
+
+AxisNumber Namesakes::shared(const Other** whose) const {
+  for (const auto& [writer, other] : others_) {
+    for (const auto& axis : image_.axes()) {
+      if (axis->number > kMaxAxisNumber || !other.axes.test(axis->number)) continue;
+      if (whose != nullptr) *whose = &other;
+      return axis->number;
+    }
   }
+  return 0;
 }
 
 void Namesakes::on_link_up(Instant until) {
@@ -28,9 +40,10 @@ void Namesakes::on_time(Instant now) {
 }
 
 std::string Namesakes::text() const {
-  if (others_.empty()) return {};
-  const Other& first = others_.begin()->second;
-  return "axis " + std::to_string(first.axis) + (first.where.empty() ? "" : " of " + first.where);
+  const Other* whose = nullptr;
+  const AxisNumber axis = shared(&whose);
+  if (axis == 0) return {};
+  return "axis " + std::to_string(axis) + (whose->where.empty() ? "" : " of " + whose->where);
 }
 
 }  // namespace axisgate::dds

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Other gateways that publish axes under our key: two of one name in a domain, to which every command would go.
-// Promises that one which was seen counts until its writer is gone, and that what was known before axisgate-dds was
+// Promises that one which was seen counts until its writer is gone, as long as the two have an axis in common, also one
+// that a reload has added; and that what was known before axisgate-dds was
 // started anew counts until others have had the time to be found again. Never counts a participant that says nothing.
 #pragma once
 
+#include <bitset>
 #include <map>
 #include <string>
 
@@ -26,16 +28,19 @@ class Namesakes {
   [[nodiscard]] Instant deadline() const { return until_; }
 
   /// Starts and enables are refused.
-  [[nodiscard]] bool taken() const { return !others_.empty(); }
+  [[nodiscard]] bool taken() const { return shared() != 0; }
   /// "axis 3 of 192.168.1.8", of the first of them.
   [[nodiscard]] std::string text() const;
 
  private:
   struct Other {
-    std::uint16_t axis = 0;
+    std::bitset<kMaxAxisNumber + 1> axes{};
     std::string where{};
     bool seen = true;  ///< since the link is up
   };
+  /// The first axis that is one of ours and of another gateway of our key, and whose; 0: there is none.
+  [[nodiscard]] AxisNumber shared(const Other** whose = nullptr) const;
+
   const ProcessImage& image_;
   std::map<Guid, Other> others_;
   Instant until_ = kNever;

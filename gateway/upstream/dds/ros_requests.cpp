@@ -60,16 +60,24 @@ Command command_of(RosAction action) {
   return Command::none;
 }
 
+/// It is not so already.
+bool changes(Command command, const AxisImage& axis) {
+  if (command == Command::enable) return !axis.has(AxisInput::enabled);
+  return command != Command::fault_reset || axis.has(AxisInput::fault);
+}
+
 }  // namespace
 
 RosRequests::RosRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image,
-                         CommandPort& commands, const SignsOfLife& signs, const Namesakes& namesakes, TellLine tell)
+                         CommandPort& commands, const SignsOfLife& signs, const Namesakes& namesakes,
+                         StopOrder& stop_order, TellLine tell)
     : settings_(settings),
       units_(units),
       image_(image),
       commands_(commands),
       signs_(signs),
       namesakes_(namesakes),
+      stop_order_(stop_order),
       tell_(std::move(tell)) {}
 
 RosRequests::Joint& RosRequests::joint_of(AxisNumber axis) {
@@ -107,13 +115,13 @@ std::map<std::string_view, const AxisImage*> RosRequests::axes_by_name() const {
   return out;
 }
 
-WriteBatch RosRequests::new_batch(const Joint& joint) const {
+WriteBatch RosRequests::new_batch(const Joint& joint, bool renews) const {
   WriteBatch batch;
   batch.client = joint.life->id;
   batch.role = joint.life->role;
   batch.life = joint.life;
   batch.is_write = true;
-  batch.beats = true;
+  batch.renews = batch.beats = renews;
   batch.start_by = joint.newest + settings_.start_deadline;
   batch.answer_by = joint.newest + settings_.reply_deadline;
   return batch;
@@ -155,16 +163,17 @@ void RosRequests::on_joint_commands(const JointCommandsRecord& record, Instant n
       continue;
     }
     const auto number = [&](const std::vector<double>& from) { return i < from.size() ? from[i] : kNan; };
-    take_target(*axis->second, number(record.positions), number(record.velocities), record.writer, now);
+    take_target(*axis->second, number(record.positions), number(record.velocities), record, now);
   }
 }
 
-void RosRequests::take_target(const AxisImage& axis, double position, double velocity, const Guid& writer,
+void RosRequests::take_target(const AxisImage& axis, double position, double velocity, const JointCommandsRecord& from,
                               Instant now) {
   const bool is_velocity = std::isnan(position);
   if (is_velocity && std::isnan(velocity)) return;  // it leaves this axis alone, and is no sign of life for it
   Joint& joint = joint_of(axis.number);
   heard(joint, now);
+  if (stop_order_.overtaken(axis.number, from.received)) return;
   const auto value = units_of(axis.number)
                          .to_register(is_velocity ? Quantity::target_velocity : Quantity::target_position,
                                       is_velocity ? velocity : position);
@@ -175,7 +184,7 @@ void RosRequests::take_target(const AxisImage& axis, double position, double vel
   }
   JointView view = view_of(axis, joint);
   if (namesakes_.taken()) view.ready = false;
-  const auto target = joint.stream.on_sample(writer, {is_velocity, *value}, position, view);
+  const auto target = joint.stream.on_sample(from.writer, {is_velocity, *value}, position, view);
   if (joint.stream.take_astray()) {
     complain(is_velocity
                  ? fmt::format("joint_commands asks {} for the velocity {:.6g}: it acts once it was 0 (the axis was "
@@ -243,10 +252,21 @@ void RosRequests::on_action(const RosActionRecord& record, Instant now) {
   if (starts && namesakes_.taken())
     return complain(
         fmt::format("ros2: {} of {} is refused: {} has our name", text(command), axis->name, namesakes_.text()), now);
+  if (is_stop(command)) {
+    stop_order_.stopped(record.axis, record.received);
+  } else if (stop_order_.overtaken(record.axis, record.received)) {
+    return complain(
+        fmt::format("ros2: {} of {}: a stop that came after it was carried out first", text(command), axis->name), now);
+  }
+  // A stop is carried out whatever its age. What is old, or asks for what is so already, says nothing of the program
+  // that keeps a motor running.
+  const bool fresh = signs_.fresh(record.written, now);
+  const bool renews = fresh && changes(command, *axis);
   Joint& joint = joint_of(record.axis);
-  heard(joint, now);
+  joint.newest = now;
+  if (renews) heard(joint, now);
   if (!is_stop(command)) joint.stream.begin_anew();
-  WriteBatch batch = new_batch(joint);
+  WriteBatch batch = new_batch(joint, renews);
   batch.command = command;
   batch.claims = !is_stop(command);
   submit_alone(record.axis, batch);

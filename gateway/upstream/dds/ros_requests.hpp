@@ -16,6 +16,7 @@
 #include "gateway/upstream/dds/joint_stream.hpp"
 #include "gateway/upstream/dds/namesakes.hpp"
 #include "gateway/upstream/dds/signs_of_life.hpp"
+#include "gateway/upstream/dds/stop_order.hpp"
 
 namespace axisgate::dds {
 
@@ -29,7 +30,7 @@ class RosRequests {
  public:
   /// `tell`: a line for the log, of what is refused here.
   RosRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image, CommandPort& commands,
-              const SignsOfLife& signs, const Namesakes& namesakes, TellLine tell);
+              const SignsOfLife& signs, const Namesakes& namesakes, StopOrder& stop_order, TellLine tell);
   RosRequests(const RosRequests&) = delete;
   RosRequests& operator=(const RosRequests&) = delete;
 
@@ -42,15 +43,16 @@ class RosRequests {
   struct Joint {
     std::shared_ptr<ClientLife> life{};
     JointStream stream{};
-    Instant newest = kLongAgo;  ///< when the newest sample for this axis came
+    Instant newest = kLongAgo;  ///< when the newest sample for this axis came, renewing or not
   };
   [[nodiscard]] Joint& joint_of(AxisNumber axis);
   [[nodiscard]] const DdsUnits& units_of(AxisNumber axis) const;
   [[nodiscard]] JointView view_of(const AxisImage& axis, const Joint& joint) const;
   [[nodiscard]] std::map<std::string_view, const AxisImage*> axes_by_name() const;
-  [[nodiscard]] WriteBatch new_batch(const Joint& joint) const;
+  [[nodiscard]] WriteBatch new_batch(const Joint& joint, bool renews = true) const;
   void heard(Joint& joint, Instant now);
-  void take_target(const AxisImage& axis, double position, double velocity, const Guid& writer, Instant now);
+  void take_target(const AxisImage& axis, double position, double velocity, const JointCommandsRecord& from,
+                   Instant now);
   void ask(AxisNumber axis, std::optional<JointTarget> target);
   [[nodiscard]] WriteBatch batch_of(const AxisImage& axis, const Joint& joint, const JointTarget& target) const;
   /// What its axis says of it is an event.
@@ -64,6 +66,7 @@ class RosRequests {
   CommandPort& commands_;
   const SignsOfLife& signs_;
   const Namesakes& namesakes_;
+  StopOrder& stop_order_;
   TellLine tell_;
   LineBucket lines_;
   std::map<std::string, Instant> complaints_;  ///< when each was told last; at most kMaxComplaints

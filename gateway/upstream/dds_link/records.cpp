@@ -77,20 +77,20 @@ void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>,
   coder.text(r.gateway.name, kMaxName);
   coder(r.axis, r.request_id, r.command, r.mode, r.mask, r.target_position, r.target_velocity, r.target_torque,
         r.max_torque, r.profile_velocity, r.profile_acceleration, r.profile_deceleration, r.jog_velocity,
-        r.set_position_value, r.homing_method);
+        r.set_position_value, r.homing_method, r.received);
 }
 
 template <typename Coder, typename R>
 void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, ObjectRequestRecord> {
   coder(r.writer, r.written, r.gateway.key);
   coder.text(r.gateway.name, kMaxName);
-  coder(r.axis, r.request_id, r.write, r.index, r.subindex, r.size, r.value);
+  coder(r.axis, r.request_id, r.write, r.index, r.subindex, r.size, r.value, r.received);
   coder.list(r.data, kMaxObjectBytes, [&](auto& byte) { coder(byte); });
 }
 
 template <typename Coder, typename R>
 void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, JointCommandsRecord> {
-  coder(r.writer, r.written, r.efforts);
+  coder(r.writer, r.written, r.efforts, r.received);
   coder.list(r.names, kMaxJoints + 1, [&](auto& name) { coder.text(name, kMaxName); });
   coder.list(r.positions, kMaxJoints + 1, [&](auto& each) { coder(each); });
   coder.list(r.velocities, kMaxJoints + 1, [&](auto& each) { coder(each); });
@@ -98,7 +98,7 @@ void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>,
 
 template <typename Coder, typename R>
 void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, RosActionRecord> {
-  coder(r.writer, r.written, r.axis, r.action);
+  coder(r.writer, r.written, r.axis, r.action, r.received);
 }
 
 template <typename Coder, typename R>

@@ -18,13 +18,14 @@
 namespace axisgate::dds {
 
 /// First byte of each packet. Both ends are installed together: another version is another installation.
-inline constexpr std::uint8_t kLinkVersion = 2;
+inline constexpr std::uint8_t kLinkVersion = 3;
 inline constexpr std::size_t kMaxPacket = 64 * 1024;
 inline constexpr std::size_t kMaxName = 64;
 inline constexpr std::size_t kMaxText = 256;
 inline constexpr std::size_t kMaxBusesShown = 100;
-inline constexpr std::size_t kMaxJoints = 512;  ///< of one sample of joint_commands
-inline constexpr std::size_t kMaxBeats = 64;    ///< DDS writers that may command at the same time
+inline constexpr std::size_t kMaxJoints = 512;        ///< of one sample of joint_commands
+inline constexpr std::uint16_t kMaxAxisNumber = 499;  ///< of one gateway
+inline constexpr std::size_t kMaxBeats = 64;          ///< of one record
 
 /// On the steady clock, in nanoseconds: it is the same one in both processes. 0: unknown.
 using SteadyNs = std::int64_t;
@@ -186,6 +187,8 @@ struct CommandRecord {
   double jog_velocity = 0;
   double set_position_value = 0;
   std::int16_t homing_method = 0;
+  /// When axisgate-dds received it: a stop is sent before what was received before it. 0: unknown.
+  SteadyNs received = 0;
   friend bool operator==(const CommandRecord&, const CommandRecord&) = default;
 };
 
@@ -202,6 +205,7 @@ struct ObjectRequestRecord {
   std::uint8_t size = 0;
   std::uint32_t value = 0;
   std::vector<Byte> data;  ///< at most kMaxObjectBytes
+  SteadyNs received = 0;   ///< as CommandRecord's
   friend bool operator==(const ObjectRequestRecord&, const ObjectRequestRecord&) = default;
 };
 
@@ -214,6 +218,7 @@ struct JointCommandsRecord {
   std::vector<double> positions;
   std::vector<double> velocities;
   std::uint32_t efforts = 0;  ///< how many there are: their values are of no use
+  SteadyNs received = 0;      ///< as CommandRecord's
   friend bool operator==(const JointCommandsRecord&, const JointCommandsRecord&) = default;
 };
 
@@ -223,6 +228,7 @@ struct RosActionRecord {
   SteadyNs written = 0;  ///< its source timestamp
   std::uint16_t axis = 0;
   std::uint8_t action = 0;  ///< RosAction
+  SteadyNs received = 0;    ///< as CommandRecord's
   friend bool operator==(const RosActionRecord&, const RosActionRecord&) = default;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/axis_command_reader.hpp"
 
+#include "gateway/upstream/dds_link/stop_commands.hpp"
 #include "gateway/upstream/dds_process/steady.hpp"
 #include "gateway/upstream/dds_process/to_idl.hpp"
 
@@ -9,17 +10,22 @@ namespace {
 
 namespace rtps = eprosima::fastrtps::rtps;
 
-bool stops(std::uint8_t command) {
-  constexpr std::uint8_t kDisable = 2, kHalt = 4, kJogEnd = 33;  // schemas/axisgate.idl; 3 is quick_stop
-  return (command >= kDisable && command <= kHalt) || command == kJogEnd;
-}
-
 }  // namespace
 
 AxisCommandReader::History::History(const CommandIntake& intake) : ReaderHistory(command_history()), intake_(intake) {}
 
 bool AxisCommandReader::History::received_change(rtps::CacheChange_t* change, std::size_t missing) {
-  return intake_.has_room() && ReaderHistory::received_change(change, missing);
+  const bool commands = intake_.has_room(false);
+  const bool stops = intake_.has_room(true);
+  const bool room = commands == stops ? commands : is_stop(*change) == stops;
+  return room && ReaderHistory::received_change(change, missing);
+}
+
+bool AxisCommandReader::History::is_stop(rtps::CacheChange_t& change) {
+  AxisCommand sample;
+  // Of one in fragments only the first may be here.
+  if (change.kind != rtps::ALIVE || !change.is_fully_assembled()) return false;
+  return type_.deserialize(&change.serializedPayload, &sample) && is_stop_command(sample.command());
 }
 
 AxisCommandReader::AxisCommandReader(RtpsParticipant& participant, CommandTopic topic, CommandIntake& intake,
@@ -49,10 +55,11 @@ void AxisCommandReader::onNewCacheChangeAdded(rtps::RTPSReader*, const rtps::Cac
   auto* const mine = const_cast<rtps::CacheChange_t*>(change);
   if (change->kind == rtps::ALIVE && type_.deserialize(&mine->serializedPayload, &sample)) {
     const Guid writer = to_guid(change->writerGUID);
-    watch_.on_sample(writer, steady_now());
+    const SteadyNs now = steady_now();
+    watch_.on_sample(writer, now);
     const auto strength = static_cast<std::int32_t>(change->reader_info.writer_ownership_strength);
     intake_.add(to_record(sample, {writer, exclusive_ ? strength : 0, to_steady(change->sourceTimestamp.to_ns())}),
-                stops(sample.command()));
+                now);
   }
   history_.remove_change(mine);
   wake_.set();

@@ -35,7 +35,11 @@ class AxisCommandReader : private eprosima::fastrtps::rtps::ReaderListener {
     bool received_change(eprosima::fastrtps::rtps::CacheChange_t* change, std::size_t missing) override;
 
    private:
+    /// A full queue of commands takes stops all the same: the payload tells which it is.
+    [[nodiscard]] bool is_stop(eprosima::fastrtps::rtps::CacheChange_t& change);
+
     const CommandIntake& intake_;
+    GuardedType<AxisCommandPubSubType> type_;
   };
 
   using ReaderListener::onReaderMatched;

@@ -57,24 +57,26 @@ CommandReaders::~CommandReaders() {
   participant_.end_reader(heartbeats_);
 }
 
+// False: there may be more than this turn takes.
 template <typename Sample>
-void CommandReaders::take_from(fastdds::DataReader& reader, std::size_t most, std::vector<Record>& taken) {
+bool CommandReaders::take_from(fastdds::DataReader& reader, std::size_t most, std::vector<Record>& taken) {
   Sample sample;
   fastdds::SampleInfo info;
-  while (taken.size() < most && reader.take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
+  for (; most > 0; --most) {
+    if (reader.take_next_sample(&sample, &info) != ReturnCode_t::RETCODE_OK) return true;
     if (!info.valid_data) continue;
     const Guid writer = to_guid(info.sample_identity.writer_guid());
     watch_.on_sample(writer, steady_now());
-    taken.emplace_back(to_record(sample, {writer, 0, to_steady(info.source_timestamp.to_ns())}));
+    taken.emplace_back(to_record(
+        sample, {writer, 0, to_steady(info.source_timestamp.to_ns()), received_at(info.reception_timestamp.to_ns())}));
   }
+  return false;
 }
 
-std::vector<Record> CommandReaders::take(std::size_t most) {
-  std::vector<Record> taken;
-  intake_.take(most, taken);
-  take_from<Heartbeat>(heartbeats_, most, taken);
-  take_from<ObjectRequest>(objects_, most, taken);
-  return taken;
+bool CommandReaders::take(std::vector<Record>& taken) {
+  bool all = take_from<Heartbeat>(heartbeats_, kHeartbeatsPerTurn, taken);
+  all = intake_.take(kStopsPerTurn, kCommandsPerTurn, taken) && all;
+  return take_from<ObjectRequest>(objects_, kObjectsPerTurn, taken) && all;
 }
 
 void CommandReaders::on_data_available(fastdds::DataReader*) { wake_.set(); }

@@ -13,6 +13,13 @@
 
 namespace axisgate::dds {
 
+/// What one turn takes of each kind.
+inline constexpr std::size_t kHeartbeatsPerTurn = 64;
+inline constexpr std::size_t kStopsPerTurn = 64;
+inline constexpr std::size_t kCommandsPerTurn = 64;
+inline constexpr std::size_t kObjectsPerTurn = 16;
+inline constexpr std::size_t kSamplesPerTurn = kHeartbeatsPerTurn + kStopsPerTurn + kCommandsPerTurn + kObjectsPerTurn;
+
 class CommandReaders : private fastdds::DataReaderListener {
  public:
   CommandReaders(Participant& participant, std::uint32_t domain, WriterWatch& watch, Wake& wake);
@@ -20,8 +27,9 @@ class CommandReaders : private fastdds::DataReaderListener {
   CommandReaders(const CommandReaders&) = delete;
   CommandReaders& operator=(const CommandReaders&) = delete;
 
-  /// At most `most` samples, commands first; fewer: there are no more.
-  [[nodiscard]] std::vector<Record> take(std::size_t most);
+  /// Of each kind what one turn takes, so that none starves another: signs of life, stops, commands, objects. False:
+  /// there are more.
+  bool take(std::vector<Record>& taken);
   /// Of the readers of axis_command.
   [[nodiscard]] RtpsParticipant& participant_of_commands() { return rtps_; }
 
@@ -29,7 +37,7 @@ class CommandReaders : private fastdds::DataReaderListener {
   void on_data_available(fastdds::DataReader* reader) override;
   void on_subscription_matched(fastdds::DataReader* reader, const fastdds::SubscriptionMatchedStatus& info) override;
   template <typename Sample>
-  void take_from(fastdds::DataReader& reader, std::size_t most, std::vector<Record>& taken);
+  bool take_from(fastdds::DataReader& reader, std::size_t most, std::vector<Record>& taken);
 
   Participant& participant_;
   WriterWatch& watch_;

@@ -13,7 +13,7 @@
 
 namespace axisgate::dds {
 
-inline constexpr std::size_t kMaxPacketsWaiting = 512;
+inline constexpr std::size_t kMaxPacketsWaiting = 4096;
 
 class LinkSocket {
  public:

@@ -40,7 +40,7 @@ void NamesakeWatch::on_gateway_gone(const Guid& writer) {
 void NamesakeWatch::on_state(const Guid& writer, std::uint32_t key, std::uint16_t axis) {
   const std::lock_guard lock(mutex_);
   const auto found = others_.find(writer);
-  if (key != key_ || found == others_.end()) return;
+  if (key != key_ || axis > kMaxAxisNumber || found == others_.end()) return;
   if (found->second.axes.insert(axis).second) changes_.push_back({writer, axis, found->second.where, false});
 }
 
@@ -49,9 +49,11 @@ bool NamesakeWatch::any() const {
   return !others_.empty() || !gateways_.empty();
 }
 
-std::vector<NamesakeRecord> NamesakeWatch::take() {
+std::vector<NamesakeRecord> NamesakeWatch::take(std::size_t most) {
   const std::lock_guard lock(mutex_);
-  return std::exchange(changes_, {});
+  std::vector<NamesakeRecord> taken;
+  for (; !changes_.empty() && most > 0; changes_.pop_front(), --most) taken.push_back(std::move(changes_.front()));
+  return taken;
 }
 
 }  // namespace axisgate::dds

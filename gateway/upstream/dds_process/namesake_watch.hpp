@@ -5,6 +5,7 @@
 // discovery server still knows.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <mutex>
 #include <set>
@@ -16,6 +17,8 @@
 namespace axisgate::dds {
 
 inline constexpr std::size_t kMaxNamesakesKnown = 64;
+/// What one turn takes of them.
+inline constexpr std::size_t kNamesakesPerTurn = 64;
 
 /// What a gateway's writer of states says in its user data, for others of its key to know it by.
 [[nodiscard]] std::vector<std::uint8_t> gateway_user_data(std::uint32_t key);
@@ -36,8 +39,8 @@ class NamesakeWatch {
   void on_state(const Guid& writer, std::uint32_t key, std::uint16_t axis);
   /// Somebody of our key is there, though perhaps silent: states are to be read.
   [[nodiscard]] bool any() const;
-  /// To be told since the last call.
-  [[nodiscard]] std::vector<NamesakeRecord> take();
+  /// To be told since the last call, at most so many: the rest by the next.
+  [[nodiscard]] std::vector<NamesakeRecord> take(std::size_t most);
 
  private:
   struct Other {
@@ -47,8 +50,8 @@ class NamesakeWatch {
   const std::uint32_t key_;
   mutable std::mutex mutex_;
   std::map<Guid, Other> others_;
-  std::set<Guid> gateways_;  ///< writers of gateway_state that have our key
-  std::vector<NamesakeRecord> changes_;
+  std::set<Guid> gateways_;             ///< writers of gateway_state that have our key
+  std::deque<NamesakeRecord> changes_;  ///< of axes that a gateway can have, each of each writer once, and their ends
 };
 
 }  // namespace axisgate::dds

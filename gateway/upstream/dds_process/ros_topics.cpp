@@ -10,6 +10,7 @@
 #include "gateway/upstream/dds_link/ros_names.hpp"
 #include "gateway/upstream/dds_process/command_topics.hpp"
 #include "gateway/upstream/dds_process/guarded_type.hpp"
+#include "gateway/upstream/dds_process/steady.hpp"
 #include "gateway/upstream/dds_process/writer_qos.hpp"
 
 namespace axisgate::dds {
@@ -28,10 +29,11 @@ struct AxisTopic {
   const char* name;
   RosAction action;  ///< of enable: what true asks for
 };
-constexpr std::array<AxisTopic, 4> kAxisTopics{{{"enable", RosAction::enable},
-                                                {"quick_stop", RosAction::quick_stop},
-                                                {"fault_reset", RosAction::fault_reset},
-                                                {"home", RosAction::home}}};
+/// Stops first.
+constexpr std::array<AxisTopic, kRosTopicsOfAnAxis> kAxisTopics{{{"quick_stop", RosAction::quick_stop},
+                                                                 {"enable", RosAction::enable},
+                                                                 {"fault_reset", RosAction::fault_reset},
+                                                                 {"home", RosAction::home}}};
 
 template <typename Type>
 fastdds::TypeSupport ros_type() {
@@ -68,6 +70,7 @@ JointCommandsRecord to_record(const JointState& sample, const fastdds::SampleInf
   JointCommandsRecord out;
   out.writer = to_guid(info.sample_identity.writer_guid());
   out.written = written_at(info, difference);
+  out.received = received_at(info.reception_timestamp.to_ns());
   out.names = at_most_one_more(sample.name());
   for (std::string& name : out.names)
     if (name.size() > kMaxName) name.clear();
@@ -93,7 +96,7 @@ RosTopics::RosTopics(Participant& participant, Wake& wake, const std::string& ga
                                            writer_qos(1, 1, false))),
       commands_(commands),
       diagnosis_(gateway) {
-  static_assert(kAxisTopics.size() == kTopicsOfAnAxis);
+  static_assert(kAxisTopics.size() == kRosTopicsOfAnAxis);
   if (!commands) return;
   joint_commands_ = &participant.make_reader(
       ros_topic(gateway, "joint_commands"), ros_type<sensor_msgs::msg::dds_::JointState_PubSubType>(),
@@ -170,56 +173,75 @@ void RosTopics::end_readers(AxisReaders& of) {
   }
 }
 
-// False: more are left than there was room for.
-bool RosTopics::take_joint_commands(std::size_t most, ClockDifference difference, std::vector<Record>& taken) {
+// False: there may be more than one turn takes.
+bool RosTopics::take_joint_commands(ClockDifference difference, std::vector<Record>& taken) {
   JointState sample;
   fastdds::SampleInfo info;
-  while (taken.size() < most) {
+  for (std::size_t i = 0; i < kJointCommandsPerTurn; ++i) {
     if (joint_commands_->take_next_sample(&sample, &info) != ReturnCode_t::RETCODE_OK) return true;
     if (info.valid_data) taken.emplace_back(to_record(sample, info, difference));
   }
   return false;
 }
 
-bool RosTopics::take_actions(std::uint16_t axis, std::size_t topic, fastdds::DataReader& reader, std::size_t most,
-                             ClockDifference difference, std::vector<Record>& taken) {
+// How many were taken: fewer than `most`: there are no more.
+std::size_t RosTopics::take_actions(std::uint16_t axis, std::size_t topic, fastdds::DataReader& reader,
+                                    std::size_t most, ClockDifference difference, std::vector<RosActionRecord>& taken) {
   ros_std::Bool_ flag;
   ros_std::Empty_ nothing;
   fastdds::SampleInfo info;
   const bool has_flag = kAxisTopics[topic].action == RosAction::enable;
-  while (taken.size() < most) {
+  for (std::size_t i = 0; i < most; ++i) {
     void* const sample = has_flag ? static_cast<void*>(&flag) : &nothing;
-    if (reader.take_next_sample(sample, &info) != ReturnCode_t::RETCODE_OK) return true;
+    if (reader.take_next_sample(sample, &info) != ReturnCode_t::RETCODE_OK) return i;
     if (!info.valid_data) continue;
     const RosAction action = has_flag && !flag.data() ? RosAction::disable : kAxisTopics[topic].action;
-    taken.emplace_back(RosActionRecord{to_guid(info.sample_identity.writer_guid()), written_at(info, difference), axis,
-                                       static_cast<std::uint8_t>(action)});
+    taken.push_back({to_guid(info.sample_identity.writer_guid()), written_at(info, difference), axis,
+                     static_cast<std::uint8_t>(action), received_at(info.reception_timestamp.to_ns())});
   }
-  return false;
+  return most;
 }
 
-std::vector<Record> RosTopics::take(std::size_t most, ClockDifference difference) {
-  std::set<fastdds::DataReader*> unread;
+// One axis after another, beginning where the last turn had to end: so none of them starves another.
+void RosTopics::take_topic(std::size_t topic, ClockDifference difference, Readers& unread,
+                           std::vector<RosActionRecord>& taken) {
+  std::size_t left = kRosActionsPerTurn;
+  auto at = axes_.lower_bound(first_[topic]);
+  for (std::size_t i = 0; i < axes_.size(); ++i, ++at) {
+    if (at == axes_.end()) at = axes_.begin();
+    fastdds::DataReader* const reader = at->second.readers[topic];
+    if (reader == nullptr || unread.count(reader) == 0) continue;
+    first_[topic] = at->first;
+    if (left == 0) return;
+    const std::size_t most = std::min<std::size_t>(left, kActionsKept);
+    const std::size_t got = take_actions(at->first, topic, *reader, most, difference, taken);
+    if (got < most) unread.erase(reader);
+    left -= got;
+  }
+}
+
+bool RosTopics::take(ClockDifference difference, std::vector<Record>& actions, std::vector<Record>& targets) {
+  Readers unread;
   {
     const std::lock_guard lock(mutex_);
     unread.swap(unread_);
   }
-  std::vector<Record> taken;
-  const auto look = [&](fastdds::DataReader* reader, auto&& take_from) {
-    if (reader == nullptr || unread.count(reader) == 0 || take_from(*reader)) return;
-    const std::lock_guard lock(mutex_);
-    unread_.insert(reader);
+  std::vector<RosActionRecord> taken;
+  for (std::size_t topic = 0; topic < kAxisTopics.size(); ++topic) take_topic(topic, difference, unread, taken);
+  const auto goes_first = [](const RosActionRecord& a, const RosActionRecord& b) {
+    const auto stop = [](const RosActionRecord& each) {
+      const RosAction action{each.action};
+      return action == RosAction::quick_stop || action == RosAction::disable;
+    };
+    return stop(a) != stop(b) ? stop(a) : a.received < b.received;
   };
-  // What ends or begins anything first: of a stream the newest sample wins.
-  for (auto& [axis, of] : axes_) {
-    for (std::size_t i = 0; i < of.readers.size(); ++i) {
-      look(of.readers[i], [&, number = axis](fastdds::DataReader& reader) {
-        return take_actions(number, i, reader, most, difference, taken);
-      });
-    }
-  }
-  look(joint_commands_, [&](fastdds::DataReader&) { return take_joint_commands(most, difference, taken); });
-  return taken;
+  std::stable_sort(taken.begin(), taken.end(), goes_first);
+  actions.insert(actions.end(), taken.begin(), taken.end());
+  if (unread.count(joint_commands_) != 0 && take_joint_commands(difference, targets)) unread.erase(joint_commands_);
+  const std::lock_guard lock(mutex_);
+  const bool all = unread.empty();
+  unread_.merge(unread);
+  return all;
 }
 
 }  // namespace axisgate::dds

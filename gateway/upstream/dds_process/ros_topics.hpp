@@ -23,6 +23,12 @@ inline constexpr SteadyNs kDiagnosticsPeriod = 1'000'000'000;
 /// On change, but no more often: a drive that comes and goes must not fill the network.
 inline constexpr SteadyNs kDiagnosticsPause = 100'000'000;
 
+/// What one turn takes of each of the topics that single axes have, and of joint_commands.
+inline constexpr std::size_t kRosActionsPerTurn = 32;
+inline constexpr std::size_t kRosTopicsOfAnAxis = 4;
+inline constexpr std::size_t kJointCommandsPerTurn = 16;
+inline constexpr std::size_t kRosSamplesPerTurn = kRosTopicsOfAnAxis * kRosActionsPerTurn + kJointCommandsPerTurn;
+
 class RosTopics : private fastdds::DataReaderListener {
  public:
   /// `gateway`: its name, the namespace of all names. `commands`: what comes in is read.
@@ -36,21 +42,23 @@ class RosTopics : private fastdds::DataReaderListener {
   /// When on_time() has something to do next.
   [[nodiscard]] SteadyNs due() const;
   void on_time(SteadyNs now, ClockDifference difference);
-  /// At most `most` samples, those of single axes first; fewer: there are no more.
-  [[nodiscard]] std::vector<Record> take(std::size_t most, ClockDifference difference);
+  /// What one turn takes: of the topics of single axes, stops first and else as they were received, and of
+  /// joint_commands. False: there may be more.
+  bool take(ClockDifference difference, std::vector<Record>& actions, std::vector<Record>& targets);
 
  private:
-  static constexpr std::size_t kTopicsOfAnAxis = 4;
   struct AxisReaders {
     std::string name{};
-    std::array<fastdds::DataReader*, kTopicsOfAnAxis> readers{};
+    std::array<fastdds::DataReader*, kRosTopicsOfAnAxis> readers{};
   };
   void on_data_available(fastdds::DataReader* reader) override;
   void make_readers(std::uint16_t axis, const std::string& name);
   void end_readers(AxisReaders& of);
-  bool take_joint_commands(std::size_t most, ClockDifference difference, std::vector<Record>& taken);
-  bool take_actions(std::uint16_t axis, std::size_t topic, fastdds::DataReader& reader, std::size_t most,
-                    ClockDifference difference, std::vector<Record>& taken);
+  using Readers = std::set<fastdds::DataReader*>;
+  bool take_joint_commands(ClockDifference difference, std::vector<Record>& taken);
+  void take_topic(std::size_t topic, ClockDifference difference, Readers& unread, std::vector<RosActionRecord>& taken);
+  std::size_t take_actions(std::uint16_t axis, std::size_t topic, fastdds::DataReader& reader, std::size_t most,
+                           ClockDifference difference, std::vector<RosActionRecord>& taken);
 
   Participant& participant_;
   Wake& wake_;
@@ -66,7 +74,9 @@ class RosTopics : private fastdds::DataReaderListener {
   SteadyNs diagnosis_sent_ = 0;
   std::map<std::uint16_t, AxisReaders> axes_;
   std::mutex mutex_;
-  std::set<fastdds::DataReader*> unread_;  ///< those that samples have come to; guarded by mutex_
+  /// The axis that comes first of each topic, where one turn could not take all.
+  std::array<std::uint16_t, kRosTopicsOfAnAxis> first_{};
+  Readers unread_;  ///< those that samples have come to; guarded by mutex_
 };
 
 }  // namespace axisgate::dds

@@ -33,7 +33,10 @@ constexpr SteadyNs kBeatPeriod = 100 * kMillisecond;
 constexpr SteadyNs kMemoryPeriod = 250 * kMillisecond;
 /// In one turn of the loop, so that neither direction starves the other.
 constexpr int kRecordsPerTurn = 256;
-constexpr std::size_t kSamplesPerTurn = 64;
+/// What one turn may send, the socket being idle: nothing of it may be lost for want of room.
+constexpr std::size_t kMostSentPerTurn =
+    2 * kMaxWritersKnown + kMostBeatRecords + kSamplesPerTurn + kRosSamplesPerTurn + kNamesakesPerTurn + 1;
+static_assert(kMostSentPerTurn <= kMaxPacketsWaiting);
 
 void tell(LinkSocket& link, LogLevel level, const std::string& text) {
   link.send(LogRecord{static_cast<std::uint8_t>(level), text});
@@ -75,17 +78,17 @@ class Server {
       if (!link_.flush()) return kExitGatewayGone;
       more_ = false;
       namesake_reader_.update();
-      if (link_.idle())
-        for (const NamesakeRecord& record : namesakes_.take()) link_.send(record);
-      if (link_.idle() && readers_) take_samples();
-      if (link_.idle() && ros_) take_ros_samples();
       const SteadyNs now = steady_now();
-      if (ros_ && now >= ros_->due()) ros_->on_time(now, difference_);
-      if (readers_ && now >= next_beat) {
-        // A socket that is full proves nothing of the writers to anybody: the next beat will.
-        if (link_.idle()) link_.send(watch_.beats(now));
-        next_beat = now + kBeatPeriod;
+      // All that one turn takes goes out together: else what comes last would never find the socket idle.
+      if (link_.idle()) {
+        if (readers_ && now >= next_beat) {
+          for (const BeatRecord& record : watch_.beats(now)) link_.send(record);
+          next_beat = now + kBeatPeriod;
+        }
+        take_namesakes();
+        take_samples();
       }
+      if (ros_ && now >= ros_->due()) ros_->on_time(now, difference_);
       while (link_.idle()) {
         const std::optional<LogRecord> line = log_.next(now);
         if (!line) break;
@@ -102,7 +105,7 @@ class Server {
     const nfds_t count = link_.idle() ? 2 : 1;
     const SteadyNs now = steady_now();
     SteadyNs until = std::min(now + kMemoryPeriod, publishers_.due());
-    if (readers_) until = std::min(until, next_beat);
+    if (readers_ && link_.idle()) until = std::min(until, next_beat);
     if (ros_) until = std::min(until, ros_->due());
     if (more_) until = now;
     poll(fds, count, static_cast<int>(std::max<SteadyNs>(0, (until - now + kMillisecond - 1) / kMillisecond)));
@@ -132,25 +135,36 @@ class Server {
     return kExitProtocol;
   }
 
-  void take_samples() {
-    // First the samples, then what is known of writers: so no sample is older than what is told before it.
-    const std::vector<Record> samples = readers_->take(kSamplesPerTurn);
-    const WriterWatch::Changes changes = watch_.take_changes(steady_now());
-    for (const WriterRecord& record : changes.before) link_.send(record);
-    for (const Record& record : samples) link_.send(record);
-    for (const WriterRecord& record : changes.after) link_.send(record);
-    if (changes.refused > 0) {
-      tell(link_, LogLevel::warning,
-           "more than " + std::to_string(kMaxWritersKnown) + " writers of commands: some are not known");
-    }
-    more_ = more_ || samples.size() == kSamplesPerTurn;
-    liveliness_->update();
+  void take_namesakes() {
+    const std::vector<NamesakeRecord> told = namesakes_.take(kNamesakesPerTurn);
+    for (const NamesakeRecord& record : told) link_.send(record);
+    more_ = more_ || told.size() == kNamesakesPerTurn;
   }
 
-  void take_ros_samples() {
-    const std::vector<Record> samples = ros_->take(kSamplesPerTurn, difference_);
-    for (const Record& record : samples) link_.send(record);
-    more_ = more_ || samples.size() == kSamplesPerTurn;
+  void take_samples() {
+    std::vector<Record> actions;
+    std::vector<Record> samples;
+    std::vector<Record> targets;
+    if (ros_) more_ = !ros_->take(difference_, actions, targets) || more_;
+    send_all(actions);
+    if (readers_) {
+      // First the samples, then what is known of writers: so no sample is older than what is told before it.
+      more_ = !readers_->take(samples) || more_;
+      const WriterWatch::Changes changes = watch_.take_changes(steady_now());
+      for (const WriterRecord& record : changes.before) link_.send(record);
+      send_all(samples);
+      for (const WriterRecord& record : changes.after) link_.send(record);
+      if (changes.refused > 0) {
+        tell(link_, LogLevel::warning,
+             "more than " + std::to_string(kMaxWritersKnown) + " writers of commands: some are not known");
+      }
+      liveliness_->update();
+    }
+    send_all(targets);
+  }
+
+  void send_all(const std::vector<Record>& records) {
+    for (const Record& record : records) link_.send(record);
   }
 
   LinkSocket& link_;

@@ -27,5 +27,11 @@ inline constexpr SteadyNs kSecond = 1000 * kMillisecond;
 [[nodiscard]] inline SteadyNs to_steady(std::int64_t of_day) {
   return of_day <= 0 ? 0 : of_day - time_of_day_difference();
 }
+/// When a sample was received, by the library's time of day: never ahead of now, and now where it does not say.
+[[nodiscard]] inline SteadyNs received_at(std::int64_t of_day) {
+  const SteadyNs at = to_steady(of_day);
+  const SteadyNs now = steady_now();
+  return at <= 0 || at > now ? now : at;
+}
 
 }  // namespace axisgate::dds

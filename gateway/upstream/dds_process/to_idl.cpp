@@ -176,7 +176,8 @@ ObjectRequestRecord to_record(const axisgate::ObjectRequest& sample, const Sende
           .subindex = sample.subindex(),
           .size = sample.size(),
           .value = sample.value(),
-          .data = sample.data()};
+          .data = sample.data(),
+          .received = sender.received};
 }
 
 HeartbeatRecord to_record(const axisgate::Heartbeat& sample, const Sender& sender) {

@@ -20,6 +20,7 @@ struct Sender {
   Guid writer{};
   std::int32_t strength = 0;
   SteadyNs written = 0;
+  SteadyNs received = 0;
 };
 
 [[nodiscard]] axisgate::Time to_time(SteadyNs at, ClockDifference difference);

@@ -102,14 +102,15 @@ WriterWatch::Changes WriterWatch::take_changes(SteadyNs now) {
   return changes;
 }
 
-BeatRecord WriterWatch::beats(SteadyNs now) const {
+std::vector<BeatRecord> WriterWatch::beats(SteadyNs now) const {
   const std::lock_guard lock(mutex_);
-  BeatRecord record;
+  std::vector<BeatRecord> records(1);
   for (const auto& [guid, writer] : writers_) {
-    if (record.writers.size() == kMaxBeats) break;
-    if (writer.told && writer.statement.lease.length != 0 && writer.there(now)) record.writers.push_back(guid);
+    if (!writer.told || writer.statement.lease.length == 0 || !writer.there(now)) continue;
+    if (records.back().writers.size() == kMaxBeats) records.emplace_back();
+    records.back().writers.push_back(guid);
   }
-  return record;
+  return records;
 }
 
 std::set<LivelinessLease> WriterWatch::leases() const {

@@ -15,7 +15,10 @@
 
 namespace axisgate::dds {
 
-inline constexpr std::size_t kMaxWritersKnown = 256;
+/// Of a whole domain: most may command other gateways.
+inline constexpr std::size_t kMaxWritersKnown = 1024;
+/// What beats() may say at once.
+inline constexpr std::size_t kMostBeatRecords = kMaxWritersKnown / kMaxBeats;
 /// What a writer with a lease gets beside it when it appears: until its assertions are heard.
 inline constexpr SteadyNs kFirstGrace = 1'000'000'000;
 
@@ -58,8 +61,8 @@ class WriterWatch {
     std::size_t refused = 0;             ///< writers not taken in since the last call, for want of room
   };
   [[nodiscard]] Changes take_changes(SteadyNs now);
-  /// Of those with a lease that is good now.
-  [[nodiscard]] BeatRecord beats(SteadyNs now) const;
+  /// Of all those with a lease that is good now: one record at least, which may be empty.
+  [[nodiscard]] std::vector<BeatRecord> beats(SteadyNs now) const;
   /// All that count, of writers that are matched: one that met the reader of its lease first would write its first
   /// command to that one alone.
   [[nodiscard]] std::set<LivelinessLease> leases() const;

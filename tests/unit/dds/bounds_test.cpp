@@ -3,6 +3,7 @@
 // of axisgate-dds, an end of the session.
 #include <gmock/gmock.h>
 
+#include "gateway/upstream/dds/request_memory.hpp"
 #include "tests/unit/dds/plain_session.hpp"
 
 namespace axisgate::dds {
@@ -46,11 +47,65 @@ TEST(Requests, ThatComeAgainAreNotRunAgainForTenSeconds) {
   plain.port.at_once = BatchResult{};
   EXPECT_EQ(plain.ask(command(guid(1), 7, 1)), kDone);
   EXPECT_EQ(plain.ask(command(guid(1), 7, 1)), kSeen);
-  EXPECT_EQ(plain.ask(command(guid(1), 3, 1)), kSeen) << "a stop has an id of its own like any other";
   EXPECT_THAT(plain.port.submitted, SizeIs(1));
   plain.now += 10s;
   EXPECT_EQ(plain.ask(command(guid(1), 7, 1)), kDone);
   EXPECT_THAT(plain.port.submitted, SizeIs(2));
+}
+
+TEST(Requests, AStopActsWhereItsCommandOrItsIdDiffersFromWhatWasAskedLast) {
+  PlainSession plain;
+  plain.port.at_once = BatchResult{};
+  EXPECT_EQ(plain.ask(command(guid(1), 8, 1)), kDone);
+  EXPECT_EQ(plain.ask(command(guid(1), 3, 1)), kDone) << "the id of the run";
+  EXPECT_EQ(plain.port.submitted.back().batch.command, Command::quick_stop);
+  EXPECT_EQ(plain.ask(command(guid(1), 3, 1)), kSeen) << "the same once more";
+  EXPECT_EQ(plain.ask(command(guid(1), 8, 1)), kSeen) << "no command but a stop";
+  EXPECT_EQ(plain.ask(command(guid(1), 4, 1)), kDone) << "another stop";
+  EXPECT_THAT(plain.port.submitted, SizeIs(3));
+  EXPECT_EQ(plain.ask(command(guid(1), 8, 2)), kDone);
+  EXPECT_EQ(plain.ask(command(guid(1), 4, 1)), kDone) << "something else was asked since";
+  EXPECT_EQ(plain.ask(command(guid(1), 4, 1)), kSeen);
+  EXPECT_EQ(plain.ask(command(guid(2), 4, 1)), kDone) << "another writer's";
+}
+
+TEST(Requests, ThatWereSeenSayHowTheFirstEnded) {
+  constexpr int kFirst = 1;
+  PlainSession plain;
+  static_cast<void>(plain.read());
+  const auto again = [&](std::uint8_t number, std::uint64_t id) {
+    plain.session->on_record(command(guid(1), number, id), plain.now);
+    const auto replies = plain.read<ReplyRecord>();
+    return replies.size() == 1 ? replies.front() : ReplyRecord{};
+  };
+  plain.session->on_record(command(guid(1), 7, kFirst), plain.now);
+  EXPECT_EQ(again(7, kFirst), (ReplyRecord{1, kFirst, guid(1), kSeen, 1})) << "pending";
+  plain.port.submitted.front().on_result({{Errc::refused_by_drive, 0x06090030}});
+  EXPECT_THAT(plain.read<ReplyRecord>(), SizeIs(1));
+  EXPECT_EQ(again(7, kFirst), (ReplyRecord{1, kFirst, guid(1), kSeen, 3}));
+  EXPECT_EQ(again(99, 2).result, 17);
+  EXPECT_EQ(again(99, 2), (ReplyRecord{1, 2, guid(1), kSeen, 17})) << "refused before it came to the axis";
+  ObjectRequestRecord object{guid(1, 2), 0, {}, 1, 3, false, 0x1000, 0, 4, 0, {}};
+  plain.port.at_once = BatchResult{};
+  EXPECT_EQ(plain.ask<ObjectReplyRecord>(object), kDone);
+  plain.session->on_record(object, plain.now);
+  const auto replies = plain.read<ObjectReplyRecord>();
+  ASSERT_THAT(replies, SizeIs(1));
+  EXPECT_EQ(replies.front().result, kSeen);
+  EXPECT_EQ(replies.front().detail, std::uint32_t{kDone});
+}
+
+TEST(Requests, OfAStopWithAnothersIdAreToldTheirOwnResult) {
+  PlainSession plain;
+  static_cast<void>(plain.read());
+  plain.session->on_record(command(guid(1), 8, 1), plain.now);
+  plain.session->on_record(command(guid(1), 4, 1), plain.now);
+  ASSERT_THAT(plain.port.submitted, SizeIs(2));
+  plain.port.submitted[1].on_result({});
+  plain.port.submitted[0].on_result({{Errc::dropped_by_stop, 0}});
+  EXPECT_THAT(plain.read<ReplyRecord>(), SizeIs(2));
+  plain.session->on_record(command(guid(1), 4, 1), plain.now);
+  EXPECT_THAT(plain.read<ReplyRecord>(), ElementsAre(ReplyRecord{1, 1, guid(1), kSeen, kDone}));
 }
 
 TEST(Requests, ThatAreUnderWayAreNotRunAgainEither) {
@@ -66,15 +121,17 @@ TEST(Requests, BeyondTheMemoryAreRefusedAndNotRunButStopsAreCarriedOut) {
   PlainSession plain;
   plain.port.at_once = BatchResult{};
   static_cast<void>(plain.read());
-  for (std::uint64_t id = 1; id <= kMaxRequestsKept; ++id) {
+  for (std::uint64_t id = 1; id <= RequestBounds{}.of_a_writer; ++id) {
     plain.session->on_record(command(guid(1), 1, id), plain.now);
-    ASSERT_THAT(plain.read<ReplyRecord>(), ElementsAre(Field(&ReplyRecord::result, kDone)));
+    ASSERT_EQ(plain.read().size(), 1U);
+    plain.port.submitted.clear();
   }
   const std::size_t run = plain.port.submitted.size();
   EXPECT_EQ(plain.ask(command(guid(1), 1, 100'000)), kBusy);
   EXPECT_EQ(plain.ask(command(guid(1), 1, 5)), kSeen) << "what it holds it holds";
   EXPECT_THAT(plain.port.submitted, SizeIs(run));
   EXPECT_EQ(plain.ask(command(guid(1), 3, 100'001)), kDone);
+  EXPECT_EQ(plain.ask(command(guid(2), 1, 1)), kDone) << "another writer has its own room";
   plain.now += 10s;
   EXPECT_EQ(plain.ask(command(guid(1), 1, 100'000)), kDone);
 }

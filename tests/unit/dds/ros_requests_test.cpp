@@ -288,6 +288,29 @@ TEST_F(RosWithAge, WhatIsOldStartsNothingAndIsNoSignOfLifeButAStopIsAStop) {
   EXPECT_THAT(rig.told, Contains(HasSubstr("older than max_age_ms")));
 }
 
+TEST_F(RosWithAge, AStaleStopIsNoSignOfLife) {
+  act_written(RosAction::enable, 0ms);
+  stream_written(0ms, 500ms);
+  ASSERT_TRUE(enabled());
+  rig.run(100ms);
+  const Instant before = rig.axis().lease.last_sign();
+  act_written(RosAction::quick_stop, 10s);
+  EXPECT_EQ(rig.axis().lease.last_sign(), before);
+}
+
+TEST_F(Ros, AnEnableThatChangesNothingKeepsNoRunAlive) {
+  act(RosAction::enable);
+  ASSERT_TRUE(stream_until(velocities(0), [&] { return enabled(); }));
+  stream(velocities(0), 200ms);
+  ASSERT_TRUE(stream_until(velocities(3), [&] { return std::fabs(rig.state().velocity - 3) < 0.1; }));
+  const auto stopped = [&] { return (rig.state().alarms & bit(AxisAlarm::stop_latched)) != 0; };
+  for (const Instant end = rig.now() + 3s; rig.now() < end && !stopped(); rig.run(100ms)) {
+    act(RosAction::enable);
+    act(RosAction::fault_reset);
+  }
+  EXPECT_TRUE(stopped()) << "its stream is silent";
+}
+
 struct RosWithWrites : Ros {
   RosWithWrites() : Ros(options()) {}
   static DdsRigOptions options() {

@@ -190,6 +190,18 @@ TEST_F(Twins, WithOtherAxesAreNone) {
   EXPECT_EQ(ask(kEnable), kTold);
 }
 
+TEST_F(Twins, WhoseAxisBecomesOursByAReloadAreTwinsFromThenOn) {
+  duplicate(3);
+  test::add_axis(plain.image, 3);
+  plain.session->take_axes({}, plain.now);
+  EXPECT_THAT(plain.name_taken, ElementsAre(true));
+  EXPECT_EQ(ask(kEnable), kTaken);
+  plain.image.remove_axis(3);
+  plain.session->take_axes({}, plain.now);
+  EXPECT_THAT(plain.name_taken, ElementsAre(true, false));
+  EXPECT_EQ(ask(kEnable), kTold);
+}
+
 TEST_F(Twins, AreWaitedForAfterANewStartOfTheProcess) {
   duplicate(1);
   plain.session->on_link_down(plain.now);
