@@ -200,7 +200,9 @@ class Plc:
         self.story.assertEqual((self.end(number, block), hex(error)), ("Done", "0x0"), f"{block} of axis {number}: {self.told(number)}")
 
     def enable(self, *numbers):
+        """A switch that is on before there is a connection enables nothing."""
         for number in numbers or tuple(self.stations):
+            self.story.until(f"axis {number} is connected", lambda number=number: self.stations[number].Axis.Connected)
             self.stations[number].Power.Enable = True
         for number in numbers or tuple(self.stations):
             power = self.stations[number].Power
