@@ -39,16 +39,14 @@ class Controller:
 
     def step(self):
         time.sleep(self.cycle)
-        connected = self.scanner.connect()
         try:
-            if connected:
+            if self.scanner.connect():
                 self.scanner.write(140, self.image("%QW0"))
                 for place, first, count in self.reads:
                     self.image(place)[:] = self.scanner.read(first, count) or self.image(place)
         except Unplugged:
             self.scanner.close()
-            connected = False
-        self.program.ScannerOk = connected
+        self.program.ScannerOk = self.scanner.connected()
         self.machine.now = int(time.monotonic() * 1000)
         self.program.run()
         asked = self.image("%QW0")[COMMAND], self.image("%QW0")[ID]

@@ -5,6 +5,7 @@ held against PLCopen's rules; what the motors do is asked from the drives.
 
 A story waits for events by letting its PLCs go on; nothing here is asked to happen within a time.
 """
+import re
 import socket
 import struct
 import sys
@@ -32,16 +33,44 @@ class Unplugged(Exception):
     pass
 
 
+def printed_rule():
+    """How the manual takes what Siemens's MB_CLIENT tells of a call for a connection, or for none."""
+    name, text = text_of("docs/plc.md")
+    return name, re.search(r"^```\n(FUNCTION_BLOCK ScannerRule\n.*?)^```$", text, re.MULTILINE | re.DOTALL)[1]
+
+
 class Scanner:
-    """A Modbus-TCP I/O scanner as PLCs have it: one connection, one request at a time."""
+    """A Modbus-TCP I/O scanner as PLCs have it: one connection, one request at a time. Whether it is connected, the rule of the manual says."""
+
+    DONE, EXCEPTION, LOST = (True, False, 0), (False, True, 0x8380), (False, True, 0x80C8)  # DONE, ERROR, STATUS
 
     def __init__(self, port, address):
         self.port, self.address = port, address
         self.socket, self.number = None, 0
         self.plugged = True
         self.refused = []  # exception codes, newest last
+        self.rule = StMachine(printed_rule()).new("ScannerRule")
+        self.never_lost = False  # in this round of calls
+
+    def call_ended(self, how, code=0):
+        self.rule.Ended, self.rule.Failed, status = how
+        self.rule.Status = status + code
+        self.rule.run()
+        self.never_lost = self.never_lost and self.rule.Connected
+
+    def connected(self):
+        """After each call of the last round: a program may look after any of them."""
+        return self.never_lost
 
     def connect(self):
+        """Begins a round of calls. False if there is no connection to ask on."""
+        self.never_lost = True
+        if not self.open():
+            self.call_ended(self.LOST)
+            return False
+        return True
+
+    def open(self):
         if not self.plugged:
             return False
         if self.socket is None:
@@ -78,11 +107,14 @@ class Scanner:
             self.socket.sendall(struct.pack(">HHHB", self.number, 0, len(pdu) + 1, 1) + pdu)
             length = struct.unpack(">HHHB", self.receive(7))[2]
             answer = self.receive(length - 1)
-        except OSError:
+        except (OSError, Unplugged):
+            self.call_ended(self.LOST)
             raise Unplugged from None
         if answer[0] & 0x80:
             self.refused.append(answer[1])
+            self.call_ended(self.EXCEPTION, answer[1])
             return None
+        self.call_ended(self.DONE)
         return answer
 
     def read(self, address, count):
@@ -112,16 +144,14 @@ class Plc:
         story.addCleanup(self.scanner.close)
 
     def scan(self):
-        """True if every image was exchanged."""
-        if not self.scanner.connect():
-            return False
-        try:
-            for number, station in self.stations.items():
-                self.exchange(number, station.Axis)
-        except Unplugged:
-            self.scanner.close()
-            return False
-        return True
+        """True if the scanner is connected after it."""
+        if self.scanner.connect():
+            try:
+                for number, station in self.stations.items():
+                    self.exchange(number, station.Axis)
+            except Unplugged:
+                self.scanner.close()
+        return self.scanner.connected()
 
     def exchange(self, number, axis):
         first = 100 * number
