@@ -19,7 +19,12 @@ sys.path.insert(0, f"{SOURCE}/tests/plc")
 from plcopen_rules import AxisRules, outputs  # noqa: E402
 from st_machine import Machine as StMachine  # noqa: E402
 
-TURN = 10000
+MACHINES["mdserial"] = ("md@1", "kinco-serial", "md", "606C.00")
+MACHINES["keya485"] = ("keya-rs485@1", "keya-rs485", "keya", None)
+# What the makers' manuals make of a turn of the motor, and of 1 rpm: by the kind of drive, whatever the gateway takes it for.
+COUNTS_PER_TURN = {"jd": 10000, "md": 65536, "ld2": 10000, "id286pro": 10000, "keya": 10000}
+COUNTS_PER_RPM = {"jd": 1, "md": 512 * 65536 / 1875, "ld2": 10000 / 60, "id286pro": 1 / 0.6, "keya": 1}
+TURN = 10000  # units of the gateway, and of a program that sets no UnitScale
 READ, WRITE = 3, 16
 INFO_EVERY = 25  # cycles between two reads of registers 78 to 95
 
@@ -313,6 +318,14 @@ class PlcStory(Machine):
         if motor:
             return int(self.sim.ask(f"position {line}/1").split()["AB".index(motor)])
         return int(self.sim.ask(f"position {line}/1"))
+
+    def turns(self, number):
+        """Of the motor, by the drive's own counts."""
+        return self.position(number) / COUNTS_PER_TURN[MACHINES[self.motors[number][0]][2]]
+
+    def rpm(self, number):
+        """Of the motor, as the drive has it."""
+        return self.speed(number) / COUNTS_PER_RPM[MACHINES[self.motors[number][0]][2]]
 
     def assert_turns_on(self, number):
         """By its position: what a drive calls its speed may be from its last look."""
