@@ -57,6 +57,31 @@ class Blocks(unittest.TestCase):
         self.assertEqual([len(image) for image in (axis.In, axis.Out, axis.Info, axis.Preset)], [39, 17, 18, 2])
 
 
+class InVelocity(unittest.TestCase):
+    """Of a run that has begun, by what the drive shows as its speed."""
+
+    def shown(self, wanted, velocity):
+        machine = Machine(("axisgate.st", TEXT))
+        axis, run = machine.new("AXG_AXIS"), machine.new("AXG_MoveVelocity")
+        run.Axis = axis
+        axis.Connected = axis.Online = axis.Ready = axis.UnitsKnown = True
+        axis.Handshake, axis.UnitsPerTurn, axis.UnitScale = 2, 5000.0, 1000.0  # 5 mm a turn
+        run.Execute, run.Velocity = True, wanted
+        run.run()
+        axis.AnsweredId = axis.MotionId = axis.PendingId
+        axis.PendingId, axis.MotionState, axis.Velocity = 0, 1, velocity
+        run.run()
+        self.assertTrue(run.Active)
+        return run.InVelocity
+
+    def test_at_a_velocity_of_0_a_drive_that_shows_a_ripple_is_in_velocity(self):
+        self.assertEqual([self.shown(0.0, velocity) for velocity in (0.0, 0.4, -0.4, 0.5)], [True, True, True, False])  # 5 rpm are 0.417 mm/s
+
+    def test_at_any_other_it_is_within_a_twentieth(self):
+        self.assertEqual([self.shown(25.0, velocity) for velocity in (23.8, 26.2, 23.7, 26.3)], [True, True, False, False])
+        self.assertEqual([self.shown(-25.0, velocity) for velocity in (-25.0, 25.0)], [True, False])
+
+
 class Xml(unittest.TestCase):
     def setUp(self):
         self.shipped = (SOURCE / "deploy/plc/axisgate.xml").read_text(encoding="utf-8")
