@@ -131,9 +131,10 @@ class Scanner:
 
 
 class Plc:
-    """One controller. `stations` are its axes, by number."""
+    """One controller. `stations` are its axes, by number. Its scanner exchanges all images `scans` times in each `every` cycles."""
 
-    def __init__(self, story, axes, cycle_ms=20, address=PLC, port=None, retained=None):
+    def __init__(self, story, axes, cycle_ms=20, address=PLC, port=None, retained=None, scans=1, every=1):
+        self.scans, self.every = scans, every
         self.story, self.cycle, self.address = story, cycle_ms / 1000, address
         self.scanner = Scanner(port or story.ports[0], address)
         self.machine = StMachine(text_of("deploy/plc/axisgate.st"), text_of("tests/plc/station.st"))
@@ -149,14 +150,12 @@ class Plc:
         story.addCleanup(self.scanner.close)
 
     def scan(self):
-        """True if the scanner is connected after it."""
         if self.scanner.connect():
             try:
                 for number, station in self.stations.items():
                     self.exchange(number, station.Axis)
             except Unplugged:
                 self.scanner.close()
-        return self.scanner.connected()
 
     def exchange(self, number, axis):
         first = 100 * number
@@ -176,7 +175,10 @@ class Plc:
         """One cycle, when it is due."""
         time.sleep(max(0.0, self.due - time.monotonic()))
         self.due = max(self.due + self.cycle, time.monotonic())
-        connected = self.scan()
+        if self.cycles % self.every == 0:
+            for _ in range(self.scans):
+                self.scan()
+        connected = self.scanner.connected()
         self.cycles += 1
         if not self.running:
             return
