@@ -4,11 +4,14 @@
 Both go through the same stories. Whatever has ended their motion, and whatever has come back since, the motor's own counts stay as they are,
 and no enable, homing or move is written, until the reset button is pressed or the switch turned on anew.
 """
+import json
+import re
 import time
 from types import SimpleNamespace
 
 from modbus import ONLINE
 from plc_stage import PLC, AxisRules, PlcStory, Scanner, StMachine, Unplugged, main, text_of
+from stage import Story
 
 PLACES = (10.0, 25.0, -5.0)  # mm
 COUNTS_PER_MM = 2000  # of the drive's encoder
@@ -268,6 +271,21 @@ class OfATable(PlcStory):
         self.until_motor_stands(1)
         self.table.StopButton = False
         self.assert_rests(0)
+
+
+class PrintedConfiguration(Story):
+    def test_it_is_valid_and_fits_the_program(self):
+        _, page = text_of("docs/plc.md")
+        text = re.search(r"^```json\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)[1]
+        with open(self.path("gateway.json"), "w", encoding="utf-8") as file:
+            file.write(text)
+        checked = self.command_line("check", self.path("gateway.json"))
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+        made = json.loads(text)
+        axis = made["buses"][0]["drives"][0]["axes"][0]
+        self.assertEqual({key: axis[key] for key in OfATable.axis_options}, OfATable.axis_options)
+        self.assertEqual({key: made["modbus_tcp"][0][key] for key in OfATable.listener_options}, OfATable.listener_options)
+        self.assertEqual(axis["lease"]["renew"], "heartbeat")
 
 
 class TableWithBlocks(OfATable):
