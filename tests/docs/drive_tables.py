@@ -37,6 +37,8 @@ def table(head, rows):
 
 def place(where):
     """An address as the drive's maker writes it."""
+    if where == "value":  # of the frame that carries the whole desired state
+        return "control frame"
     if not isinstance(where, dict):
         return str(where)
     if "address" in where:

@@ -2,14 +2,19 @@
 """A PLC's normal day with the shipped function blocks, on each kind of drive: it enables, moves, runs, jogs, homes, stops, disables."""
 from plc_stage import TURN, PlcStory, main
 
+EVERY_KIND = (*PlcStory.lines_of, "mdserial", "keyacan", "keya485")
+
 FAR = 5000.0 * TURN
-SPEED = 5.0 * TURN  # units per second: 300 rpm
+SPEED = 5.0 * TURN  # units per second
+RPM = 300  # which is this
 RAMP = 50.0 * TURN
 CENTRE = 20  # units that a drive may stand beside its target
 HERE = 35  # homing method: where it stands
 
 
 class Day(PlcStory):
+    lines_of = EVERY_KIND
+
     def setUp(self):
         super().setUp()
         self.begin()
@@ -25,7 +30,7 @@ class Day(PlcStory):
         return buses
 
     def homes(self, number):
-        return self.motors[number][0] in ("serial", "modbus", "kincocan", "leadshine")
+        return self.motors[number][0] in ("serial", "modbus", "kincocan", "leadshine", "mdserial")
 
     def positioning(self):
         """Axes that position; a Keya as delivered runs at speed."""
@@ -54,22 +59,20 @@ class Day(PlcStory):
 
 class Positioning(Day):
     def test_moves_arrive_where_they_were_asked_to(self):
-        start = {number: self.position(number) for number in self.positioning()}
-        scale = {}
+        start = {number: self.turns(number) for number in self.positioning()}
         for turns in (2.0, -1.0, 3.0):
             for number in start:
                 self.day.begin(number, "MoveAbsolute", Position=turns * TURN, Velocity=SPEED, **self.ramps(number))
             self.end_all("MoveAbsolute", "Done", start)
             for number in start:
                 self.until_there(number, turns * TURN)
-                moved = self.position(number) - start[number]
-                self.assertAlmostEqual(moved / scale.setdefault(number, moved / turns), turns, delta=0.01, msg="the motor itself")
+                self.assertAlmostEqual(self.turns(number) - start[number], turns, delta=0.01, msg=f"the motor itself, {self.motors[number]}")
         for number in start:
             self.day.begin(number, "MoveRelative", Distance=-1.0 * TURN)
         self.end_all("MoveRelative", "Done", start)
         for number in start:
             self.until_there(number, 2.0 * TURN)
-            self.assertAlmostEqual((self.position(number) - start[number]) / scale[number], 2.0, delta=0.01)
+            self.assertAlmostEqual(self.turns(number) - start[number], 2.0, delta=0.01)
 
     def test_the_end_of_a_move_is_told_for_one_cycle_where_execute_was_short(self):
         told = dict.fromkeys(self.positioning(), 0)
@@ -177,6 +180,7 @@ class Running(Day):
         self.run_all()
         for number in self.numbers:
             self.assert_turns_on(number)
+            self.until(f"the motor of axis {number} itself turns at {RPM} rpm", lambda number=number: abs(self.rpm(number) - RPM) <= RPM / 50)
             self.day.begin(number, "Halt")
         self.end_all("MoveVelocity", "CommandAborted")
         self.end_all("Halt", "Done")

@@ -72,7 +72,7 @@ class Cycles(PlcStory):
         plc.disable()
 
     def one_move(self, plc, number, cycle_ms):
-        begun = plc.cycles
+        begun, start = plc.cycles, self.turns(number)
         move = plc.begin(number, "MoveAbsolute", Position=1.0 * TURN, Velocity=SPEED)
         self.until("it is active", lambda: not move.Busy or move.Active)
         active = plc.cycles - begun
@@ -80,6 +80,8 @@ class Cycles(PlcStory):
         there = plc.cycles
         self.until("its end", lambda: not move.Busy)
         self.assertTrue(move.Done, plc.told(number))
+        self.until_motor_stands(number)
+        self.assertAlmostEqual(self.turns(number) - start, 1.0, delta=0.01, msg="the motor itself")
         print(f"figures: {self.motors[number][0]}, cycle {cycle_ms} ms: Active after {active} cycles, Done {plc.cycles - there} cycles "
               "after the target was seen", file=sys.stderr)
         plc.end(number, "MoveAbsolute")
@@ -94,6 +96,16 @@ class FastCycles(Cycles):
 
     def test_a_cycle_of_20_ms(self):
         self.short_day(20)
+
+
+class ScannersOfTheirOwn(Cycles):
+    """Neither waits for the other."""
+
+    def test_the_scanner_exchanges_in_every_third_cycle(self):
+        self.short_day(10, every=3)
+
+    def test_the_scanner_exchanges_twice_in_a_cycle(self):
+        self.short_day(20, scans=2)
 
 
 class SlowCycles(Cycles):

@@ -5,6 +5,7 @@ held against PLCopen's rules; what the motors do is asked from the drives.
 
 A story waits for events by letting its PLCs go on; nothing here is asked to happen within a time.
 """
+import re
 import socket
 import struct
 import sys
@@ -18,7 +19,12 @@ sys.path.insert(0, f"{SOURCE}/tests/plc")
 from plcopen_rules import AxisRules, outputs  # noqa: E402
 from st_machine import Machine as StMachine  # noqa: E402
 
-TURN = 10000
+MACHINES["mdserial"] = ("md@1", "kinco-serial", "md", "606C.00")
+MACHINES["keya485"] = ("keya-rs485@1", "keya-rs485", "keya", None)
+# What the makers' manuals make of a turn of the motor, and of 1 rpm: by the kind of drive, whatever the gateway takes it for.
+COUNTS_PER_TURN = {"jd": 10000, "md": 65536, "ld2": 10000, "id286pro": 10000, "keya": 10000}
+COUNTS_PER_RPM = {"jd": 1, "md": 512 * 65536 / 1875, "ld2": 10000 / 60, "id286pro": 1 / 0.6, "keya": 1}
+TURN = 10000  # units of the gateway, and of a program that sets no UnitScale
 READ, WRITE = 3, 16
 INFO_EVERY = 25  # cycles between two reads of registers 78 to 95
 
@@ -32,16 +38,44 @@ class Unplugged(Exception):
     pass
 
 
+def printed_rule():
+    """How the manual takes what Siemens's MB_CLIENT tells of a call for a connection, or for none."""
+    name, text = text_of("docs/plc.md")
+    return name, re.search(r"^```\n(FUNCTION_BLOCK ScannerRule\n.*?)^```$", text, re.MULTILINE | re.DOTALL)[1]
+
+
 class Scanner:
-    """A Modbus-TCP I/O scanner as PLCs have it: one connection, one request at a time."""
+    """A Modbus-TCP I/O scanner as PLCs have it: one connection, one request at a time. Whether it is connected, the rule of the manual says."""
+
+    DONE, EXCEPTION, LOST = (True, False, 0), (False, True, 0x8380), (False, True, 0x80C8)  # DONE, ERROR, STATUS
 
     def __init__(self, port, address):
         self.port, self.address = port, address
         self.socket, self.number = None, 0
         self.plugged = True
         self.refused = []  # exception codes, newest last
+        self.rule = StMachine(printed_rule()).new("ScannerRule")
+        self.never_lost = False  # in this round of calls
+
+    def call_ended(self, how, code=0):
+        self.rule.Ended, self.rule.Failed, status = how
+        self.rule.Status = status + code
+        self.rule.run()
+        self.never_lost = self.never_lost and self.rule.Connected
+
+    def connected(self):
+        """After each call of the last round: a program may look after any of them."""
+        return self.never_lost
 
     def connect(self):
+        """Begins a round of calls. False if there is no connection to ask on."""
+        self.never_lost = True
+        if not self.open():
+            self.call_ended(self.LOST)
+            return False
+        return True
+
+    def open(self):
         if not self.plugged:
             return False
         if self.socket is None:
@@ -78,11 +112,14 @@ class Scanner:
             self.socket.sendall(struct.pack(">HHHB", self.number, 0, len(pdu) + 1, 1) + pdu)
             length = struct.unpack(">HHHB", self.receive(7))[2]
             answer = self.receive(length - 1)
-        except OSError:
+        except (OSError, Unplugged):
+            self.call_ended(self.LOST)
             raise Unplugged from None
         if answer[0] & 0x80:
             self.refused.append(answer[1])
+            self.call_ended(self.EXCEPTION, answer[1])
             return None
+        self.call_ended(self.DONE)
         return answer
 
     def read(self, address, count):
@@ -94,9 +131,10 @@ class Scanner:
 
 
 class Plc:
-    """One controller. `stations` are its axes, by number."""
+    """One controller. `stations` are its axes, by number. Its scanner exchanges all images `scans` times in each `every` cycles."""
 
-    def __init__(self, story, axes, cycle_ms=20, address=PLC, port=None, retained=None):
+    def __init__(self, story, axes, cycle_ms=20, address=PLC, port=None, retained=None, scans=1, every=1):
+        self.scans, self.every = scans, every
         self.story, self.cycle, self.address = story, cycle_ms / 1000, address
         self.scanner = Scanner(port or story.ports[0], address)
         self.machine = StMachine(text_of("deploy/plc/axisgate.st"), text_of("tests/plc/station.st"))
@@ -112,16 +150,12 @@ class Plc:
         story.addCleanup(self.scanner.close)
 
     def scan(self):
-        """True if every image was exchanged."""
-        if not self.scanner.connect():
-            return False
-        try:
-            for number, station in self.stations.items():
-                self.exchange(number, station.Axis)
-        except Unplugged:
-            self.scanner.close()
-            return False
-        return True
+        if self.scanner.connect():
+            try:
+                for number, station in self.stations.items():
+                    self.exchange(number, station.Axis)
+            except Unplugged:
+                self.scanner.close()
 
     def exchange(self, number, axis):
         first = 100 * number
@@ -141,7 +175,10 @@ class Plc:
         """One cycle, when it is due."""
         time.sleep(max(0.0, self.due - time.monotonic()))
         self.due = max(self.due + self.cycle, time.monotonic())
-        connected = self.scan()
+        if self.cycles % self.every == 0:
+            for _ in range(self.scans):
+                self.scan()
+        connected = self.scanner.connected()
         self.cycles += 1
         if not self.running:
             return
@@ -200,7 +237,9 @@ class Plc:
         self.story.assertEqual((self.end(number, block), hex(error)), ("Done", "0x0"), f"{block} of axis {number}: {self.told(number)}")
 
     def enable(self, *numbers):
+        """A switch that is on before there is a connection enables nothing."""
         for number in numbers or tuple(self.stations):
+            self.story.until(f"axis {number} is connected", lambda number=number: self.stations[number].Axis.Connected)
             self.stations[number].Power.Enable = True
         for number in numbers or tuple(self.stations):
             power = self.stations[number].Power
@@ -281,6 +320,14 @@ class PlcStory(Machine):
         if motor:
             return int(self.sim.ask(f"position {line}/1").split()["AB".index(motor)])
         return int(self.sim.ask(f"position {line}/1"))
+
+    def turns(self, number):
+        """Of the motor, by the drive's own counts."""
+        return self.position(number) / COUNTS_PER_TURN[MACHINES[self.motors[number][0]][2]]
+
+    def rpm(self, number):
+        """Of the motor, as the drive has it."""
+        return self.speed(number) / COUNTS_PER_RPM[MACHINES[self.motors[number][0]][2]]
 
     def assert_turns_on(self, number):
         """By its position: what a drive calls its speed may be from its last look."""

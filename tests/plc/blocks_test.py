@@ -14,6 +14,8 @@ TEXT = (SOURCE / "deploy/plc/axisgate.st").read_text(encoding="utf-8")
 EXAMPLE = (SOURCE / "deploy/plc/example.st").read_text(encoding="utf-8")
 PLAIN = (SOURCE / "deploy/plc/example_plain.st").read_text(encoding="utf-8")
 MANUAL = (SOURCE / "docs/plc.md").read_text(encoding="utf-8")
+REGISTERS = (SOURCE / "schemas/register-map.md").read_text(encoding="utf-8")
+WORDS = (SOURCE / "gateway/core/word_table.cpp").read_text(encoding="utf-8")
 NAMESPACE = "{http://www.plcopen.org/xml/tc6_0201}"
 
 MOTION = {"Execute", "Done", "Busy", "Active", "CommandAborted", "Error", "ErrorID", "Axis"}
@@ -55,6 +57,31 @@ class Blocks(unittest.TestCase):
     def test_the_images_are_as_long_as_the_map_says(self):
         axis = self.machine.new("AXG_AXIS")
         self.assertEqual([len(image) for image in (axis.In, axis.Out, axis.Info, axis.Preset)], [39, 17, 18, 2])
+
+
+class InVelocity(unittest.TestCase):
+    """Of a run that has begun, by what the drive shows as its speed."""
+
+    def shown(self, wanted, velocity):
+        machine = Machine(("axisgate.st", TEXT))
+        axis, run = machine.new("AXG_AXIS"), machine.new("AXG_MoveVelocity")
+        run.Axis = axis
+        axis.Connected = axis.Online = axis.Ready = axis.UnitsKnown = True
+        axis.Handshake, axis.UnitsPerTurn, axis.UnitScale = 2, 5000.0, 1000.0  # 5 mm a turn
+        run.Execute, run.Velocity = True, wanted
+        run.run()
+        axis.AnsweredId = axis.MotionId = axis.PendingId
+        axis.PendingId, axis.MotionState, axis.Velocity = 0, 1, velocity
+        run.run()
+        self.assertTrue(run.Active)
+        return run.InVelocity
+
+    def test_at_a_velocity_of_0_a_drive_that_shows_a_ripple_is_in_velocity(self):
+        self.assertEqual([self.shown(0.0, velocity) for velocity in (0.0, 0.4, -0.4, 0.5)], [True, True, True, False])  # 5 rpm are 0.417 mm/s
+
+    def test_at_any_other_it_is_within_a_twentieth(self):
+        self.assertEqual([self.shown(25.0, velocity) for velocity in (23.8, 26.2, 23.7, 26.3)], [True, True, False, False])
+        self.assertEqual([self.shown(-25.0, velocity) for velocity in (-25.0, 25.0)], [True, False])
 
 
 class Xml(unittest.TestCase):
@@ -101,6 +128,30 @@ class Manual(unittest.TestCase):
         self.assertEqual({name: (int(zero), int(length)) for name, _, _, _, zero, length in siemens}, images)
         for _, mode, one, function, zero, _ in siemens:
             self.assertEqual((int(one) - 40001, function), (int(zero), {"0": "03", "1": "16"}[mode]))
+
+    def test_its_command_numbers_are_those_of_the_register_map(self):
+        row = re.search(r"^\| 54 \| command \|.*$", REGISTERS, re.M)[0]
+        numbers = {name: number for number, name in re.findall(r"\b(\d+) ([a-z_]{4,})", row)}
+        printed = re.search(r"Numbers: (.*?) \|$", MANUAL, re.M)[1]
+        told = {name: number for number, name in re.findall(r"(\d+) (\w+)", printed)}
+        self.assertGreater(len(told), 8)
+        self.assertLessEqual(told.items(), numbers.items())
+        sent = re.findall(r"Command := (\d+);  ?\(\* (\w+)", PLAIN)
+        self.assertGreater(len(sent), 5)
+        self.assertLessEqual({name: number for number, name in sent}.items(), numbers.items())
+
+    def test_its_errors_of_rows_and_results_mean_what_the_sources_say(self):
+        rows = dict(re.findall(r"^\| (\d+) \| (\w+) \|", REGISTERS.partition("| 40 |")[2], re.M))
+        named = re.findall(r"16#01(\w\w) (?:the )?(\w+_\w+|command)\b", MANUAL)
+        self.assertGreater(len(named), 2)
+        for offset, name in named:
+            self.assertEqual(rows[str(int(offset, 16))], name)
+        words = dict(re.findall(r'\{result, (\d+), "([^"]+)"', WORDS))
+        results = re.search(r"^\| 16#0003 to 16#(\w{4}) \|", MANUAL, re.M)[1]
+        self.assertEqual(words[str(int(results, 16))], "not_reached", "the last result that is no DDS's")
+        self.assertIn("another client owns the axis", re.search(r'\{result, 7, .*', WORDS)[0])
+        self.assertIn("the axis is in no state for it", re.search(r'\{result, 9, .*', WORDS)[0])
+        self.assertIn("7: another client owns the axis; 9: not enabled, faulted or stop-latched", MANUAL)
 
     def test_it_names_every_block_and_every_error(self):
         for name in BLOCKS:

@@ -52,18 +52,18 @@ class BlockRules:
 
 
 class AxisRules:
-    """All blocks of a station, and the states its axis goes through."""
+    """The blocks that a station has, and the states its axis goes through."""
 
     def __init__(self, station):
         self.station = station
-        self.blocks = [BlockRules(name, getattr(station, name)) for name in (*MOTIONS, *SERVICES)]
+        self.blocks = [BlockRules(name, getattr(station, name)) for name in (*MOTIONS, *SERVICES) if hasattr(station, name)]
         self.state, self.latched = None, False
 
     def broken(self):
         for rules in self.blocks:
             for sentence in rules.broken():
                 yield f"{rules.name}: {sentence}"
-        active = [name for name in MOTIONS if getattr(self.station, name).Active]
+        active = [rules.name for rules in self.blocks if rules.name in MOTIONS and rules.block.Active]
         if len(active) > 1:
             yield f"one motion at a time: {active}"
         yield from self.broken_states(self.station.ReadStatus)
