@@ -256,7 +256,7 @@ refused: 0x04, result 9.
 
 **Who may.** A write that asks for something claims the axis for its client (register 28), for the time of its lease (29). Others are
 refused then: 0x06, result 7; their stops are not. When the owner falls silent the axis is stopped and latched. While it is disabled
-only what asks for something renews the lease.
+only what asks for something renews the lease. What is refused claims nothing.
 
 | `renew` of the lease | what renews it |
 |---|---|

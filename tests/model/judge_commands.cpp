@@ -30,8 +30,10 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
   if (!world_.enabled || world_.latched || (world_.faulted && !options_.by_gateway)) {
     // A stop that has not shown yet keeps it waiting, and then it has not started in time.
     verdict = {"refused: not enabled, faulted or latched", {4, 6}};
-    // 3.5: "from its first accepted write"; whether one that is refused like this claims is not said.
-    if (world_.owner != client_ && options_.leases && readings_.other()) claim();
+    // 3.5: "from its first accepted write": what is refused claims nothing. A fault that the gateway has not heard of
+    // yet, or what it could not see, may make the drive refuse what was accepted.
+    const bool unseen = world_.faulted || seen_.troubled;
+    if (unseen && world_.owner != client_ && options_.leases && readings_.other()) claim();
     return true;
   }
   // 3.4, command 7: "at standstill; while moving 0x06".
@@ -81,7 +83,10 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
   if (is_start(number)) {
     // 3.3, the fixed order of one request: its set-points act before it starts.
     leave_motion();
-    claim();
+    // Commands 9 and 10 need what is not judged here: a known max_velocity, a homing method since bring-up. Whether one
+    // was refused before it claimed, or by the drive, is not judged either.
+    const bool refused = number > kRun && readings_.other();
+    if (!refused || world_.owner == client_ || readings_.other()) claim();
     // A3: "or another client".
     for (std::size_t c = 0; c < world_.clients.size(); ++c) {
       if (c == client_) continue;
@@ -90,8 +95,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     }
     item.changed = item.ended = item.spoilt = item.refused = false;
     item.acted = true;
-    // Commands 9 and 10 need what is not judged here: a known max_velocity, a homing method since bring-up.
-    if (number > kRun && readings_.other()) {
+    if (refused) {
       verdict = {"refused: command " + std::to_string(number), {3, 4, 6}};
       item.refused = true;
       // 3.3: "what was done stays done": whether its mode was taken from a jog is not known.
@@ -129,14 +133,16 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
   }
   if (number == kSetPosition) return set_position(verdict);
   if (number == 1) {
-    claim();
+    // A Keya's watchdog trip is over with the next command (keya-kydas4860-2e.md); it is shown as disabled.
+    const bool refused = world_.faulted && (!options_.by_gateway || readings_.other());
+    // A fault that the gateway has heard of refuses it, and then it claims nothing.
+    if (!refused || world_.owner == client_ || readings_.other()) claim();
     // Whether an enable ends what another client has begun (A3) is not said.
     for (ClientMemory& client : world_.clients) {
       client.command.ended = true;
       for (Item& coil : client.coils) coil.ended = true;
     }
-    // A Keya's watchdog trip is over with the next command (keya-kydas4860-2e.md); it is shown as disabled.
-    if (world_.faulted && (!options_.by_gateway || readings_.other())) {
+    if (refused) {
       verdict = {"enable while faulted", {4, 6}};
       if (seen_.troubled) verdict.answers.insert(0);  // it was enabled, and the gateway has not heard of the fault
       world_.latch_unsure = true;                     // whether one that fails is "accepted after the stop" is not said

@@ -92,6 +92,34 @@ TEST_P(Claims, ThatAreMissingKeepSetpointsBesideARefusedCommandAway) {
   arrives(plant_, here_);
 }
 
+// 3.5: "from its first accepted write".
+TEST_P(Claims, AreNotMadeByWhatIsRefused) {
+  ASSERT_EQ(a_.row(here_.row, here_.value), kOk);
+  ASSERT_EQ(a_.command(kDisable), kOk);
+  ASSERT_EQ(a_.command(kRelease), kOk);
+  ASSERT_EQ(a_.word(shown::owner), kNobody);
+  EXPECT_EQ(b_.command(here_.command), kFailed) << "a start of an axis that is disabled";
+  EXPECT_EQ(b_.result(), 9);
+  EXPECT_EQ(a_.word(shown::owner), kNobody);
+  ASSERT_EQ(b_.rows(row::command, row::command_id, {}), kOk);
+  EXPECT_EQ(b_.rows(row::command, row::command_id, {{row::command, here_.command}}), kFailed) << "in a block";
+  EXPECT_EQ(a_.word(shown::owner), kNobody);
+  // What is accepted claims.
+  EXPECT_EQ(a_.command(kEnable), kOk);
+  EXPECT_EQ(a_.word(shown::owner), kMe);
+  EXPECT_EQ(a_.command(kRelease), kOk);
+  EXPECT_EQ(a_.command(here_.command), kOk);
+  EXPECT_EQ(a_.word(shown::owner), kMe);
+}
+
+TEST_P(Claims, AreNotMadeByAStartWhileTheStopIsLatched) {
+  ASSERT_EQ(a_.command(kQuickStop), kOk);
+  ASSERT_EQ(b_.command(here_.command), kFailed);
+  EXPECT_EQ(a_.word(shown::owner), kNobody);
+  EXPECT_EQ(a_.command(kEnable), kOk);
+  EXPECT_EQ(a_.word(shown::owner), kMe);
+}
+
 class WithoutLeases : public testing::TestWithParam<Subject> {
  protected:
   WithoutLeases() { plant_.ready(); }

@@ -165,7 +165,9 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
     if (stop) publish();
     return refuse(asked, of_link);
   }
-  claim(batch);
+  // 3.5: owned from the first accepted write; who only waits for the client's return is taken by any write (A8).
+  pending.claims_when_begun = accepts_nothing(core_, batch) && !ownership_.waits_for(batch.life, batch.all_zero);
+  if (!pending.claims_when_begun) claim(batch);
   if (stop && pending.refusal == Errc::ok && join_stop(batch, on_result)) {
     publish();
     return std::nullopt;
@@ -248,6 +250,7 @@ std::optional<bus::Exchange> Axis::on_grant(bus::JobId id) {
     host_.job_waits(id, core_.turn.now + kStopsFirst);
     return std::nullopt;
   }
+  if (!claims_late(*pending)) return std::nullopt;
   const auto move = pending->command_sequence->granted();
   note_commanded(*pending);
   if (move.kind == CommandSequence::Move::Kind::exchange) return move.exchange;

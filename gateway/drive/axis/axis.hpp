@@ -121,6 +121,7 @@ class Axis {
     std::vector<Waiting> callbacks;
     Instant start_by = kNever;  ///< the latest of theirs: the bus ends the bus job then
     bool starts_motion = false;
+    bool claims_when_begun = false;  ///< as things stood when it came, nothing of it was accepted
     bool by_mailbox = false;
     bool jogs = false;                        ///< it starts a jog
     std::optional<Endings::Point> acts_at{};  ///< of a command or controlword that the servers do not know to act yet
@@ -138,6 +139,7 @@ class Axis {
   // What comes before a write batch is carried out: who asks, and for what besides (axis_ownership.cpp).
   [[nodiscard]] Errc judge_owner(const WriteBatch& batch) const;
   void claim(const WriteBatch& batch);
+  bool claims_late(Pending& pending);
   [[nodiscard]] BatchResult nothing_asked(const WriteBatch& batch);
   [[nodiscard]] bool may_run() const;
   [[nodiscard]] bool may_be_jog() const;

@@ -60,6 +60,20 @@ void Axis::claim(const WriteBatch& batch) {
   tell_owner(drive::text(taken, *batch.life) + named_before(before));
 }
 
+// What it waited for may have made it acceptable, and the axis may be another's by now. False: it is.
+bool Axis::claims_late(Pending& pending) {
+  const WriteBatch& batch = pending.command_sequence->batch();
+  if (!pending.claims_when_begun || accepts_nothing(core_, batch)) return true;
+  pending.claims_when_begun = false;
+  if (const Errc code = judge_owner(batch); code != Errc::ok) {
+    pending.command_sequence->abort(refusal(code));
+    complete(pending.id, pending.command_sequence->result());
+    return false;
+  }
+  claim(batch);
+  return true;
+}
+
 std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback on_result) {
   end_expired_lease();
   WriteBatch batch = asked;

@@ -64,13 +64,8 @@ Plan CommandSequence::plan_of(Phase phase) {
 
 // "Set-points beside a command that is refused are accepted only if they would be without it."
 void CommandSequence::drop_setpoints_of_a_refused_command() {
-  const Command command = batch_.command;
-  const bool starts = needs_ready(command);
-  const bool needs_rest = command == Command::move_relative || command == Command::set_position;
-  const AxisFacts facts = core_.facts();
   // A controlword beside it may be what makes the axis ready.
-  if (!starts || batch_.controlword || (core_.motion.may_start(facts) && (!needs_rest || core_.motion.at_rest(facts))))
-    return;
+  if (batch_.controlword || !refused_by_state(core_, batch_.command)) return;
   auto& setpoints = batch_.setpoints;
   setpoints.erase(
       std::remove_if(setpoints.begin(), setpoints.end(), [](const Setpoint& sp) { return sp.with_command; }),

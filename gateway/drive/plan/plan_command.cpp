@@ -321,6 +321,22 @@ void add_steps(const AxisCore& core, const Steps& steps, Plan& plan) {
   }
 }
 
+bool refused_by_state(const AxisCore& core, Command command) {
+  const bool needs_rest = command == Command::move_relative || command == Command::set_position;
+  const AxisFacts facts = core.facts();
+  return needs_ready(command) && !(core.motion.may_start(facts) && (!needs_rest || core.motion.at_rest(facts)));
+}
+
+bool accepts_nothing(const AxisCore& core, const WriteBatch& batch) {
+  if (batch.command == Command::none || is_stop(batch.command) || batch.mode || batch.controlword || batch.object ||
+      batch.set_position_value || batch.jog_velocity)
+    return false;
+  const bool with_command =
+      std::all_of(batch.setpoints.begin(), batch.setpoints.end(), [](const Setpoint& sp) { return sp.with_command; });
+  if (!batch.setpoints.empty() && !(with_command && refused_by_state(core, batch.command))) return false;
+  return plan_preparation(core, batch.command).refused();
+}
+
 Plan plan_preparation(const AxisCore& core, Command command) {
   const bool is_motion = needs_ready(command);
   if (is_motion && !core.motion.may_start(core.facts())) return Plan::refuse(Errc::state_unsuitable);
