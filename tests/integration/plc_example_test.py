@@ -197,9 +197,10 @@ class OfATable(PlcStory):
         self.press_reset()
         self.until_round()
         self.until_motor_turns(1)
-        since = len(self.plc.commands)
         self.sim.ask(f"fault serial/1 {TRIP}")
         self.until("the fault is told", lambda: self.watched(1).get("axis_state") == 6)
+        self.cycles(2)  # the program has seen it: before, its next position may have been due
+        since = len(self.plc.commands)
         self.until_motor_stands(1)
         self.sim.ask(f"clear serial/1 {TRIP}")
         self.assert_rests(since)
