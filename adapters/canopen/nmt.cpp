@@ -13,7 +13,7 @@ constexpr Byte kBootUp = 0;
 constexpr Byte kStopped = 4;
 constexpr Byte kOperational = 5;
 constexpr Byte kPreOperational = 127;
-/// Disconnected, connecting, preparing: states of CAL's guarding that some manuals still list (JD 2.3, LD2-CAN 5.5.3).
+/// Disconnected, connecting, preparing: states of CAL's guarding that some manuals still list (JD 2.3, LD2-CAN 2.5).
 constexpr Byte kFirstPassing = 1;
 constexpr Byte kLastPassing = 3;
 constexpr Byte kToggle = 0x80;

@@ -19,7 +19,7 @@ inline constexpr std::size_t kSdoFrameBytes = 8;
 inline constexpr std::size_t kSegmentBytes = 7;
 /// Data bytes of an expedited transfer.
 inline constexpr std::size_t kExpeditedBytes = 4;
-/// Segments of one block, both ways: more would keep other nodes waiting too long (design 7, point 3).
+/// Segments of one block, both ways: more would keep other nodes waiting too long (design 7, point 6).
 inline constexpr std::uint8_t kMaxBlockSegments = 16;
 
 /// CiA 301 table 22, as far as we send or judge them.

@@ -19,7 +19,7 @@ using Bytes = std::span<const Byte>;
 
 /// The content of a long object, as the drive sends it; shared, so that it is copied nowhere on its way.
 using ObjectBytes = std::shared_ptr<const std::vector<Byte>>;
-/// Longer objects are refused (design 7, point 3).
+/// Longer objects are refused (design 7, point 6).
 inline constexpr std::size_t kMaxObjectBytes = 4096;
 
 [[nodiscard]] constexpr std::uint16_t load_be16(Bytes from, std::size_t at) {

@@ -15,7 +15,7 @@ struct Row {
 };
 
 using enum ModbusException;
-// The outcome table of design 3.3, one row a code, in the order of the enumeration.
+// The table of design 3.3 Outcomes, one row a code, in the order of the enumeration.
 constexpr std::array<Row, kErrcCount> kRows{{
     {Errc::ok, "done", none, CommandResult::done},
     {Errc::illegal_function, "function not available", illegal_function, CommandResult::none},

@@ -11,7 +11,7 @@ namespace axisgate {
 
 enum class Errc : std::uint8_t {
   ok,
-  // Refused before anything was sent: the request itself (design 3.3, outcome table).
+  // Refused before anything was sent: the request itself (design 3.3 Outcomes).
   illegal_function,   ///< function code this server does not have
   not_supported,      ///< no such register, quantity or command on this drive, read-only, half of a 32-bit value
   bad_value,          ///< outside limits, not representable, unknown command

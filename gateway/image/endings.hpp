@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What has ended an axis's motions, as far as a client must know that commanded one before (design 3.3, "Edges"): stops
+// What has ended an axis's motions, as far as a client must know that commanded one before (design 3.3 Edges): stops
 // and commands with who gave them, faults, losses of the link. Promises that nothing is forgotten between two looks,
 // however many clients there are. Never tells what happened first: only whether it did.
 #pragma once

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows that a listener with "numbers": "float" shows as IEEE 754 binary32, in turns, rpm and rpm/s: 32-bit
-// positions, velocities and accelerations, at the same offsets (design 3.1). Promises that a number goes to the units
-// of the register map and back through exact fractions, rounded once. Never says what a listener shows: its settings
-// do.
+// positions, velocities and accelerations, at the same offsets (design 3.1 Panels). Promises that a number goes to the
+// units of the register map and back through exact fractions, rounded once. Never says what a listener shows: its
+// settings do.
 #pragma once
 
 #include <cstdint>

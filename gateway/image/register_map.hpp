@@ -92,7 +92,7 @@ struct RegisterRow {
   std::string_view unit = {};  ///< of what is no quantity: "ms", "s"; quantities have their kind's
   Source source = Source::quantity;
   Quantity quantity = Quantity::statusword;
-  Role may_write = Role::engineer;  ///< the lowest role that may (design 3.3, Roles); of writable rows
+  Role may_write = Role::engineer;  ///< the lowest role that may (design 3.3 Roles); of writable rows
   std::string_view note = {};
   [[nodiscard]] int registers() const { return registers_of(type); }
 };

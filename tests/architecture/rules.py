@@ -246,6 +246,67 @@ def field_words(root):
                 yield f"{name}:{text.count(chr(10), 0, token.start()) + 1}: {breach}"
 
 
+# What comments cite: a section of ARCHITECTURE.md with the heading below it, a point of section 7, a promise of section 8.
+SECTION = r"""(\d(?:\.\d)?)(?![\d/]|\.\d)(?:(?:\s|,?\s")([A-Z][^,;:.)"]*)"?)?"""
+CITE = re.compile(rf"[Dd]esign {SECTION}(?:(?:,|,?\sand)\s(?:(?=\d\.)|(?<=and\s)){SECTION})*")
+SECTION = re.compile(SECTION)
+# Where sections are cited by their numbers alone.
+BARE_CITES = ("tests/model/", "tests/obey/", "tests/judged/")
+BARE = re.compile(r"(?<![\d.])(3\.\d)\s([A-Z][^,;:.)\"]*)")
+POINTS = re.compile(r"[Dd]esign 7, points? (\d+)(?: and (\d+))?")
+# Numbers of rules that no page of the repository has. Bytes in hex look alike: others stand beside them.
+LOST = re.compile(r"Design-\d|design-\d|(?<![0-9A-F] )\b[AB](?:[1-9]|1\d)\b(?! [0-9A-F]{2}\b)")
+PROMISE = re.compile(r"\bP\d\b")
+
+
+def cited(root):
+    """Of ARCHITECTURE.md: its sections with the headings below them, the points of section 7, the promises of section 8."""
+    sections, points, promises, current = {}, set(), set(), ""
+    for _, line in lines(root, "ARCHITECTURE.md"):
+        if found := re.match(r"###? (\d(?:\.\d)?)\.? ", line):
+            current = found[1]
+            sections[current] = []
+        elif line.startswith("#### "):
+            sections[current].append(line[5:])
+        elif current == "7" and (found := re.match(r"(\d+)\. ", line)):
+            points.add(found[1])
+        elif current == "8" and (found := re.match(r"\| (P\d) ", line)):
+            promises.add(found[1])
+    return sections, points, promises
+
+
+def cites(root):
+    """What is cited is there."""
+    sections, points, promises = cited(root)
+    pages = [path.relative_to(root).as_posix() for path in (*root.glob("*.md"), *root.glob("docs/**/*.md"))]
+    for name in [*files(root, {".cpp", ".hpp", ".py", ".txt"}), *sorted(pages)]:
+        if name.startswith("tests/architecture/"):
+            continue
+        # The marks of a comment's further lines are no part of what it says.
+        text = re.sub(r"\n[ \t]*(?://[/<]*|#) ", lambda found: "\n" + " " * (len(found[0]) - 1), (root / name).read_text(encoding="utf-8"))
+        text = re.sub(r"\n +", lambda found: " " * (len(found[0]) - 1) + "\n", text)
+        lost = []
+        for cite in CITE.finditer(text):
+            lost += [(cite.start(), found) for found in SECTION.findall(cite[0])]
+        if name.startswith(BARE_CITES):
+            lost += [(found.start(), found.groups()) for found in BARE.finditer(text)]
+        for at, (section, words) in lost:
+            said = " ".join(words.split()).lower()
+            if section not in sections or (said and not said.startswith(tuple(h.lower() for h in sections[section]))):
+                yield f"{name}:{text.count(chr(10), 0, at) + 1}: ARCHITECTURE.md has no {section} {said}".rstrip()
+        for found in POINTS.finditer(text):
+            if not points.issuperset(filter(None, found.groups())):
+                yield f"{name}:{text.count(chr(10), 0, found.start()) + 1}: ARCHITECTURE.md has no such point: {found[0]}"
+        if not name.endswith((".cpp", ".hpp")):
+            continue
+        code = (root / name).read_text(encoding="utf-8")
+        for token in C_TOKEN.finditer(code):
+            said = token["note"] or (token[0] if name.startswith("tests/bench/") and token.lastgroup == "text" else "")
+            lost = LOST.findall(token["note"] or "") + [p for p in PROMISE.findall(said) if p not in promises]
+            if lost:
+                yield f"{name}:{code.count(chr(10), 0, token.start()) + 1}: no page of the repository has {lost[0]}"
+
+
 LICENCE = "SPDX-License-Identifier: Apache-2.0"
 
 
@@ -316,7 +377,7 @@ def fault_proofs(root):
 
 
 RULES = {"arrows": arrows, "one_place": one_place, "deciding": deciding, "headers": headers, "lengths": lengths, "words": words,
-         "field_words": field_words, "licence": licence, "fault_proofs": fault_proofs}
+         "field_words": field_words, "cites": cites, "licence": licence, "fault_proofs": fault_proofs}
 
 if __name__ == "__main__":
     if len(sys.argv) != 2 or sys.argv[1] not in RULES:

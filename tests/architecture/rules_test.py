@@ -114,6 +114,31 @@ class Rules(unittest.TestCase):
         self.write("adapters/serial/b.cpp", "std::string group;  // in the order of the members of a group\n")
         self.assertEqual(self.breaches("field_words"), [])
 
+    ARCHITECTURE = """## 3. Modbus-TCP\n### 3.3 Writes\n#### Edges\n### 3.4 Motion\n#### Owed stops\n## 7. How it is built
+1. **Pure.**\n2. **One thread.**\n## 8. Promises\n| P2 | fast |\n"""
+
+    def test_a_cite_of_what_is_not_there_is_found(self):
+        self.write("ARCHITECTURE.md", self.ARCHITECTURE)
+        self.write("gateway/a.cpp", "int x;\n// As Design-2 A10 has it.\n// A8: an orphan\n")
+        self.write("gateway/b.cpp", "// A stop (design 3.4, \"Stops\").\n// By design 3.4 Owed\n// halts.\n")
+        self.write("gateway/c.cpp", "// Design 3.4 Owed stops, 3.3 Jog.\n// (design 3.6)\n// (design 7.2)\n// (design 7, points 2 and 3)\n")
+        self.write("tests/bench/d.cpp", 'f("P3: late");  // P2\n')
+        self.write("tests/model/e.cpp", "int y;  // 3.3 Zeros: \"leave as it is\"\n")
+        self.write("tests/unit/f.txt", "# (design 3.3 Zeros)\n")
+        self.assertEqual(sorted(breach.split(": ")[0] for breach in self.breaches("cites")),
+                         ["gateway/a.cpp:2", "gateway/a.cpp:3", "gateway/b.cpp:1", "gateway/b.cpp:2", "gateway/c.cpp:1", "gateway/c.cpp:2",
+                          "gateway/c.cpp:3", "gateway/c.cpp:4", "tests/bench/d.cpp:1", "tests/model/e.cpp:1", "tests/unit/f.txt:1"])
+
+    def test_a_cite_of_what_is_there_is_let_pass(self):
+        self.write("ARCHITECTURE.md", self.ARCHITECTURE)
+        self.write("gateway/a.cpp", "// (design 3.3 and 3.4). (design 3.3 and 7) (design 3.4, discrete input 6); (design 3.3, FC 43/13); design 7, point 2.\n"
+                                    "/// A stop (design 3.3 Edges, 3.4 Owed\n/// stops). Its frame: A3 00 00, or 01 A2.\n"
+                                    'const char* frame = "A1 00";  // axis A\n')
+        self.write("tests/bench/b.cpp", 'f("P2: fast");\n')
+        self.write("tests/model/c.cpp", "// 3.3 Edges: \"is new\"; 3.4: \"A stop\".\n")
+        self.write("docs/a.md", "as in design 3.4 Owed stops; CiA 301, 7.2\n")
+        self.assertEqual(self.breaches("cites"), [])
+
     def test_a_fault_without_a_test_and_a_test_that_is_not_there_are_found(self):
         self.write("tests/unit/a_test.cpp", "TEST_P(Cable, IsPulled) {}\n")
         self.write("tests/integration/cable_test.py", "class Pulled(Story):\n    def test_idle(self):\n")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The manual hangs together: every link leads somewhere, every page is in the index, every drive has its page, and what is printed is what
-the files say today. AXISGATE_WRITE_PAGES=1 prints it anew.
+"""The manual hangs together: every link leads somewhere, every page is in the index, every drive has its page, what is cited of a drive is
+a number of docs/drive_sources.md, and what is printed is what the files say today. AXISGATE_WRITE_PAGES=1 prints it anew.
 
 pages_test.py SOURCE_FOLDER [unittest's arguments]
 """
@@ -12,6 +12,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+from drive_cites import cites_in, drive_cites, drive_sources
 from drive_tables import printed, profile
 
 SOURCE = Path(sys.argv.pop(1)).absolute()
@@ -64,6 +65,22 @@ class Manual(unittest.TestCase):
         drives = {path.stem for path in (SOURCE / "schemas/drives").glob("*.json") if not profile(SOURCE, path.stem).get("base_only")
                   or "title" in profile(SOURCE, path.stem) and path.stem not in ("cia402", "kinco")}
         self.assertEqual({path.stem for path in (SOURCE / "docs/drives").glob("*.md")}, drives)
+
+    def test_what_is_cited_of_a_drive_is_a_number_of_the_page_of_sources(self):
+        known, lost, counted = drive_sources((SOURCE / "docs/drive_sources.md").read_text(encoding="utf-8")), [], 0
+        for place, drive, number in drive_cites(SOURCE):
+            counted += 1
+            if number not in known[drive]:
+                lost.append(f"{place}: {drive} {number}")
+        self.assertEqual(lost, [])
+        self.assertGreater(counted, 500)
+
+    def test_what_is_cited_of_a_drive_is_found(self):
+        self.assertEqual(cites_in("(JD 2.3, K7 and MD K, C5; LD2-CAN C10, 605Ah = 6; JD 0x80, MD 6099.05)"),
+                         [("JD", "2.3"), ("JD", "K7"), ("MD", "K"), ("MD", "C5"), ("LD2", "C10")])
+        self.assertEqual(cites_in("4.2, rows 8 and 9, 5 (6080h); MD O", "Keya"),
+                         [("Keya", "4.2"), ("Keya", "row 8"), ("Keya", "row 9"), ("Keya", "5"), ("MD", "O")])
+        self.assertEqual(drive_sources("## MD: x\n| 1, 4.1 to 4.3 | y | z |\n| 6 | by groups: A (8.1) | z |\n"), {"MD": {"1", "4.1", "4.2", "4.3", "6", "A", "8.1"}})
 
     def test_every_page_with_commands_is_tried(self):
         """Those about DDS by stories of their own."""

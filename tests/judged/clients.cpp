@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint8_t kHostOfViewer = 40;
 constexpr std::uint8_t kMostWriters = 40;  // that one gateway sees in a run
 
-/// A13: rows of 32 bits that `"numbers": "float"` has in turns, rpm and rpm/s, and what is 1 there.
+/// 3.1 Panels: rows of 32 bits that `"numbers": "float"` has in turns, rpm and rpm/s, and what is 1 there.
 std::int64_t one_of(std::uint16_t offset) {
   constexpr std::array<std::uint16_t, 5> kPositions{42, 68, 72, 74, 78}, kAccelerations{50, 52, 66, 70};
   constexpr std::array<std::uint16_t, 6> kVelocities{44, 48, 58, 62, 64, 76};
@@ -37,7 +37,7 @@ Write in_floats(Write write) {
   return write;
 }
 
-/// Exceptions of 3.3's table that a result stands for (A12, and the DDS results of their own from 16 on).
+/// Exceptions that a result stands for (3.3 Outcomes, and the DDS results of their own from 16 on).
 const std::map<int, std::set<int>> kStandsFor{{0, {1, 2, 3}}, {2, {0}},  {3, {4}},        {4, {11}},   {5, {6}},
                                               {6, {6, 10}},   {7, {6}},  {8, {4, 6, 11}}, {9, {4, 6}}, {10, {0, 6}},
                                               {11, {4}},      {16, {2}}, {17, {3}},       {19, {6}}};

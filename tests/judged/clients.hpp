@@ -45,7 +45,7 @@ class Clients {
   /// A new connection; of DDS another writer.
   void replace(std::size_t client, bool silently);
   [[nodiscard]] obey::Client& modbus(std::size_t client) { return *modbus_[client]; }
-  /// What was wrong with what a viewer was told for a write (3.3, Roles: 0x01, and nothing changes).
+  /// What was wrong with what a viewer was told for a write (3.3 Roles: 0x01, and nothing changes).
   [[nodiscard]] std::optional<std::string> bystand(const Step& step);
 
  private:

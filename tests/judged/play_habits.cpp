@@ -96,7 +96,7 @@ void Play::take_away(const Step& step) {
   send(rival, writers_->write_of({.deed = Deed::command, .client = rival, .command = kTakesOver}), step.at_once);
 }
 
-// A14: what is let go, or stopped, while the drive cannot be asked. Before that it may have been started.
+// 3.4 Owed stops: what is let go, or stopped, while the drive cannot be asked. Before that it may have been started.
 void Play::press_out_of_sight(const Step& step) {
   constexpr std::uint8_t kStarted = 2, kHeld = 4;  // of Step::id
   const std::uint16_t button = step.number % 2 == 0 ? coil::jog_forward : coil::jog_reverse;
@@ -124,8 +124,8 @@ void Play::press_out_of_sight(const Step& step) {
   mend();
 }
 
-// A13: panels that only have function 6; of others a target in one request. With another write between, or a half of
-// another row, the first one is dropped.
+// 3.1 Panels: panels that only have function 6; of others a target in one request. With another write between, or a
+// half of another row, the first one is dropped.
 void Play::write_halves(const Step& step) {
   constexpr std::array<std::int64_t, 5> kBetween{0, 50, 50, 400, 1500};
   constexpr std::uint8_t kWhole = 8;

@@ -33,7 +33,8 @@ std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Cont
   if (!contract.shown(client, owner, latched))
     return "shown owner " + std::to_string(owner) + (latched ? ", stop-latched" : ", not stop-latched") +
            "; the contract: " + expected;
-  // A9: "axis_state 7 unknown while link_state is not 2 or 3"; 3.2: "statusword and discrete inputs 0..10 read 0".
+  // 3.2 Unknown: "axis_state 7 unknown while link_state is not 2 or 3"; 3.2: "statusword and discrete inputs 0..10 read
+  // 0".
   const std::uint16_t link = shown.words[kLink];
   const bool in_sight = link == kOnline || link == kSuspect;
   if ((shown.words[obey::shown::axis_state] == kUnknown) == in_sight ||

@@ -10,7 +10,7 @@
 namespace axisgate::test::model {
 namespace {
 
-// 3.3, the table: not started, nothing was sent, outcome unknown; 3.1, 43/13: an extended exception.
+// 3.3 Outcomes: not started, nothing was sent, outcome unknown; 3.1, 43/13: an extended exception.
 const std::set<int> kTrouble{3, 4, 6, 10, 11, 0xFF};
 
 void make_uncertain(Item& item) {
@@ -128,7 +128,7 @@ void Contract::overtake(World& world, Pending& newest, bool rows) {
   }
 }
 
-/// A14: a stop "is owed all the same"; what stands beside it was not carried out.
+/// 3.4 Owed stops: a stop "is owed all the same"; what stands beside it was not carried out.
 World Contract::owed_alone(World stopped, const World& none) {
   stopped.accepted = none.accepted;
   stopped.owner = none.owner;
@@ -160,7 +160,8 @@ int Contract::send(std::size_t client, const Write& write) {
       pending.verdict.stop = judge.stopped();
       pending.verdict.takes_over = judge.takes_over();
       pending.verdict.any_answer = pending.verdict.any_answer || judge.unclear();
-      // A8: "an adopted axis [is taken over] by any write but an all-zero block", a stop too, perhaps (3.4).
+      // 3.5 Signs of life: "an adopted axis [is taken over] by any write but an all-zero block", a stop too, perhaps
+      // (3.4).
       if (next.owner) next.found = false;
       if (next.found && readings.other()) {
         next.owner = client;
@@ -180,7 +181,7 @@ int Contract::send(std::size_t client, const Write& write) {
           pending.verdict.starts)
         next.awaits = number;
       // The same in a world where it never came to be: only trouble can be the cause, and the answer tells. A stop is
-      // owed all the same (A14).
+      // owed all the same (3.4 Owed stops).
       World none = world;
       none.clients = next.clients;
       if (none.owner == next.owner) none.lease_ends_by_ms = std::max(none.lease_ends_by_ms, next.lease_ends_by_ms);
@@ -249,7 +250,7 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
     const bool dropped = exceptions.contains(6) && pending.overtaken;
     const bool lost = asked.troubled && any(kTrouble);
     // 3.3: "dropped by a stop": of a stop itself only what stands beside it. "Outcome unknown", 0x0B: both. Nothing was
-    // sent, 0x0A: a stop is owed all the same (A14).
+    // sent, 0x0A: a stop is owed all the same (3.4 Owed stops).
     const bool not_done = pending.void_ || pending.alone;
     const bool unclear = pending.verdict.any_answer && !done;
     const bool fits = (expected && (!pending.void_ || unclear)) ||

@@ -54,7 +54,7 @@ struct Item {
   bool operator==(const Item&) const = default;
 };
 
-/// One half of a row of 32 bits that waits for the other one (A13).
+/// One half of a row of 32 bits that waits for the other one (3.1 Panels).
 struct Half {
   std::uint16_t row = 0;
   bool second = false;  ///< it is the register behind

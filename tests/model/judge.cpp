@@ -9,11 +9,11 @@ namespace axisgate::test::model {
 namespace {
 
 constexpr std::int64_t kRearmMs = 1000, kRearmUnsureMs = 150;
-constexpr std::array<std::uint16_t, 11> kZeroLeaves{41, 47, 48, 50, 52, 58, 62, 64, 66, 70, 76};  // A6
+constexpr std::array<std::uint16_t, 11> kZeroLeaves{41, 47, 48, 50, 52, 58, 62, 64, 66, 70, 76};  // 3.3 Zeros
 
 }  // namespace
 
-// A1, A2: what is new, of a command without id, a controlword or an edge coil.
+// 3.3 Edges, 3.4 Stops: what is new, of a command without id, a controlword or an edge coil.
 Judge::Edge Judge::edge(Item& item, std::int64_t value, bool single, bool stop) {
   if (item.value && *item.value != value) item.unsure = false;
   const Edge edge = new_or_not(item, value, single, stop);
@@ -27,18 +27,19 @@ Judge::Edge Judge::new_or_not(Item& item, std::int64_t value, bool single, bool 
   const std::int64_t quiet = seen_.now_ms - item.written_ms;
   item.value = value;
   item.written_ms = seen_.now_ms;
-  // A2: "One acts if the command or the id differs from what is remembered, on an empty memory too, and in a single
-  // write always."
+  // 3.4 Stops: "One acts if the command or the id differs from what is remembered, on an empty memory too, and in a
+  // single write always."
   if (stop) return single || before != value ? Edge::acts : Edge::not_new;
-  // A1: "new if it differs from the command remembered; a single write also on an empty memory ... A block write on an
-  // empty memory only remembers."
+  // 3.3 Edges: "new if it differs from the command remembered; a single write also on an empty memory ... A block write
+  // on an empty memory only remembers."
   if (item.unsure && readings_.other()) return Edge::not_new;
   // Whether what was refused is remembered is not said.
   if (single && item.refused && readings_.other()) return Edge::acts;
   if (!before) return single ? Edge::acts : Edge::remembered;
   if (*before != value) return Edge::acts;
-  // A1: "and when this client has not written it for rearm_ms, but not after another client's stop ... since it acted".
-  // A1 lets a controlword that another's stop has spoilt not act, and so a stop: the reading that stops is allowed too.
+  // 3.3 Edges: "and when this client has not written it for rearm_ms, but not after another client's stop ... since it
+  // acted". 3.3 Edges lets a controlword that another's stop has spoilt not act, and so a stop: the reading that stops
+  // is allowed too.
   const bool stop_word = (value & 6) != 6 || (value & 15) == 6 || (value & 15) == 7;
   if (single && &item == &me().controlword && stop_word && readings_.other()) return Edge::acts;
   if (!single || item.spoilt || quiet < kRearmMs - kRearmUnsureMs) return Edge::not_new;
@@ -47,7 +48,7 @@ Judge::Edge Judge::new_or_not(Item& item, std::int64_t value, bool single, bool 
 }
 
 Judge::Edge Judge::command_edge(const Rows& rows, bool single) {
-  if (!rows.contains(row::command)) return Edge::absent;  // A1: "Register 55 alone asks for nothing"
+  if (!rows.contains(row::command)) return Edge::absent;  // 3.3 Edges: "Register 55 alone asks for nothing"
   const std::int64_t value = rows.at(row::command);
   const std::int64_t id = rows.contains(row::command_id) ? rows.at(row::command_id) : 0;
   ClientMemory& mine = me();
@@ -57,22 +58,22 @@ Judge::Edge Judge::command_edge(const Rows& rows, bool single) {
   if (id == 0) {
     edge = this->edge(mine.command, value, single, is_stop(value));
   } else {
-    mine.id = id;  // A1: "zeros never erase it", "Command 0 with an id sets the last id"
+    mine.id = id;  // 3.3 Edges: "zeros never erase it", "Command 0 with an id sets the last id"
     mine.command.value = value;
     mine.command.written_ms = seen_.now_ms;
     if (is_stop(value))
-      edge = before != value || last_id != id ? Edge::acts : Edge::not_new;  // A2
+      edge = before != value || last_id != id ? Edge::acts : Edge::not_new;  // 3.4 Stops
     else if (!last_id)
-      edge = Edge::remembered;  // A1: "Where none is kept, the pair is only remembered"
+      edge = Edge::remembered;  // 3.3 Edges: "Where none is kept, the pair is only remembered"
     else
-      edge = *last_id != id ? Edge::acts : Edge::not_new;  // A1: "only the id decides"
+      edge = *last_id != id ? Edge::acts : Edge::not_new;  // 3.3 Edges: "only the id decides"
     if (edge == Edge::acts || before != value) mine.command.acted = edge == Edge::acts;
     if (!mine.command.acted) mine.command.spoilt = false;
   }
   return value == 0 && edge != Edge::remembered ? Edge::nothing : edge;
 }
 
-// 3.5, A7: "A write claims an axis only if it asks for something."
+// 3.5, 3.3 What asks: "A write claims an axis only if it asks for something."
 void Judge::claim() {
   if (!options_.leases) return;
   world_.owner = client_;
@@ -80,7 +81,7 @@ void Judge::claim() {
   world_.lease_until(seen_.now_ms + options_.lease_ms);
 }
 
-// 3.3, table of outcomes: "another client owns the axis: 0x06".
+// 3.3 Outcomes: "another client owns the axis: 0x06".
 bool Judge::foreign() const { return options_.leases && world_.owner && *world_.owner != client_; }
 
 bool Judge::refuse_foreign(Verdict& verdict) {
@@ -100,7 +101,7 @@ void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
   const auto old = world_.accepted.find(offset);
   const bool differs = old == world_.accepted.end() || old->second != value;
   world_.accepted[offset] = value;
-  // A14 lets a run go on that 3.4 has ended: whether a new speed acts on it is not said.
+  // 3.4 Owed stops lets a run go on that 3.4 has ended: whether a new speed acts on it is not said.
   if (offset == row::target_velocity && differs && world_.broken && world_.motor == Motor::runs && readings_.other())
     world_.motor = Motor::unknown;
   if (offset == row::target_velocity) world_.stale_speed = false;
@@ -121,7 +122,7 @@ void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
   if (could_run && speed && world_.motor == Motor::stands && readings_.other()) world_.motor = Motor::runs;
 }
 
-// A7.
+// 3.3 What asks.
 void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlword, bool refused, bool was_empty) {
   const int carried = (command != Edge::absent ? 1 : 0) + (controlword != Edge::absent ? 1 : 0);
   const int empty = (command == Edge::remembered ? 1 : 0) + (controlword == Edge::remembered ? 1 : 0);
@@ -150,7 +151,7 @@ void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlw
     const bool other_value = now == world_.accepted.end() || now->second != value;
     bool asks = single || differs || acts;
     // "or if this client owns the axis and the value last accepted differs"; not with "lease": null. A lease may have
-    // run out while the axis was disabled (A8).
+    // run out while the axis was disabled (3.5 Signs of life).
     if (!asks && options_.leases && world_.owner == client_ && other_value) asks = world_.enabled || !readings_.other();
     if (only_remembers) asks = false;
     if (asks) accept(offset, value, claims);
@@ -170,7 +171,8 @@ void Judge::stopped(bool asserted) {
   world_.jog = 0;
   world_.started_ms = seen_.now_ms;  // what a drive shows of standing still lags behind
   world_.stale_speed = true;
-  // A1 speaks of "another client's stop"; whether a disabling coil or controlword is one (A2: "nothing else") is open.
+  // 3.3 Edges speaks of "another client's stop"; whether a disabling coil or controlword is one (3.4 Stops: "nothing
+  // else") is open.
   const bool spoils = asserted || readings_.other();
   // "Since it acted": what was only remembered never did.
   std::optional<bool> remembered_too;
@@ -187,7 +189,7 @@ void Judge::stopped(bool asserted) {
   }
 }
 
-// A6: "A block that covers 40..54 and is 0 in all of it asks for nothing and claims nothing".
+// 3.3 Zeros: "A block that covers 40..54 and is 0 in all of it asks for nothing and claims nothing".
 bool Judge::all_zero(const Write& write, const Rows& rows, Verdict& verdict) {
   const bool covers = write.first <= row::controlword && write.first + write.words.size() > row::command;
   if (!covers || std::ranges::any_of(write.words, [](std::uint16_t word) { return word != 0; })) return false;
@@ -195,7 +197,7 @@ bool Judge::all_zero(const Write& write, const Rows& rows, Verdict& verdict) {
   const bool falls = mine.controlword.value && *mine.controlword.value != 0;
   mine.controlword.value = mine.command.value = 0;
   mine.controlword.written_ms = mine.command.written_ms = seen_.now_ms;
-  // Whether A7's "last write of the row" knows these zeros is not said.
+  // Whether the "last write of the row" (3.3 What asks) knows these zeros is not said.
   if (readings_.other())
     for (const auto& [offset, value] : rows) mine.rows[offset] = value;
   verdict = {"all zero: asks for nothing", {0}};
@@ -214,18 +216,18 @@ bool Judge::all_zero(const Write& write, const Rows& rows, Verdict& verdict) {
 
 Verdict Judge::write(const Write& write) {
   if (write.function == fc::sample) return sample(write);
-  const std::optional<Half> before = std::exchange(me().half, std::nullopt);  // A13: "no other write between"
+  const std::optional<Half> before = std::exchange(me().half, std::nullopt);  // 3.1 Panels: "no other write between"
   if (write.coils()) return coils(write);
   const auto row = half_row(write);
   if (!row) return registers(write);
   return half({*row, write.first != *row, write.words[0], seen_.now_ms, seen_.troubled}, before);
 }
 
-// A13: "either half of a 32-bit row first, then the other, same connection, no other write between; a lone half is
-// dropped after 1 s; ... a half that comes later than that is a new first half."
+// 3.1 Panels: "either half of a 32-bit row first, then the other, same connection, no other write between; a lone half
+// is dropped after 1 s; ... a half that comes later than that is a new first half."
 Verdict Judge::half(const Half& newest, const std::optional<Half>& before) {
   constexpr std::int64_t kKeptMs = 1000, kUnsureMs = 20;
-  if (!options_.staged) return {"half of a 32-bit value", {2}};  // 3.3, table of outcomes
+  if (!options_.staged) return {"half of a 32-bit value", {2}};  // 3.3 Outcomes
   if (before && before->row == newest.row && before->second != newest.second) {
     const std::int64_t age_ms = newest.at_ms - before->at_ms;
     const bool unsure = before->unsure || std::abs(age_ms - kKeptMs) <= kUnsureMs;
@@ -241,11 +243,11 @@ Verdict Judge::half(const Half& newest, const std::optional<Half>& before) {
 
 Verdict Judge::registers(const Write& write) {
   Rows rows = rows_of(write);
-  const bool single = write.function != fc::read_write && rows.size() == 1;  // A1: "A single write is ..."
+  const bool single = write.function != fc::read_write && rows.size() == 1;  // 3.3 Edges: "A single write is ..."
   for (const std::uint16_t offset : kZeroLeaves) {
     if (!rows.contains(offset) || rows[offset] != 0) continue;
-    if (single) return {"refused: 0 alone", {3}};                      // A6
-    if (me().rows.contains(offset)) me().refused_rows.insert(offset);  // A7's "last write", or "leave as it is"
+    if (single) return {"refused: 0 alone", {3}};                      // 3.3 Zeros
+    if (me().rows.contains(offset)) me().refused_rows.insert(offset);  // "last write", or "leave as it is"
     rows.erase(offset);
   }
   Verdict verdict;
@@ -313,14 +315,14 @@ Verdict Judge::registers(const Write& write) {
   return verdict;
 }
 
-// B1: "Every request gets its one reply"; each sample is new, and what its mask names asks.
+// Design 4: "Every request gets its one reply"; each sample is new, and what its mask names asks.
 Verdict Judge::sample(const Write& write) {
   Verdict verdict{"a sample", {0}};
   const std::int64_t number = write.sample.contains(row::command) ? write.sample.at(row::command) : 0;
   const bool refused = is_start(number) && start_refused(number, verdict);
   const bool claims = !options_.leases || !is_stop(number) || readings_.other();
-  // A7: "Set-points beside a command that is refused are accepted only if they would be without it": whether that
-  // speaks of samples is not said.
+  // 3.3 What asks: "Set-points beside a command that is refused are accepted only if they would be without it": whether
+  // that speaks of samples is not said.
   if (!refused || readings_.other())
     for (const auto& [offset, value] : write.sample)
       if (offset != row::command && options_.rows.contains(offset)) accept(offset, value, claims);

@@ -32,7 +32,7 @@ class Readings {
 
 /// So long an enable or a stop is on its way that nobody has seen yet.
 inline constexpr std::int64_t kUnderWayMs = 1000;
-/// A2: "Asserted stops are commands 2, 3, 4 and coils 2, 3 = 1, nothing else."
+/// 3.4 Stops: "Asserted stops are commands 2, 3, 4 and coils 2, 3 = 1, nothing else."
 [[nodiscard]] constexpr bool is_stop(std::int64_t command) { return command >= 2 && command <= 4; }
 [[nodiscard]] constexpr bool is_start(std::int64_t command) { return command >= kMove && command <= kHome; }
 

@@ -5,7 +5,7 @@
 
 namespace axisgate::test::model {
 
-// A1, level coils: 0 enable, 3 halt, 7 run_velocity, 8 and 9 jog.
+// 3.3 Edges, level coils: 0 enable, 3 halt, 7 run_velocity, 8 and 9 jog.
 Judge::Edge Judge::level_edge(std::uint16_t number, std::int64_t value, bool single) {
   Item& item = me().coils.at(number);
   const std::optional<std::int64_t> before = item.value;
@@ -16,7 +16,7 @@ Judge::Edge Judge::level_edge(std::uint16_t number, std::int64_t value, bool sin
     if (single) return Edge::acts;
     return !before ? Edge::remembered : *before == 0 ? Edge::nothing : Edge::acts;
   }
-  if (number == coil::halt) return single || before != 1 ? Edge::acts : Edge::nothing;  // A2: an asserted stop
+  if (number == coil::halt) return single || before != 1 ? Edge::acts : Edge::nothing;  // 3.4 Stops: an asserted stop
   // "Coils 7, 8, 9 act on 1 only after this client wrote 0 to them on this memory. Coil 0 = 1 the same while the stop
   // latch is set ...; else a single write of 1 on an empty memory enables."
   if (item.unsure && readings_.other()) return Edge::not_new;
@@ -25,7 +25,7 @@ Judge::Edge Judge::level_edge(std::uint16_t number, std::int64_t value, bool sin
   return number == coil::enable && single && !world_.latched ? Edge::acts : Edge::remembered;
 }
 
-// 3.4, jog: "the axis runs at jog_velocity while the coil is 1 and its owner writes the 1 again at least each
+// 3.4 Jog: "the axis runs at jog_velocity while the coil is 1 and its owner writes the 1 again at least each
 // jog_timeout_ms; then halt. ... Both 1: halt."
 void Judge::jog(std::int64_t direction, std::int64_t value, Edge edge, bool single, Verdict& verdict) {
   const bool mine = world_.jog == direction && world_.jog_client == client_;
@@ -37,7 +37,7 @@ void Judge::jog(std::int64_t direction, std::int64_t value, Edge edge, bool sing
   const Item& other = me().coils.at(direction > 0 ? coil::jog_reverse : coil::jog_forward);
   if (edge != Edge::acts) {
     if (mine) world_.jog_ends_ms = seen_.now_ms + options_.jog_timeout_ms;
-    // A3: "a held level is refused", and what is told of it.
+    // 3.3 Not new: "a held level is refused", and what is told of it.
     if (single && !mine) verdict = {"jog: write 0 first", {0, 6}, !world_.accepted.contains(row::jog_velocity)};
     return;
   }
@@ -69,8 +69,8 @@ void Judge::jog_both(Verdict& verdict) {
   verdict = {"jog both ways: halt", {0}, true};
 }
 
-// A1: "7 halts while run_velocity runs"; 3.4: a stop, "open to every operator". Of a coil that ends nothing another
-// client's is refused, or not.
+// 3.3 Edges: "7 halts while run_velocity runs"; 3.4: a stop, "open to every operator". Of a coil that ends nothing
+// another client's is refused, or not.
 void Judge::end_run(Verdict& verdict) {
   verdict = {"coil 7 = 0", {0}};
   stopped_ = true;
@@ -113,7 +113,7 @@ Verdict Judge::coils(const Write& write) {
         seen_.now_ms - world_.off_asked_ms < kUnderWayMs || seen_.now_ms - world_.enable_asked_ms < kUnderWayMs;
     if (single && edge == Edge::not_new && value == 1) {
       answer_not_new(command, was, verdict);
-      // A3: "or a held level is refused"; unless it is so already.
+      // 3.3 Not new: "or a held level is refused"; unless it is so already.
       if (level && number == coil::run_velocity) verdict.answers = {0, 6};
       if (level && number == coil::enable)
         verdict.answers = under_way ? std::set{0, 6} : so_already ? std::set{0} : std::set{6};

@@ -58,8 +58,8 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
   return false;
 }
 
-/// A14: "An owed halt becomes quick_stop if the drive restarted, was lost for over 1 s, or its state ... is not
-/// certain."
+/// 3.4 Owed stops: "An owed halt becomes quick_stop if the drive restarted, was lost for over 1 s, or its state ... is
+/// not certain."
 bool Judge::may_have_no_halt() const { return options_.no_halt || world_.other_mode || seen_.troubled; }
 
 // 3.4, command 4: "Where a drive has no halt, the profile names the replacement".
@@ -72,8 +72,8 @@ void Judge::halted(bool asserted) {
   world_.ladder = 0;
 }
 
-// A7: "the last accepted set-point is the one that every start uses"; 3.4: after a stop "velocity, torque and start are
-// needed anew". Where none came since, both are allowed.
+// 3.3 What asks: "the last accepted set-point is the one that every start uses"; 3.4: after a stop "velocity, torque
+// and start are needed anew". Where none came since, both are allowed.
 void Judge::renew_speed() {
   if (world_.stale_speed && readings_.other()) world_.accepted[row::target_velocity] = 0;
   world_.stale_speed = false;
@@ -87,7 +87,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     // was refused before it claimed, or by the drive, is not judged either.
     const bool refused = number > kRun && readings_.other();
     if (!refused || world_.owner == client_ || readings_.other()) claim();
-    // A3: "or another client".
+    // 3.3 Not new: "or another client".
     for (std::size_t c = 0; c < world_.clients.size(); ++c) {
       if (c == client_) continue;
       world_.clients[c].command.ended = true;
@@ -112,7 +112,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     world_.jog = 0;
     world_.start_bit = true;
     world_.started_ms = seen_.now_ms;
-    // A7: "the last accepted set-point is the one that every start uses".
+    // 3.3 What asks: "the last accepted set-point is the one that every start uses".
     const auto of = [&](std::uint16_t offset) {
       return world_.accepted.contains(offset) ? world_.accepted[offset] : std::int64_t{0};
     };
@@ -137,7 +137,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     const bool refused = world_.faulted && (!options_.by_gateway || readings_.other());
     // A fault that the gateway has heard of refuses it, and then it claims nothing.
     if (!refused || world_.owner == client_ || readings_.other()) claim();
-    // Whether an enable ends what another client has begun (A3) is not said.
+    // Whether an enable ends what another client has begun (3.3 Not new) is not said.
     for (ClientMemory& client : world_.clients) {
       client.command.ended = true;
       for (Item& coil : client.coils) coil.ended = true;
@@ -205,8 +205,8 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
   verdict = {"acts: command " + std::to_string(number), {0}};  // 5 on an axis without a fault: nothing is sent
 }
 
-// 3.5: "command 14 takes a lease from a lower rank"; 3.4: "after a halt"; A8: between connections of one address it
-// needs no rank.
+// 3.5: "command 14 takes a lease from a lower rank"; 3.4: "after a halt"; 3.5 Signs of life: between connections of one
+// address it needs no rank.
 void Judge::take_over(Verdict& verdict) {
   verdict = {"take_over", {0}};
   if (!options_.leases || !world_.owner || *world_.owner == client_) {
@@ -282,7 +282,7 @@ bool Judge::reset_fault(Verdict& verdict) {
   return true;
 }
 
-// A3: "A single write that is not new in one of these ways is answered with exception 0x06 each time".
+// 3.3 Not new: "A single write that is not new in one of these ways is answered with exception 0x06 each time".
 void Judge::answer_not_new(std::int64_t number, const Item& item, Verdict& verdict) {
   verdict = {"not new", {0}};
   if (foreign()) {
@@ -301,8 +301,8 @@ void Judge::answer_not_new(std::int64_t number, const Item& item, Verdict& verdi
   const bool same_target = number == 6 && world_.motor == Motor::moves &&
                            world_.accepted.contains(row::target_position) &&
                            world_.accepted[row::target_position] == world_.target;
-  // It was only remembered: A3 does not say what a single write that repeats it is answered with. And a start that was
-  // refused may be tried again at once: 0x04, as it may be told that it is not new.
+  // It was only remembered: 3.3 Not new does not say what a single write that repeats it is answered with. And a start
+  // that was refused may be tried again at once: 0x04, as it may be told that it is not new.
   if (is_start(number) && (!item.acted || world_.motor == Motor::unknown))
     verdict = {"not new, only remembered before", {0, 4, 6}};
   else if (number == 7)
@@ -370,7 +370,7 @@ bool Judge::controlword(std::int64_t value, bool single, Verdict& verdict) {
     if (world_.raw_mode == 3 && world_.motor == Motor::stands && readings_.other()) world_.motor = Motor::runs;
     return true;
   }
-  // 3.3: bit 1 = 0, bit 2 = 0, or bits 0..3 = 6 or 7; A6: going to 0 is a stop.
+  // 3.3: bit 1 = 0, bit 2 = 0, or bits 0..3 = 6 or 7; 3.3 Zeros: going to 0 is a stop.
   stopped(step == 0 && readings_.other());
   world_.off_asked_ms = seen_.now_ms;
   const bool from_ready = world_.ladder == 6 || world_.ladder == 7 || world_.enabled;

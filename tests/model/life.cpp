@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kUnsureMs = 40;  // two clocks that read the same instant
 
-/// A lease or a jog button has run out. Whether its stop counts as another client's (A1) is not said.
+/// A lease or a jog button has run out. Whether its stop counts as another client's (3.3 Edges) is not said.
 void ended_by_nobody(World& world) {
   for (auto& [number, pending] : world.pending) pending.overtaken = true;  // 3.3: "dropped by a stop"
   for (ClientMemory& client : world.clients) {
@@ -22,8 +22,8 @@ void ended_by_nobody(World& world) {
 
 }  // namespace
 
-// 3.5: "renew": any request; A8: "An orphan lease is taken over by any write ... of the same address and role,
-// whatever it asks".
+// 3.5: "renew": any request; 3.5 Signs of life: "An orphan lease is taken over by any write ... of the same address and
+// role, whatever it asks".
 void Contract::take_over(World& world, std::size_t client) const {
   world.retaken = world.owner == client && world.orphan;
   if (world.owner != client) return;
@@ -34,8 +34,8 @@ void Contract::take_over(World& world, std::size_t client) const {
     renew(world);
 }
 
-// A8: "While an axis is disabled only requests that ask for something renew its lease": of those that are refused, or
-// that repeat, nobody can tell.
+// 3.5 Signs of life: "While an axis is disabled only requests that ask for something renew its lease": of those that
+// are refused, or that repeat, nobody can tell.
 void Contract::renew(World& world) const {
   const std::int64_t ends_ms = sight_.now_ms + options_.lease_ms;
   if (world.enabled)
@@ -44,9 +44,10 @@ void Contract::renew(World& world) const {
     world.lease_ends_by_ms = ends_ms;
 }
 
-// 3.5: "renew": any request of the owner; A8: "While an axis is disabled only requests that ask for something".
+// 3.5: "renew": any request of the owner; 3.5 Signs of life: "While an axis is disabled only requests that ask for
+// something".
 void Contract::asked(std::size_t client) {
-  // A8: "With "client": "address" only writes renew"; 3.5, "renew": "a write to this axis".
+  // 3.5 Signs of life: "With "client": "address" only writes renew"; 3.5, "renew": "a write to this axis".
   if (options_.by_address || options_.only_writes_renew) return;
   for (World& world : worlds_)
     if (world.owner == client && !world.orphan) renew(world);
@@ -119,18 +120,18 @@ void Contract::left(std::size_t client, bool silently) {
     }
   }
   for (World& world : worlds_) {
-    world.clients[client].half.reset();  // A13: "same connection"
+    world.clients[client].half.reset();  // 3.1 Panels: "same connection"
     if (options_.by_address && client != kDds) {
       world.orphan = world.orphan || (world.owner == client && !silently);
-      continue;  // A1: "until 60 s after its last connection"
+      continue;  // 3.3 Edges: "until 60 s after its last connection"
     }
     if (world.owner == client && silently && !world.orphan) world.owner = kGhost + client;
     if (world.owner == client) world.orphan = true;
-    // 3.4, jog: a new connection has no button of an old one's.
+    // 3.4 Jog: a new connection has no button of an old one's.
     if (world.jog != 0 && world.jog_client == client) world.jog_client = kGhost + client;
     const std::optional<std::int64_t> id = world.clients[client].id;
     world.clients[client] = {};
-    world.clients[client].id = id;  // A1: "kept 60 s after its last connection"
+    world.clients[client].id = id;  // 3.3 Edges: "kept 60 s after its last connection"
   }
 }
 
@@ -140,7 +141,8 @@ void Contract::trouble_begins() {
   for (World& world : worlds_) {
     world.broken = world.motor != Motor::stands ||
                    std::ranges::any_of(world.earlier, [](const Motion& m) { return m.kind != Motor::stands; });
-    // A1: "a fault, a link loss": a level or a command held since asks for nothing; what counts as one is not said.
+    // 3.3 Edges: "a fault, a link loss": a level or a command held since asks for nothing; what counts as one is not
+    // said.
     for (ClientMemory& client : world.clients) {
       client.command.unsure = client.controlword.unsure = true;
       for (Item& coil : client.coils) coil.unsure = true;

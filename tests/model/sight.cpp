@@ -99,8 +99,8 @@ bool Contract::motion_fits(World& world, const Sight& sight) const {
   }
 }
 
-// 3.1: "owner: 0 nobody, 1 this client, 2 another"; A14: "The latch is set when the stop is accepted or the lease
-// ends".
+// 3.1: "owner: 0 nobody, 1 this client, 2 another"; 3.4 Owed stops: "The latch is set when the stop is accepted or the
+// lease ends".
 bool Contract::shown(std::size_t client, int owner, bool latched) {
   const auto unsure = [](const World& world) { return world.lease_unsure || !world.pending.empty(); };
   if (lost_count_ || trouble_ || std::ranges::any_of(worlds_, unsure)) return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Design-2 A10: a fault is shown together with its cause, and told once, on every drive and protocol.
+// 3.2 Causes of faults: a fault is shown together with its cause, and told once, on every drive and protocol.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -118,7 +118,7 @@ TEST_P(Causes, AFaultAndItsCauseAreShownInOneStepAndToldOnce) {
   }
 }
 
-// A10: "never with the cause of the fault before", how soon ever the next one comes.
+// 3.2 Causes of faults: "never with the cause of the fault before", how soon ever the next one comes.
 TEST_P(Causes, TheNextFaultHasItsOwnCause) {
   ready();
   const auto causes = causes_of(GetParam());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What asks, and what claims (A7): an idle PLC that scans and a panel share an axis.
+// 3.3 What asks, and what claims: an idle PLC that scans and a panel share an axis.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

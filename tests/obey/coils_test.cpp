@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coils (A1, A3): a level that moves the axis acts only after this client wrote 0 to it; a single 0 always acts.
+// Coils (3.3 Edges, 3.3 Not new): a level that moves the axis acts only after this client wrote 0 to it; a single 0
+// always acts.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

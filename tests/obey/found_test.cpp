@@ -166,8 +166,8 @@ TEST_P(FoundWithDisable, AReleaseBesideAnEnableLeavesALease) {
   EXPECT_EQ(plant_->motor().enabled, false);
 }
 
-// A3: "A single write that asks for what is so already (enable on an enabled axis, the same absolute move to the same
-// target) is answered normally": it got 0x06 after somebody's command that had ended nothing.
+// 3.3 Not new: "A single write that asks for what is so already (enable on an enabled axis, the same absolute move to
+// the same target) is answered normally": it got 0x06 after somebody's command that had ended nothing.
 TEST_P(Found, AnEnableOfAnEnabledAxisIsAnsweredNormally) {
   ready();
   Client &a = plant_->a, &b = plant_->b;
@@ -278,7 +278,7 @@ TEST_P(Found, AReleaseBesideSetpointsTakesNoLease) {
   EXPECT_EQ(b.word(shown::owner), kMe);
 }
 
-// A8: "an orphan lease is taken over by any write ... of the same address and role, whatever it asks".
+// 3.5 Signs of life: "an orphan lease is taken over by any write ... of the same address and role, whatever it asks".
 TEST_P(Found, AReleaseGivesBackWhatTheConnectionBeforeHasLeft) {
   for (const bool alone : {true, false}) {
     plant_.emplace(GetParam(), with_leases());

@@ -62,8 +62,8 @@ class GoesOn : public testing::TestWithParam<Subject> {
 
 class GoesOnAtASpeed : public GoesOn {};
 
-// 3.4: "while it runs a write of target_velocity acts at once"; A14: "it goes on". It was kept for the next start, and
-// answered as if it had acted.
+// 3.4: "while it runs a write of target_velocity acts at once"; 3.4 Owed stops: "it goes on". It was kept for the next
+// start, and answered as if it had acted.
 TEST_P(GoesOnAtASpeed, ANewSpeedActsOnARunThatGoesOn) {
   for (const bool leases : {false, true}) {
     ready(leases);

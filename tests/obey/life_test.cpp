@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signs of life and who takes over (A8).
+// 3.5 Signs of life, and who takes over.
 #include <gtest/gtest.h>
 
 #include "tests/obey/plant.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is new (A1) and what says that it is not (A3): commands, their ids, and the set-points beside them.
+// What is new (3.3 Edges) and what says that it is not (3.3 Not new): commands, their ids, and the set-points beside
+// them.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A4: the drive has acknowledged everything, and the state asked for does not come: the answer says so, and what might
-// still happen is withdrawn before it. Nothing that was told to have failed happens later.
+// 3.3 Not reached: the drive has acknowledged everything, and the state asked for does not come: the answer says so,
+// and what might still happen is withdrawn before it. Nothing that was told to have failed happens later.
 #include <gtest/gtest.h>
 
 #include "tests/obey/dds_writer.hpp"

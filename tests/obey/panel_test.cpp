@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Panels (A13): floats in turns and rpm, and 32-bit rows by two writes of function 6, beside a PLC that counts in
+// 3.1 Panels: floats in turns and rpm, and 32-bit rows by two writes of function 6, beside a PLC that counts in
 // integers.
 #include <gtest/gtest.h>
 

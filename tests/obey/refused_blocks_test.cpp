@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Refused blocks (A5): a block write that is answered 0x01, 0x02 or 0x03 tells in command_detail which row it was, also
+// 3.3 Refused blocks: a block write that is answered 0x01, 0x02 or 0x03 tells in command_detail which row it was, also
 // where only the drive's own limits, or the moment, say so.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stops (A2): one acts if the command or the id differs from what is remembered, on an empty memory too, and in a
+// 3.4 Stops: one acts if the command or the id differs from what is remembered, on an empty memory too, and in a
 // single write always.
 #include <gtest/gtest.h>
 

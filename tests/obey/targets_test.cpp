@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A start uses the set-point that was accepted last (A7), whoever wrote it, by whichever way in, whatever the drive
-// happens to hold.
+// A start uses the set-point that was accepted last (3.3 What asks), whoever wrote it, by whichever way in, whatever
+// the drive happens to hold.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -249,8 +249,8 @@ TEST_P(Speeds, ThatAreTheSameRunAgainInABlockWithANewId) {
   }
 }
 
-// 3.4: after a stop "velocity, torque and start are needed anew". A7 says that the last accepted set-point is the one
-// that every start uses: of the two, the one that cannot move the motor.
+// 3.4: after a stop "velocity, torque and start are needed anew". 3.3 What asks says that the last accepted set-point
+// is the one that every start uses: of the two, the one that cannot move the motor.
 TEST_P(Speeds, AcceptedBeforeAHaltAreNeededAnew) {
   ASSERT_EQ(plant_.a.command(0, 1), kOk);
   ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);

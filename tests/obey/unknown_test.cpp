@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A9: what is out of sight is unknown, not "disabled, standing": a motor whose cable is cut may be running.
+// 3.2 Unknown: what is out of sight is unknown, not "disabled, standing": a motor whose cable is cut may be running.
 #include <gtest/gtest.h>
 
 #include "tests/obey/plant.hpp"

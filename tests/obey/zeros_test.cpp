@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Zeros (A6): what a scanner's image holds before its program runs asks for nothing; in some rows 0 means "leave as it
+// 3.3 Zeros: what a scanner's image holds before its program runs asks for nothing; in some rows 0 means "leave as it
 // is".
 #include <gtest/gtest.h>
 

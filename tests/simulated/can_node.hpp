@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A simulated node on a CAN bus, as a bus of them and the tests see it. Pure: frames and times in, frames out.
-// Behaviour comes from the fact sheets and vectors, never from axisgate's own profiles or codecs.
+// Behaviour comes from the sheets and vectors (docs/drive_sources.md), never from axisgate's own profiles or codecs.
 // Promises that the same frames at the same times give the same answers.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One simulated iD286pro: registers, built-in motion controller, inputs, faults, EEPROM, as its fact sheet tells.
+// One simulated iD286pro: registers, built-in motion controller, inputs, faults, EEPROM, as its sheet tells.
 // Promises the same answers for the same requests at the same times, and a record of every motion it began and why.
 // Never reads a clock, never draws a random number, and never knows a line: RtuLine does.
 #pragma once

@@ -58,7 +58,7 @@ void KincoDrive::power_up() {
   inputs_.configure(objects_);
   inputs_.follow(options_.mechanics, axis_.physical());
   refresh_settings();
-  // JD: an incremental encoder counts from 0. MD: the encoder knows its place in one turn (MD 12.8).
+  // JD: an incremental encoder counts from 0. MD: the encoder knows its place in one turn (MD 12.12).
   const FinePosition turn = encoder_counts_ * fine_per_count;
   const FinePosition in_turn = ((axis_.physical() % turn) + turn) % turn;
   axis_.redefine(model_.keeps_single_turn_position ? in_turn : 0);

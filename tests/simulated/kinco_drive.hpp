@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One simulated Kinco JD or MD: objects, CiA 402 machine, inputs, motion, faults, EEPROM, as the fact sheets tell.
+// One simulated Kinco JD or MD: objects, CiA 402 machine, inputs, motion, faults, EEPROM, as the sheets tell.
 // Promises the same answers for the same requests at the same times, and a record of every write and every transition.
 // Never reads a clock, never draws a random number, and never knows a line: SerialLine does.
 #pragma once

@@ -31,7 +31,7 @@ struct KincoModel {
   bool has_halt;                    // controlword bit 8: MD 8.1. The JD does not document it
   bool has_error_word_2;            // 2602's bits are known and set 2601 bit 0: MD 9
   bool remote_bit_in_mode_3;        // statusword bit 9, seen in the JD's mode 3 screen only (JD 6.2, 0xC637)
-  bool keeps_single_turn_position;  // MD 12.8: single-turn encoder; the JD's incremental one starts at 0
+  bool keeps_single_turn_position;  // MD 12.12: single-turn encoder; the JD's incremental one starts at 0
   bool home_offset_without_move;    // JD: 607C as CiA 402 has it; MD: 6099.05 chooses
   bool torque_object_is_current;    // 6071: current DEC on the JD (4.3), percent of rated torque on the MD (C)
   bool rs485_speaks_this_protocol;  // 6510:0C: MD 3.1. The JD's RS485 is Modbus RTU only (JD 2.2)

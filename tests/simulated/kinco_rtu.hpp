@@ -14,7 +14,7 @@ namespace axisgate::simulated {
 struct KincoRtuOptions {
   std::uint8_t read_error_function = 0x81;  // both manuals print it for function 3; the standard's is 0x83 (K1, C9)
   bool serves_derived = true;               // registers that follow from the rule but are not printed
-  bool refuses_out_of_range = true;         // JD 10.2.3; its section 10 elsewhere says that values are clamped (K43)
+  bool refuses_out_of_range = true;         // so JD 2.2; of all ports the manual says that values are clamped (K43)
   bool sign_extends_bytes = true;           // how a negative 8-bit value reads: 0xFFFD or 0x00FD
   std::uint16_t second_register = 0;        // what a 16-bit object gives when it is asked for two registers (K37)
   Time answer_delay{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An axis when the gateway ends on purpose, or lets go of its drive (design 7).
+// An axis when the gateway ends on purpose, or lets go of its drive (design 3.4 The end on purpose).
 #include "gateway/drive/axis/axis.hpp"
 #include "gateway/drive/plan/admission.hpp"
 

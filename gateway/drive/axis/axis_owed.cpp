@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stop is owed by the axis until the drive has shown it, through every loss of it (design 3.4, "Owed stops"); and a
+// A stop is owed by the axis until the drive has shown it, through every loss of it (design 3.4 Owed stops); and a
 // jog needs its button, also while nobody can see whether it runs.
 #include <algorithm>
 #include <string>

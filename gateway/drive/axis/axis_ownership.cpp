@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an axis asks before it carries anything out: who owns it, whether its owner is still there, and whether a button
-// is still held (design 3.4 "Jog", 3.5).
+// is still held (design 3.4 Jog, 3.5).
 #include <fmt/format.h>
 
 #include <algorithm>

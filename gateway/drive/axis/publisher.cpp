@@ -78,7 +78,7 @@ bool is_of_another_mode(const AxisCore& core, const AxisFacts& facts, const Bind
 
 bool tells_cause(Quantity quantity) { return quantity == Quantity::error_code || quantity == Quantity::vendor_error; }
 
-/// A10: what tells of a fault appears in one step. Until then it stays as it was shown.
+/// Design 3.2 Causes of faults: what tells of a fault appears in one step. Until then it stays as it was shown.
 bool held_back(const AxisCore& core, Quantity quantity) {
   if (core.fault.withheld()) return tells_cause(quantity) || quantity == Quantity::statusword;
   return core.fault.words_ahead() && tells_cause(quantity);

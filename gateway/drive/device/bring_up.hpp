@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bring-up of a drive (design 7, points 6 and 7): its state is read first; then everything the image needs, the checks,
+// Bring-up of a drive (design 7, point 6): its state is read first; then everything the image needs, the checks,
 // its identity; then the setup is written, and a CANopen node mapped and started. Promises that a drive found enabled
 // is adopted, and one that is not the configured one left alone: nothing is written to either; and that a setup value
 // is written only where the drive holds another, and read back. Never enables, moves or stops anything.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of a drive's watch over the gateway when the gateway ends on purpose, or lets go of it (design 7). Pure.
-// Promises that the entries which make the drive miss the gateway (1016h, 100Ch, 6007h, or what the profile names) are
-// cleared only after a read has shown that no motor of it has torque; that the state is read once more afterwards, and
-// that anything but that puts them back; that a drive of which this is not known is left as it is. Never clears an
-// entry that holds another number than the setup list's.
+// What becomes of a drive's watch over the gateway when the gateway ends on purpose, or lets go of it (design 3.4 The
+// end on purpose). Pure. Promises that the entries which make the drive miss the gateway (1016h, 100Ch, 6007h, or what
+// the profile names) are cleared only after a read has shown that no motor of it has torque; that the state is read
+// once more afterwards, and that anything but that puts them back; that a drive of which this is not known is left as
+// it is. Never clears an entry that holds another number than the setup list's.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a drive comes up: bring-up, the checks, and what an adopted one is owed (design 7, point 7).
+// How a drive comes up: bring-up, the checks, and what an adopted one is owed (design 7, point 6).
 #include <fmt/format.h>
 
 #include <algorithm>

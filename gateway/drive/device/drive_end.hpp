@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A drive when the gateway ends on purpose, or lets go of it (design 7). Pure. Promises that what makes the drive miss
-// the gateway is asked about only once its stops are at their end, that it is over once, and that where nothing was
-// read before nothing is asked. Never sends; what may be cleared is Disarming's to decide.
+// A drive when the gateway ends on purpose, or lets go of it (design 3.4 The end on purpose). Pure. Promises that what
+// makes the drive miss the gateway is asked about only once its stops are at their end, that it is over once, and that
+// where nothing was read before nothing is asked. Never sends; what may be cleared is Disarming's to decide.
 #pragma once
 
 #include <functional>

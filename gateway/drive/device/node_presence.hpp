@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether a drive is there, as its answers, its silence and a CANopen node's signs of life tell, and how one that is
-// not there is looked for (design 7, point 3). Pure: instants go in. Promises that a drive is given up after
+// not there is looked for (design 7, point 7). Pure: instants go in. Promises that a drive is given up after
 // kMaxTimeouts timeouts in a row, that one which is gone costs its bus one probe per back-off step, and that a node
 // which gave no sign of life is asked by SDO once, then called, and asked again after so many calls alone. Never sends.
 #pragma once

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The set-points of one axis that were accepted last, whoever wrote them and whatever was sent to the drive for them.
-// Promises that a velocity or torque is forgotten with everything that makes it needed anew (design 3.4, "What
-// survives"). Never decides what is accepted: the axis does.
+// Promises that a velocity or torque is forgotten with everything that makes it needed anew (design 3.4 What
+// survives). Never decides what is accepted: the axis does.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Admission: what can be told of a write batch before it is queued (design 3.3, outcome table). Pure.
+// Admission: what can be told of a write batch before it is queued (design 3.3 Outcomes). Pure.
 // Promises that a write batch it lets pass asks only for what this drive has, within the limits of axis, profile and
 // drive. Never looks at the state of the motion: that is judged when the write batch's turn has come.
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a request is for this gateway: by the key and the name that it carries (design 4, which gateway).
+// Whether a request is for this gateway: by the key and the name that it carries (design 4).
 // Promises that what may start a motor needs both, exactly, and that a stop is lost only where it names another gateway
 // without a doubt. Never looks at who asks.
 #pragma once

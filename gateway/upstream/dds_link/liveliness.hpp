@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a DataWriter states of its liveliness, and whether that says anything of its program (design 4, signs of life).
+// What a DataWriter states of its liveliness, and whether that says anything of its program (design 4).
 // Promises both programs one answer. Never believes what a DDS library tells of all writers of its participant: Fast
 // DDS 2.9.1 takes one participant's assertion for one of all participants.
 #pragma once

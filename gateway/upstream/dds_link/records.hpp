@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the gateway and axisgate-dds say to each other over their socket pair (design 7 point 10): one record a packet.
+// What the gateway and axisgate-dds say to each other over their socket pair (design 7, point 8): one record a packet.
 // Promises that every record has a bound (kMaxPacket) and that one of another version, an unknown kind or a wrong
 // length is refused whole. Never knows a DDS type, a socket or a clock.
 #pragma once

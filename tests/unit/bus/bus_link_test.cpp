@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The link comes and goes, in each state of the bus (P7).
+// The link comes and goes, in each state of the bus (design 8, P7).
 #include "tests/unit/bus/bus_stage.hpp"
 
 namespace axisgate::test {

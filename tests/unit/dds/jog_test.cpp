@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jogging by DDS: a button that is held by saying so again and again (design 3.4, "Jog").
+// Jogging by DDS: a button that is held by saying so again and again (design 3.4 Jog).
 #include <gmock/gmock.h>
 
 #include "gateway/upstream/dds/command_batches.hpp"

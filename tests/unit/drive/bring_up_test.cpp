@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bring-up (design 7.7): state first, a running drive is adopted, and nothing is ever enabled by itself.
+// Bring-up (design 7, point 6): state first, a running drive is adopted, and nothing is ever enabled by itself.
 #include <gmock/gmock.h>
 
 #include "gateway/drive/device/bring_up.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Design 3.4, "what survives", for every drive and protocol: a fault, a drive's restart, a disable and a stop end every
+// Design 3.4 What survives, for every drive and protocol: a fault, a drive's restart, a disable and a stop end every
 // motion for good, and an enable after them is an enable and nothing else.
 #include <gmock/gmock.h>
 

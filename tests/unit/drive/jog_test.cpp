@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Design 3.4 "Jog" on an axis that really moves: while its button is held, and not a moment longer.
+// Design 3.4 Jog, on an axis that really moves: while its button is held, and not a moment longer.
 #include <gmock/gmock.h>
 
 #include "tests/unit/drive/leased_axis.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Late replies meet a resynchronisation read (design 7.4), and an unresponsive drive costs its neighbours little (7.3,
-// P3).
+// Late replies meet a resynchronisation read (design 7, point 4), and an unresponsive drive costs its
+// neighbours little (point 7; design 8, P3).
 #include <gmock/gmock.h>
 
 #include "gateway/image/shown.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Set-points are not starts, and what is not sent (design 3.3 and 3.4).
+// Set-points are not starts, and what is not sent (design 3.4, 3.3 What is not sent).
 #include <gmock/gmock.h>
 
 #include "tests/unit/drive/rig.hpp"

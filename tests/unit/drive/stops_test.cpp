@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stops and the stop latch (design 3.4): next on the wire, idempotent, repeated until they show, and never an enable.
+// Stops and the stop latch (design 3.4 Stops): next on the wire, idempotent, repeated until they show, and never an
+// enable.
 #include <gmock/gmock.h>
 
 #include "tests/unit/drive/rig.hpp"

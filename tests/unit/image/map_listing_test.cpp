@@ -123,7 +123,7 @@ TEST(MapListing, OfAListenerWithFloatsNamesTheirTypeAndUnit) {
   EXPECT_EQ(told(146), "i16 0.1 %");
   EXPECT_EQ(told(194), "u32 0.001 rpm");
   EXPECT_EQ(told(120), "u32 ");
-  // The rows of design A13, and no others.
+  // The rows of design 3.1 Panels, and no others.
   std::set<int> floats;
   for (const MapEntry& entry : entries)
     if (entry.type == "f32" && entry.address < 200) floats.insert(entry.address - 100);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules by which a write acts, on the memory alone (design 3.3, "Edges").
+// The rules by which a write acts, on the memory alone (design 3.3 Edges).
 #include "gateway/upstream/modbus_tcp/client/edges.hpp"
 
 #include <gtest/gtest.h>

@@ -91,7 +91,7 @@ TEST_F(Writes, the_log_says_once_that_what_is_not_new_needs_a_0_first) {
   EXPECT_NE(lines[0].find("write 0 first"), std::string::npos) << lines[0];
 }
 
-/// A row of the outcome table of design 3.3: how a write ended, what the client is answered and what register 25 says.
+/// A row of the table of design 3.3 Outcomes: how a write ended, what the client is answered and what register 25 says.
 struct Row {
   Errc code;
   int exception;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clients of the Modbus-TCP server: what each of them has written and been answered, per axis (design 3.3 "A
-// client", "Edges"), and the life of each that leases are judged by. Promises that memory is bounded whoever connects,
+// The clients of the Modbus-TCP server: what each of them has written and been answered, per axis (design 3.3 Edges),
+// and the life of each that leases are judged by. Promises that memory is bounded whoever connects,
 // and that one client never sees what belongs to another. Never speaks to an axis and never reads a clock.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edges: the client's memory of what it wrote to controlword, command and the coils, and the rules by which a write of
-// them acts (design 3.3, "Edges", and 3.4, "Jog"). Promises that a scanner that writes the same block for ever starts
+// them acts (design 3.3 Edges, 3.4 Jog). Promises that a scanner that writes the same block for ever starts
 // nothing twice, that nothing starts by a connection's first block, and that what does not act says so wherever its
 // client could believe that it had. Never asks what state the axis is in but for the level coils, whose 1 is no
 // standing right: a write that acts may still be refused by the axis.
@@ -52,7 +52,7 @@ struct CommandIds {
   std::optional<std::uint16_t> seen;  ///< the last that acted, or came with command 0: register 30
 };
 
-/// Bit 1 = 0, bit 2 = 0, or bits 0..3 = 6 or 7: a stop, where it acts (design 3.4, "Stops").
+/// Bit 1 = 0, bit 2 = 0, or bits 0..3 = 6 or 7: a stop, where it acts (design 3.4 Stops).
 [[nodiscard]] constexpr bool is_stop_controlword(std::uint16_t controlword) { return is_stop(controlword, true); }
 
 /// What one request writes to the two jog coils; no value: it does not hold this one.

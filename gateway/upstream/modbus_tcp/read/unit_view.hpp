@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The unit view: what part of the map a unit id shows (design 3.1, "Unit id").
+// The unit view: what part of the map a unit id shows (design 3.1 Unit id).
 // Promises that every address of a request is placed by the same rule, for registers, coils and inputs alike.
 // Never reads or writes anything there.
 #pragma once

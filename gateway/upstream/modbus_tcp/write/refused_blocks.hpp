@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a client is told of its block writes that are refused with 0x01, 0x02 or 0x03 (design 3.3): where, in
-// command_detail, and once in the log. Promises that a command of this client that is pending keeps its registers, and
-// that a scanner that repeats its block writes one line. Never decides whether a write is refused.
+// What a client is told of its block writes that are refused with 0x01, 0x02 or 0x03 (design 3.3 Refused blocks):
+// where, in command_detail, and once in the log. Promises that a command of this client that is pending keeps its
+// registers, and that a scanner that repeats its block writes one line. Never decides whether a write is refused.
 #pragma once
 
 #include <cstdint>

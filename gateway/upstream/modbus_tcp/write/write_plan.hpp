@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plan of one write request: what is to be asked of the axis, after role, addresses and values were checked in that
-// order (design 3.3, "Writes" and "Roles"). Promises that a refused request has changed nothing, not even the memory of
+// order (design 3.3, 3.3 Roles). Promises that a refused request has changed nothing, not even the memory of
 // edges. Never asks anything of an axis itself: WriteRun carries the plan out.
 #pragma once
 
