@@ -6,6 +6,8 @@
 #include <cassert>
 #include <utility>
 
+#include "adapters/bus/opening_failure.hpp"
+
 namespace axisgate::can {
 
 SlcanLink::SlcanLink(std::string name, CanDevice device, std::uint32_t bitrate, std::unique_ptr<bus::ByteLink> port,
@@ -134,7 +136,7 @@ void SlcanLink::report() {
 void SlcanLink::log_once(const std::string& why) {
   if (why.empty() || why == last_logged_) return;
   last_logged_ = why;
-  log_.write(LogLevel::warning, log_source_, why + "; trying again each second");
+  bus::log_opening_failure(log_, log_source_, why);
 }
 
 }  // namespace axisgate::can

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <utility>
 
+#include "adapters/bus/opening_failure.hpp"
 #include "adapters/serial/still_open.hpp"
 
 namespace axisgate::can {
@@ -218,7 +219,7 @@ void SocketCanLink::lose(const std::string& why) {
   if (std::exchange(told_up_, false)) {
     events_->on_link_down(why);
   } else {
-    log_.write(LogLevel::warning, log_source_, why + "; trying again each second");
+    bus::log_opening_failure(log_, log_source_, why);
   }
 }
 
@@ -236,7 +237,7 @@ void SocketCanLink::close() {
 void SocketCanLink::log_failure(const std::string& why) {
   if (why == last_failure_) return;
   last_failure_ = why;
-  log_.write(LogLevel::warning, log_source_, why + "; trying again each second");
+  bus::log_opening_failure(log_, log_source_, why);
 }
 
 }  // namespace axisgate::can

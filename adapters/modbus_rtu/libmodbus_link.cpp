@@ -7,6 +7,8 @@
 #include <cassert>
 #include <utility>
 
+#include "adapters/bus/opening_failure.hpp"
+
 namespace axisgate::modbus_rtu {
 
 namespace {
@@ -82,7 +84,7 @@ void LibmodbusLink::on_not_opened(OpeningNumber opening, const std::string& why)
   arm();
   if (why == last_failure_) return;
   last_failure_ = why;
-  log_.write(LogLevel::warning, log_source_, why + "; trying again each second");
+  bus::log_opening_failure(log_, log_source_, why);
 }
 
 void LibmodbusLink::on_lost(OpeningNumber opening, const std::string& why) {

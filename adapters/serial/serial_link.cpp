@@ -9,6 +9,7 @@
 #include <cassert>
 #include <utility>
 
+#include "adapters/bus/opening_failure.hpp"
 #include "adapters/serial/serial_port.hpp"
 #include "adapters/serial/still_open.hpp"
 
@@ -149,7 +150,7 @@ void SerialLink::close() {
 void SerialLink::log_failure(const std::string& why) {
   if (why == last_failure_) return;
   last_failure_ = why;
-  log_.write(LogLevel::warning, log_source_, why + "; trying again each second");
+  bus::log_opening_failure(log_, log_source_, why);
 }
 
 std::string SerialLink::device_and(const Error& error) const {

@@ -11,10 +11,12 @@ constexpr const char* kHandEnd =
 
 CLI::App* add_hand(CLI::App& app, HandOptions& options, std::function<int()>& chosen, HandTask task,
                    const std::string& what) {
-  options.order.task = task;
+  options.arguments.task = task;
   CLI::App* command = app.add_subcommand(std::string(text(task)), what);
   command->add_option("HOST:PORT", options.endpoint, "the gateway's Modbus-TCP listener")->required();
-  command->add_option("AXIS", options.order.axis, "axis number")->required()->check(CLI::Range(1, 499).description(""));
+  command->add_option("AXIS", options.arguments.axis, "axis number")
+      ->required()
+      ->check(CLI::Range(1, 499).description(""));
   command->callback([&options, &chosen] { chosen = [&options] { return run(options); }; });
   return command;
 }
@@ -24,7 +26,7 @@ void add_speed(CLI::App* command, HandOptions& options, const std::string& what)
 }
 
 void add_enable_flag(CLI::App* command, HandOptions& options) {
-  command->add_flag("--enable", options.order.enable,
+  command->add_flag("--enable", options.arguments.enable,
                     "enable the axis before, and disable it after; without it the axis must be enabled already");
 }
 
@@ -42,7 +44,7 @@ void add_hand_commands(CLI::App& app, HandCommands& commands, std::function<int(
   move->add_option("TURNS", commands.move.turns, "target position in turns of the motor, such as 12.5 or -3")
       ->required()
       ->check(CLI::Validator(turns_mistake, ""));
-  move->add_flag("--relative", commands.move.order.relative, "by so many turns from where it stands");
+  move->add_flag("--relative", commands.move.arguments.relative, "by so many turns from where it stands");
   add_speed(move, commands.move, "profile velocity in rpm of the motor; without it the one that is set");
   add_enable_flag(move, commands.move);
   move->footer(

@@ -29,7 +29,7 @@ constexpr std::size_t kRoleAt = 7;
 /// One command, from its connection to its end.
 class Hand {
  public:
-  Hand(const HandOrder& order, HostPort place, boost::asio::io_context& io);
+  Hand(const HandArguments& arguments, HostPort place, boost::asio::io_context& io);
   /// To its end: the plan as it is then.
   [[nodiscard]] HandPlan run();
 
@@ -48,7 +48,7 @@ class Hand {
 
   boost::asio::io_context& io_;
   AsioRuntime runtime_;
-  HandOrder order_;
+  HandArguments arguments_;
   HostPort place_;
   HandPlan plan_;
   HandListener listener_;
@@ -68,12 +68,12 @@ class Hand {
   HandClient client_;  // last, so that it goes first: it calls back
 };
 
-Hand::Hand(const HandOrder& order, HostPort place, boost::asio::io_context& io)
+Hand::Hand(const HandArguments& arguments, HostPort place, boost::asio::io_context& io)
     : io_(io),
       runtime_(io),
-      order_(order),
+      arguments_(arguments),
       place_(std::move(place)),
-      plan_(order, runtime_.now()),
+      plan_(arguments, runtime_.now()),
       screen_([this] { end("nobody reads what is shown"); }),
       last_turn_(runtime_.now()),
       signals_(io, SIGINT, SIGTERM, SIGQUIT),
@@ -92,7 +92,7 @@ Hand::Hand(const HandOrder& order, HostPort place, boost::asio::io_context& io)
 HandPlan Hand::run() {
   await_signal();
   const bool terminal = ::isatty(STDIN_FILENO) == 1;
-  const bool jogs = order_.task == HandTask::jog;
+  const bool jogs = arguments_.task == HandTask::jog;
   if (jogs) key_mode_ = std::make_unique<KeyMode>(STDIN_FILENO);
   if (terminal)
     input_ = std::make_unique<KeyInput>(
@@ -136,7 +136,7 @@ void Hand::look() {
   looking_ = true;
   next_look_ = now() + kLookPeriod;
   const std::uint32_t answered = plan_.answered();
-  const std::uint16_t first = first_register(order_.axis);
+  const std::uint16_t first = first_register(arguments_.axis);
   client_.ask(read_registers_request(first, kHandRegisters),
               [this](Bytes reply) { registers_reply_.assign(reply.begin(), reply.end()); });
   client_.ask(read_inputs_request(first, kAxisInputCount), [this, answered](Bytes reply) {
@@ -155,8 +155,8 @@ void Hand::seen(Bytes registers_reply, Bytes inputs_reply, std::uint32_t answere
     plan_.on_view({}, answered, now());  // a listener with "offline_reads": "exception"
   } else {
     plan_.fail(exception == ModbusException::illegal_data_address
-                   ? fmt::format("this gateway has no axis {}", order_.axis)
-                   : fmt::format("axis {} cannot be read: {}", order_.axis, exception_text(exception)),
+                   ? fmt::format("this gateway has no axis {}", arguments_.axis)
+                   : fmt::format("axis {} cannot be read: {}", arguments_.axis, exception_text(exception)),
                now());
   }
   show();
@@ -167,7 +167,7 @@ void Hand::seen(Bytes registers_reply, Bytes inputs_reply, std::uint32_t answere
 void Hand::pump() {
   for (const HandWrite& write : plan_.take()) {
     const Rational units = plan_.view() ? plan_.view()->units_per_rev : Rational(1);
-    const auto request = hand_request(write, order_.axis, listener_, units);
+    const auto request = hand_request(write, arguments_.axis, listener_, units);
     if (!request) {
       plan_.refuse_number(now());
       return pump();
@@ -224,7 +224,7 @@ void Hand::await_signal() {
 void Hand::show() {
   if (plan_.over() || !plan_.view()) return;
   const std::string doing = plan_.doing();
-  screen_.show(hand_line(order_.axis, *plan_.view(), doing), doing, now());
+  screen_.show(hand_line(arguments_.axis, *plan_.view(), doing), doing, now());
 }
 
 /// Whole numbers of 9 digits and 9 places behind the point: every product with a unit is exact.
@@ -237,7 +237,7 @@ std::optional<Rational> typed_decimal(const std::string& typed) {
 }
 
 int tell_end(const HandOptions& options, const HandPlan& plan) {
-  const std::string_view name = text(options.order.task);
+  const std::string_view name = text(options.arguments.task);
   if (plan.exit_code() == 0)
     fmt::print("{}\n", plan.words());
   else
@@ -259,27 +259,27 @@ std::string rpm_mistake(const std::string& typed) {
 }
 
 int run(const HandOptions& options) {
-  const std::string_view name = text(options.order.task);
+  const std::string_view name = text(options.arguments.task);
   auto place = parse_host_port(options.endpoint);
   if (!place) {
     fmt::print(stderr, "axisgate {}: {}\n", name, host_port_mistake(options.endpoint));
     return kWrongCommandLine;
   }
-  HandOrder order = options.order;
-  if (order.task == HandTask::jog && (::isatty(STDIN_FILENO) != 1 || ::isatty(STDOUT_FILENO) != 1)) {
+  HandArguments arguments = options.arguments;
+  if (arguments.task == HandTask::jog && (::isatty(STDIN_FILENO) != 1 || ::isatty(STDOUT_FILENO) != 1)) {
     fmt::print(stderr,
                "axisgate jog: needs a terminal, for keys are its buttons; for a script there is axisgate move\n");
     return kWrongCommandLine;
   }
-  if (order.task == HandTask::move) order.turns = typed_decimal(options.turns).value_or(Rational());
-  if (!options.rpm.empty()) order.rpm = typed_decimal(options.rpm);
+  if (arguments.task == HandTask::move) arguments.turns = typed_decimal(options.turns).value_or(Rational());
+  if (!options.rpm.empty()) arguments.rpm = typed_decimal(options.rpm);
   // A terminal or pipe that nobody reads is told by the write.
   if (std::signal(SIGPIPE, SIG_IGN) == SIG_ERR) return 1;
-  HandPlan ended(order, {});
+  HandPlan ended(arguments, {});
   {
     // A scope of its own: the terminal is as it was before the last word is said.
     boost::asio::io_context io(1);
-    Hand hand(order, std::move(*place), io);
+    Hand hand(arguments, std::move(*place), io);
     ended = hand.run();
   }
   return tell_end(options, ended);

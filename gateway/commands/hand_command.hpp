@@ -12,7 +12,7 @@
 namespace axisgate::app {
 
 struct HandOptions {
-  HandOrder order;
+  HandArguments arguments;
   std::string endpoint;  ///< "HOST:PORT"
   std::string turns;     ///< of a move, as typed
   std::string rpm;       ///< empty: as it is

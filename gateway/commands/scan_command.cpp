@@ -13,6 +13,7 @@
 
 #include "adapters/asio/asio_runtime.hpp"
 #include "adapters/bus/bus.hpp"
+#include "adapters/bus/opening_failure.hpp"
 #include "adapters/can/can_device.hpp"
 #include "adapters/can/make_can_link.hpp"
 #include "adapters/canopen/canopen_wire.hpp"
@@ -26,9 +27,6 @@ namespace {
 
 /// A bus that cannot be spoken on by then is not waited for.
 constexpr Duration kUpLimit = std::chrono::seconds(3);
-/// With these words a link tells that it could not be opened. Without them the scan would end all the same, at
-/// kUpLimit.
-constexpr std::string_view kGoesOnTrying = "; trying again";
 
 /// The scan of one bus, from its opening to its end.
 class Scanner {
@@ -129,9 +127,9 @@ void Scanner::end(std::string_view why) {
 /// The link says in the log why it cannot be used, and that it goes on trying: a scan does not.
 void Scanner::on_log(LogLevel level, std::string_view message) {
   if (was_up_ && level > LogLevel::warning) return;
-  const std::size_t trying = message.find(kGoesOnTrying);
-  complaint_ = message.substr(0, trying);
-  if (!was_up_ && !ended_ && trying != std::string_view::npos) up_limit_->expires_at(runtime_.now());
+  const auto failure = bus::opening_failure_in(message);
+  complaint_ = failure.value_or(message);
+  if (!was_up_ && !ended_ && failure) up_limit_->expires_at(runtime_.now());
 }
 
 void Scanner::on_link(bool up) {

@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "adapters/asio/asio_runtime.hpp"
+#include "adapters/bus/opening_failure.hpp"
 #include "adapters/kinco/kinco_wire.hpp"
 #include "adapters/modbus_rtu/libmodbus_link.hpp"
 #include "adapters/modbus_rtu/rtu_wire.hpp"
@@ -25,8 +26,6 @@ namespace {
 
 /// A port that cannot be opened by then is not waited for.
 constexpr Duration kOpenLimit = std::chrono::seconds(3);
-/// With these words a link tells that it could not be opened.
-constexpr std::string_view kTriesAgain = "; trying again";
 
 /// The scan of one line, from its first opening to its end: one speech after the other, each with a wire of its own.
 class SerialScanner final : private bus::WireEvents {
@@ -112,9 +111,9 @@ void SerialScanner::end(std::string_view why) {
 /// The link says in the log why it cannot be used, and that it goes on trying: a scan does not.
 void SerialScanner::on_log(LogLevel level, std::string_view message) {
   if (level > LogLevel::warning) return;
-  const std::size_t trying = message.find(kTriesAgain);
-  if (trying == std::string_view::npos) return;
-  complaint_ = message.substr(0, trying);
+  const auto failure = bus::opening_failure_in(message);
+  if (!failure) return;
+  complaint_ = *failure;
   open_limit_->expires_at(runtime_.now());
 }
 

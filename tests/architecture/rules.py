@@ -194,8 +194,8 @@ def words(root):
             continue  # a binary file of a fuzz corpus
 
 
-# The field's words (ARCHITECTURE.md, "Words"), and the private ones that once stood in their place. What stands in quotes in C++ is
-# not looked at: a profile's key "fence" and the simulator's commands are contract.
+# The field's words (ARCHITECTURE.md, "Words"), and the private ones that once stood in their place. What stands in quotes in C++,
+# or in backquotes on a page, is not looked at: it may be another's text, or the name that something had before.
 C_TOKEN = re.compile(r"""(?P<note>//[^\n]*|/\*.*?\*/)|(?P<text>R"([^()\s\\]*)\(.*?\)\3"|"(?:\\.|[^"\\\n])*"|\d[\w'.]*|'(?:\\.|[^'\\\n])+')"""
                      r"|(?P<name>[A-Za-z_]\w*)", re.S)
 PRIVATE_PROSE = {
@@ -232,7 +232,7 @@ def field_words(root):
     pages = [path.relative_to(root).as_posix() for path in (*root.glob("*.md"), *root.glob("docs/**/*.md"))]
     for name in sorted(pages):
         for number, line in lines(root, name):
-            if breach := private(line.lower(), PRIVATE_PROSE):
+            if breach := private(re.sub(r"`[^`]*`", "", line.lower()), PRIVATE_PROSE):
                 yield f"{name}:{number}: {breach}"
     for name in files(root, {".cpp", ".hpp"}):
         of_folder = [those.items() for folders, those in PRIVATE_HERE.items() if name.startswith(folders) and name not in PRIVATE_ELSEWHERE]

@@ -109,8 +109,9 @@ class Rules(unittest.TestCase):
         self.write("docs/a.md", "A drive.\nLate replies meet a fence.\n")
         self.assert_breach("field_words", "docs/a.md:2")
 
-    def test_a_profile_s_key_and_words_of_another_meaning_are_let_pass(self):
+    def test_words_in_quotes_and_words_of_another_meaning_are_let_pass(self):
         self.write("gateway/drive/a.cpp", 'read("fence"); word_order(in_order, interface, surface, mutex);\n')
+        self.write("docs/a.md", "The key `fence` has another name now.\n")
         self.write("adapters/serial/b.cpp", "std::string group;  // in the order of the members of a group\n")
         self.assertEqual(self.breaches("field_words"), [])
 

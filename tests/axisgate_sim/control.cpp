@@ -8,16 +8,17 @@ namespace axisgate::simulated {
 namespace {
 
 constexpr std::string_view help =
-    "LINE/STATION: mute lose corrupt split duplicate noise noise-before noise-after wrong-station babble on|off|next "
-    "[N]|RATE, on Modbus RTU half wrong-length glued too; late MS [on|next [N]|RATE]|off; exception CODE [on|next "
+    "LINE/STATION: unresponsive lose corrupt split duplicate noise noise-before noise-after wrong-station babble "
+    "on|off|next [N]|RATE, on Modbus RTU half wrong-length glued too; late MS [on|next [N]|RATE]|off; exception CODE "
+    "[on|next "
     "[N]|RATE]|off (Modbus RTU); restart [next [N]|RATE|off]; clear; state; position; restarts; input NUMBER on|off; "
     "jam on|off; get|writes OBJECT; set OBJECT VALUE (INDEX.SUB, or the register of an id286pro). A Kinco: fault "
     "2601|2602 BITS; clear 2601|2602 BITS; stores; transitions. An id286pro: fault CODE [hardware]; clear CODE; "
-    "enable on|off; eeprom; starts. On CAN: mute lose duplicate wrong-station wrong-length emergencies "
+    "enable on|off; eeprom; starts. On CAN: unresponsive lose duplicate wrong-station wrong-length emergencies "
     "on|off|next [N]|RATE; babble [0xID] ...; exception ABORTCODE ...; restart before|after [next [N]]; nmt; "
-    "emergency CODE; connect on|off; twin on|off; an ld2: fault CODE; clear CODE; stores; transitions. A Keya, motors "
-    "A "
-    "and B: state, faults, enabled, position, speed, moves (each of both motors); last-command; commands; trips; fault|"
+    "emergency CODE; connect on|off; duplicate-node on|off; an ld2: fault CODE; clear CODE; stores; transitions. A "
+    "Keya, motors A and B: state, faults, enabled, position, speed, moves (each of both motors); last-command; "
+    "commands; trips; fault|"
     "clear A|B BITS; jam A|B on|off; set voltage|temperature|version VALUE; set count|current|motor-temperature A|B "
     "VALUE; heartbeat MS; heartbeat-twice on|off|next [N]|RATE. LINE: unplug; "
     "plug; reply-delay MS; exchanges; on CAN bus-off on|off; no-ack; overlaps. lines; help";
@@ -81,7 +82,7 @@ void Control::set_fault(std::string_view text) {
   const std::size_t equals = text.find('=');
   if (at == std::string_view::npos) {
     refuse_word("fault '" + std::string(text) +
-                "': write NAME@LINE/STATION or NAME@LINE/STATION=RATE, for example mute@lift/1");
+                "': write NAME@LINE/STATION or NAME@LINE/STATION=RATE, for example unresponsive@lift/1");
   }
   const std::string target(text.substr(at + 1, equals == std::string_view::npos ? equals : equals - at - 1));
   const std::string how(equals == std::string_view::npos ? "on" : text.substr(equals + 1));

@@ -81,11 +81,11 @@ std::optional<std::string> ask_can(Simulator& simulator, PortLine& port, std::si
     bus.send_emergency(position, static_cast<std::uint16_t>(number_in(words[2])), now);
     return "";
   }
-  if (command == "connect" || command == "twin") {
-    need_words(words, 3, "connect|twin LINE/NODE on|off");
+  if (command == "connect" || command == "duplicate-node") {
+    need_words(words, 3, "connect|duplicate-node LINE/NODE on|off");
     const bool on = on_or_off(words[2]);
     if (command == "connect") bus.connect(position, on);
-    if (command == "twin") simulator.set_duplicate(port, position, on);
+    if (command == "duplicate-node") simulator.set_duplicate(port, position, on);
     return "";
   }
   if (KeyaDrive* keya = bus.keya(position)) {

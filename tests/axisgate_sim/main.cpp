@@ -44,7 +44,8 @@ void describe_options(CLI::App& app, Options& options) {
       "may\n"
       "             carry any parameter of its manual: keya-rs232+0020=3+0050=4, and +coast|+ramp, +queries-feed,\n"
       "             +repeat-ignored, +zero-ignored, +other-kept, +sub-00, +keeps-counts, +period-only, +heartbeat=MS.\n"
-      "The control socket takes text lines: echo 'mute lift/1 on' | socat - UNIX:/tmp/sim.sock; 'help' lists them.");
+      "The control socket takes text lines: echo 'unresponsive lift/1 on' | socat - UNIX:/tmp/sim.sock; 'help' lists "
+      "them.");
   app.add_option(
          "--line", options.lines,
          "PATH:TYPE@STATION[,TYPE@STATION...], type jd or md; PATH:rtu:TYPE@UNIT[,...] for Modbus RTU, type "
@@ -69,7 +70,7 @@ void describe_options(CLI::App& app, Options& options) {
       ->check(CLI::Range(0.0, 1000.0));
   app.add_option("--seed", options.seed, "Seed of the faults' chances");
   app.add_option("--fault", options.faults,
-                 "NAME@LINE/STATION[=RATE], for example mute@lift/1 or corrupt@table/2=0.01");
+                 "NAME@LINE/STATION[=RATE], for example unresponsive@lift/1 or corrupt@table/2=0.01");
   app.add_option("--control", options.control, "Path of a Unix socket that takes commands while the simulator runs")
       ->type_name("PATH");
 }

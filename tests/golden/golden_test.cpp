@@ -162,13 +162,15 @@ TEST(Golden, AStepperIsStoppedQuicklyAndLatched) {
 
 TEST(Golden, AStepperIsLateAndTheResynchronisationReadHasAnotherLength) {
   Recorder story(simulated::Id286proOptions{}, false);
-  story.say("the reply to the next request comes 150 ms late: the fence asks for one register, not for two");
+  story.say(
+      "the reply to the next request comes 150 ms late: the resynchronisation read asks for one register, not for two");
   story.faults().late_by = 150ms;
   story.faults().next(DriveFault::late);
   story.run(500ms);
   story.read(18, 1);
   story.say(
-      "the next two come 300 ms late each: two fences, then offline; nothing counts until the drive comes up anew");
+      "the next two come 300 ms late each: two resynchronisation reads, then offline; nothing counts until the drive "
+      "comes up anew");
   story.faults().late_by = 300ms;
   story.faults().next(DriveFault::late, 2);
   story.run(1100ms);
@@ -184,7 +186,9 @@ TEST(Golden, JdComesUpOnModbusRtu) {
 
 TEST(Golden, ALateReplyOnModbusRtuIsToldByItsLength) {
   Recorder story(jd_on_rs485(), false);
-  story.say("the reply to the next request comes 300 ms late: it is a write, and read back once the fence stands");
+  story.say(
+      "the reply to the next request comes 300 ms late: it is a write, and read back once the resynchronisation read "
+      "is answered");
   story.faults().late_by = 300ms;
   story.faults().next(DriveFault::late);
   story.write(48, {0, 1000});

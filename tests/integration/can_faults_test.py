@@ -102,17 +102,17 @@ class DuplicateNodes(OneOfThree):
             with self.subTest(node=number):
                 axis = self.axes[number - 1]
                 self.assertEqual(axis.get("axis_alarms") & DUPLICATE_NODE, 0)
-                self.ask("twin DRIVE on", number)
+                self.ask("duplicate-node DRIVE on", number)
                 until("the alarm", lambda: axis.get("axis_alarms") & DUPLICATE_NODE)
                 self.gateway.wait_for(f"two devices answer as node {number}: give one of them another number")
                 axis.until_input("warning")
-                self.ask("twin DRIVE off", number)
+                self.ask("duplicate-node DRIVE off", number)
                 for other in self.axes:
                     if other is not axis:
                         self.assertEqual(other.get("axis_alarms") & DUPLICATE_NODE, 0 if other.number > number else DUPLICATE_NODE)
 
 
-class Doubt(OneOfThree):
+class WrongReplies(OneOfThree):
     timings = {"timeout_ms": 300}
 
     def stand_somewhere(self):

@@ -159,7 +159,7 @@ class DriveAnswersNothing(Prepared):
         for axis in self.axes:
             with self.subTest(axis=axis.number):
                 others = [other for other in self.axes if other is not axis]
-                self.ask("mute DRIVE on", axis.number)
+                self.ask("unresponsive DRIVE on", axis.number)
                 with self.refused(0x0B, NO_PATH):
                     while True:
                         axis.set(profile_velocity=600 * RPM + axis.get("sequence"))

@@ -100,7 +100,7 @@ class Turmoil(CanStory):
 
     timings = {"timeout_ms": 150}
     troubles = ("lose DRIVE 0.3", "late DRIVE 200 0.3", "duplicate DRIVE 0.5", "restart DRIVE", "wrong-length DRIVE 0.3",
-                "exception DRIVE 0x08000022 0.3", "mute DRIVE 0.3", "emergencies DRIVE 0x1000 on")
+                "exception DRIVE 0x08000022 0.3", "unresponsive DRIVE 0.3", "emergencies DRIVE 0x1000 on")
 
     def write_and_read(self, client, number, answers):
         value = 0

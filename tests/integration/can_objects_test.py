@@ -95,7 +95,7 @@ class OnCan(Objects, CanStory):
         self.assertEqual(self.read(1, 0x1008).decode(), self.ask("get DRIVE 1008.00", 1))
 
     def test_a_drive_that_answers_nothing_any_more(self):
-        self.ask("mute DRIVE on", 1)
+        self.ask("unresponsive DRIVE on", 1)
         answer = self.general(1, 0x1008)
         self.assertIn(answer, (bytes([0xAB, NO_ANSWER]), bytes([0xAB, NO_PATH])), answer.hex(" "))
         self.ask("clear DRIVE", 1)

@@ -79,7 +79,7 @@ class WhoIsThere(ScanStory):
         # Patience for a busy machine: a node is silent for it after so long.
         program = self.keep(Program("axisgate scan", [AXISGATE, "scan", self.device(), "--nodes", "4-5", "--timeout-ms", "1000"]))
         until("node 4 is read", lambda: int(self.sim.ask("exchanges can")) > 10)
-        self.sim.ask("mute can/4 on")
+        self.sim.ask("unresponsive can/4 on")
         self.assertEqual(program.ended(), 0)
         self.assertRegex(program.text(), "node 4: it fell silent while it was asked")
         self.assertRegex(program.text(), r"\n +5 .*kinco-jd")

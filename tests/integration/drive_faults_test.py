@@ -89,15 +89,15 @@ class Line(Story):
     # The stories, on each kind of line.
 
     def tell_mute(self):
-        self.be_mute_for_a_while()
+        self.be_unresponsive_for_a_while()
         self.middle.until_input("enabled")  # nobody told it to stop
         self.middle.command("disable")
         self.middle.until(axis_state=DISABLED)
         self.move(self.middle)
 
-    def be_mute_for_a_while(self):
+    def be_unresponsive_for_a_while(self):
         self.move(self.middle)
-        self.fault("mute DRIVE on")
+        self.fault("unresponsive DRIVE on")
         self.middle.until(link_state=OFFLINE)
         block = self.middle.block()
         self.assertEqual((block["statusword"], block["valid"], block["error_code"]), (0, 0, 0x8130))
@@ -153,8 +153,8 @@ class Chain(Line):
     def test_mute(self):
         self.tell_mute()
 
-    def test_mute_for_a_moment_only(self):
-        self.fault("mute DRIVE next 1")
+    def test_unresponsive_for_a_moment_only(self):
+        self.fault("unresponsive DRIVE next 1")
         until("a timeout", lambda: self.client.bus(0)["timeouts"] >= 1)
         self.middle.until(link_state=ONLINE)
         self.assertEqual(len(self.gateway.found("axis 2: .*offline")), 0)

@@ -218,7 +218,7 @@ class WhatCannotBe(Hand):
         self.assertIn("Connection refused", ended.stderr)
 
     def test_a_drive_that_is_out_of_reach(self):
-        self.sim.ask("mute serial/1 on")
+        self.sim.ask("unresponsive serial/1 on")
         until("it is offline", lambda: self.watched(1).get("link_state") > 3)
         ended = self.hand("move", 1, 1, "--enable")
         self.assertEqual(ended.returncode, 1)

@@ -70,7 +70,7 @@ class DriveFallsSilent(CableCut):
 
     @on(RS232, RS485, KEYA_CAN, CANOPEN)
     def test_nothing_is_enabled_or_started(self, interface):
-        words = ("connect cart/1 off", "connect cart/1 on") if interface.on_can else ("mute cart/1 on", "clear cart/1")
+        words = ("connect cart/1 off", "connect cart/1 on") if interface.on_can else ("unresponsive cart/1 on", "clear cart/1")
         self.cut(interface, *words, OFFLINE)
 
 

@@ -83,8 +83,8 @@ class AllAtOnce(Story):
             self.assertEqual(self.sim.writes(drive, "6083.00"), ROUNDS, "each write reached the drive once")
         self.assertEqual(self.client.bus(0)["timeouts"], 0)
 
-    def test_readers_of_a_mute_axis_wait_for_nothing(self):
-        self.sim.ask("mute lift/1 on")
+    def test_readers_of_an_unresponsive_axis_wait_for_nothing(self):
+        self.sim.ask("unresponsive lift/1 on")
         readers = [self.later(self.read_everything_of_both) for _ in range(16)]
         for reader in readers:
             self.assertLessEqual(reader.result(timeout=NEVER), {ONLINE, SUSPECT, OFFLINE})

@@ -62,14 +62,14 @@ class Programs(OfPrograms):
                 self.axis(1).until(owner=0)
 
     def test_what_goes_wrong_is_told_and_nothing_is_enabled(self):
-        self.sim.ask("mute lift/1 on")
+        self.sim.ask("unresponsive lift/1 on")
         self.axis(1).until(link_state=4)
         for run in self.each():
             program = run(TURNS)
             self.assertEqual(program.ended(), 1, program.text())
             program.wait_for("not online")
         self.assertEqual(self.sim.writes("lift/1", "6040.00"), 0)
-        self.sim.ask("mute lift/1 off")
+        self.sim.ask("unresponsive lift/1 off")
         self.axis(1).until(link_state=2)
         self.sim.ask("set lift/1 2010.03 1")  # DIN1 has the last word on the enable
         for run in self.each():

@@ -90,11 +90,11 @@ class Reload(ReloadStory):
 
     def test_a_drive_out_of_reach_refuses_it(self):
         self.start()
-        self.sim.ask("mute feeder/1 on")
+        self.sim.ask("unresponsive feeder/1 on")
         self.axis(2).until(link_state=4)
         self.rewrite(buses=self.buses(feeder={"name": "conveyor"}))
         self.refused("axis 2 (md-2) is offline")
-        self.sim.ask("mute feeder/1 off")
+        self.sim.ask("unresponsive feeder/1 off")
         self.until_online()
         self.taken("bus feeder: changed")
 

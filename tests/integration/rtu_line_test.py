@@ -37,7 +37,7 @@ class Neighbours(ThreeMakers):
         self.assertEqual((counts["timeouts"], counts["bad_frames"], counts["late_replies"]), (0, 0, 0))
 
     def test_one_is_mute(self):
-        self.be_mute_for_a_while()
+        self.be_unresponsive_for_a_while()
         self.move(self.middle)
 
     def test_one_is_late(self):

@@ -73,7 +73,7 @@ class WhoIsThere(ScanStory):
         program = self.keep(Program("axisgate scan", [AXISGATE, "scan", self.path("kinco"), "--stations", "3-4", "--baud", "38400",
                                                       "--protocol", "kinco-serial", "--timeout-ms", "2500"]))
         until("station 3 is read", lambda: int(self.sim.ask("exchanges kinco")) > 10)
-        self.sim.ask("mute kinco/3 on")
+        self.sim.ask("unresponsive kinco/3 on")
         self.assertEqual(program.ended(), 0)
         self.assertRegex(program.text(), "station 3: it fell silent while it was asked")
         self.assertRegex(program.text(), r"\nkinco-serial +38400 +4  kinco-md")

@@ -56,11 +56,11 @@ class Service(Story):
         self.assertEqual(self.gateway.ended(), 0)
 
     # None of the two is a reason to end what moves other motors.
-    def test_a_mute_drive_and_a_missing_device_are_no_hang(self):
+    def test_an_unresponsive_drive_and_a_missing_device_are_no_hang(self):
         self.run_as_a_service()
         self.hears("^READY=1\n")
         self.until_online()
-        self.sim.ask("mute lift/1 on")
+        self.sim.ask("unresponsive lift/1 on")
         self.client.axis(1).until(link_state=4)
         os.unlink(self.path("feeder"))
         self.hears_signs_of_life(3 * WATCHDOG_S * 4)

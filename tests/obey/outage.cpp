@@ -11,7 +11,7 @@ using simulated::DriveFault;
 
 DriveFault fault_of(Strike how) {
   constexpr std::array<DriveFault, kStrikes.size()> kFaults{
-      DriveFault::mute,          DriveFault::lose,        DriveFault::late,    DriveFault::duplicate,
+      DriveFault::unresponsive,  DriveFault::lose,        DriveFault::late,    DriveFault::duplicate,
       DriveFault::noise_before,  DriveFault::noise_after, DriveFault::corrupt, DriveFault::split,
       DriveFault::emergencies,   DriveFault::babble,      DriveFault::half,    DriveFault::wrong_length,
       DriveFault::wrong_station, DriveFault::glued};
@@ -54,7 +54,7 @@ void Plant::join_wire() {
     if constexpr (std::is_same_v<decltype(link), CanLinkSim&>)
       link.line().connect(0, !deaf);
     else
-      link.line().faults(0).set_rate(DriveFault::mute, deaf ? 1 : 0);
+      link.line().faults(0).set_rate(DriveFault::unresponsive, deaf ? 1 : 0);
   });
 }
 

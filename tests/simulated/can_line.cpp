@@ -102,7 +102,7 @@ KeyaDrive* CanLine::keya(std::size_t position) {
 
 bool CanLine::has(DriveFault fault) const {
   switch (fault) {
-    case DriveFault::mute:
+    case DriveFault::unresponsive:
     case DriveFault::late:
     case DriveFault::lose:
     case DriveFault::duplicate:

@@ -23,7 +23,7 @@ void CanLine::request_arrives(std::size_t position, const BusFrame& frame, std::
   CanExchange exchange{tag, at, slot.node->node(), recorded(frame), {}, {}};
   const bool answerable = slot.node->wants_answer(frame);
   if (answerable && !frame.remote && owed_until_ > at) ++overlapping_;
-  if (answerable && slot.faults.strikes(DriveFault::mute, random_)) {
+  if (answerable && slot.faults.strikes(DriveFault::unresponsive, random_)) {
     journal_.record(std::move(exchange));
     return;
   }

@@ -5,7 +5,7 @@ namespace axisgate::simulated {
 namespace {
 
 constexpr std::array<std::string_view, drive_fault_count> names{
-    "mute",         "late",      "lose",          "noise-before", "noise-after",    "corrupt",
+    "unresponsive", "late",      "lose",          "noise-before", "noise-after",    "corrupt",
     "split",        "duplicate", "wrong-station", "restart",      "babble",         "half",
     "wrong-length", "glued",     "exception",     "emergencies",  "heartbeat-twice"};
 

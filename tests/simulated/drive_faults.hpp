@@ -17,7 +17,7 @@
 namespace axisgate::simulated {
 
 enum class DriveFault : std::uint8_t {
-  mute,           // the request is neither seen nor answered
+  unresponsive,   // the request is neither seen nor answered
   late,           // the reply comes `late_by` later
   lose,           // the drive acts, the reply is lost
   noise_before,   // random bytes before the reply

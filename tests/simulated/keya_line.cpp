@@ -113,7 +113,7 @@ void KeyaLine::byte_arrives(std::uint8_t byte, Time at) {
 void KeyaLine::request_arrives(std::size_t position, const KeyaFrame& request, Time at) {
   Slot& slot = slots_[position];
   KeyaExchange exchange{++tags_, at, slot.drive->options().node, {request.begin(), request.end()}, {}, {}};
-  if (slot.faults.strikes(DriveFault::mute, random_)) {
+  if (slot.faults.strikes(DriveFault::unresponsive, random_)) {
     journal_.record(std::move(exchange));
     return;
   }

@@ -146,7 +146,7 @@ void RtuLine::request_arrives(std::size_t position, const RtuFrame& request, Tim
   Slot& slot = slots_[position];
   RtuExchange exchange{++tags_, at, slot.slave->unit(), seal_rtu(request.unit, request.pdu), {}, {}};
   const bool broadcast = request.unit != slot.slave->unit();
-  if (slot.faults.strikes(DriveFault::mute, random_)) {
+  if (slot.faults.strikes(DriveFault::unresponsive, random_)) {
     journal_.record(std::move(exchange));
     return;
   }

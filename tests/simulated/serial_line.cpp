@@ -128,7 +128,7 @@ void SerialLine::flush_echo(Time at) {
 void SerialLine::request_arrives(std::size_t position, const TenByteFrame& request, Time at) {
   Slot& slot = slots_[position];
   Exchange exchange{++tags_, at, slot.drive->station(), request, {}, {}};
-  if (slot.faults.strikes(DriveFault::mute, random_)) {
+  if (slot.faults.strikes(DriveFault::unresponsive, random_)) {
     journal_.record(std::move(exchange));
     return;
   }

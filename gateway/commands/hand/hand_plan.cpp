@@ -37,9 +37,9 @@ std::string_view text(HandTask task) {
   return kNames[static_cast<std::size_t>(task)];
 }
 
-HandPlan::HandPlan(const HandOrder& order, Instant now) : order_(order) {
+HandPlan::HandPlan(const HandArguments& arguments, Instant now) : arguments_(arguments) {
   // A stop asks nobody, and looks at nothing first.
-  if (order_.task != HandTask::stop) return;
+  if (arguments_.task != HandTask::stop) return;
   step_ = Step::stop;
   write({.what = HandWrite::What::stop, .command = Command::quick_stop});
   stand_by_ = now + kStandLimit;
@@ -110,9 +110,10 @@ void HandPlan::on_answer(ModbusException exception, Instant now) {
 void HandPlan::step_done(Instant now) {
   switch (step_) {
     case Step::begin:
-      if (!order_.rpm) return after_speed(now);
-      write({.what = order_.task == HandTask::jog ? HandWrite::What::jog_velocity : HandWrite::What::profile_velocity,
-             .number = *order_.rpm});
+      if (!arguments_.rpm) return after_speed(now);
+      write(
+          {.what = arguments_.task == HandTask::jog ? HandWrite::What::jog_velocity : HandWrite::What::profile_velocity,
+           .number = *arguments_.rpm});
       claim(now);
       return go(Step::speed);
     case Step::speed:
@@ -123,7 +124,7 @@ void HandPlan::step_done(Instant now) {
       return go(Step::working);
     case Step::target:
       claim(now);
-      write_command(order_.relative ? Command::move_relative : Command::move_absolute);
+      write_command(arguments_.relative ? Command::move_relative : Command::move_absolute);
       may_move_ = true;
       return go(Step::start);
     case Step::start:
@@ -142,7 +143,7 @@ void HandPlan::step_done(Instant now) {
 
 void HandPlan::after_speed(Instant now) {
   const bool enabled = view_->has(AxisInput::enabled) && !view_->has(AxisInput::stop_latched);
-  if (enabled && order_.task != HandTask::enable) return after_enable(now);
+  if (enabled && arguments_.task != HandTask::enable) return after_enable(now);
   torque_is_ours_ = !view_->has(AxisInput::enabled);
   claim(now);
   write_command(Command::enable);
@@ -150,12 +151,12 @@ void HandPlan::after_speed(Instant now) {
 }
 
 void HandPlan::after_enable(Instant now) {
-  if (order_.task == HandTask::move) {
-    write({.what = HandWrite::What::target_position, .number = order_.turns});
+  if (arguments_.task == HandTask::move) {
+    write({.what = HandWrite::What::target_position, .number = arguments_.turns});
     claim(now);
     return go(Step::target);
   }
-  if (order_.task == HandTask::jog) {
+  if (arguments_.task == HandTask::jog) {
     // A button acts on 1 once it was 0.
     write({.what = HandWrite::What::coil, .coil = kJogForward}, false);
     ++buttons_waiting_;
@@ -199,7 +200,7 @@ void HandPlan::on_view(const HandView& view, std::uint32_t answered, Instant now
       if (view.has(AxisInput::enabled)) return after_enable(now);
       return watch(now);
     case Step::working:
-      if (order_.task == HandTask::jog && button_ == Button::none && stands(now) && now >= watched_from_ + kStill)
+      if (arguments_.task == HandTask::jog && button_ == Button::none && stands(now) && now >= watched_from_ + kStill)
         may_move_ = false;
       return watch(now);
     case Step::refused:
@@ -231,10 +232,10 @@ void HandPlan::first_look(Instant now) {
                               owner_text(view)),
                   now);
   const bool ready = view.has(AxisInput::enabled) && !view.has(AxisInput::stop_latched);
-  if (!ready && order_.task != HandTask::enable && !order_.enable)
+  if (!ready && arguments_.task != HandTask::enable && !arguments_.enable)
     return finish(1,
                   fmt::format("{} is {}: --enable enables it for this {}", name,
-                              view.has(AxisInput::enabled) ? "stopped and latched" : "disabled", text(order_.task)),
+                              view.has(AxisInput::enabled) ? "stopped and latched" : "disabled", text(arguments_.task)),
                   now);
   owned_before_ = view.mine();
   id_ = after(view.command_id_seen);
@@ -264,7 +265,7 @@ void HandPlan::watch(Instant now) {
     return finish(1, fmt::format("the lease of {} ran out: the gateway has stopped it", name), now);
   if (view.has(AxisInput::stop_latched) || !view.has(AxisInput::enabled))
     return finish(1, fmt::format("{} was stopped by another client, its lease or its drive", name), now);
-  if (order_.task != HandTask::move || view.motion_id != id_) return;
+  if (arguments_.task != HandTask::move || view.motion_id != id_) return;
   if (view.motion == MotionState::completed) {
     // At its target it may still be told to turn: velocities are old by a filter's time. No stop is needed for that.
     may_move_ = false;
@@ -278,7 +279,7 @@ void HandPlan::watch(Instant now) {
     return finish(1,
                   fmt::format("the move of {} was {}: {}", name,
                               name_of(WordKind::motion_state, static_cast<std::uint32_t>(view.motion)),
-                              hand_line(order_.axis, view, "")),
+                              hand_line(arguments_.axis, view, "")),
                   now);
 }
 
@@ -300,7 +301,7 @@ bool HandPlan::stands(Instant now) const {
 
 void HandPlan::on_keys(const std::vector<HandKey>& keys, Instant now) {
   for (const HandKey key : keys) {
-    if (step_ != Step::working || order_.task != HandTask::jog) return;
+    if (step_ != Step::working || arguments_.task != HandTask::jog) return;
     if (key == HandKey::quit) return finish(0, fmt::format("{} is let go", axis_text()), now);
     if (key == HandKey::other) {
       let_go();

@@ -20,7 +20,8 @@ namespace axisgate::app {
 enum class HandTask : std::uint8_t { enable, move, jog, stop };
 [[nodiscard]] std::string_view text(HandTask task);
 
-struct HandOrder {
+/// What a person asks for on the command line.
+struct HandArguments {
   HandTask task = HandTask::stop;
   AxisNumber axis = 1;
   Rational turns{};  ///< move: to this position, or by so much
@@ -40,7 +41,7 @@ class HandPlan {
   /// A motor stands when it has not moved for so long: longer than the filters of a drive's speed.
   static constexpr Duration kStill = std::chrono::milliseconds(300);
 
-  HandPlan(const HandOrder& order, Instant now);
+  HandPlan(const HandArguments& arguments, Instant now);
 
   /// What is written next, in this order; each is answered once, in the same order.
   [[nodiscard]] std::vector<HandWrite> take();
@@ -118,7 +119,7 @@ class HandPlan {
   [[nodiscard]] std::string why_refused() const;
   [[nodiscard]] std::string axis_text() const;
 
-  HandOrder order_;
+  HandArguments arguments_;
   Step step_ = Step::look;
   std::deque<HandWrite> outbox_;
   struct Waiting {

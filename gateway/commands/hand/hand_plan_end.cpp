@@ -12,7 +12,7 @@ namespace axisgate::app {
 
 void HandPlan::end(std::string_view why, Instant now) {
   if (ending()) return;
-  const bool held = order_.task == HandTask::enable && step_ == Step::working && stands(now);
+  const bool held = arguments_.task == HandTask::enable && step_ == Step::working && stands(now);
   const std::string_view what = !claimed_         ? " was asked for nothing"
                                 : !held           ? " is stopped"
                                 : torque_is_ours_ ? " is disabled"
@@ -35,7 +35,7 @@ void HandPlan::lost(std::string_view why) {
     words_ += fmt::format("; it stops {} when its lease runs out, within {} ms", axis_text(), lease_ms_);
   else if (claimed_)
     words_ += fmt::format("; {} has no lease: a move goes on to its target, and only a stop ends it", axis_text());
-  else if (order_.task == HandTask::stop && outbox_.empty())
+  else if (arguments_.task == HandTask::stop && outbox_.empty())
     words_ += fmt::format("; whether {} was stopped is not known", axis_text());
   step_ = Step::over;
 }
@@ -43,8 +43,8 @@ void HandPlan::lost(std::string_view why) {
 void HandPlan::refuse_number(Instant now) {
   waiting_.pop_back();
   fail(fmt::format("{} does not fit its register, in the units of {}",
-                   step_ == Step::speed ? fmt::format("{} rpm", order_.rpm->to_double())
-                                        : fmt::format("{} turns", order_.turns.to_double()),
+                   step_ == Step::speed ? fmt::format("{} rpm", arguments_.rpm->to_double())
+                                        : fmt::format("{} turns", arguments_.turns.to_double()),
                    axis_text()),
        now);
 }
@@ -52,7 +52,7 @@ void HandPlan::refuse_number(Instant now) {
 void HandPlan::fail(std::string_view why, Instant now) {
   if (!ending()) return finish(1, std::string(why), now);
   // A stop has nothing left to do where its axis cannot be seen; any other end has its own limit of time.
-  if (order_.task != HandTask::stop || over()) return;
+  if (arguments_.task != HandTask::stop || over()) return;
   code_ = 1;
   if (words_.empty()) words_ = why;
   go(Step::over);
@@ -75,16 +75,16 @@ void HandPlan::finish(int code, std::string words, Instant now) {
 void HandPlan::stood(Instant now) {
   if (view_->in_sight() && (!stands(now) || now < watched_from_ + kStill)) return;
   may_move_ = false;
-  if (order_.task == HandTask::stop) {
+  if (arguments_.task == HandTask::stop) {
     stand_by_ = kNever;
     const bool known = view_->in_sight();
     code_ = std::max(code_, known ? 0 : 1);
     if (words_.empty())
-      words_ = known ? "stopped: " + hand_line(order_.axis, *view_, "")
+      words_ = known ? "stopped: " + hand_line(arguments_.axis, *view_, "")
                      : fmt::format("{} is out of reach: what it does is not known", axis_text());
     return go(Step::over);
   }
-  if (code_ == 0) words_ += ": " + hand_line(order_.axis, *view_, "");
+  if (code_ == 0) words_ += ": " + hand_line(arguments_.axis, *view_, "");
   after_stop();
 }
 
@@ -98,7 +98,7 @@ void HandPlan::after_stop() {
 
 void HandPlan::after_disable() {
   stand_by_ = kNever;
-  if (!claimed_ || owned_before_ || order_.task == HandTask::stop || (view_ && view_->anothers()))
+  if (!claimed_ || owned_before_ || arguments_.task == HandTask::stop || (view_ && view_->anothers()))
     return go(Step::over);
   write_command(Command::release);
   go(Step::release);

@@ -23,18 +23,18 @@ std::string HandPlan::why_refused() const {
   return out;
 }
 
-std::string HandPlan::axis_text() const { return fmt::format("axis {}", order_.axis); }
+std::string HandPlan::axis_text() const { return fmt::format("axis {}", arguments_.axis); }
 
 std::string HandPlan::doing() const {
   if (step_ == Step::stop || (step_ == Step::standing && !reached_)) return "quick stop";
   if (step_ == Step::disable) return "disabling";
   if (step_ < Step::working) return "";
   if (step_ != Step::working) return "";
-  switch (order_.task) {
+  switch (arguments_.task) {
     case HandTask::enable:
       return "held; Ctrl-C disables it";
     case HandTask::move:
-      return fmt::format("{} {} turns; Ctrl-C stops", order_.relative ? "by" : "to", order_.turns.to_double());
+      return fmt::format("{} {} turns; Ctrl-C stops", arguments_.relative ? "by" : "to", arguments_.turns.to_double());
     case HandTask::jog:
       break;
     case HandTask::stop:

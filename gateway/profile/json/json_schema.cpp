@@ -152,10 +152,15 @@ class Wording {
     if (const json* properties = find(said, "properties"))
       for (const auto& [key, schema] : properties->items()) known.push_back(key);
     for (const auto& [key, unused] : value.items())
-      if (property(said, key) == nullptr)
-        put(pointer_to(pointer, key), said.contains("expects")
-                                          ? "\"" + key + "\" is not " + said["expects"].get<std::string>()
-                                          : "unknown key \"" + key + "\"" + did_you_mean(key, known));
+      if (property(said, key) == nullptr) put(pointer_to(pointer, key), unknown_key(key, said, known));
+  }
+
+  static std::string unknown_key(const std::string& key, const json& said, const std::vector<std::string>& known) {
+    const json* renamed = find(said, "renamed");
+    if (renamed != nullptr && renamed->contains(key))
+      return "key \"" + key + "\" is called \"" + renamed->at(key).get<std::string>() + "\" now";
+    if (said.contains("expects")) return "\"" + key + "\" is not " + said["expects"].get<std::string>();
+    return "unknown key \"" + key + "\"" + did_you_mean(key, known);
   }
 
   static std::string quoted(const std::string& description) {

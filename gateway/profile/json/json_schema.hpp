@@ -36,7 +36,8 @@ inline constexpr std::size_t kMaxJsonString = 4096;
 [[nodiscard]] std::variant<nlohmann::json, SchemaFault> parse_json(std::string_view text);
 
 /// `schema` (draft-7) is part of the program: a bad one throws. Beside draft-7 a schema may say, at a "pattern",
-/// "expects": in words what the text must be (at "patternProperties": what a key must be).
+/// "expects": in words what the text must be (at "patternProperties": what a key must be); and beside "properties",
+/// "renamed": the names that keys had before, each with that of today. An old name is a fault that tells the new one.
 [[nodiscard]] std::vector<SchemaFault> validate(const nlohmann::json& document, const nlohmann::json& schema);
 
 /// One more step of a JSON pointer, escaped.

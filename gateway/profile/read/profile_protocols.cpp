@@ -63,7 +63,7 @@ void read_rtu(Reading& reading, const json& node, const std::string& pointer, Pr
 
 std::vector<ResyncSpec> resync_in(const json& node) {
   std::vector<ResyncSpec> out;
-  const json* resync = member(node, "fence");
+  const json* resync = member(node, "resynchronisation");
   if (resync == nullptr || !resync->is_array()) return out;
   for (const json& entry : *resync) {
     ResyncSpec read;
@@ -150,11 +150,11 @@ void check_registers(Reading& reading, const ProtocolSpec& protocol, const std::
   std::set<int> lengths;
   for (std::size_t i = 0; i < protocol.resync.size(); ++i) {
     check_counts(reading, protocol.rtu, protocol.resync[i],
-                 pointer_to(pointer_to(pointer_to(pointer, "fence"), i), "counts"));
+                 pointer_to(pointer_to(pointer_to(pointer, "resynchronisation"), i), "counts"));
     lengths.insert(protocol.resync[i].counts.begin(), protocol.resync[i].counts.end());
   }
   if (lengths.size() < 2)
-    reading.fault(pointer_to(pointer, "fence"),
+    reading.fault(pointer_to(pointer, "resynchronisation"),
                   "needs at least two different counts: the reply of a read tells its length and nothing else");
 }
 
@@ -164,7 +164,7 @@ bus::ObjectAddress asked_for(bus::ObjectAddress address) { return {address.index
 void check_resync(Reading& reading, const std::string& name, const ProtocolSpec& protocol, const std::string& pointer) {
   std::set<bus::ObjectAddress> addresses;
   for (std::size_t i = 0; i < protocol.resync.size(); ++i) {
-    const std::string at = pointer_to(pointer_to(pointer, "fence"), i);
+    const std::string at = pointer_to(pointer_to(pointer, "resynchronisation"), i);
     const std::string& wanted = protocol.resync[i].name;
     if (!reading.names_object(wanted, at)) continue;
     const Object& object = *reading.profile.find(wanted, 0);
@@ -172,11 +172,11 @@ void check_resync(Reading& reading, const std::string& name, const ProtocolSpec&
     if (place == object.places.end())
       reading.fault(at, "object \"" + wanted + "\" has no address on " + name);
     else if (!object.readable)
-      reading.fault(at, "object \"" + wanted + "\" cannot be read, so it is no fence");
+      reading.fault(at, "object \"" + wanted + "\" cannot be read, so it is no resynchronisation read");
     else if (place->second.unasked)
-      reading.fault(at, "object \"" + wanted + "\" comes unasked, so it is no fence");
+      reading.fault(at, "object \"" + wanted + "\" comes unasked, so it is no resynchronisation read");
     else if (name != "modbus-rtu" && !addresses.insert(asked_for(place->second.address)).second)
-      reading.fault(at, "the same address stands in this fence already");
+      reading.fault(at, "the same address stands in this list already");
   }
 }
 

@@ -28,11 +28,11 @@ inline HandWrite coil(std::uint16_t offset, bool on) { return {.what = What::coi
 class ByHand : public ::testing::Test {
  protected:
   void begin(HandTask task, bool enable = true) {
-    order_.task = task;
-    order_.axis = 4;
-    order_.turns = Rational(5, 2);
-    order_.enable = enable;
-    plan_.emplace(order_, now_);
+    arguments_.task = task;
+    arguments_.axis = 4;
+    arguments_.turns = Rational(5, 2);
+    arguments_.enable = enable;
+    plan_.emplace(arguments_, now_);
     box_.clear();
     unanswered_.clear();
     view_ = {};
@@ -141,7 +141,7 @@ class ByHand : public ::testing::Test {
     EXPECT_EQ(plan_->exit_code(), 1);
   }
 
-  HandOrder order_;
+  HandArguments arguments_;
   std::optional<HandPlan> plan_;
   HandView view_;
   Instant now_ = Instant(std::chrono::hours(1));

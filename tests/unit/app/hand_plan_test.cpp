@@ -84,8 +84,8 @@ TEST_F(ByHand, NothingIsWrittenToAnAxisThatIsNotReadyForIt) {
 
 TEST_F(ByHand, EachStepThatIsRefusedSaysWhichAndWhy) {
   begin(HandTask::move);
-  order_.rpm = Rational(60);
-  plan_.emplace(order_, now_);
+  arguments_.rpm = Rational(60);
+  plan_.emplace(arguments_, now_);
   look();
   EXPECT_THAT(written(), ElementsAre(command(Command::none, 41)));
   answer();
@@ -96,7 +96,7 @@ TEST_F(ByHand, EachStepThatIsRefusedSaysWhichAndWhy) {
   EXPECT_THAT(plan_->words(), HasSubstr("beyond the limits"));
   EXPECT_THAT(written(), ElementsAre(command(Command::release, 42))) << "nothing was enabled, nothing moved";
 
-  order_.rpm.reset();
+  arguments_.rpm.reset();
   begin(HandTask::enable);
   look();
   static_cast<void>(written());

@@ -153,10 +153,10 @@ TEST_F(Aged, ObjectsAreNotAskedForEither) {
   EXPECT_EQ(plain.ask<ObjectReplyRecord>(object), kTooOld);
 }
 
-struct Twins : testing::Test {
+struct TwoOfOneName : testing::Test {
   PlainSession plain{2, named("cell_7")};
   std::uint64_t id = 0;
-  Twins() { plain.port.at_once = BatchResult{}; }
+  TwoOfOneName() { plain.port.at_once = BatchResult{}; }
   int ask(std::uint8_t number, std::uint32_t mask = 0) {
     CommandRecord record = command(guid(1), number, ++id);
     record.gateway = gateway_id("cell_7");
@@ -169,7 +169,7 @@ struct Twins : testing::Test {
   }
 };
 
-TEST_F(Twins, StartNothingUntilOneIsGone) {
+TEST_F(TwoOfOneName, StartNothingUntilOneIsGone) {
   EXPECT_EQ(ask(kJogForward, kHasJogVelocity), kTold);
   duplicate(2);
   EXPECT_THAT(plain.name_taken, ElementsAre(true));
@@ -184,13 +184,13 @@ TEST_F(Twins, StartNothingUntilOneIsGone) {
   EXPECT_EQ(ask(kEnable), kTold);
 }
 
-TEST_F(Twins, WithOtherAxesAreNone) {
+TEST_F(TwoOfOneName, WithOtherAxesAreNone) {
   duplicate(3);
   EXPECT_THAT(plain.name_taken, IsEmpty());
   EXPECT_EQ(ask(kEnable), kTold);
 }
 
-TEST_F(Twins, WhoseAxisBecomesOursByAReloadAreTwinsFromThenOn) {
+TEST_F(TwoOfOneName, WhoseAxisBecomesOursByAReloadAreTakenFromThenOn) {
   duplicate(3);
   test::add_axis(plain.image, 3);
   plain.session->take_axes({}, plain.now);
@@ -202,7 +202,7 @@ TEST_F(Twins, WhoseAxisBecomesOursByAReloadAreTwinsFromThenOn) {
   EXPECT_EQ(ask(kEnable), kTold);
 }
 
-TEST_F(Twins, AreWaitedForAfterANewStartOfTheProcess) {
+TEST_F(TwoOfOneName, AreWaitedForAfterANewStartOfTheProcess) {
   duplicate(1);
   plain.session->on_link_down(plain.now);
   plain.session->on_link_up(plain.now);

@@ -184,11 +184,11 @@ void TableRig::fail_the_drive() {
 void TableRig::hush(double rate) {
   using simulated::DriveFault;
   if (on_rtu(subject_)) {
-    stage.rtu_link(0).line().faults(0).set_rate(DriveFault::mute, rate);
+    stage.rtu_link(0).line().faults(0).set_rate(DriveFault::unresponsive, rate);
   } else if (on_keya_serial(subject_)) {
-    stage.keya_link(0).line().faults(0).set_rate(DriveFault::mute, rate);
+    stage.keya_link(0).line().faults(0).set_rate(DriveFault::unresponsive, rate);
   } else if (on_kinco_serial(subject_)) {
-    stage.link(0).line().faults(0).set_rate(DriveFault::mute, rate);
+    stage.link(0).line().faults(0).set_rate(DriveFault::unresponsive, rate);
   } else {
     stage.can_link(0).line().connect(0, rate == 0);
   }

@@ -32,7 +32,7 @@ void fail_now(Link& link, simulated::DriveFaults& faults, Failure failure) {
   using simulated::DriveFault;
   switch (failure) {
     case Failure::muted:
-      return faults.next(DriveFault::mute);
+      return faults.next(DriveFault::unresponsive);
     case Failure::reply_lost:
       return faults.next(DriveFault::lose);
     case Failure::reply_late:

@@ -75,7 +75,7 @@ TEST(Values, OfASilentDriveAreNotValidLongerThanTheirStaleTime) {
   rig.bring_to(running);
   const auto last = rig.axis()[Quantity::position_actual].value;
   ASSERT_NE(rig.axis().valid_bits() & bit(Quantity::position_actual), 0U);
-  rig.faults().set_rate(DriveFault::mute, 1);
+  rig.faults().set_rate(DriveFault::unresponsive, 1);
   rig.stage.run(310ms);
   EXPECT_EQ(rig.axis().valid_bits() & bit(Quantity::position_actual), 0U);
   EXPECT_NEAR(static_cast<double>(rig.axis()[Quantity::position_actual].value), static_cast<double>(last), 3'000);

@@ -16,7 +16,7 @@ using enum Situation;
 TEST(LateReply, TheNextExchangeIsAResynchronisationReadThatNoLostReplyCanPassFor) {
   Rig rig(KincoType::jd);
   rig.bring_to(disabled);
-  rig.faults().next(DriveFault::mute, 2);
+  rig.faults().next(DriveFault::unresponsive, 2);
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().link_state == LinkState::suspect; }));
   const auto lost = decoded(kLongAgo, rig.stage.link(0).sent.end()[-2].bytes);
   const auto resync = decoded(kLongAgo, rig.stage.link(0).sent.back().bytes);
@@ -49,7 +49,7 @@ TEST(LateReply, NoValueOfASuspectDriveIsShown) {
 TEST(LateReply, TwoResynchronisationReadsAndTheDriveIsOffline) {
   Rig rig(KincoType::jd);
   rig.bring_to(disabled);
-  rig.faults().set_rate(DriveFault::mute, 1);
+  rig.faults().set_rate(DriveFault::unresponsive, 1);
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().link_state == LinkState::suspect; }));
   rig.mark();
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().link_state == LinkState::offline; }, 250ms));
@@ -62,7 +62,7 @@ TEST(LateReply, TwoResynchronisationReadsAndTheDriveIsOffline) {
 TEST(LateReply, AnErrorAnswerIsNoAnsweredResynchronisationRead) {
   Rig rig(KincoType::jd);
   rig.bring_to(disabled);
-  rig.faults().next(DriveFault::mute);
+  rig.faults().next(DriveFault::unresponsive);
   int refused = 0;
   rig.stage.link(0).on_traffic = [&](bool to_drive, Bytes) {
     if (!to_drive || rig.axis().link_state != LinkState::suspect || refused > 0) return;
@@ -97,7 +97,7 @@ TEST(UnresponsiveDrive, ABatchThatWasNeverSentGetsOfflineAndOneThatWasGetsUnknow
   const auto sent = rig.stage.begin(1, setpoints({{Quantity::profile_velocity, 111'000}}));
   const auto waiting = rig.stage.begin(1, with_command(Command::enable));
   ASSERT_TRUE(rig.stage.run_until([&] { return !rig.writes().empty(); }));
-  rig.faults().set_rate(DriveFault::mute, 1);
+  rig.faults().set_rate(DriveFault::unresponsive, 1);
   rig.stage.run(700ms);
   ASSERT_TRUE(sent->has_value() && waiting->has_value());
   EXPECT_EQ((*sent)->outcome.code, Errc::link_lost);
@@ -140,7 +140,7 @@ TEST(UnresponsiveDrive, CostsItsNeighbourOneTimeoutPerBackOffStep) {
   }
   GatewayStage stage({line});
   ASSERT_TRUE(stage.come_online());
-  stage.link(0).line().faults(1).set_rate(DriveFault::mute, 1);
+  stage.link(0).line().faults(1).set_rate(DriveFault::unresponsive, 1);
   stage.run(60s);
   ASSERT_EQ(stage.axis(2).link_state, LinkState::offline);
   const auto before = stage.link(0).sent.size();

@@ -105,12 +105,12 @@ void Rig::bring_to(Situation situation) {
       break;
     case Situation::suspect:
       enable();
-      faults().next(simulated::DriveFault::mute, 2);  // the first resynchronisation read as well
+      faults().next(simulated::DriveFault::unresponsive, 2);  // the first resynchronisation read as well
       expect(stage.run_until([&] { return axis().link_state == LinkState::suspect; }), "never suspect");
       break;
     case Situation::offline:
       enable();
-      faults().set_rate(simulated::DriveFault::mute, 1);
+      faults().set_rate(simulated::DriveFault::unresponsive, 1);
       expect(stage.run_until([&] { return axis().link_state == LinkState::offline; }), "never offline");
       break;
     case Situation::link_down:

@@ -46,7 +46,7 @@ std::string fault_name(DriveFault fault) {
 INSTANTIATE_TEST_SUITE_P(
     Each, RtuLineFault,
     testing::Combine(testing::ValuesIn(kRtuKinds),
-                     testing::Values(DriveFault::lose, DriveFault::mute, DriveFault::noise_before,
+                     testing::Values(DriveFault::lose, DriveFault::unresponsive, DriveFault::noise_before,
                                      DriveFault::noise_after, DriveFault::corrupt, DriveFault::split,
                                      DriveFault::wrong_station, DriveFault::half, DriveFault::wrong_length,
                                      DriveFault::glued, DriveFault::duplicate, DriveFault::restart)),
@@ -58,7 +58,7 @@ TEST_P(RtuNeighbours, OfAnUnresponsiveDriveKeepTheirCycleAfterTheFirstMinute) {
   RtuRig rig(GetParam());
   rig.come_up_running();
   rig.run(3s);
-  rig.faults().set_rate(DriveFault::mute, 1);
+  rig.faults().set_rate(DriveFault::unresponsive, 1);
   rig.run(60s);
   rig.forget_waits();
   rig.run(30s);

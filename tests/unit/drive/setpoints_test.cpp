@@ -44,7 +44,7 @@ TEST(Unchanged, IsSentAgainAfterAnythingThatMayHaveChangedIt) {
   const std::vector<Invalidation> invalidations{
       {"timeout",
        [](Rig& rig) {
-         rig.faults().next(DriveFault::mute);
+         rig.faults().next(DriveFault::unresponsive);
          ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().link_state == LinkState::suspect; }));
        }},
       {"mode change", [](Rig& rig) { ASSERT_EQ(rig.write(Quantity::mode, 3).outcome.code, Errc::ok); }},

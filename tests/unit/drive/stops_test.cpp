@@ -139,7 +139,7 @@ TEST(Stops, AreSentThreeTimesAtMostUntilTheStateShows) {
 TEST(Stops, KeepTheirThreeTriesAtADriveThatWasSilentBefore) {
   Rig rig(KincoType::jd);
   rig.bring_to(running);
-  rig.faults().next(DriveFault::mute, 5);
+  rig.faults().next(DriveFault::unresponsive, 5);
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().link_state == LinkState::suspect; }));
   rig.stage.run(150ms);  // the first resynchronisation read is out
   rig.mark();
@@ -249,7 +249,7 @@ TEST(Stops, RightAfterTheLinksReturnIsWorthItsTry) {
 TEST(Stops, GoOnAfterTheirClientHasItsAnswer) {
   Rig rig(KincoType::jd);
   rig.bring_to(running);
-  rig.faults().next(DriveFault::mute, 1);
+  rig.faults().next(DriveFault::unresponsive, 1);
   WriteBatch batch = with_command(Command::quick_stop);
   batch.answer_by = rig.stage.runtime().now() + 20ms;
   EXPECT_EQ(rig.ask(batch).outcome.code, Errc::timed_out);

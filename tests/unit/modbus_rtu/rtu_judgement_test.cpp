@@ -84,7 +84,8 @@ TEST(RtuJudgement, says_why_a_frame_is_not_the_answer) {
   EXPECT_EQ(why("01", read_of(0x3200)), "malformed");
   EXPECT_EQ(why("", read_of(0x3200)), "malformed");
   EXPECT_EQ(why("01 03 02 00 64", read_of(200)), shown(value_of(200, 2, 100)))
-      << "a read of another place with the same length cannot be told apart: why a drive that was late gets a fence";
+      << "a read of another place with the same length cannot be told apart: why a drive that was late gets a "
+         "resynchronisation read";
 }
 
 TEST(RtuJudgement, every_exception_code_is_the_drives_refusal_and_says_whether_it_may_pass) {
