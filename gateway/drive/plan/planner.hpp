@@ -31,7 +31,8 @@ void remember_setpoints(AxisCore& core, const WriteBatch& batch);
 [[nodiscard]] Plan plan_controlword(const AxisCore& core, std::uint16_t controlword, bool command_follows);
 /// What must be so before a command's own actions are planned: the halt ended, the mode it needs in force.
 [[nodiscard]] Plan plan_preparation(const AxisCore& core, Command command);
-/// A start that the axis's state refuses now: the set-points that came with it are not accepted either (A7).
+/// A start that the axis's state refuses now: the set-points that came with it are not accepted either (design 3.3 What
+/// asks and what claims).
 [[nodiscard]] bool refused_by_state(const AxisCore& core, Command command);
 /// Nothing of the write batch would be accepted now: it is a command that is refused, alone or beside set-points that
 /// are refused with it.
