@@ -170,7 +170,7 @@ bus::Exchange Drive::write(ObjectId object, std::int64_t number) const {
 void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
   begin_turn();
   const OnWire asked = on_wire_;
-  const bool trusted = !reads_.suspect() || asked.read.resync;
+  const bool trusted = reads_.counts(asked.read);
   if (result.code == Errc::timed_out || result.code == Errc::bad_reply) {
     const bool stop_insists =
         std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->insists(asked.job); });
@@ -238,7 +238,8 @@ void Drive::go_offline() {
 }
 
 void Drive::on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
-  presence_.answered();
+  // Of a read that counts lost replies out each answer may be one of them: no sign that it answers what it is asked.
+  if (!on_wire_.read.counted) presence_.answered();
   const bool counts = reads_.counts(on_wire_.read);
   if (reads_.answered(exchange, result, on_wire_.read, turn_.now) && turn_.link == LinkState::suspect) {
     set_state(LinkState::online);

@@ -40,7 +40,7 @@ bool DriveReads::tells_state(ObjectId object) const {
 }
 
 void DriveReads::widen(bus::Exchange& exchange, Asked& asked, For whom, Instant now) const {
-  if (asked.resync || asked.probe) return;
+  if (asked.resync || asked.probe || asked.counted) return;
   blocks_.widen(exchange, [&](ObjectId id) {
     if (store_[id].refused) return false;
     return whom == For::bring_up || tells_state(id) || (whom == For::poll && plan_.due(id, now));
@@ -68,19 +68,27 @@ std::optional<bus::Exchange> DriveReads::resync(Asked& asked, Instant now) {
     return read_of(model_, *candidate);
   }
   if (now < resync_.silent_until()) return std::nullopt;
+  if (resync_.counts_out()) return after_silence(asked, &Asked::resync);
   resync_.waited_out();
   asked.resync = true;
   return probe_read(model_);
 }
 
+bus::Exchange DriveReads::after_silence(Asked& asked, bool Asked::*trusted) {
+  const auto candidate = resync_.candidate();
+  (candidate ? asked.*trusted : asked.counted) = true;
+  return read_of(model_, candidate ? *candidate : resync_.counted());
+}
+
 bool DriveReads::may_probe(Instant now) {
   if (!resync_.suspect()) return true;
   if (now < resync_.silent_until()) return false;
-  resync_.waited_out();
+  if (!resync_.counts_out()) resync_.waited_out();
   return true;
 }
 
-bus::Exchange DriveReads::probe(Asked& asked) const {
+bus::Exchange DriveReads::probe(Asked& asked) {
+  if (resync_.suspect()) return after_silence(asked, &Asked::probe);
   asked.probe = true;
   return probe_read(model_);
 }
@@ -103,7 +111,9 @@ bool DriveReads::answered(const bus::Exchange& exchange, const bus::ExchangeResu
     if (silent_read_ && asked.resync) static_cast<void>(blocks_.silent(*silent_read_));
     silent_read_.reset();
   }
-  if (result.code == Errc::refused_by_drive && asked.resync) resync_.lost(exchange, now);
+  if (result.code == Errc::ok && asked.counted) resync_.counted_one();
+  const bool of_resync = asked.resync || asked.counted || (asked.probe && resync_.suspect());
+  if (result.code == Errc::refused_by_drive && of_resync) resync_.refused(exchange, now);
   return proves;
 }
 

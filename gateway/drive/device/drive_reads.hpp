@@ -21,6 +21,7 @@ class DriveReads {
   struct Asked {
     bool resync = false;
     bool probe = false;
+    bool counted = false;  ///< it counts lost replies out: its answer may be one of them
     bool widened = false;  ///< it reads neighbours that nobody asked for
     Instant sent_at = kLongAgo;
   };
@@ -59,14 +60,16 @@ class DriveReads {
   [[nodiscard]] bool suspect() const { return resync_.suspect(); }
   [[nodiscard]] bool counts(const Asked& asked) const { return !suspect() || asked.resync || asked.probe; }
   /// When the next resynchronisation read, or what takes its place, may go.
-  [[nodiscard]] Instant resync_due(Instant now) const { return resync_.exhausted() ? resync_.silent_until() : now; }
+  [[nodiscard]] Instant resync_due(Instant now) const {
+    return resync_.exhausted() || !resync_.candidate() ? resync_.silent_until() : now;
+  }
   /// From then on every reply that is still owed would come too late by the profile.
   [[nodiscard]] Instant silent_until() const { return resync_.silent_until(); }
   /// None: silence must be kept until silent_until().
   [[nodiscard]] std::optional<bus::Exchange> resync(Asked& asked, Instant now);
   /// A drive that is not there is looked for: false while a reply to something lost long ago could still come.
   [[nodiscard]] bool may_probe(Instant now);
-  [[nodiscard]] bus::Exchange probe(Asked& asked) const;
+  [[nodiscard]] bus::Exchange probe(Asked& asked);
 
   // --- What comes back -----------------------------------------------------------------------------------------------
 
@@ -104,6 +107,8 @@ class DriveReads {
   static constexpr Duration kMovingConfirm = std::chrono::milliseconds(250);
 
   void map_unasked();
+  /// After the silence, of a drive whose replies are told apart still. `trusted`: what its answer then is.
+  [[nodiscard]] bus::Exchange after_silence(Asked& asked, bool Asked::*trusted);
   void take_field(const bus::Exchange& exchange, const bus::ReplyField& field, const Asked& asked, Taken& taken,
                   Instant now);
   void take_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked, Instant now);

@@ -38,13 +38,69 @@ void Resync::lost(const bus::Exchange& exchange, Instant now) {
   suspect_ = true;
   last_lost_ = now;
   const Likeness like = of(exchange);
-  if (std::find(lost_.begin(), lost_.end(), like) == lost_.end() && lost_.size() < kMaxLost) lost_.push_back(like);
+  // Another read was lost meanwhile: its reply is as old as those that were counted out. A write's reply is no read's.
+  if (counting_ && exchange.access != bus::Access::write && !(counting_->like == like)) counting_.reset();
+  const auto known = std::find_if(lost_.begin(), lost_.end(), [&](const Lost& lost) { return lost.like == like; });
+  if (known != lost_.end())
+    known->times = std::min(known->times + 1, kMaxOwed);
+  else if (lost_.size() < kMaxLost)
+    lost_.push_back({like});
+}
+
+void Resync::refused(const bus::Exchange& exchange, Instant now) {
+  lost(exchange, now);
+  const Likeness like = of(exchange);
+  if (!is_refused(like) && refused_.size() < kMaxLost) refused_.push_back(like);
+  counting_.reset();
+}
+
+int Resync::owed(const Likeness& like) const {
+  const auto known = std::find_if(lost_.begin(), lost_.end(), [&](const Lost& lost) { return lost.like == like; });
+  return known == lost_.end() ? 0 : known->times;
+}
+
+bool Resync::is_refused(const Likeness& like) const {
+  return std::find(refused_.begin(), refused_.end(), like) != refused_.end();
 }
 
 std::optional<ResyncRead> Resync::candidate() const {
   for (const ResyncRead& read : facts_.candidates)
-    if (std::find(lost_.begin(), lost_.end(), of(read)) == lost_.end()) return read;
+    if (owed(of(read)) == 0 && !is_refused(of(read))) return read;
   return std::nullopt;
+}
+
+bool Resync::counts_out() const {
+  if (!facts_.by_length) return false;
+  if (candidate()) return true;
+  std::optional<Likeness> one;
+  for (const ResyncRead& read : facts_.candidates) {
+    const Likeness like = of(read);
+    if (is_refused(like)) continue;
+    if (one && !(*one == like)) return true;
+    one = like;
+  }
+  return false;
+}
+
+ResyncRead Resync::counted() {
+  const ResyncRead* least = nullptr;
+  for (const ResyncRead& read : facts_.candidates) {
+    const Likeness like = of(read);
+    if (counting_ && counting_->like == like) return read;
+    if (is_refused(like)) continue;
+    if (least == nullptr || owed(like) < owed(of(*least))) least = &read;
+  }
+  counting_ = {of(*least), owed(of(*least)) + 1};
+  return *least;
+}
+
+// What is still owed then is of the counted length alone: a reply to each counted read may have been an older one.
+void Resync::counted_one() {
+  if (!counting_ || --counting_->left > 0) return;
+  const Lost still{counting_->like, std::max(owed(counting_->like), 1)};
+  lost_.clear();
+  lost_.push_back(still);
+  counting_.reset();
 }
 
 }  // namespace axisgate::drive

@@ -82,13 +82,6 @@ void RtuRig::watch() {
   }
 }
 
-Duration RtuRig::longest_owed() {
-  Duration longest{};
-  for (const auto& exchange : stage.rtu_link(0).line().journal().entries())
-    if (exchange.station == kUnderTest) longest = std::max(longest, exchange.reply_ready - exchange.received);
-  return longest;
-}
-
 void RtuRig::come_up_running() {
   if (!stage.come_online()) throw std::runtime_error("the axes never came online");
   const auto must = [&](const BatchResult& result) {

@@ -55,8 +55,6 @@ class RtuRig {
   /// The longest pause between two requests to the same neighbour, all of them being up.
   [[nodiscard]] Duration longest_wait() const { return longest_wait_; }
   void forget_waits() { longest_wait_ = {}; }
-  /// The longest that the drive under test has owed a reply.
-  [[nodiscard]] Duration longest_owed();
   [[nodiscard]] std::uint64_t looked_at() const { return truths_.front()->looked_at(); }
 
   /// Registers of the drive under test: its position, and what tells its state.
