@@ -59,7 +59,8 @@ void Contract::expire(World& world) const {
   world.owner.reset();
   world.orphan = false;
   world.lease_until(kNever);
-  world.latch_unsure = trouble_ || (world.latch_unsure && !world.enabled);
+  // Whether a loss has closed the gate of an axis whose state is the gateway's own is not known until it is read.
+  world.latch_unsure = trouble_ || world.adopted || (world.latch_unsure && !world.enabled);
   if (!world.enabled || !options_.expiry_acts) return;
   world.motor = Motor::stands;
   world.jog = 0;
