@@ -135,20 +135,11 @@ class Turmoil(CanStory):
         for axis in self.axes:
             axis.until(link_state=ONLINE)
             self.assertNotIn("enabled", axis.inputs())
-            until("it takes its ramps", lambda: self.prepared(axis))  # it may just be set up anew
+            self.until_accepted("it takes its ramps", lambda: self.prepare(axis), (BUSY, NO_PATH, NO_ANSWER))
             if "fault" in axis.inputs():
                 self.reset(axis)
             self.targets[axis.number] = axis.get("position_actual")
             self.move(axis)
-
-    def prepared(self, axis):
-        try:
-            self.prepare(axis)
-            return True
-        except Refused as refused:
-            if refused.code not in (BUSY, NO_PATH, NO_ANSWER):
-                raise
-            return False
 
     work = ThirtyTwoClients.work
 

@@ -105,17 +105,20 @@ class CanStory(Story):
         axis.until(motion_state=COMPLETED, motion_id=number)
         until("it is there", lambda: abs(axis.get("position_actual") - self.targets[axis.number]) <= 20)
 
-    def reset(self, axis):
-        """Until it is accepted: a drive that was set up anew meanwhile takes none (busy)."""
+    def until_accepted(self, what, ask, not_yet=(BUSY,)):
+        """A drive that is set up anew takes nothing meanwhile, and says so by one of these exceptions."""
         def accepted():
             try:
-                axis.command("fault_reset")
+                ask()
                 return True
             except Refused as refused:
-                self.assertEqual(refused.code, BUSY)
+                self.assertIn(refused.code, not_yet)
                 return False
 
-        until("the reset is accepted", accepted)
+        until(what, accepted)
+
+    def reset(self, axis):
+        self.until_accepted("the reset is accepted", lambda: axis.command("fault_reset"))
         axis.until(axis_state=DISABLED, error_code=0)
 
     def let_heartbeats_pass(self):

@@ -314,29 +314,11 @@ class TableWithBlocks(OfATable):
         self.its_stop_button_stops_what_another_client_moves()
 
 
-class TableWithoutBlocks(OfATable):
+class TableWithoutBlocks(TableWithBlocks):
     controller = WithoutBlocks
 
-    def test_three_positions_a_stop_and_a_reset(self):
-        self.three_positions_a_stop_and_a_reset()
-
-    def test_a_lost_connection_starts_nothing_when_it_is_back(self):
-        self.the_network_cable_is_out_while_the_lease_lives()
-
-    def test_a_drive_out_of_sight_starts_nothing_when_it_is_back(self):
-        self.a_drive_is_out_of_sight()
-
-    def test_what_another_client_has_stopped_is_not_begun_again(self):
-        self.another_client_stops_it()
-
-    def test_a_start_of_the_controller_starts_nothing(self):
-        self.a_cold_start_with_the_switch_on()
-
-    def test_a_start_with_retained_variables_starts_nothing(self):
-        self.a_start_with_retained_variables()
-
-    def test_its_stop_button_stops_what_another_client_moves_and_nothing_follows(self):
-        self.its_stop_button_stops_what_another_client_moves()
+    def test_three_positions_a_stop_and_a_reset(self):  # a class is run where it has a test of its own; the others are inherited
+        super().test_three_positions_a_stop_and_a_reset()
 
 
 if __name__ == "__main__":

@@ -165,8 +165,7 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
     if (stop) publish();
     return refuse(asked, of_link);
   }
-  // 3.5: owned from the first accepted write; who only waits for the client's return is taken by any write
-  // (design 3.5).
+  // 3.5: owned from the first accepted write; who only waits for the client's return is taken by any write.
   pending.claims_when_begun = accepts_nothing(core_, batch) && !ownership_.waits_for(batch.life, batch.all_zero);
   if (!pending.claims_when_begun) claim(batch);
   if (stop && pending.refusal == Errc::ok && join_stop(batch, on_result)) {
