@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "gateway/check/check.hpp"
+#include "tests/places.hpp"
 #include "tests/profiles/mistakes.hpp"
 
 namespace axisgate::app {
@@ -13,7 +14,7 @@ using test::Mistake;
 using ::testing::Values;
 using ::testing::ValuesIn;
 
-const fs::path kFolder = fs::path(AXISGATE_SOURCE_DIR) / "tests/config";
+const fs::path kFolder = fs::path(test::source_path("tests/config"));
 /// Relative, as the tests run in a folder of the sources: messages are the same on every machine.
 const std::vector<std::string> kProfiles{"../../../schemas/drives"};
 

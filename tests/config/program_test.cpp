@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "tests/config/program.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -38,7 +39,7 @@ TEST_F(Program, OpensNothingWhereTheConfigurationIsWrong) {
 }
 
 TEST_F(Program, EndsWithOneOnEachWrongFile) {
-  for (const test::Mistake& mistake : test::mistakes_of(fs::path(AXISGATE_SOURCE_DIR) / "tests/config")) {
+  for (const test::Mistake& mistake : test::mistakes_of(fs::path(test::source_path("tests/config")))) {
     const std::string file = write("wrong.json", mistake.file);
     const Ended ended = run("run " + file);
     EXPECT_EQ(ended.code, 1) << mistake.name;
@@ -102,7 +103,7 @@ TEST_F(Program, ExplainNamesTheNearestWord) {
 
 TEST_F(Program, AProfilesPathCountsFromItsConfigurationWhereverTheProgramIsStarted) {
   fs::create_directories(folder() / "site/drives");
-  fs::copy(AXISGATE_SOURCE_DIR "/schemas/drives/kinco-jd.json", folder() / "site/drives/kinco-jd.json");
+  fs::copy(test::source_path("schemas/drives/kinco-jd.json"), folder() / "site/drives/kinco-jd.json");
   std::string config = one_drive("/dev/ttyUSB0", 1, "");
   config.replace(config.find("kinco-jd"), 8, "drives/kinco-jd.json");
   write("site/gateway.json", config);
@@ -129,7 +130,7 @@ TEST_F(Program, AWrongKeyOrValueOfAConfigurationOrAProfileIsNamedWithTheNearestR
   config = one_drive("/dev/ttyUSB0", 1, "");
   config.replace(config.find("kinco-serial"), 12, "kinco-seral");
   EXPECT_THAT(run("check " + write("value.json", config)).err, HasSubstr("did you mean \"kinco-serial\"?"));
-  std::string profile = test::content(AXISGATE_SOURCE_DIR "/schemas/drives/kinco-jd.json");
+  std::string profile = test::content(test::source_path("schemas/drives/kinco-jd.json"));
   profile.replace(profile.find("\"quantities\""), 12, "\"quantites\"");
   EXPECT_THAT(run("profile check " + write("profile.json", profile)).err,
               HasSubstr("/quantites: unknown key \"quantites\"; did you mean \"quantities\"?"));
@@ -166,7 +167,7 @@ TEST_F(Program, EveryCommandHasHelpWithAnExample) {
 }
 
 TEST_F(Program, TheShippedProfilesAreFoundAndRight) {
-  const fs::path drives = fs::path(AXISGATE_SOURCE_DIR) / "schemas/drives";
+  const fs::path drives = fs::path(test::source_path("schemas/drives"));
   for (const auto& entry : fs::directory_iterator(drives)) {
     const Ended ended = run("profile check " + entry.path().string());
     if (test::content(entry.path()).find("\"base_only\": true") != std::string::npos) {
@@ -177,13 +178,13 @@ TEST_F(Program, TheShippedProfilesAreFoundAndRight) {
     EXPECT_EQ(ended.code, 0) << ended.err;
     EXPECT_THAT(ended.out, HasSubstr("is valid"));
   }
-  const Ended ended = run("check " AXISGATE_SOURCE_DIR "/deploy/demo.json");
+  const Ended ended = run("check " + test::source_path("deploy/demo.json"));
   EXPECT_EQ(ended.code, 0) << ended.err;
 }
 
 TEST_F(Program, ComparesAProfileWithTheMakersEds) {
-  const std::string profile = AXISGATE_SOURCE_DIR "/schemas/drives/kinco-md.json";
-  const fs::path eds = AXISGATE_SOURCE_DIR "/tests/profiles/eds/kinco-md.eds";
+  const std::string profile = test::source_path("schemas/drives/kinco-md.json");
+  const fs::path eds = test::source_path("tests/profiles/eds/kinco-md.eds");
   Ended ended = run("profile check " + profile + " --eds " + eds.string());
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("Made for tests MD80, vendor 0x300, product 0x4d44, revision 0x10002"));
@@ -195,14 +196,14 @@ TEST_F(Program, ComparesAProfileWithTheMakersEds) {
   const std::string file = write("other.eds", other);
   ended = run("profile check " + profile + " --eds " + file);
   EXPECT_EQ(ended.code, 1);
-  EXPECT_EQ(ended.err, AXISGATE_SOURCE_DIR "/schemas/drives/cia402.json: /objects/statusword/at/canopen: " + file +
+  EXPECT_EQ(ended.err, test::source_path("schemas/drives/cia402.json: /objects/statusword/at/canopen: ") + file +
                            " [6041]: the EDS has no such object\n");
 
   write("other.eds", "no EDS at all\n");
   const std::pair<std::string, std::string> cases[] = {
       {profile + " --eds " + file, "other.eds: line 1: \"no EDS at all\" is neither [section] nor key=value"},
       {profile + " --eds " + (folder() / "none.eds").string(), "none.eds: cannot be read: No such file or directory"},
-      {AXISGATE_SOURCE_DIR "/schemas/drives/id286pro.json --eds " + eds.string(), "/protocols: has no canopen"},
+      {test::source_path("schemas/drives/id286pro.json") + " --eds " + eds.string(), "/protocols: has no canopen"},
   };
   for (const auto& [arguments, told] : cases) {
     ended = run("profile check " + arguments);
@@ -215,9 +216,9 @@ TEST_F(Program, FindsItsProfilesWhereItIsInstalled) {
   fs::create_directories(folder() / "bin");
   fs::create_directories(folder() / "share/axisgate");
   fs::copy(AXISGATE_PROGRAM, folder() / "bin/axisgate");
-  fs::copy(fs::path(AXISGATE_SOURCE_DIR) / "schemas", folder() / "share/axisgate/schemas", fs::copy_options::recursive);
+  fs::copy(fs::path(test::source_path("schemas")), folder() / "share/axisgate/schemas", fs::copy_options::recursive);
   const Ended ended =
-      run_command((folder() / "bin/axisgate").string() + " check " AXISGATE_SOURCE_DIR "/deploy/demo.json");
+      run_command((folder() / "bin/axisgate").string() + " check " + test::source_path("deploy/demo.json"));
   EXPECT_EQ(ended.code, 0) << ended.err;
 }
 

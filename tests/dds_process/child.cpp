@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/dds_process/child.hpp"
+#include "tests/places.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -18,11 +19,11 @@
 namespace axisgate::dds::test {
 namespace {
 
-constexpr const char* kProgram = AXISGATE_BINARY_DIR "/bin/axisgate-dds";
+const std::string kProgram = test::build_path("bin/axisgate-dds");
 constexpr int kChildLink = 3;
 
 pid_t start(const std::vector<std::string>& arguments, int link, int errors) {
-  std::vector<char*> argv{const_cast<char*>(kProgram)};
+  std::vector<char*> argv{const_cast<char*>(kProgram.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   const pid_t pid = fork();
@@ -30,7 +31,7 @@ pid_t start(const std::vector<std::string>& arguments, int link, int errors) {
   dup2(errors, STDERR_FILENO);
   dup2(errors, STDOUT_FILENO);
   if (link >= 0) dup2(link, kChildLink);
-  execv(kProgram, argv.data());
+  execv(kProgram.c_str(), argv.data());
   _exit(127);
 }
 

@@ -9,11 +9,12 @@
 #include "gateway/profile/read/profile_loader.hpp"
 #include "tests/fuzz/input.hpp"
 #include "tests/fuzz/targets.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate::fuzz {
 namespace {
 
-const std::string kProfiles = AXISGATE_SOURCE_DIR "/schemas/drives";
+const std::string kProfiles = test::source_path("schemas/drives");
 
 /// A file in memory alone, with a path.
 class MemoryFile {

@@ -14,6 +14,7 @@
 #include "gateway/core/random.hpp"
 #include "tests/fuzz/input.hpp"
 #include "tests/fuzz/targets.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate::fuzz {
 namespace {
@@ -27,7 +28,7 @@ constexpr std::size_t kLongest = 8192;
 std::string played;
 /// Leaves it in a file that may become one of the corpus.
 void keep_input(const std::string& target) {
-  const std::string file = AXISGATE_BINARY_DIR "/fuzz-" + target + ".hex";
+  const std::string file = test::build_path("fuzz-") + target + ".hex";
   std::ofstream(file) << "# found by the changes of a seed\n" << played << "\n";
   std::cerr << "its input: " << file << "\n";
 }
@@ -48,7 +49,7 @@ Row from_hex_text(std::istream& in) {
 }
 
 std::vector<Row> corpus_of(const std::string& target) {
-  const fs::path root(AXISGATE_SOURCE_DIR);
+  const fs::path root(test::source_path(""));
   std::vector<fs::path> files, folders{root / "tests/fuzz/corpus" / target};
   std::ifstream also(folders.front() / "also");
   for (std::string folder; std::getline(also, folder);) folders.push_back(root / folder);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tests/golden/recorder.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -17,7 +18,7 @@ using simulated::DriveFault;
 using simulated::KincoType;
 
 void compare(const Recorder& recorder, const std::string& name) {
-  const std::string path = std::string(AXISGATE_SOURCE_DIR "/tests/golden/") + name + ".txt";
+  const std::string path = test::source_path("tests/golden/") + name + ".txt";
   if (std::getenv("AXISGATE_WRITE_GOLDEN") != nullptr) std::ofstream(path) << recorder.text();
   std::ifstream file(path);
   std::ostringstream expected;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whatever stands in a profile, reading it ends in faults or in a profile: never in an exception or a crash.
+#include "tests/places.hpp"
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
@@ -21,7 +22,7 @@ void read_with(json document, const json::json_pointer& place, const json& value
                const std::string& protocol) {
   document[place] = value;
   std::ofstream(file) << document;
-  const LoadedProfile loaded = load_profile(file, {AXISGATE_SOURCE_DIR "/tests/profiles/valid"});
+  const LoadedProfile loaded = load_profile(file, {test::source_path("tests/profiles/valid")});
   if (loaded.faults.empty()) {
     static_cast<void>(resolve(loaded, one_axis(protocol)));
     return;

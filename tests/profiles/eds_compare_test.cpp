@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/places.hpp"
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
@@ -90,7 +91,7 @@ class EdsComparison : public ::testing::Test {
   }
 
   LoadedProfile loaded_ = load_profile(shipped("kinco-md"));
-  std::string text_ = test::content(AXISGATE_SOURCE_DIR "/tests/profiles/eds/kinco-md.eds");
+  std::string text_ = test::content(test::source_path("tests/profiles/eds/kinco-md.eds"));
 };
 
 TEST_F(EdsComparison, AnEdsThatAgreesIsSilence) {

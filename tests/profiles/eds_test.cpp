@@ -7,6 +7,7 @@
 #include <random>
 #include <sstream>
 
+#include "tests/places.hpp"
 #include "tests/profiles/mistakes.hpp"
 
 namespace axisgate::drive {
@@ -17,7 +18,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-std::string made_by_hand() { return test::content(AXISGATE_SOURCE_DIR "/tests/profiles/eds/kinco-md.eds"); }
+std::string made_by_hand() { return test::content(test::source_path("tests/profiles/eds/kinco-md.eds")); }
 
 std::string one_object(const std::string& keys, const std::string& section = "6040") {
   return "[" + section + "]\nParameterName=x\n" + keys;

@@ -2,6 +2,7 @@
 // A profile that extends another one: which file is taken, what is merged how, and where a mistake is told.
 #include <gmock/gmock.h>
 
+#include "tests/places.hpp"
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
@@ -12,7 +13,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::ElementsAre;
 
-const std::string kValid = AXISGATE_SOURCE_DIR "/tests/profiles/valid";
+const std::string kValid = test::source_path("tests/profiles/valid");
 
 class Layers : public ::testing::Test {
  protected:

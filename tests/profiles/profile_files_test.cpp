@@ -2,6 +2,7 @@
 // Every profile of tests/profiles and schemas/drives is read as a user's would be.
 #include <gmock/gmock.h>
 
+#include "tests/places.hpp"
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
@@ -14,7 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 using ::testing::ValuesIn;
 
-const fs::path kFolder = fs::path(AXISGATE_SOURCE_DIR) / "tests/profiles";
+const fs::path kFolder = fs::path(test::source_path("tests/profiles"));
 
 /// Of `folder`, at least `least` of them.
 void expect_no_faults(const fs::path& folder, int least) {
@@ -29,7 +30,7 @@ void expect_no_faults(const fs::path& folder, int least) {
 }
 
 TEST(ProfileFiles, TheShippedProfilesHaveNoFault) {
-  expect_no_faults(fs::path(AXISGATE_SOURCE_DIR) / "schemas/drives", 5);
+  expect_no_faults(fs::path(test::source_path("schemas/drives")), 5);
 }
 
 TEST(ProfileFiles, MadeUpProfilesOfOtherKindsOfDrivesHaveNoFault) { expect_no_faults(kFolder / "valid", 5); }
@@ -96,10 +97,10 @@ TEST(ProfileFiles, AMissingFileIsAFault) {
   EXPECT_EQ(text(loaded.faults[0]), "/nowhere/kinco-jd.json: cannot be read: No such file or directory");
 }
 
-TEST(ProfileFiles, AFolderIsAFault) { EXPECT_EQ(load_profile(AXISGATE_SOURCE_DIR "/schemas").faults.size(), 1U); }
+TEST(ProfileFiles, AFolderIsAFault) { EXPECT_EQ(load_profile(test::source_path("schemas")).faults.size(), 1U); }
 
 TEST(ProfileFiles, AreFoundByNameInTheFirstFolderThatHasThemOrByPath) {
-  const std::string drives = AXISGATE_SOURCE_DIR "/schemas/drives";
+  const std::string drives = test::source_path("schemas/drives");
   EXPECT_EQ(find_profile("kinco-jd", {"/nowhere", drives}), drives + "/kinco-jd.json");
   EXPECT_EQ(find_profile("kinco-xx", {drives}), std::nullopt);
   EXPECT_EQ(find_profile(drives + "/kinco-md.json", {}), drives + "/kinco-md.json");

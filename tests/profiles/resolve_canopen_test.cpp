@@ -3,6 +3,7 @@
 // itself, and the identity that a configuration asks for.
 #include <gmock/gmock.h>
 
+#include "tests/places.hpp"
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
@@ -35,7 +36,7 @@ class CanopenProfile : public ::testing::Test {
 
   const test::OwnFolder folder_;
   nlohmann::json profile_ = [] {
-    const std::string file = AXISGATE_SOURCE_DIR "/tests/config/invalid/profiles/canopen-only.json";
+    const std::string file = test::source_path("tests/config/invalid/profiles/canopen-only.json");
     nlohmann::json out = nlohmann::json::parse(test::content(file));
     out["protocols"]["canopen"]["tpdo"] = {{{"n", 2}, {"map", {"statusword", "mode"}}}};
     return out;

@@ -11,13 +11,14 @@
 #include <string>
 
 #include "gateway/profile/resolve/profile_resolve.hpp"
+#include "tests/places.hpp"
 #include "tests/stage/profile_once.hpp"
 
 namespace axisgate::drive {
 
-inline std::string shipped(const std::string& name) { return AXISGATE_SOURCE_DIR "/schemas/drives/" + name + ".json"; }
+inline std::string shipped(const std::string& name) { return test::source_path("schemas/drives/") + name + ".json"; }
 inline std::string valid_file(const std::string& name) {
-  return AXISGATE_SOURCE_DIR "/tests/profiles/valid/" + name + ".json";
+  return test::source_path("tests/profiles/valid/") + name + ".json";
 }
 
 inline std::string text(const std::vector<Fault>& faults) {
@@ -77,7 +78,7 @@ inline std::vector<std::string> names(const DriveModel& model, const std::vector
 
 /// The tables of a drive's manual.
 inline nlohmann::json manual(const std::string& drive) {
-  std::ifstream file(AXISGATE_SOURCE_DIR "/tests/vectors/" + drive + ".json");
+  std::ifstream file(test::source_path("tests/vectors/") + drive + ".json");
   return nlohmann::json::parse(file);
 }
 

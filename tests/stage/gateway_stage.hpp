@@ -11,10 +11,9 @@
 
 #include "gateway/compose/gateway.hpp"
 #include "gateway/profile/resolve/profile_resolve.hpp"
+#include "tests/stage/byte_link_sim.hpp"
 #include "tests/stage/can_link_sim.hpp"
-#include "tests/stage/keya_link_sim.hpp"
 #include "tests/stage/rtu_link_sim.hpp"
-#include "tests/stage/sim_link.hpp"
 
 namespace axisgate::test {
 

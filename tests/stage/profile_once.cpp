@@ -4,19 +4,20 @@
 #include <map>
 #include <stdexcept>
 
+#include "tests/places.hpp"
+
 namespace axisgate::test {
 
 const drive::LoadedProfile& profile_once(const std::string& path) {
   static std::map<std::string, drive::LoadedProfile> known;
-  if (!path.starts_with(AXISGATE_SOURCE_DIR "/"))
-    throw std::invalid_argument(path + " is no file of the source folder");
+  if (!path.starts_with(source_path(""))) throw std::invalid_argument(path + " is no file of the source folder");
   auto found = known.find(path);
   if (found == known.end()) found = known.emplace(path, drive::load_profile(path)).first;
   return found->second;
 }
 
 const drive::LoadedProfile& shipped_profile(const std::string& name) {
-  return profile_once(AXISGATE_SOURCE_DIR "/schemas/drives/" + name + ".json");
+  return profile_once(source_path("schemas/drives/") + name + ".json");
 }
 
 }  // namespace axisgate::test

@@ -8,6 +8,7 @@
 
 #include "gateway/config/config_loader.hpp"
 #include "gateway/process/descriptor_needs.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -34,7 +35,7 @@ class ConfigDds : public ::testing::Test {
                         << axis << R"(}]},
       {"profile": "kinco-jd", "node": 2, "constants": {"peak_current_a": 27.5}, "axes": [{"axis": 1,
        "units_per_rev": 3600}]}]}]})";
-    LoadResult result = load_config(file, {AXISGATE_SOURCE_DIR "/schemas/drives"});
+    LoadResult result = load_config(file, {test::source_path("schemas/drives")});
     if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) {
       for (const ConfigFault& fault : *faults) ADD_FAILURE() << text(fault);
       return {};

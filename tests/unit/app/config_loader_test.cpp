@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/config/config_loader.hpp"
+#include "tests/places.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -16,7 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-const std::vector<std::string> kShipped{AXISGATE_SOURCE_DIR "/schemas/drives"};
+const std::vector<std::string> kShipped{test::source_path("schemas/drives")};
 
 /// A configuration file that lives as long as the test.
 class ConfigLoader : public ::testing::Test {

@@ -11,6 +11,7 @@
 
 #include "gateway/config/bus_budget.hpp"
 #include "gateway/config/config_loader.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate::app {
 
@@ -19,7 +20,7 @@ namespace axisgate::app {
   const auto file = std::filesystem::temp_directory_path() / ("axisgate-bus-" + std::to_string(getpid()) + ".json");
   std::ofstream(file) << R"({"modbus_tcp": [{"listen": "127.0.0.1:1502"}], "buses": [{)" << bus << R"(, "drives": [)"
                       << drives << "]}]}";
-  LoadResult result = load_config(file, {AXISGATE_SOURCE_DIR "/schemas/drives"});
+  LoadResult result = load_config(file, {test::source_path("schemas/drives")});
   std::filesystem::remove(file);
   if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) {
     for (const ConfigFault& fault : *faults) ADD_FAILURE() << text(fault);

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "gateway/config/config_loader.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -20,7 +21,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const std::vector<std::string> kProfiles{AXISGATE_SOURCE_DIR "/schemas/drives"};
+const std::vector<std::string> kProfiles{test::source_path("schemas/drives")};
 
 const char* const kRunning = R"({
   "modbus_tcp": [
@@ -216,7 +217,7 @@ void gather(const json& schema, const json& part, const std::string& at, std::se
 }
 
 TEST_F(ReloadPlanTest, NoKeyOfTheSchemaIsWithoutARow) {
-  std::ifstream stream(AXISGATE_SOURCE_DIR "/schemas/gateway.schema.json");
+  std::ifstream stream(test::source_path("schemas/gateway.schema.json"));
   const json schema = json::parse(stream);
   std::set<std::string> keys;
   gather(schema, schema, "", keys);

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/places.hpp"
 #include "tests/unit/bus/wire_stage.hpp"
 
 namespace axisgate::test {
@@ -34,7 +35,7 @@ template <typename Which>
 std::vector<SheetVector> sheet_vectors(std::initializer_list<const char*> sheets, Which which) {
   std::vector<SheetVector> all;
   for (const std::string sheet : sheets) {
-    std::ifstream file(std::string(AXISGATE_SOURCE_DIR) + "/tests/vectors/" + sheet + ".json");
+    std::ifstream file(test::source_path("tests/vectors/") + sheet + ".json");
     const nlohmann::json parsed = nlohmann::json::parse(file);
     for (const auto& row : parsed.at("vectors")) {
       const std::string hex = row.at("hex");

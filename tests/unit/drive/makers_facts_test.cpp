@@ -5,6 +5,7 @@
 
 #include "gateway/drive/state/axis_core.hpp"
 #include "gateway/profile/resolve/profile_resolve.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -27,7 +28,7 @@ class MakersFacts : public testing::Test {
     ResolveAxis axis;
     axis.number = 1;
     input.axes = {axis};
-    return std::get<DriveModel>(resolve(load_profile(AXISGATE_SOURCE_DIR "/schemas/drives/kinco-jd.json"), input));
+    return std::get<DriveModel>(resolve(load_profile(test::source_path("schemas/drives/kinco-jd.json")), input));
   }
 
   DriveModel model;

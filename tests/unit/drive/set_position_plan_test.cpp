@@ -10,6 +10,7 @@
 
 #include "gateway/drive/plan/planner.hpp"
 #include "gateway/profile/resolve/profile_resolve.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -28,7 +29,7 @@ DriveModel foreign(const char* steps) {
   std::filesystem::create_directories(folder);
   const std::string path = (folder / (std::string(kName) + ".json")).string();
   std::ofstream(path) << profile;
-  const LoadedProfile loaded = load_profile(path, {AXISGATE_SOURCE_DIR "/schemas/drives"});
+  const LoadedProfile loaded = load_profile(path, {test::source_path("schemas/drives")});
   if (!loaded.faults.empty()) throw std::runtime_error(text(loaded.faults.front()));
   ResolveInput input;
   input.protocol = "canopen";

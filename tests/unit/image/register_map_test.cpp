@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "gateway/image/map_page.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate {
 namespace {
@@ -213,7 +214,7 @@ TEST(RegisterMap, ACoilNeedsTheCommandThatItAsksForAndJoggingARunAtAVelocity) {
 }
 
 TEST(RegisterMapPage, IsTheOneInSchemas) {
-  const std::string path = AXISGATE_SOURCE_DIR "/schemas/register-map.md";
+  const std::string path = test::source_path("schemas/register-map.md");
   if (std::getenv("AXISGATE_WRITE_PAGES") != nullptr) std::ofstream(path) << register_map_page();
   std::ifstream file(path);
   std::stringstream text;

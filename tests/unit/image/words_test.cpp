@@ -11,6 +11,7 @@
 #include "gateway/core/error.hpp"
 #include "gateway/image/map_page.hpp"
 #include "gateway/image/process_image.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate {
 namespace {
@@ -98,7 +99,7 @@ TEST(Words, NameTheBitsThatAreSet) {
 }
 
 TEST(TroubleshootingPage, IsTheOneInDocs) {
-  const std::string path = AXISGATE_SOURCE_DIR "/docs/troubleshooting.md";
+  const std::string path = test::source_path("docs/troubleshooting.md");
   if (std::getenv("AXISGATE_WRITE_PAGES") != nullptr) std::ofstream(path) << troubleshooting_page();
   std::ifstream file(path);
   std::stringstream text;

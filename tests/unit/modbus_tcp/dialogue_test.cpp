@@ -24,6 +24,7 @@
 #include <map>
 #include <sstream>
 
+#include "tests/places.hpp"
 #include "tests/unit/modbus_tcp/support/desk.hpp"
 
 namespace axisgate::modbus_tcp::test {
@@ -256,8 +257,7 @@ class Player {
 
 std::vector<Dialogue> all_dialogues() {
   std::vector<Dialogue> all;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(AXISGATE_SOURCE_DIR "/tests/unit/modbus_tcp/dialogues")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_path("tests/unit/modbus_tcp/dialogues"))) {
     std::ifstream file(entry.path());
     int number = 0;
     for (std::string line; std::getline(file, line);) {

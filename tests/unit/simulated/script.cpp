@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/simulated/script.hpp"
+#include "tests/places.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -167,7 +168,7 @@ ObjectKey Name::key() const {
 std::vector<Script> all_scripts() {
   std::vector<Script> scripts;
   for (const char* file : {"kinco", "rtu", "id286pro", "keya", "leadshine", "canopen", "adapters", "faults"}) {
-    std::ifstream input(std::string(AXISGATE_SOURCE_DIR) + "/tests/unit/simulated/scripts/" + file + ".txt");
+    std::ifstream input(test::source_path("tests/unit/simulated/scripts/") + file + ".txt");
     if (!input) throw std::runtime_error(std::string("no scripts of ") + file);
     for (std::string line; std::getline(input, line);) {
       const std::string text = trimmed(line);

@@ -6,13 +6,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/places.hpp"
 #include "tests/unit/simulated/bench.hpp"
 
 namespace axisgate::simulated {
 
 // "vectors", "objects", "conversions" of a sheet.
 inline nlohmann::json sheet_of(const std::string& name, const std::string& part_of_it) {
-  std::ifstream file(std::string(AXISGATE_SOURCE_DIR) + "/tests/vectors/" + name + ".json");
+  std::ifstream file(test::source_path("tests/vectors/") + name + ".json");
   return nlohmann::json::parse(file).at(part_of_it);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/commands/explain_command.hpp"
+#include "tests/places.hpp"
 
 #include <gmock/gmock.h>
 
@@ -9,7 +10,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-std::string told(const std::string& typed) { return explanation(typed, {AXISGATE_SOURCE_DIR "/schemas/drives"}); }
+std::string told(const std::string& typed) { return explanation(typed, {test::source_path("schemas/drives")}); }
 
 TEST(Explain, SaysMeaningCausesAndRemedy) {
   const std::string out = told("stop_latched");
