@@ -83,6 +83,7 @@ class Cycles(PlcStory):
             return len(seen) == len(events)
 
         block.Execute = True
+        self.go_on()
         self.until(f"all of {list(events)}", look)
         return seen
 
