@@ -64,7 +64,8 @@ class Trip(PlcStory):
 class DriveCable(PlcStory):
     """Between gateway and drive: the PLC's connection goes on."""
 
-    lines_of = ("serial", "modbus", "stepper", "kincocan", "leadshine", "mdserial", "mdcan")
+    # Those that do not trip when they hear nobody: a drive with a fault stands, and a stop of it is over.
+    lines_of = ("serial", "modbus", "stepper", "leadshine", "mdserial", "mdcan")
     reply_timeout_ms = 300
 
     def test_what_runs_is_an_error_and_a_stop_is_kept_until_the_drive_is_back(self):

@@ -73,6 +73,7 @@ class RealFlow:
 
 def started(story):
     flow = RealFlow(story, story.ports[PROGRAMS])
+    until("it reads the axis", lambda: flow.shown("position_actual") is not None)  # a person presses nothing before
     story.client = story.connect()  # Node-RED may have taken longer to start than a silent client is kept
     return flow
 
