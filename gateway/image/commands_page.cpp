@@ -98,9 +98,10 @@ constexpr std::array kOneRow{
 };
 
 constexpr std::array kTables{
-    CycleTable{"A cyclic scanner with ids",
-               "One connection; each cycle one block of registers 40 to 55. The form to prefer.",
-               CycleTable::How::scanner, false, true, kWithIds},
+    CycleTable{
+        "A cyclic scanner with ids",
+        "One connection; each cycle one block of registers 40 to 55, or to 56 with a heartbeat. The form to prefer.",
+        CycleTable::How::scanner, false, true, kWithIds},
     CycleTable{"A cyclic scanner without ids", "The same with command_id 0 in every block.", CycleTable::How::scanner,
                false, true, kWithoutIds},
     CycleTable{"A one-shot client",
@@ -160,8 +161,11 @@ constexpr std::array kCommands{
                 "seen"},
     CommandText{Command::halt, "a stop: with profile_deceleration; stays enabled, and nothing resumes", "nothing",
                 "seen"},
-    CommandText{Command::fault_reset, "clears a fault whose cause is gone; the axis ends disabled", "nothing",
-                "no fault was seen"},
+    CommandText{
+        Command::fault_reset,
+        "clears a fault whose cause is gone, and the axis ends disabled; without a fault nothing is sent, and an "
+        "enabled axis stays so",
+        "nothing", "no fault was seen"},
     CommandText{Command::move_absolute, "to target_position; replaces a move that is under way", "enabled, no latch",
                 "it has begun"},
     CommandText{Command::move_relative, "by target_position; while it moves 0x06", "standstill, no latch",

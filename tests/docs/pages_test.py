@@ -17,6 +17,10 @@ from drive_tables import printed, profile
 
 SOURCE = Path(sys.argv.pop(1)).absolute()
 LINK = re.compile(r"(?<!!)\[[^\]]*\]\(([^)\s]+)\)")
+# What is of this checkout, and what its packages install.
+FILE = re.compile(r"(?<![\w/.~-])((?:deploy|docs|schemas|tests|gateway|adapters)/[\w./*+-]*\w)")
+INSTALLED = re.compile(r"/(?:usr/share/doc/axisgate/examples|lib/udev/rules\.d)/([\w.-]+\w)")
+KEY = re.compile(r'"([a-z][a-z0-9_]*)" ?:')
 PRINTED = re.compile(r"(<!-- printed: (.*?) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 
 
@@ -26,6 +30,34 @@ def pages():
 
 def outside_code(text):
     return re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE)
+
+
+def code(text):
+    """What stands in backquotes and in blocks, indented ones too; not what is shown (```text)."""
+    blocks = [block for block in re.findall(r"^```.*?^```", text, flags=re.DOTALL | re.MULTILINE) if not block.startswith("```text")]
+    rest = outside_code(text)
+    return blocks + re.findall(r"^    .*$", rest, flags=re.MULTILINE) + re.findall(r"`([^`]+)`", rest)
+
+
+def missing_files(text):
+    for shown in code(text):
+        for name in FILE.findall(shown):
+            if not any(SOURCE.glob(name)) and not any(SOURCE.glob(f"{name}.*")):
+                yield name
+        for name in INSTALLED.findall(shown):
+            if not any(SOURCE.glob(f"deploy/**/{name}")):
+                yield name
+
+
+def known_keys():
+    """Those of configurations and profiles, by their schemas, and of cells."""
+    files = (*SOURCE.glob("schemas/**/*.json"), SOURCE / "deploy/kubernetes/cells.json")
+    return {key for path in files for key in KEY.findall(path.read_text(encoding="utf-8").replace("$axis", "axis"))}
+
+
+def is_named_by_its_reader(key):
+    """A constant of a drive with two motors."""
+    return re.sub(r"_[ab](?=_|$)", "_axis", key) in known_keys()
 
 
 def anchors(path):
@@ -47,6 +79,8 @@ def dead_links(path):
 
 
 class Manual(unittest.TestCase):
+    maxDiff = None
+
     def test_every_link_leads_somewhere(self):
         self.assertEqual([f"{path.relative_to(SOURCE)}: {why}" for path in pages() for why in dead_links(path)], [])
 
@@ -55,6 +89,24 @@ class Manual(unittest.TestCase):
             path = Path(folder) / "page.md"
             path.write_text("# One head\n[a](page.md#one-head) [b](other.md) [c](#two) `[d](x)`\n```\n[e](y)\n```\n", encoding="utf-8")
             self.assertEqual([why.split()[0] for why in dead_links(path)], ["other.md", "#two:", "x"])
+
+    def test_every_file_that_a_page_shows_is_there(self):
+        # Decisions tell of what is no more, too, and CONTRIBUTING.md of what is to be added.
+        self.assertEqual([f"{path.relative_to(SOURCE)}: {name}" for path in pages() if path.name not in ("CHANGELOG.md", "decisions.md", "CONTRIBUTING.md")
+                          for name in missing_files(path.read_text(encoding="utf-8"))], [])
+
+    def test_every_key_that_a_page_shows_is_one(self):
+        known = known_keys()
+        lost = {f"{path.relative_to(SOURCE)}: {key}" for path in pages() if path.name != "CHANGELOG.md"
+                for shown in code(path.read_text(encoding="utf-8")) for key in KEY.findall(shown) if key not in known and not is_named_by_its_reader(key)}
+        self.assertEqual(lost, set())
+        self.assertGreater(len(known), 100)
+
+    def test_a_file_or_key_that_is_not_there_is_found(self):
+        text = "`deploy/nothing.json` `deploy/plc/axisgate.st`\n\n    cp /usr/share/doc/axisgate/examples/no.rules x\n"
+        self.assertEqual(list(missing_files(text)), ["no.rules", "deploy/nothing.json"])
+        self.assertEqual([key for shown in code('```json\n{"lisp": 1, "listen": 2}\n```\n') for key in KEY.findall(shown)], ["lisp", "listen"])
+        self.assertFalse({"lisp"} & known_keys())
 
     def test_every_page_is_in_the_index(self):
         index = SOURCE / "docs/README.md"

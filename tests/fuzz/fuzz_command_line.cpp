@@ -10,17 +10,7 @@ namespace axisgate::fuzz {
 namespace {
 
 void command_line(Bytes content) {
-  std::vector<std::string> words{"axisgate"};
-  std::string word;
-  for (const Byte byte : content) {
-    if (byte == 0) break;  // no argument holds one
-    if (byte != '\n') {
-      word += static_cast<char>(byte);
-    } else {
-      words.push_back(std::exchange(word, {}));
-    }
-  }
-  if (!word.empty()) words.push_back(word);
+  const std::vector<std::string> words = words_of("axisgate", content);
   std::vector<const char*> arguments;
   for (const std::string& each : words) arguments.push_back(each.c_str());
   // Help and complaints are not looked at.

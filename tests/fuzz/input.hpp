@@ -4,10 +4,29 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "gateway/core/bytes.hpp"
 
 namespace axisgate::fuzz {
+
+/// One argument a line, behind the name of the program.
+inline std::vector<std::string> words_of(const char* program, Bytes content) {
+  std::vector<std::string> words{program};
+  std::string word;
+  for (const Byte byte : content) {
+    if (byte == 0) break;  // no argument holds one
+    if (byte != '\n') {
+      word += static_cast<char>(byte);
+    } else {
+      words.push_back(std::exchange(word, {}));
+    }
+  }
+  if (!word.empty()) words.push_back(word);
+  return words;
+}
 
 class Input {
  public:

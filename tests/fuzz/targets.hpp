@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is fuzzed: one small function for each decoder, with bytes that may be anything, and a table of all of them.
 // Promises that a function ends for any bytes, gives 0, and throws FuzzFault where the code it plays with broke a
-// promise. Never opens a device or a socket.
+// promise. Never opens a device, but a pseudo-terminal of its own, or a socket.
 #pragma once
 
 #include <array>
@@ -40,6 +40,13 @@ int axisgate_fuzz_profile(const std::uint8_t* data, std::size_t size);
 int axisgate_fuzz_configuration(const std::uint8_t* data, std::size_t size);
 int axisgate_fuzz_eds(const std::uint8_t* data, std::size_t size);
 int axisgate_fuzz_command_line(const std::uint8_t* data, std::size_t size);
+int axisgate_fuzz_modbus_port(const std::uint8_t* data, std::size_t size);
+int axisgate_fuzz_scan(const std::uint8_t* data, std::size_t size);
+int axisgate_fuzz_serial_scan(const std::uint8_t* data, std::size_t size);
+int axisgate_fuzz_hand_replies(const std::uint8_t* data, std::size_t size);
+int axisgate_fuzz_top_table(const std::uint8_t* data, std::size_t size);
+int axisgate_fuzz_can_errors(const std::uint8_t* data, std::size_t size);
+int axisgate_fuzz_dds_command_line(const std::uint8_t* data, std::size_t size);
 
 namespace axisgate::fuzz {
 
@@ -64,6 +71,13 @@ inline constexpr std::array kTargets{
     Target{"configuration", axisgate_fuzz_configuration},
     Target{"eds", axisgate_fuzz_eds},
     Target{"command_line", axisgate_fuzz_command_line},
+    Target{"modbus_port", axisgate_fuzz_modbus_port},
+    Target{"scan", axisgate_fuzz_scan},
+    Target{"serial_scan", axisgate_fuzz_serial_scan},
+    Target{"hand_replies", axisgate_fuzz_hand_replies},
+    Target{"top_table", axisgate_fuzz_top_table},
+    Target{"can_errors", axisgate_fuzz_can_errors},
+    Target{"dds_command_line", axisgate_fuzz_dds_command_line},
 };
 
 }  // namespace axisgate::fuzz

@@ -76,7 +76,7 @@ class Machine(Story):
             rate = {"bitrate": 500000 if adapter == "canopen" else 250000} if can else {"rs485": "off"}
             entry = drive(kind, 1, 0)
             entry["axes"] = []
-            for motor in ("A", "B") if kind == "keya" else (None,):
+            for motor in ("A", "B") if kind.startswith("keya") else (None,):
                 number = len(self.motors) + 1
                 self.motors[number] = (line, motor)
                 entry["axes"].append({"axis": number, "name": f"{line}{motor or ''}", "lease": self.lease, **self.axis_options})

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A PLC's normal day with the shipped function blocks, on each kind of drive: it enables, moves, runs, jogs, homes, stops, disables."""
-from plc_stage import TURN, PlcStory, main
+from plc_stage import AT_SPEED_ALONE, EVERY_KIND, TO_POSITIONS_ALONE, TURN, PlcStory, main
 
-EVERY_KIND = (*PlcStory.lines_of, "mdserial", "keyacan", "keya485")
+KEEP_THEIR_COUNT = ("keya232", "keyacan", "keya485", "keyaplaces")  # no bus command sets it
 
 FAR = 5000.0 * TURN
 SPEED = 5.0 * TURN  # units per second
@@ -30,26 +30,31 @@ class Day(PlcStory):
         return buses
 
     def homes(self, number):
-        return self.motors[number][0] in ("serial", "modbus", "kincocan", "leadshine", "mdserial")
+        return self.motors[number][0] in ("serial", "modbus", "kincocan", "leadshine", "mdserial", "mdcan")
 
     def positioning(self):
-        """Axes that position; a Keya as delivered runs at speed."""
-        return [number for number in self.numbers if not self.motors[number][1]]
+        return [number for number in self.numbers if self.motors[number][0] not in AT_SPEED_ALONE]
+
+    def running(self):
+        return [number for number in self.numbers if self.motors[number][0] not in TO_POSITIONS_ALONE]
+
+    def velocity(self, number):
+        """0: the drive's own."""
+        return 0.0 if self.motors[number][0] in TO_POSITIONS_ALONE else SPEED
 
     def ramps(self, number):
         """A Keya has none that a bus writes."""
         return {} if self.motors[number][1] else {"Acceleration": RAMP, "Deceleration": RAMP}
 
     def run_all(self, velocity=SPEED):
-        for number in self.numbers:
+        for number in self.running():
             self.day.begin(number, "MoveVelocity", Velocity=velocity, **self.ramps(number))
-        for number in self.numbers:
+        for number in self.running():
             self.day.until_at_speed(number)
             self.assertTrue(self.day[number].ReadStatus.ContinuousMotion)
 
-    def end_all(self, block, how, numbers=None):
-        self.assertEqual({number: self.day.end(number, block) for number in numbers or self.numbers},
-                         dict.fromkeys(numbers or self.numbers, how))
+    def end_all(self, block, how, numbers):
+        self.assertEqual({number: self.day.end(number, block) for number in numbers}, dict.fromkeys(numbers, how))
 
     def until_there(self, number, position):
         axis = self.day[number].Axis
@@ -62,7 +67,7 @@ class Positioning(Day):
         start = {number: self.turns(number) for number in self.positioning()}
         for turns in (2.0, -1.0, 3.0):
             for number in start:
-                self.day.begin(number, "MoveAbsolute", Position=turns * TURN, Velocity=SPEED, **self.ramps(number))
+                self.day.begin(number, "MoveAbsolute", Position=turns * TURN, Velocity=self.velocity(number), **self.ramps(number))
             self.end_all("MoveAbsolute", "Done", start)
             for number in start:
                 self.until_there(number, turns * TURN)
@@ -78,7 +83,7 @@ class Positioning(Day):
         told = dict.fromkeys(self.positioning(), 0)
         for number in told:
             move = self.day[number].MoveAbsolute
-            move.Position, move.Velocity, move.Execute = 1.0 * TURN, SPEED, True
+            move.Position, move.Velocity, move.Execute = 1.0 * TURN, self.velocity(number), True
         self.go_on()
         for number in told:
             self.day[number].MoveAbsolute.Execute = False
@@ -97,7 +102,7 @@ class Positioning(Day):
     def test_homing_and_set_position_end_where_the_axis_stands(self):
         homing = [number for number in self.positioning() if self.homes(number)]
         for number in homing:
-            self.day.begin(number, "MoveAbsolute", Position=1.0 * TURN, Velocity=SPEED, **self.ramps(number))
+            self.day.begin(number, "MoveAbsolute", Position=1.0 * TURN, Velocity=self.velocity(number), **self.ramps(number))
         self.end_all("MoveAbsolute", "Done", homing)
         for number in homing:
             self.until_motor_stands(number)
@@ -111,7 +116,7 @@ class Positioning(Day):
         self.until_there(stepper, 12345.0)
         self.day.do(stepper, "SetPosition", Position=-7.0)
         self.until_there(stepper, -7.0)
-        for number in set(self.numbers) - set(self.positioning()):
+        for number in (number for number in self.numbers if self.motors[number][0] in KEEP_THEIR_COUNT):
             set_position = self.day.begin(number, "SetPosition", Position=1.0)
             self.assertEqual((set_position.Error, set_position.ErrorID), (True, 0x20A), "this drive cannot")
 
@@ -119,7 +124,7 @@ class Positioning(Day):
 class Interrupting(Day):
     def test_a_newer_move_takes_the_place_of_one_under_way(self):
         for number in self.positioning():
-            self.day.begin(number, "MoveAbsolute", Position=FAR, Velocity=SPEED, **self.ramps(number))
+            self.day.begin(number, "MoveAbsolute", Position=FAR, Velocity=self.velocity(number), **self.ramps(number))
         for number in self.positioning():
             self.until("the first is active", lambda number=number: self.day[number].MoveAbsolute.Active)
             self.day.begin(number, "MoveOther", Position=-1.0 * TURN)
@@ -132,7 +137,7 @@ class Interrupting(Day):
         """On every drive alike, also where it can only halt by a quick stop that takes its torque."""
         for block in ("Stop", "Halt"):
             for number in self.positioning():
-                self.day.begin(number, "MoveAbsolute", Position=FAR, Velocity=SPEED, **self.ramps(number))
+                self.day.begin(number, "MoveAbsolute", Position=FAR, Velocity=self.velocity(number), **self.ramps(number))
             for number in self.positioning():
                 self.until("it is active", lambda number=number: self.day[number].MoveAbsolute.Active)
                 self.until_motor_turns(number)
@@ -142,7 +147,7 @@ class Interrupting(Day):
             for number in self.positioning():
                 self.assertFalse(self.day[number].Power.Error)
                 place = self.day[number].Axis.Position + TURN
-                self.day.do(number, "MoveAbsolute", Position=place, Velocity=SPEED)
+                self.day.do(number, "MoveAbsolute", Position=place, Velocity=self.velocity(number))
                 self.until_there(number, place)
 
     def test_of_two_moves_that_wait_the_newer_one_is_carried_out(self):
@@ -150,7 +155,7 @@ class Interrupting(Day):
         for number in self.positioning():
             station = self.day[number]
             station.MoveAbsolute.Position, station.MoveOther.Position = 1.0 * TURN, 3.0 * TURN
-            station.MoveAbsolute.Velocity = station.MoveOther.Velocity = SPEED
+            station.MoveAbsolute.Velocity = station.MoveOther.Velocity = self.velocity(number)
             station.Reset.Execute = station.MoveOther.Execute = True
         self.go_on()
         for number in self.positioning():
@@ -166,7 +171,7 @@ class Interrupting(Day):
         for number in self.positioning():
             station = self.day[number]
             station.MoveAbsolute.Position, station.MoveOther.Position = 3.0 * TURN, 1.0 * TURN
-            station.MoveAbsolute.Velocity = station.MoveOther.Velocity = SPEED
+            station.MoveAbsolute.Velocity = station.MoveOther.Velocity = self.velocity(number)
             station.MoveAbsolute.Execute = station.MoveOther.Execute = True
         self.go_on()
         self.end_all("MoveOther", "Done", self.positioning())
@@ -178,14 +183,14 @@ class Interrupting(Day):
 class Running(Day):
     def test_it_runs_at_the_velocity_asked_for_and_halts(self):
         self.run_all()
-        for number in self.numbers:
+        for number in self.running():
             self.assert_turns_on(number)
             self.until(f"the motor of axis {number} itself turns at {RPM} rpm", lambda number=number: abs(self.rpm(number) - RPM) <= RPM / 50)
             self.day.begin(number, "Halt")
-        self.end_all("MoveVelocity", "CommandAborted")
-        self.end_all("Halt", "Done")
-        self.until_motor_stands(*self.numbers)
-        for number in self.numbers:
+        self.end_all("MoveVelocity", "CommandAborted", self.running())
+        self.end_all("Halt", "Done", self.running())
+        self.until_motor_stands(*self.running())
+        for number in self.running():
             self.assertTrue(self.day[number].Power.Status, "a halt keeps the torque")
             self.assertTrue(self.day[number].ReadStatus.Standstill)
 
@@ -193,7 +198,7 @@ class Running(Day):
         turned = {}
         for velocity in (SPEED, -SPEED):
             self.run_all(velocity)
-            for number in self.numbers:
+            for number in self.running():
                 before = self.position(number)
                 self.assert_turns_on(number)
                 turned.setdefault(number, []).append(self.position(number) > before)
@@ -202,18 +207,18 @@ class Running(Day):
 
     def test_nothing_begins_while_a_stop_is_held(self):
         self.run_all()
-        for number in self.numbers:
+        for number in self.running():
             self.day.begin(number, "Stop", **({} if self.motors[number][1] else {"Deceleration": RAMP}))
-        self.end_all("MoveVelocity", "CommandAborted")
-        for number in self.numbers:
+        self.end_all("MoveVelocity", "CommandAborted", self.running())
+        for number in self.running():
             self.until("it has stopped", lambda number=number: self.day[number].Stop.Done)
-        self.until_motor_stands(*self.numbers)
-        for number in self.numbers:
+        self.until_motor_stands(*self.running())
+        for number in self.running():
             self.assertTrue(self.day[number].ReadStatus.Stopping)
             run = self.day.begin(number, "MoveVelocity", Velocity=SPEED)
             self.assertEqual((run.Error, run.ErrorID), (True, 0x204))
-        self.assert_stays(*self.numbers)
-        for number in self.numbers:
+        self.assert_stays(*self.running())
+        for number in self.running():
             self.day.end(number, "MoveVelocity")
             self.day.end(number, "Stop")
             self.until("standstill", lambda number=number: self.day[number].ReadStatus.Standstill)
@@ -225,45 +230,45 @@ class Running(Day):
                                lambda: station.Jog.Error or station.Jog.CommandAborted)
 
     def until_jogged(self):
-        self.until("all have ended", lambda: not any(self.day[number].Jog.Busy for number in self.numbers))
-        self.assertTrue(all(self.day[number].Jog.Done for number in self.numbers))
+        self.until("all have ended", lambda: not any(self.day[number].Jog.Busy for number in self.running()))
+        self.assertTrue(all(self.day[number].Jog.Done for number in self.running()))
 
     def test_jog_runs_as_long_as_it_is_held(self):
         for way, sign in (("JogForward", 1), ("JogBackward", -1)):
-            for number in self.numbers:
+            for number in self.running():
                 jog = self.day[number].Jog
                 jog.Velocity = SPEED
                 setattr(jog, way, True)
-            for number in self.numbers:
+            for number in self.running():
                 self.until_jogging(number, sign)
                 self.assertTrue(self.day[number].Jog.Active)
                 setattr(self.day[number].Jog, way, False)
             self.until_jogged()
-            self.until_motor_stands(*self.numbers)
+            self.until_motor_stands(*self.running())
 
     def test_jog_turns_round_and_both_at_once_halt(self):
-        for number in self.numbers:
+        for number in self.running():
             self.day[number].Jog.Velocity = SPEED
             self.day[number].Jog.JogForward = True
-        for number in self.numbers:
+        for number in self.running():
             self.until_jogging(number, 1)
             self.day[number].Jog.JogForward, self.day[number].Jog.JogBackward = False, True
-        for number in self.numbers:
+        for number in self.running():
             self.until_jogging(number, -1)
             self.day[number].Jog.JogForward = True
         self.until_jogged()
-        self.until_motor_stands(*self.numbers)
+        self.until_motor_stands(*self.running())
 
     def test_disabling_ends_what_runs(self):
         self.run_all()
         self.day.disable()
-        self.end_all("MoveVelocity", "CommandAborted")
-        self.until_motor_stands(*self.numbers)
-        for number in self.numbers:
+        self.end_all("MoveVelocity", "CommandAborted", self.running())
+        self.until_motor_stands(*self.running())
+        for number in self.running():
             run = self.day.begin(number, "MoveVelocity", Velocity=SPEED)
             self.until("it is refused", lambda run=run: not run.Busy)
             self.assertEqual((run.Error, run.ErrorID), (True, 9), "an axis that is disabled is in no state for it")
-        self.assert_stays(*self.numbers)
+        self.assert_stays(*self.running())
 
 
 if __name__ == "__main__":

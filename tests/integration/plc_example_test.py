@@ -229,6 +229,19 @@ class OfATable(PlcStory):
         self.assert_rests(since)
         self.goes_on_by(self.press_reset)
 
+    def a_drive_is_started_anew(self):
+        """Where it stands is its zero then: a program that went on to its next place would go to a wrong one."""
+        self.set_out()
+        since = len(self.plc.commands)
+        self.sim.ask("restart serial/1")
+        self.until("the program has seen it", lambda: self.table.Tripped)
+        self.until("the drive is back", lambda: self.watched(1).get("link_state") == ONLINE)
+        self.assert_rests(since)
+        self.press_reset()
+        self.until_round()
+        self.assertEqual([MAKES_IT_GO[asked] for asked in self.plc.commands[since:] if asked in MAKES_IT_GO][:3],
+                         ["enable", "home", "move_absolute"], self.plc.commands)
+
     def another_client_stops_it(self):
         panel = self.peer("127.0.0.2").axis(1)
         for how in ("halt", "quick_stop", "disable"):
@@ -300,6 +313,9 @@ class TableWithBlocks(OfATable):
 
     def test_a_drive_out_of_sight_starts_nothing_when_it_is_back(self):
         self.a_drive_is_out_of_sight()
+
+    def test_a_drive_that_was_started_anew_is_homed_before_it_moves(self):
+        self.a_drive_is_started_anew()
 
     def test_what_another_client_has_stopped_is_not_begun_again(self):
         self.another_client_stops_it()

@@ -3,7 +3,7 @@
 acknowledged."""
 import sys
 
-from plc_stage import TURN, PlcStory, main
+from plc_stage import AT_SPEED_ALONE, EVERY_KIND, TO_POSITIONS_ALONE, TURN, PlcStory, main
 
 SPEED = 5.0 * TURN
 RAMP = 50.0 * TURN
@@ -63,39 +63,68 @@ class Cycles(PlcStory):
         plc = self.plc(cycle_ms=cycle_ms, **more)
         plc.enable()
         for number in self.numbers:
-            if not self.motors[number][1]:
+            line = self.motors[number][0]
+            if line not in AT_SPEED_ALONE:
                 self.one_move(plc, number, cycle_ms)
-            plc.begin(number, "MoveVelocity", Velocity=-SPEED)
-            plc.until_at_speed(number)
+            if line not in TO_POSITIONS_ALONE:
+                self.one_run(plc, number, cycle_ms)
             plc.do(number, "Stop")
             self.until_motor_stands(number)
         plc.disable()
 
+    def cycles_until(self, plc, block, events):
+        """How many cycles after the rising edge of Execute, which comes now, each of these was first so: looked at once a cycle."""
+        begun, seen = plc.cycles, {}
+
+        def look():
+            for name, is_so in events.items():
+                if name not in seen and is_so():
+                    seen[name] = plc.cycles - begun
+            return len(seen) == len(events)
+
+        block.Execute = True
+        self.go_on()
+        self.until(f"all of {list(events)}", look)
+        return seen
+
     def one_move(self, plc, number, cycle_ms):
-        begun, start = plc.cycles, self.turns(number)
-        move = plc.begin(number, "MoveAbsolute", Position=1.0 * TURN, Velocity=SPEED)
-        self.until("it is active", lambda: not move.Busy or move.Active)
-        active = plc.cycles - begun
-        self.until("the motor stands at its target", lambda: self.there(plc, number))
-        there = plc.cycles
-        self.until("its end", lambda: not move.Busy)
+        start = self.turns(number)
+        move = plc[number].MoveAbsolute
+        move.Position = 1.0 * TURN
+        move.Velocity = 0.0 if self.motors[number][0] in TO_POSITIONS_ALONE else SPEED
+        seen = self.cycles_until(plc, move, {
+            "motion": lambda: self.turns(number) != start, "end": lambda: not move.Busy,
+            "standstill": lambda: abs(self.turns(number) - start - 1.0) < 0.01 and self.speed(number) == 0})
         self.assertTrue(move.Done, plc.told(number))
         self.until_motor_stands(number)
         self.assertAlmostEqual(self.turns(number) - start, 1.0, delta=0.01, msg="the motor itself")
-        print(f"figures: {self.motors[number][0]}, cycle {cycle_ms} ms: Active after {active} cycles, Done {plc.cycles - there} cycles "
-              "after the target was seen", file=sys.stderr)
+        print(f"figures: {self.motors[number][0]}, cycle {cycle_ms} ms: motion {seen['motion']} cycles after Execute, Done "
+              f"{seen['end'] - seen['standstill']} cycles after the motor stood", file=sys.stderr)
         plc.end(number, "MoveAbsolute")
 
-    def there(self, plc, number):
-        return abs(plc[number].Axis.Position - TURN) <= 20
+    def one_run(self, plc, number, cycle_ms):
+        start = self.turns(number)
+        run = plc[number].MoveVelocity
+        run.Velocity = -SPEED
+        seen = self.cycles_until(plc, run, {"motion": lambda: self.turns(number) != start, "speed": lambda: run.InVelocity or not run.Busy})
+        self.assertTrue(run.InVelocity, plc.told(number))
+        print(f"figures: {self.motors[number][0]}, cycle {cycle_ms} ms: motion {seen['motion']} cycles after Execute of a run",
+              file=sys.stderr)
+        run.Execute = False
+
+
+class EveryKind(Cycles):
+    """Its figures are those of docs/plc.md."""
+
+    lines_of = EVERY_KIND
+
+    def test_a_cycle_of_20_ms(self):
+        self.short_day(20)
 
 
 class FastCycles(Cycles):
     def test_a_cycle_of_4_ms(self):
         self.short_day(4)
-
-    def test_a_cycle_of_20_ms(self):
-        self.short_day(20)
 
 
 class ScannersOfTheirOwn(Cycles):

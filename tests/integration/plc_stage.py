@@ -11,7 +11,7 @@ import struct
 import sys
 import time
 
-from lease_stage import EVERYBODY, MACHINES, PLC, Machine, main  # noqa: F401 EVERYBODY, MACHINES, PLC, main: for the stories
+from lease_stage import DRIVES, EVERYBODY, MACHINES, PLC, Machine, main  # noqa: F401 EVERYBODY, MACHINES, PLC, main: for the stories
 from processes import NEVER
 from stage import SOURCE
 
@@ -20,10 +20,19 @@ from plcopen_rules import AxisRules, outputs  # noqa: E402
 from st_machine import Machine as StMachine  # noqa: E402
 
 MACHINES["mdserial"] = ("md@1", "kinco-serial", "md", "606C.00")
+MACHINES["mdcan"] = ("lawicel:md@1", "canopen", "md", "606C.00")
 MACHINES["keya485"] = ("keya-rs485@1", "keya-rs485", "keya", None)
+MACHINES["keyacanopen"] = ("lawicel:keya-kydas4860-2e@1", "canopen", "keya", None)
+MACHINES["keyaplaces"] = ("lawicel:keya-can@1+0020=3+0050=3", "keya-can", "keyaplaces", None)
+DRIVES["keyaplaces"] = ("keya-kydas4860-2e", {"control_mode_a": 3, "control_mode_b": 3})
+EVERY_KIND = ("serial", "modbus", "stepper", "kincocan", "leadshine", "keya232", "mdserial", "mdcan", "keyacan", "keya485", "keyacanopen",
+              "keyaplaces")
+# A Keya works as its maker's tool has set it: at speed as delivered, or to positions, at the drive's own speed.
+AT_SPEED_ALONE = ("keya232", "keyacan", "keya485", "keyacanopen")
+TO_POSITIONS_ALONE = ("keyaplaces",)
 # What the makers' manuals make of a turn of the motor, and of 1 rpm: by the kind of drive, whatever the gateway takes it for.
-COUNTS_PER_TURN = {"jd": 10000, "md": 65536, "ld2": 10000, "id286pro": 10000, "keya": 10000}
-COUNTS_PER_RPM = {"jd": 1, "md": 512 * 65536 / 1875, "ld2": 10000 / 60, "id286pro": 1 / 0.6, "keya": 1}
+COUNTS_PER_TURN = {"jd": 10000, "md": 65536, "ld2": 10000, "id286pro": 10000, "keya": 10000, "keyaplaces": 10000}
+COUNTS_PER_RPM = {"jd": 1, "md": 512 * 65536 / 1875, "ld2": 10000 / 60, "id286pro": 1 / 0.6, "keya": 1, "keyaplaces": 1}
 TURN = 10000  # units of the gateway, and of a program that sets no UnitScale
 READ, WRITE = 3, 16
 INFO_EVERY = 25  # cycles between two reads of registers 78 to 95
