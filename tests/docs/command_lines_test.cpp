@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "gateway/commands/command_line.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> pages() {
-  const fs::path root(AXISGATE_SOURCE_DIR);
+  const fs::path root(test::source_path(""));
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(root))
     if (entry.path().extension() == ".md" && entry.path().filename() != "CHANGELOG.md") found.push_back(entry.path());

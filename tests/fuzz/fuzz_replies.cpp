@@ -8,6 +8,7 @@
 #include "gateway/profile/read/profile_loader.hpp"
 #include "tests/fuzz/input.hpp"
 #include "tests/fuzz/targets.hpp"
+#include "tests/places.hpp"
 
 namespace axisgate::fuzz {
 namespace {
@@ -18,7 +19,7 @@ const std::vector<drive::Profile>& profiles() {
   static const std::vector<drive::Profile> kProfiles = [] {
     std::vector<drive::Profile> made;
     for (const char* name : {"kinco-jd", "leadshine-ld2-can", "id286pro"})
-      made.push_back(drive::load_profile(std::string(AXISGATE_SOURCE_DIR "/schemas/drives/") + name + ".json").profile);
+      made.push_back(drive::load_profile(test::source_path("schemas/drives/") + name + ".json").profile);
     return made;
   }();
   return kProfiles;
