@@ -133,7 +133,7 @@ std::unique_ptr<bus::Wire> SerialScanner::wire_for(const SerialSpeech& speech) {
       errors.insert(errors.end(), spec->second.rtu.error_functions.begin(), spec->second.rtu.error_functions.end());
   std::vector<modbus_rtu::RtuNode> nodes;
   for (int station = 1; station <= kLastRtuStation; ++station)
-    nodes.push_back({static_cast<std::uint8_t>(station), false, errors, std::nullopt});
+    nodes.push_back({.node = static_cast<std::uint8_t>(station), .error_functions = errors});
   const int parity_bits = settings.parity == serial::Parity::none ? 0 : 1;
   auto link = std::make_unique<modbus_rtu::LibmodbusLink>("scan", settings, io_, runtime_, log_);
   return std::make_unique<modbus_rtu::RtuWire>(
