@@ -6,8 +6,6 @@
 #include <cassert>
 #include <utility>
 
-#include "adapters/bus/opening_failure.hpp"
-
 namespace axisgate::can {
 
 SlcanLink::SlcanLink(std::string name, CanDevice device, std::uint32_t bitrate, std::unique_ptr<bus::ByteLink> port,
@@ -115,28 +113,22 @@ void SlcanLink::obey() {
 
 void SlcanLink::report() {
   if (session_.up() == told_up_) {
-    if (!told_up_) log_once(session_.why());
+    if (!told_up_ && !session_.why().empty()) failures_.tell(log_, log_source_, session_.why());
     return;
   }
   told_up_ = session_.up();
   if (!told_up_) {
-    last_logged_ = session_.why();
+    failures_.was_told(session_.why());
     events_->on_link_down(session_.why());
     return;
   }
   if (std::exchange(ever_up_, true)) ++session_.trouble().reconnects;
-  last_logged_.clear();
+  failures_.opened();
   const std::string adapter = session_.version().empty() ? "of unknown version" : "V" + session_.version();
   log_.write(LogLevel::info, log_source_,
              fmt::format("{}: Lawicel adapter {}, channel open{}", path_, adapter,
                          session_.answers() ? "" : "; it acknowledges nothing, so errors on the bus are not told"));
   events_->on_link_up();
-}
-
-void SlcanLink::log_once(const std::string& why) {
-  if (why.empty() || why == last_logged_) return;
-  last_logged_ = why;
-  bus::log_opening_failure(log_, log_source_, why);
 }
 
 }  // namespace axisgate::can

@@ -10,6 +10,7 @@
 
 #include "adapters/bus/byte_link.hpp"
 #include "adapters/bus/noise_watch.hpp"
+#include "adapters/bus/opening_failures.hpp"
 #include "adapters/can/can_filter_set.hpp"
 #include "adapters/can/lawicel_session.hpp"
 #include "gateway/core/log.hpp"
@@ -42,7 +43,6 @@ class SlcanLink final : public CanLink, private bus::ByteLinkEvents {
   void obey();
   /// Tells the events what they do not know yet.
   void report();
-  void log_once(const std::string& why);
 
   std::string log_source_;
   std::string path_;
@@ -56,7 +56,7 @@ class SlcanLink final : public CanLink, private bus::ByteLinkEvents {
   std::vector<Byte> backlog_;
   bool told_up_ = false;
   bool ever_up_ = false;
-  std::string last_logged_;
+  bus::OpeningFailures failures_;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
   // Last, so that they go first: neither may call into a link that is half gone.
   std::unique_ptr<Timer> timer_;

@@ -7,7 +7,6 @@
 #include <cassert>
 #include <utility>
 
-#include "adapters/bus/opening_failure.hpp"
 #include "adapters/serial/still_open.hpp"
 
 namespace axisgate::can {
@@ -69,7 +68,7 @@ void SocketCanLink::try_open() {
   const OpenedSocket opened = open_raw_socket(interface_, bitrate_, filters_);
   if (opened.descriptor < 0) {
     reopen_.on_failure(runtime_.now());
-    log_failure(opened.error);
+    failures_.tell(log_, log_source_, opened.error);
     return;
   }
   socket_.assign(opened.descriptor);
@@ -80,7 +79,7 @@ void SocketCanLink::try_open() {
   running_ = opened.running;
   if (!running_) faults_.on_found_stopped();
   dropped_ = 0;
-  last_failure_.clear();
+  failures_.opened();
   log_.write(LogLevel::info, log_source_, interface_ + (running_ ? " open" : " open, but its controller is bus-off"));
   wait_for_frames();
   judge();
@@ -214,12 +213,12 @@ void SocketCanLink::on_change(const InterfaceChange& change) {
 void SocketCanLink::lose(const std::string& why) {
   close();
   reopen_.on_loss(runtime_.now());
-  last_failure_ = why;
   arm();
   if (std::exchange(told_up_, false)) {
+    failures_.was_told(why);
     events_->on_link_down(why);
   } else {
-    bus::log_opening_failure(log_, log_source_, why);
+    failures_.tell(log_, log_source_, why);
   }
 }
 
@@ -232,12 +231,6 @@ void SocketCanLink::close() {
   clog_look_at_ = kNever;
   clogged_.clear();
   broken_.clear();
-}
-
-void SocketCanLink::log_failure(const std::string& why) {
-  if (why == last_failure_) return;
-  last_failure_ = why;
-  bus::log_opening_failure(log_, log_source_, why);
 }
 
 }  // namespace axisgate::can

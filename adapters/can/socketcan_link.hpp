@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/bus/opening_failures.hpp"
 #include "adapters/can/can_bus_off_plan.hpp"
 #include "adapters/can/can_filter_set.hpp"
 #include "adapters/can/can_send_queue.hpp"
@@ -54,7 +55,6 @@ class SocketCanLink final : public CanLink {
   void judge();
   [[nodiscard]] std::string trouble_now() const;
   void arm();
-  void log_failure(const std::string& why);
 
   std::string log_source_;
   std::string interface_;
@@ -68,7 +68,7 @@ class SocketCanLink final : public CanLink {
   BusOffPlan faults_;
   SendQueue queue_;
   CanTrouble trouble_;
-  std::string last_failure_;        // each reason is logged once, not each second
+  bus::OpeningFailures failures_;
   std::string broken_;              ///< found while sending; told from the loop, so that send() calls nobody back
   std::string clogged_;             ///< the queue stayed full: why the link is down
   Instant clog_look_at_ = kNever;   ///< when the queue is looked at again

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adapters/canopen/canopen_wire.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <optional>
 #include <utility>
 
-#include "adapters/can/frame_bits.hpp"
+#include "adapters/can/can_line.hpp"
 #include "adapters/canopen/canopen_text.hpp"
 #include "adapters/canopen/heartbeat_plan.hpp"
 #include "adapters/canopen/sdo_client.hpp"
@@ -30,9 +28,9 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   void abandon() override;
   void map_process_data(std::uint8_t node, std::uint8_t number, const bus::ProcessMap& objects) override;
   [[nodiscard]] bool call(std::uint8_t node) override;
-  [[nodiscard]] const bus::Statistics& statistics() const override;
-  [[nodiscard]] std::optional<std::uint64_t> bits_carried() const override { return bits_; }
-  void set_decode(bool on) override { decode_ = on; }
+  [[nodiscard]] const bus::Statistics& statistics() const override { return line_.statistics(); }
+  [[nodiscard]] std::optional<std::uint64_t> bits_carried() const override { return line_.bits(); }
+  void set_decode(bool on) override { line_.set_decode(on); }
 
  private:
   struct Node {
@@ -49,18 +47,14 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   void send_command(const bus::Exchange& exchange);
   void send_step(std::uint8_t node, const SdoStep& step);
   void send_heartbeat(Instant now);
-  void transmit(const can::CanFrame& frame, bool urgent = false);
   void transmit(std::uint8_t node, const SdoFrames& frames);
   void on_reply_frame(Node& node, Bytes bytes, Instant now);
   void tell(Node& node, const Unasked::News& news);
   void watch_nodes(Instant now);
   [[nodiscard]] Node* find(std::uint8_t number);
-  void log_frame(std::string_view direction, const can::CanFrame& frame, std::string_view remark = "") const;
 
   CanopenSettings settings_;
-  std::string log_source_;
   Runtime& runtime_;
-  const Log& log_;
   bus::WireEvents* events_ = nullptr;
   std::vector<Node> nodes_;
   SdoClient sdo_;
@@ -70,27 +64,19 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   /// What ends without an answer ends with the next turn of the loop, never inside send().
   std::optional<bus::ExchangeResult> owed_;
   Instant watch_again_ = kLongAgo;
-  bool decode_ = false;
-  bool up_ = false;
-  bool ever_up_ = false;
-  mutable bus::Statistics statistics_;
-  std::uint64_t bits_ = 0;  ///< of all frames, sent and heard
   // Last, so that they go first: neither may call into a wire that is half gone.
   std::unique_ptr<Timer> timer_;
-  std::unique_ptr<can::CanLink> link_;
+  can::CanLine line_;
 };
 
 CanopenWire::CanopenWire(CanopenSettings settings, std::unique_ptr<can::CanLink> link, Runtime& runtime, const Log& log)
     : settings_(std::move(settings)),
-      log_source_("bus " + settings_.name),
       runtime_(runtime),
-      log_(log),
       sdo_(settings_.timeout),
       heartbeat_(settings_.own_heartbeat),
       sync_(settings_.sync),
       timer_(runtime.make_timer([this] { on_timer(); })),
-      link_(std::move(link)) {
-  assert(link_ != nullptr);
+      line_(settings_.name, std::move(link), log, describe) {
   nodes_.reserve(settings_.nodes.size());
   for (const CanopenNode& node : settings_.nodes) {
     assert(node.node >= kFirstNode && node.node <= kLastNode && find(node.node) == nullptr);
@@ -112,19 +98,13 @@ void CanopenWire::start(bus::WireEvents& events) {
   events_ = &events;
   std::vector<std::uint8_t> numbers;
   for (const Node& node : nodes_) numbers.push_back(node.number);
-  link_->start(*this, filters_for(numbers));
-}
-
-const bus::Statistics& CanopenWire::statistics() const {
-  const can::CanTrouble& trouble = link_->trouble();
-  statistics_.dropped_bytes = trouble.lost_in + trouble.bad_bytes;
-  return statistics_;
+  line_.start(*this, filters_for(numbers));
 }
 
 // --- What we send ---------------------------------------------------------------------------------------------------
 
 void CanopenWire::send(const bus::Exchange& exchange) {
-  assert(up_ && !owed_ && !sdo_.outstanding_node() && exchange.node <= kLastNode);
+  assert(line_.up() && !owed_ && !sdo_.outstanding_node() && exchange.node <= kLastNode);
   if (exchange.access == bus::Access::command) return send_command(exchange);
   assert(exchange.node >= kFirstNode);
   // A new heartbeat period is a new rhythm, not a second device.
@@ -152,7 +132,7 @@ void CanopenWire::send_command(const bus::Exchange& exchange) {
     transmit(node.number, sdo_.interrupt(node.number));
     node.unasked.on_changed_by_us();
   }
-  transmit(nmt_frame(*command, exchange.node), true);
+  line_.send(nmt_frame(*command, exchange.node), true);
   owed_ = bus::ExchangeResult{};
   arm();
 }
@@ -162,7 +142,7 @@ void CanopenWire::abandon() {
   const auto node = sdo_.outstanding_node();
   if (!node) return;
   const SdoFrames frames = sdo_.abandon();
-  if (up_) transmit(*node, frames);
+  if (line_.up()) transmit(*node, frames);
 }
 
 void CanopenWire::map_process_data(std::uint8_t node, std::uint8_t number, const bus::ProcessMap& objects) {
@@ -172,43 +152,36 @@ void CanopenWire::map_process_data(std::uint8_t node, std::uint8_t number, const
 
 bool CanopenWire::call(std::uint8_t node) {
   Node* found = find(node);
-  if (up_ && found != nullptr) {
+  if (line_.up() && found != nullptr) {
     found->unasked.call();
-    transmit(guard_frame(node));
+    line_.send(guard_frame(node));
   }
   return true;
 }
 
 void CanopenWire::transmit(std::uint8_t node, const SdoFrames& frames) {
-  for (const SdoFrame& frame : frames) transmit(can::data_frame(sdo_request_id(node), frame));
-}
-
-void CanopenWire::transmit(const can::CanFrame& frame, bool urgent) {
-  if (decode_) log_frame("->", frame);
-  bits_ += static_cast<std::uint64_t>(can::bits_on_wire(frame));
-  link_->send(frame, urgent);
+  for (const SdoFrame& frame : frames) line_.send(can::data_frame(sdo_request_id(node), frame));
 }
 
 void CanopenWire::send_heartbeat(Instant now) {
-  for (const can::CanFrame& frame : heartbeat_.due(now, settings_.own_node)) transmit(frame);
+  for (const can::CanFrame& frame : heartbeat_.due(now, settings_.own_node)) line_.send(frame);
 }
 
 // --- What we hear ---------------------------------------------------------------------------------------------------
 
 void CanopenWire::on_link_up() {
   const Instant now = runtime_.now();
-  up_ = true;
+  line_.on_up();
   sdo_.reset();
   for (Node& node : nodes_) node.unasked.link_up(now);
   heartbeat_.begin(now);
   sync_.begin(now);
-  if (std::exchange(ever_up_, true)) ++statistics_.reconnects;
   timer_->expires_at(now);  // our first heartbeat goes out before anything else is due
   events_->on_wire_up();
 }
 
 void CanopenWire::on_link_down(std::string_view why) {
-  if (!std::exchange(up_, false)) return;
+  if (!line_.on_down()) return;
   sdo_.reset();
   owed_.reset();
   for (Node& node : nodes_) node.unasked.link_down();
@@ -217,19 +190,19 @@ void CanopenWire::on_link_down(std::string_view why) {
 }
 
 void CanopenWire::on_frame(const can::CanFrame& frame, Instant received) {
-  bits_ += static_cast<std::uint64_t>(can::bits_on_wire(frame));
+  line_.count(frame);
   const auto id = frame.extended || frame.remote ? std::nullopt : cob_id(frame.id);
-  Node* node = up_ && id ? find(id->node) : nullptr;
+  Node* node = line_.up() && id ? find(id->node) : nullptr;
   // Another master's guarding, a node nobody configured: not ours to judge.
   if (node == nullptr) return;
   const Instant now = std::min(received, runtime_.now());
   if (id->service == Service::sdo_reply) {
-    log_frame("<-", frame);
+    line_.tell(frame);
     on_reply_frame(*node, frame.bytes(), now);
     return;
   }
   const Unasked::News news = node->unasked.on_frame(*id, frame.bytes(), now);
-  log_frame("<-", frame, news.bad ? "  (bad)" : "");
+  line_.tell(frame, news.bad ? "  (bad)" : "");
   if (news.restarted()) sdo_.restarted(node->number);
   if (id->service != Service::tpdo) arm();
   tell(*node, news);
@@ -239,12 +212,12 @@ void CanopenWire::on_reply_frame(Node& node, Bytes bytes, Instant now) {
   const SdoClient::Heard heard = sdo_.take(node.number, bytes, now);
   switch (heard.what) {
     case SdoClient::Heard::What::bad:
-      ++statistics_.bad_frames;
+      line_.count_bad_frame();
       tell(node, node.unasked.on_stray_reply(false, now));
       return;
     case SdoClient::Heard::What::late:
     case SdoClient::Heard::What::second_reply:
-      ++statistics_.late_replies;
+      line_.count_late_reply();
       tell(node, node.unasked.on_stray_reply(heard.what == SdoClient::Heard::What::second_reply, now));
       return;
     case SdoClient::Heard::What::mine:
@@ -263,16 +236,16 @@ void CanopenWire::on_reply_frame(Node& node, Bytes bytes, Instant now) {
 
 /// Last in whatever calls it: the bus may send from inside.
 void CanopenWire::tell(Node& node, const Unasked::News& news) {
-  if (news.bad) ++statistics_.bad_frames;
-  if (news.guard) transmit(guard_frame(node.number));
+  if (news.bad) line_.count_bad_frame();
+  if (news.guard) line_.send(guard_frame(node.number));
   for (const bus::UnsolicitedEvent& unsolicited : news.unsolicited_events) events_->on_unsolicited(unsolicited);
 }
 
 void CanopenWire::on_timer() {
-  if (!up_) return;
+  if (!line_.up()) return;
   const Instant now = runtime_.now();
   send_heartbeat(now);
-  if (sync_.due(now)) transmit(can::data_frame(kSyncId, {}));
+  if (sync_.due(now)) line_.send(can::data_frame(kSyncId, {}));
   watch_nodes(now);
   const auto owed = std::exchange(owed_, std::nullopt);
   arm();
@@ -283,7 +256,7 @@ void CanopenWire::on_timer() {
 void CanopenWire::watch_nodes(Instant now) {
   for (Node& node : nodes_) {
     const Instant due = node.unasked.next_deadline();
-    if (due > now || !up_) continue;
+    if (due > now || !line_.up()) continue;
     if (now - due > kStalled && watch_again_ < due) {
       watch_again_ = now;
       return;
@@ -293,17 +266,10 @@ void CanopenWire::watch_nodes(Instant now) {
 }
 
 void CanopenWire::arm() {
-  if (!up_) return;
+  if (!line_.up()) return;
   Instant next = owed_ ? runtime_.now() : std::min(heartbeat_.next_deadline(), sync_.next_deadline());
   for (const Node& node : nodes_) next = std::min(next, node.unasked.next_deadline());
   timer_->expires_at(next);
-}
-
-void CanopenWire::log_frame(std::string_view direction, const can::CanFrame& frame, std::string_view remark) const {
-  if (!decode_) return;
-  const std::string content = frame.remote ? "remote" : hex_text(frame.bytes());
-  log_.write(LogLevel::info, log_source_,
-             fmt::format("{} {:03X} {}  {}{}", direction, frame.id, content, describe(frame), remark));
 }
 
 }  // namespace

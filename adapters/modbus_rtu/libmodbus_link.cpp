@@ -7,8 +7,6 @@
 #include <cassert>
 #include <utility>
 
-#include "adapters/bus/opening_failure.hpp"
-
 namespace axisgate::modbus_rtu {
 
 namespace {
@@ -64,7 +62,7 @@ void LibmodbusLink::on_opened(OpeningNumber opening, const std::vector<std::stri
   state_ = State::open;
   plan_.on_open();
   arm();
-  last_failure_.clear();
+  failures_.opened();
   log_.write(LogLevel::info, log_source_,
              fmt::format("{} open, {} baud 8{}1", settings_.device, settings_.baud, parity_letter(settings_.parity)));
   if (notes != last_notes_) {
@@ -82,9 +80,7 @@ void LibmodbusLink::on_not_opened(OpeningNumber opening, const std::string& why)
   plan_.on_failure(runtime_.now());
   if (path_appeared_) plan_.on_path(runtime_.now());
   arm();
-  if (why == last_failure_) return;
-  last_failure_ = why;
-  bus::log_opening_failure(log_, log_source_, why);
+  failures_.tell(log_, log_source_, why);
 }
 
 void LibmodbusLink::on_lost(OpeningNumber opening, const std::string& why) {

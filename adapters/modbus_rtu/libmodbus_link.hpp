@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/bus/opening_failures.hpp"
 #include "adapters/modbus_rtu/port_worker.hpp"
 #include "adapters/serial/path_watch.hpp"
 #include "adapters/serial/reopen_plan.hpp"
@@ -57,7 +58,7 @@ class LibmodbusLink final : public RtuLink, private PortWorkerEvents {
   State state_ = State::closed;
   OpeningNumber opening_ = 0;
   bool path_appeared_ = false;  ///< while a try was under way
-  std::string last_failure_;    // each reason is logged once, not each second
+  bus::OpeningFailures failures_;
   std::vector<std::string> last_notes_;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
   std::unique_ptr<Timer> timer_;

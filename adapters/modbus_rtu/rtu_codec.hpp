@@ -35,6 +35,7 @@ struct RtuNode {
   /// Function bytes that mean an error reply of a read although they are not the function + 0x80 (0x81 on Kinco: its
   /// writes keep to the standard).
   std::vector<std::uint8_t> error_functions{};
+  Duration worst_reply = std::chrono::milliseconds(500);  ///< it answers by then, or not at all
   std::optional<std::uint8_t> broadcast{};  ///< a unit that all drives of its type obey, beside the standard's 0
 };
 

@@ -49,13 +49,11 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   void on_frame(ExchangeNumber newest, Bytes frame) override;
   void on_bad_frame(ExchangeNumber newest, std::size_t bytes) override;
 
-  /// How long a drive may owe the answer to a request given up: four times the worst_reply of our profiles.
-  static constexpr Duration kMayBeOwed = std::chrono::seconds(2);
-
   void give_up();
   void end(const bus::ExchangeResult& result);
   [[nodiscard]] bool early(Bytes frame) const;
-  [[nodiscard]] bool may_owe(std::uint8_t unit) const { return runtime_.now() < given_up_[unit] + kMayBeOwed; }
+  /// The answer to a request given up may still come: four times as late as the drive's worst reply.
+  [[nodiscard]] bool may_owe(std::uint8_t unit) const;
   void broadcast_over();
   [[nodiscard]] bool is_broadcast(std::uint8_t unit) const;
   [[nodiscard]] const RtuNode& node_of(std::uint8_t unit) const;

@@ -9,7 +9,6 @@
 #include <cassert>
 #include <utility>
 
-#include "adapters/bus/opening_failure.hpp"
 #include "adapters/serial/serial_port.hpp"
 #include "adapters/serial/still_open.hpp"
 
@@ -58,7 +57,7 @@ void SerialLink::try_open() {
   if (opened.descriptor < 0) {
     plan_.on_failure(runtime_.now());
     arm();
-    log_failure(opened.error);
+    failures_.tell(log_, log_source_, opened.error);
     return;
   }
   port_.assign(opened.descriptor);
@@ -66,7 +65,7 @@ void SerialLink::try_open() {
   plan_.on_open();
   arm();
   ++*opening_;
-  last_failure_.clear();
+  failures_.opened();
   log_.write(LogLevel::info, log_source_,
              fmt::format("{} open, {} baud 8{}1", settings_.device, settings_.baud, parity_letter(settings_.parity)));
   if (opened.notes != last_notes_) {
@@ -145,12 +144,6 @@ void SerialLink::close() {
   port_.close(ignored);
   unsent_.clear();
   writing_ = false;
-}
-
-void SerialLink::log_failure(const std::string& why) {
-  if (why == last_failure_) return;
-  last_failure_ = why;
-  bus::log_opening_failure(log_, log_source_, why);
 }
 
 std::string SerialLink::device_and(const Error& error) const {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "adapters/bus/byte_link.hpp"
+#include "adapters/bus/opening_failures.hpp"
 #include "adapters/serial/path_watch.hpp"
 #include "adapters/serial/reopen_plan.hpp"
 #include "adapters/serial/serial_settings.hpp"
@@ -45,7 +46,6 @@ class SerialLink final : public bus::ByteLink {
   /// As lose(), but from the loop, so that send() calls nobody back.
   void lose_later(std::string why);
   void close();
-  void log_failure(const std::string& why);
   [[nodiscard]] std::string device_and(const boost::system::error_code& error) const;
 
   std::string log_source_;
@@ -55,7 +55,7 @@ class SerialLink final : public bus::ByteLink {
   const Log& log_;
   bus::ByteLinkEvents* events_ = nullptr;
   ReopenPlan plan_;
-  std::string last_failure_;  // each reason is logged once, not each second
+  bus::OpeningFailures failures_;
   std::vector<std::string> last_notes_;
   boost::asio::posix::stream_descriptor port_;
   std::array<Byte, kReadSize> incoming_{};

@@ -102,7 +102,7 @@ void add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::Dr
 std::string missing_quantities(const drive::AxisModel& axis) {
   std::vector<std::string_view> names;
   for (const QuantityRow& quantity : quantity_table()) {
-    if ((axis.supported & bit(quantity.quantity)) == 0) names.push_back(quantity.name);
+    if (!axis.supports(quantity.quantity)) names.push_back(quantity.name);
   }
   return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
 }
@@ -111,7 +111,8 @@ std::string missing_commands(const drive::AxisModel& axis) {
   std::vector<std::string_view> names;
   for (auto number = static_cast<std::uint8_t>(Command::enable);
        number <= static_cast<std::uint8_t>(Command::save_parameters); ++number) {
-    if ((axis.supported_commands >> number & 1U) == 0) names.push_back(axisgate::text(static_cast<Command>(number)));
+    if (const auto command = static_cast<Command>(number); !axis.supports(command))
+      names.push_back(axisgate::text(command));
   }
   return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
 }

@@ -151,7 +151,7 @@ void add_keep_alive(ReportLines& out, const MasteredAxis& axis) {
 void add_vertical(ReportLines& out, const MasteredAxis& axis) {
   if (!axis.config.vertical) return;
   const bool falls = axis.config.stop_without_torque;
-  const bool shown = (axis.model.supported & bit(Quantity::digital_outputs)) != 0;
+  const bool shown = axis.model.supports(Quantity::digital_outputs);
   out.emplace_back("vertical",
                    fmt::format("{}; {}",
                                falls ? "A QUICK STOP ENDS WITHOUT TORQUE: its brake must hold the load by then"

@@ -17,6 +17,7 @@
 #include "gateway/commands/end_signals.hpp"
 #include "gateway/commands/hand_client.hpp"
 #include "gateway/commands/hand_screen.hpp"
+#include "gateway/image/register_map.hpp"
 #include "gateway/upstream/modbus_tcp/session/device_identification.hpp"
 
 namespace axisgate::app {
@@ -136,7 +137,7 @@ void Hand::look() {
   looking_ = true;
   next_look_ = now() + kLookPeriod;
   const std::uint32_t answered = plan_.answered();
-  const std::uint16_t first = first_register(arguments_.axis);
+  const std::uint16_t first = address_of(Block::axis, arguments_.axis);
   client_.ask(read_registers_request(first, kHandRegisters),
               [this](Bytes reply) { registers_reply_.assign(reply.begin(), reply.end()); });
   client_.ask(read_inputs_request(first, kAxisInputCount), [this, answered](Bytes reply) {

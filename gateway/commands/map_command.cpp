@@ -17,9 +17,7 @@ ListedAxis listed(const AxisConfig& config, const drive::AxisModel& model, const
   axis.number = config.number;
   axis.name = config.name;
   axis.bus = bus;
-  axis.supported = model.supported;
-  axis.writable = model.writable;
-  axis.supported_commands = model.supported_commands;
+  static_cast<Capabilities&>(axis) = model;
   axis.position_unit = position_unit(config.units_per_rev.numerator(), config.units_per_rev.denominator());
   return axis;
 }

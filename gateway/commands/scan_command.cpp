@@ -13,7 +13,6 @@
 
 #include "adapters/asio/asio_runtime.hpp"
 #include "adapters/bus/bus.hpp"
-#include "adapters/bus/opening_failure.hpp"
 #include "adapters/can/can_device.hpp"
 #include "adapters/can/make_can_link.hpp"
 #include "adapters/canopen/canopen_wire.hpp"
@@ -63,6 +62,7 @@ class Scanner {
   [[nodiscard]] static std::unique_ptr<bus::Wire> make_wire(const ScanOptions& options, boost::asio::io_context& io,
                                                             Runtime& runtime, const Log& log);
   void on_log(LogLevel level, std::string_view message);
+  void on_not_opened(const OpeningFailure& failure);
   void on_link(bool up);
   void on_result(const bus::ExchangeResult& result);
   [[nodiscard]] std::optional<bus::Exchange> next_for(std::uint8_t node) const;
@@ -98,7 +98,8 @@ std::unique_ptr<bus::Wire> Scanner::make_wire(const ScanOptions& options, boost:
 
 Scanner::Scanner(const ScanOptions& options, ScanPlan plan, boost::asio::io_context& io)
     : runtime_(io),
-      log_([this](LogLevel level, std::string_view, std::string_view message) { on_log(level, message); }),
+      log_([this](LogLevel level, std::string_view, std::string_view message) { on_log(level, message); },
+           LogLevel::info, [this](const OpeningFailure& failure) { on_not_opened(failure); }),
       plan_(std::move(plan)),
       up_limit_(runtime_.make_timer([this] { end(complaint_); })),
       bus_({.name = "scan", .timeout = std::chrono::milliseconds(options.timeout_ms)}, ScanPlan::kLastNode,
@@ -124,12 +125,14 @@ void Scanner::end(std::string_view why) {
   on_end_();
 }
 
-/// The link says in the log why it cannot be used, and that it goes on trying: a scan does not.
 void Scanner::on_log(LogLevel level, std::string_view message) {
-  if (was_up_ && level > LogLevel::warning) return;
-  const auto failure = bus::opening_failure_in(message);
-  complaint_ = failure.value_or(message);
-  if (!was_up_ && !ended_ && failure) up_limit_->expires_at(runtime_.now());
+  if (!was_up_ || level <= LogLevel::warning) complaint_ = message;
+}
+
+/// The link goes on trying: a scan does not.
+void Scanner::on_not_opened(const OpeningFailure& failure) {
+  complaint_ = failure.why;
+  if (!was_up_ && !ended_) up_limit_->expires_at(runtime_.now());
 }
 
 void Scanner::on_link(bool up) {

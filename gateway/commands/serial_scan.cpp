@@ -12,7 +12,6 @@
 #include <memory>
 
 #include "adapters/asio/asio_runtime.hpp"
-#include "adapters/bus/opening_failure.hpp"
 #include "adapters/kinco/kinco_wire.hpp"
 #include "adapters/modbus_rtu/libmodbus_link.hpp"
 #include "adapters/modbus_rtu/rtu_wire.hpp"
@@ -46,7 +45,7 @@ class SerialScanner final : private bus::WireEvents {
   void on_reply(const bus::ExchangeResult& result) override { take(result); }
   void on_unsolicited(const bus::UnsolicitedEvent&) override {}
 
-  void on_log(LogLevel level, std::string_view message);
+  void on_not_opened(const OpeningFailure& failure);
   [[nodiscard]] std::unique_ptr<bus::Wire> wire_for(const SerialSpeech& speech);
   void drop_wire();
   /// From the loop: neither wires nor their links are called or dropped from inside their own calls.
@@ -79,7 +78,7 @@ SerialScanner::SerialScanner(const ScanOptions& options, std::vector<drive::Prof
     : options_(options),
       io_(io),
       runtime_(io),
-      log_([this](LogLevel level, std::string_view, std::string_view message) { on_log(level, message); }),
+      log_({}, LogLevel::info, [this](const OpeningFailure& failure) { on_not_opened(failure); }),
       profiles_(std::move(profiles)),
       plan_(profiles_, options.serial),
       complaint_(fmt::format("{}: cannot be opened", options.device)),
@@ -108,12 +107,9 @@ void SerialScanner::end(std::string_view why) {
   io_.stop();
 }
 
-/// The link says in the log why it cannot be used, and that it goes on trying: a scan does not.
-void SerialScanner::on_log(LogLevel level, std::string_view message) {
-  if (level > LogLevel::warning) return;
-  const auto failure = bus::opening_failure_in(message);
-  if (!failure) return;
-  complaint_ = *failure;
+/// The link goes on trying: a scan does not.
+void SerialScanner::on_not_opened(const OpeningFailure& failure) {
+  complaint_ = failure.why;
   open_limit_->expires_at(runtime_.now());
 }
 
@@ -133,7 +129,7 @@ std::unique_ptr<bus::Wire> SerialScanner::wire_for(const SerialSpeech& speech) {
       errors.insert(errors.end(), spec->second.rtu.error_functions.begin(), spec->second.rtu.error_functions.end());
   std::vector<modbus_rtu::RtuNode> nodes;
   for (int station = 1; station <= kLastRtuStation; ++station)
-    nodes.push_back({static_cast<std::uint8_t>(station), false, errors, std::nullopt});
+    nodes.push_back({.node = static_cast<std::uint8_t>(station), .error_functions = errors});
   const int parity_bits = settings.parity == serial::Parity::none ? 0 : 1;
   auto link = std::make_unique<modbus_rtu::LibmodbusLink>("scan", settings, io_, runtime_, log_);
   return std::make_unique<modbus_rtu::RtuWire>(

@@ -18,6 +18,7 @@
 #include "gateway/commands/top_client.hpp"
 #include "gateway/commands/top_screen.hpp"
 #include "gateway/config/config_loader.hpp"
+#include "gateway/image/register_map.hpp"
 #include "gateway/upstream/modbus_tcp/session/device_identification.hpp"
 
 namespace axisgate::app {
@@ -67,7 +68,7 @@ class Top {
       problem = co_await refresh();
       if (!problem.empty()) co_return problem;
       problem_.clear();
-      screen_.show_table(render_table(reading_, screen_.columns()));
+      screen_.show_table(table_lines(reading_, screen_.columns()));
       if (++shown_ == options_.count) co_return std::string();
       co_await wait(std::chrono::milliseconds(options_.interval_ms));
     }
@@ -85,7 +86,8 @@ class Top {
     reading_.float_numbers = numbers.text == "float";
     const std::uint16_t expected = reading_.gateway[1];
     for (AxisNumber axis = 1; axis <= kMaxAxisNumber && reading_.axes.size() < expected; ++axis) {
-      const RegistersRead read = co_await client_.read(supported_register(axis), 2, kAnswerLimit);
+      const RegistersRead read =
+          co_await client_.read(address_of(Block::axis, axis) + axis_offset(Source::supported), 2, kAnswerLimit);
       if (!read.connected()) co_return read.problem;
       const bool supports = read.ok() && (read.registers[0] != 0 || read.registers[1] != 0);
       if (supports || read.exception == kTargetFailed) reading_.axes.push_back({axis, {}, name_of_axis(axis)});
@@ -102,7 +104,8 @@ class Top {
     std::string problem = co_await read_gateway();
     if (!problem.empty()) co_return problem;
     for (AxisReading& axis : reading_.axes) {
-      const RegistersRead read = co_await client_.read(first_register(axis.axis), kAxisRegisters, kAnswerLimit);
+      const RegistersRead read =
+          co_await client_.read(address_of(Block::axis, axis.axis), kAxisRegisters, kAnswerLimit);
       if (!read.connected()) co_return read.problem;
       if (read.ok()) {
         std::copy(read.registers.begin(), read.registers.end(), axis.registers.begin());

@@ -4,10 +4,9 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-
-#include "gateway/commands/hand/top_table.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -46,18 +45,15 @@ bool wants_colours() {
 
 }  // namespace
 
-std::string terminal_frame(std::string_view text, std::size_t columns, std::size_t rows, bool colours) {
+std::string terminal_frame(std::span<const TopLine> lines, std::size_t columns, std::size_t rows, bool colours) {
   std::string frame(kHome);
-  for (std::size_t line_number = 0; !text.empty() && line_number < rows; ++line_number) {
-    const std::size_t end = text.find('\n');
-    if (line_number != 0) frame += "\r\n";
-    const std::string_view whole = text.substr(0, end), line = whole.substr(0, columns);
-    const Attention asks = colours ? attention(whole) : Attention::none;
+  for (std::size_t i = 0; i < std::min(lines.size(), rows); ++i) {
+    if (i != 0) frame += "\r\n";
+    const Attention asks = colours ? lines[i].asks : Attention::none;
     if (asks != Attention::none) frame += asks == Attention::act ? kRed : kYellow;
-    frame += line;
+    frame += lines[i].text.substr(0, columns);
     if (asks != Attention::none) frame += kPlain;
     frame += kWipeLine;
-    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
   }
   frame += kWipeBelow;
   return frame;
@@ -71,20 +67,23 @@ TopScreen::~TopScreen() {
   if (redraws_) put(kLeave);
 }
 
-void TopScreen::show_table(const std::string& table) {
+void TopScreen::show_table(const std::vector<TopLine>& table) {
   last_message_.clear();
   last_table_ = table;
   if (redraws_) {
     draw(table);
   } else {
-    put(table);
+    put(text_of(table));
   }
 }
 
 void TopScreen::show_message(const std::string& message) {
   if (redraws_) {
     // The message comes first: of a long table the end may be outside the window.
-    draw(message + "\n" + (last_table_.empty() ? std::string() : "last table:\n" + last_table_));
+    std::vector<TopLine> shown{{message}};
+    if (!last_table_.empty()) shown.push_back({"last table:"});
+    shown.insert(shown.end(), last_table_.begin(), last_table_.end());
+    draw(shown);
   } else if (message != last_message_) {
     put(message + "\n");
   }
@@ -93,9 +92,9 @@ void TopScreen::show_message(const std::string& message) {
 
 std::size_t TopScreen::columns() const { return redraws_ ? window().columns : 0; }
 
-void TopScreen::draw(const std::string& text) {
+void TopScreen::draw(std::span<const TopLine> lines) {
   const Window shown = window();
-  put(terminal_frame(text, shown.columns, shown.rows, colours_));
+  put(terminal_frame(lines, shown.columns, shown.rows, colours_));
 }
 
 }  // namespace axisgate::app

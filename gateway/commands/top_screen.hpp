@@ -5,14 +5,17 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
-#include <string_view>
+#include <vector>
+
+#include "gateway/commands/hand/top_table.hpp"
 
 namespace axisgate::app {
 
-/// One frame of a redrawn terminal: `text` cut to the window and what was there before wiped. Pure. `colours`: lines
+/// One frame of a redrawn terminal: `lines` cut to the window and what was there before wiped. Pure. `colours`: lines
 /// that ask for attention are yellow or red.
-[[nodiscard]] std::string terminal_frame(std::string_view text, std::size_t columns, std::size_t rows,
+[[nodiscard]] std::string terminal_frame(std::span<const TopLine> lines, std::size_t columns, std::size_t rows,
                                          bool colours = false);
 
 class TopScreen {
@@ -24,16 +27,16 @@ class TopScreen {
 
   /// Of the window; 0: lines may be as long as they like.
   [[nodiscard]] std::size_t columns() const;
-  void show_table(const std::string& table);
+  void show_table(const std::vector<TopLine>& table);
   /// On a terminal above the last table; in plain output only when it changes, so that a log is not filled with it.
   void show_message(const std::string& message);
 
  private:
-  void draw(const std::string& text);
+  void draw(std::span<const TopLine> lines);
 
   bool redraws_;
   bool colours_;
-  std::string last_table_;
+  std::vector<TopLine> last_table_;
   std::string last_message_;
 };
 

@@ -13,10 +13,16 @@ std::string_view text(LogLevel level) {
   return kNames.at(static_cast<std::size_t>(level));
 }
 
-Log::Log(Sink sink, LogLevel most_detailed) : sink_(std::move(sink)), most_detailed_(most_detailed) {}
+Log::Log(Sink sink, LogLevel most_detailed, OnOpeningFailure on_opening_failure)
+    : sink_(std::move(sink)), most_detailed_(most_detailed), on_opening_failure_(std::move(on_opening_failure)) {}
 
 void Log::write(LogLevel level, std::string_view source, std::string_view message) const {
   if (wants(level)) sink_(level, source, message.substr(0, kMaxLogLine));
+}
+
+void Log::write(const OpeningFailure& failure) const {
+  write(LogLevel::warning, failure.source, std::string(failure.why) + "; trying again each second");
+  if (on_opening_failure_) on_opening_failure_(failure);
 }
 
 std::string hex_text(Bytes bytes) {

@@ -107,7 +107,7 @@ constexpr auto kWords = std::to_array<Word>({
      "see the log lines of dds", ""},
     {gateway_alarm, 8, "configuration changed", "the file is not what the gateway runs with", "somebody edited it",
      "axisgate check it, then axisgate reload it when the axes of the buses that change are disabled"},
-    {gateway_alarm, 9, "certificate expires", "a certificate ends soon", "", ""},
+    {gateway_alarm, 9, "certificate expires", "kept for TLS, which is not built: never set", "", ""},
     {gateway_alarm, 10, "event loop slow", "the gateway was held up for over 50 ms",
      "an overloaded computer, a swapping one, a suspended one", "give it a processor and memory of its own"},
     {gateway_alarm, 11, "EEPROM write budget", "a drive's memory is written too often", "alarm nvm_budget of an axis",

@@ -12,6 +12,7 @@
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
 #include "gateway/core/rational.hpp"
+#include "gateway/image/capabilities.hpp"
 #include "gateway/image/changes.hpp"
 #include "gateway/image/endings.hpp"
 #include "gateway/image/lease.hpp"
@@ -93,15 +94,13 @@ struct LatestResult {
   friend bool operator==(const LatestResult&, const LatestResult&) = default;
 };
 
-struct AxisImage {
-  // Fixed while its drive is configured as it is.
+/// Its capabilities are fixed while its drive is configured as it is, but for what the drive itself refuses.
+struct AxisImage : Capabilities {
+  // Fixed in the same way.
   AxisNumber number = 0;
   std::string name;
   std::uint8_t bus = 0;          ///< position of its bus in the configuration
   ChangeBoard* board = nullptr;  ///< marked with each step of `sequence`; none: nobody wants to know
-  std::uint32_t supported = 0;
-  std::uint32_t writable = 0;  ///< quantities of `supported` that can be written on this drive
-  std::uint32_t supported_commands = 0;
   std::uint16_t supported_modes = 0;
   Rational units_per_rev{10000};
   std::optional<std::uint32_t> rated_speed{};  ///< 0.001 rpm; none: not known

@@ -49,6 +49,20 @@ std::string_view text(Command command) {
   return "?";
 }
 
+std::optional<Quantity> target_of(Command command) {
+  switch (command) {
+    case Command::move_absolute:
+    case Command::move_relative:
+      return Quantity::target_position;
+    case Command::run_velocity:
+      return Quantity::target_velocity;
+    case Command::run_torque:
+      return Quantity::target_torque;
+    default:
+      return std::nullopt;
+  }
+}
+
 bool asks_nothing(const WriteBatch& batch) {
   return batch.setpoints.empty() && !batch.mode && !batch.controlword && batch.command == Command::none &&
          !batch.set_position_value && !batch.jog_velocity && !batch.object;

@@ -62,6 +62,14 @@ inline constexpr std::uint16_t kStoppingBits = 0x0006;
 [[nodiscard]] constexpr bool needs_ready(Command c) { return starts_motion(c) || c == Command::set_position; }
 /// A button is pressed.
 [[nodiscard]] constexpr bool is_jog(Command c) { return c == Command::jog_forward || c == Command::jog_reverse; }
+/// A command, or a button's press: it asks the axis to move.
+[[nodiscard]] constexpr bool asks_to_move(Command c) { return starts_motion(c) || is_jog(c); }
+/// A stop, or what is one where it ends a motion: coil 7 let go of a run, coil 8 or 9 of a jog (design 3.4 Stops).
+[[nodiscard]] constexpr bool asks_to_stop(Command c) {
+  return is_stop(c) || c == Command::jog_end || c == Command::end_run;
+}
+/// What a start moves to, or runs with; none: it is no such command.
+[[nodiscard]] std::optional<Quantity> target_of(Command command);
 /// The coil of that button; it reads back which way the axis jogs.
 [[nodiscard]] constexpr unsigned jog_coil(Command direction) { return direction == Command::jog_forward ? 8 : 9; }
 /// They change whose the axis is, and ask nothing of it.

@@ -8,18 +8,9 @@ namespace {
 
 using namespace std::string_literals;
 
-bool is_supported(const RegisterRow& row, const ListedAxis& axis) {
-  if (row.source == Source::quantity) return (axis.supported & bit(row.quantity)) != 0;
-  if (row.source == Source::set_position_value) return supports(Command::set_position, axis.supported_commands);
-  if (row.source == Source::jog_velocity) return supports(Command::run_velocity, axis.supported_commands);
-  return true;
-}
-
+/// What the drive does not have keeps the access of the map: `supported` says enough.
 bool can_write(const RegisterRow& row, const ListedAxis& axis) {
-  if (!row.writable) return false;
-  // What the drive does not have keeps the access of the map: `supported` says enough.
-  if (row.source != Source::quantity || !is_supported(row, axis)) return true;
-  return (axis.writable & bit(row.quantity)) != 0;
+  return takes(axis, row) || (row.writable && !supports(axis, row));
 }
 
 MapEntry holding(const RegisterRow& row, std::uint16_t block) {
@@ -47,7 +38,7 @@ void list_axis(std::vector<MapEntry>& entries, Block block, const std::string& p
       entry.unit = float_unit(row);
     }
     entry.access = can_write(row, axis) ? "rw" : "r";
-    entry.supported = is_supported(row, axis);
+    entry.supported = supports(axis, row);
   }
 }
 
@@ -79,7 +70,7 @@ std::vector<MapEntry> map_entries(const ListedMap& map) {
     for (const CoilRow& coil : coil_rows()) {
       entries.push_back(one_bit("coil", axis, coil.offset, coil.name));
       entries.back().access = "rw";
-      entries.back().supported = supports(coil, axis.supported_commands);
+      entries.back().supported = supports(axis, coil);
     }
   }
   for (const ListedAxis& axis : map.axes)

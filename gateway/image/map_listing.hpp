@@ -15,13 +15,10 @@
 
 namespace axisgate {
 
-struct ListedAxis {
+struct ListedAxis : Capabilities {
   AxisNumber number = 0;
   std::string name;
-  std::string bus;                       ///< name of its bus, for headings
-  std::uint32_t supported = 0;           ///< quantities this drive has on this protocol, as register 20
-  std::uint32_t writable = 0;            ///< those that can be written; the others' rows are listed as "r"
-  std::uint32_t supported_commands = 0;  ///< as register 36
+  std::string bus;  ///< name of its bus, for headings
   std::string position_unit = "1/10000 rev";
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/image/register_map.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -79,6 +80,23 @@ const RegisterTable& register_table(Block block) {
   return gateway;
 }
 
+std::uint16_t axis_offset(Quantity quantity) {
+  static const auto kOffsets = [] {
+    std::array<std::uint16_t, kQuantityCount> offsets{};
+    for (const RegisterRow& row : register_table(Block::axis).rows())
+      if (row.source == Source::quantity) offsets.at(static_cast<std::size_t>(row.quantity)) = row.offset;
+    return offsets;
+  }();
+  return kOffsets.at(static_cast<std::size_t>(quantity));
+}
+
+std::uint16_t axis_offset(Source source) {
+  const auto rows = register_table(Block::axis).rows();
+  const auto found = std::ranges::find(rows, source, &RegisterRow::source);
+  assert(source != Source::quantity && found != rows.end());
+  return found->offset;
+}
+
 std::optional<RegisterPlace> place_of(std::uint16_t address) {
   const auto within = [address](Block block, unsigned base, unsigned span) {
     const unsigned from_base = address - base;
@@ -115,8 +133,21 @@ bool supports(Command command, std::uint32_t supported_commands) {
   return command <= Command{kLastCommand} && (supported_commands >> static_cast<unsigned>(command) & 1U) != 0;
 }
 
-bool supports(const CoilRow& coil, std::uint32_t supported_commands) {
-  return supports(is_jog(coil.on) ? Command::run_velocity : coil.on, supported_commands);
+bool Capabilities::supports(Command command) const { return axisgate::supports(command, supported_commands); }
+
+bool supports(const Capabilities& axis, const CoilRow& coil) {
+  return axis.supports(is_jog(coil.on) ? Command::run_velocity : coil.on);
+}
+
+bool supports(const Capabilities& axis, const RegisterRow& row) {
+  if (row.source == Source::quantity) return axis.supports(row.quantity);
+  if (row.source == Source::set_position_value) return axis.supports(Command::set_position);
+  return row.source != Source::jog_velocity || axis.supports(Command::run_velocity);
+}
+
+bool takes(const Capabilities& axis, const RegisterRow& row) {
+  if (!row.writable) return false;
+  return row.source == Source::quantity ? axis.takes(row.quantity) : supports(axis, row);
 }
 
 std::string_view unit_of(const RegisterRow& row, std::string_view position_unit) {

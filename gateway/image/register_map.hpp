@@ -93,6 +93,7 @@ struct RegisterRow {
   Source source = Source::quantity;
   Quantity quantity = Quantity::statusword;
   Role may_write = Role::engineer;  ///< the lowest role that may (design 3.3 Roles); of writable rows
+  bool zero_leaves = false;         ///< 0 is no value of it: in a block it leaves the row as it is (design 3.3 Zeros)
   std::string_view note = {};
   [[nodiscard]] int registers() const { return registers_of(type); }
 };
@@ -114,6 +115,10 @@ class RegisterTable {
 };
 
 [[nodiscard]] const RegisterTable& register_table(Block block);
+
+/// Where a quantity, or what is none, stands in the axis's block.
+[[nodiscard]] std::uint16_t axis_offset(Quantity quantity);
+[[nodiscard]] std::uint16_t axis_offset(Source source);
 
 inline constexpr std::uint16_t kAxisBlock = 100;  ///< block of axis n: 100 * n; its coils and inputs too
 inline constexpr std::uint16_t kBusBlocks = 50000;
@@ -152,7 +157,11 @@ inline constexpr std::uint16_t kReservedCoilsEnd = 16;  ///< 10..15: a 0 is acce
 /// Register 36 says that the drive can do it.
 [[nodiscard]] bool supports(Command command, std::uint32_t supported_commands);
 /// What 1 asks for; jogging is running at a velocity for as long as the coil is held.
-[[nodiscard]] bool supports(const CoilRow& coil, std::uint32_t supported_commands);
+[[nodiscard]] bool supports(const Capabilities& axis, const CoilRow& coil);
+/// A row of the axis's block: its quantity is there, or what its value is for. Rows of the gateway's own always are.
+[[nodiscard]] bool supports(const Capabilities& axis, const RegisterRow& row);
+/// The same of writing it.
+[[nodiscard]] bool takes(const Capabilities& axis, const RegisterRow& row);
 
 /// What `unit` columns say of a row; positions: `position_unit`, "1/10000 rev".
 [[nodiscard]] std::string_view unit_of(const RegisterRow& row, std::string_view position_unit);

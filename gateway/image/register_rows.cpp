@@ -36,6 +36,10 @@ RegisterRow takes(std::uint16_t offset, std::string_view name, RegisterType type
   made.may_write = may_write;
   return made;
 }
+RegisterRow zero_leaves(RegisterRow made) {
+  made.zero_leaves = true;
+  return made;
+}
 RegisterRow in(Kind kind, RegisterRow made) {
   made.kind = kind;
   return made;
@@ -110,28 +114,28 @@ std::vector<RegisterRow> axis_register_rows() {
       shows(36, "supported_commands", u32, Source::supported_commands, "bit = command number"),
       shows(38, "supported_modes", u16, Source::supported_modes, "as 6502h, low word"),
       of(40, controlword, kOperator, "reads the controlword in effect"),
-      of(41, mode, kOperator, lists().mode),
+      zero_leaves(of(41, mode, kOperator, lists().mode)),
       of(42, target_position, kOperator),
       of(44, target_velocity, kOperator),
       of(46, target_torque, kOperator),
-      of(47, max_torque, kOperator),
-      of(48, profile_velocity, kOperator),
-      of(50, profile_acceleration, kOperator),
-      of(52, profile_deceleration, kOperator),
+      zero_leaves(of(47, max_torque, kOperator)),
+      zero_leaves(of(48, profile_velocity, kOperator)),
+      zero_leaves(of(50, profile_acceleration, kOperator)),
+      zero_leaves(of(52, profile_deceleration, kOperator)),
       takes(54, "command", u16, Source::command, kOperator, lists().command),
       takes(55, "command_id", u16, Source::command_id, kOperator),
       takes(56, "heartbeat", u16, Source::heartbeat, kOperator, "a changed value renews a lease with renew heartbeat"),
-      in(Kind::velocity, takes(58, "jog_velocity", u32, Source::jog_velocity, kOperator,
-                               "of coils 8 and 9; the gateway's own, the same for every client")),
+      zero_leaves(in(Kind::velocity, takes(58, "jog_velocity", u32, Source::jog_velocity, kOperator,
+                                           "of coils 8 and 9; the gateway's own, the same for every client"))),
       of(60, homing_method, kOperator),
-      of(62, homing_speed_switch, kOperator),
-      of(64, homing_speed_zero, kOperator),
-      of(66, homing_acceleration, kOperator),
+      zero_leaves(of(62, homing_speed_switch, kOperator)),
+      zero_leaves(of(64, homing_speed_zero, kOperator)),
+      zero_leaves(of(66, homing_acceleration, kOperator)),
       of(68, homing_offset, kOperator),
-      of(70, quick_stop_deceleration, kEngineer),
+      zero_leaves(of(70, quick_stop_deceleration, kEngineer)),
       of(72, position_limit_min, kEngineer, "72 to 75 are checked as a pair"),
       of(74, position_limit_max, kEngineer),
-      of(76, max_velocity, kEngineer),
+      zero_leaves(of(76, max_velocity, kEngineer)),
       in(Kind::position, takes(78, "set_position_value", i32, Source::set_position_value, kOperator)),
       takes(80, "object_request", u16, Source::object_request, kViewer, "1 read, 2 write (engineer)"),
       takes(81, "object_index", u16, Source::object_index, kViewer, "for Modbus RTU drives: the register"),

@@ -22,7 +22,7 @@ std::int64_t shown_value(const AxisImage& axis, Quantity quantity) {
     }
   }
   const RegisterType type = row(quantity).type;
-  if ((axis.supported & bit(quantity)) == 0 || !sample.received || !range_of(type).holds(sample.value)) {
+  if (!axis.supports(quantity) || !sample.received || !range_of(type).holds(sample.value)) {
     return no_value(type);
   }
   return sample.value;

@@ -15,6 +15,7 @@
 #include "adapters/bus/bus_job.hpp"
 #include "gateway/core/rational.hpp"
 #include "gateway/image/axis_image.hpp"
+#include "gateway/image/capabilities.hpp"
 #include "gateway/image/command.hpp"
 #include "gateway/image/lease.hpp"
 #include "gateway/model/cia402.hpp"
@@ -221,7 +222,7 @@ struct HomingNeed {
   std::int64_t equals = 0;
 };
 
-struct AxisModel {
+struct AxisModel : Capabilities {
   AxisNumber number = 0;
   std::string name;
   bool inverted = false;
@@ -266,9 +267,6 @@ struct AxisModel {
   std::optional<Condition> homing_failed;
   std::optional<Condition> moving;  ///< absent: velocity_actual above standstill_velocity
   std::array<std::optional<CommandDef>, kLastCommand + 1> commands;
-  std::uint32_t supported = 0;
-  std::uint32_t writable = 0;
-  std::uint32_t supported_commands = 0;
   std::uint16_t supported_modes = 0;
 
   [[nodiscard]] const Binding* binding(Quantity q) const;

@@ -28,7 +28,11 @@ serial::SerialSettings settings_of(const BusConfig& bus) {
 std::vector<modbus_rtu::RtuNode> rtu_nodes(const std::vector<drive::DriveModel>& drives) {
   std::vector<modbus_rtu::RtuNode> nodes;
   for (const drive::DriveModel& drive : drives)
-    nodes.push_back({drive.node, drive.rtu.low_word_first, drive.rtu.error_functions, drive.rtu.broadcast});
+    nodes.push_back({.node = drive.node,
+                     .low_word_first = drive.rtu.low_word_first,
+                     .error_functions = drive.rtu.error_functions,
+                     .worst_reply = drive.resync.worst_reply,
+                     .broadcast = drive.rtu.broadcast});
   return nodes;
 }
 

@@ -21,7 +21,11 @@ namespace {
 std::vector<modbus_rtu::RtuNode> nodes_of(const std::vector<drive::DriveModel>& models) {
   std::vector<modbus_rtu::RtuNode> nodes;
   for (const drive::DriveModel& model : models) {
-    nodes.push_back({model.node, model.rtu.low_word_first, model.rtu.error_functions, model.rtu.broadcast});
+    nodes.push_back({.node = model.node,
+                     .low_word_first = model.rtu.low_word_first,
+                     .error_functions = model.rtu.error_functions,
+                     .worst_reply = model.resync.worst_reply,
+                     .broadcast = model.rtu.broadcast});
   }
   return nodes;
 }

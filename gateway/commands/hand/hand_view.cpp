@@ -13,30 +13,6 @@
 namespace axisgate::app {
 namespace {
 
-enum HandOffset : std::uint16_t {
-  kPositionAt = 2,
-  kVelocityAt = 4,
-  kErrorCodeAt = 10,
-  kLinkStateAt = 18,
-  kValidAt = 22,
-  kResultAt = 25,
-  kDetailAt = 26,
-  kOwnerAt = 28,
-  kLeaseAt = 29,
-  kIdSeenAt = 30,
-  kAxisStateAt = 31,
-  kMotionStateAt = 32,
-  kMotionIdAt = 33,
-  kTargetPositionAt = 42,
-  kProfileVelocityAt = 48,
-  kCommandAt = 54,
-  kHeartbeatAt = 56,
-  kJogVelocityAt = 58,
-  kUnitsAt = 90,
-  kUnitsDenominatorAt = 92,
-  kOwnerAddressAt = 96,
-};
-
 constexpr Byte kReadInputs = 0x02, kReadHolding = 0x03, kWriteCoil = 0x05, kWriteRegister = 0x06,
                kWriteRegisters = 0x10, kException = 0x80;
 constexpr std::int64_t kPerRpm = 1000;
@@ -106,26 +82,27 @@ std::string shown_number(const std::optional<double>& number, bool good, int dec
 }  // namespace
 
 HandView hand_view(std::span<const std::uint16_t> registers, std::uint16_t inputs, const HandListener& listener) {
-  const auto pair = [&](std::size_t at) { return pair_at(registers, at, listener.order); };
+  const auto word = [&](auto what) { return registers[axis_offset(what)]; };
+  const auto pair = [&](auto what) { return pair_at(registers, axis_offset(what), listener.order); };
   HandView view;
-  view.link = static_cast<LinkState>(registers[kLinkStateAt]);
-  view.state = static_cast<AxisState>(registers[kAxisStateAt]);
-  view.motion = static_cast<MotionState>(registers[kMotionStateAt]);
-  view.motion_id = registers[kMotionIdAt];
-  view.command_id_seen = registers[kIdSeenAt];
-  view.result = static_cast<CommandResult>(registers[kResultAt]);
-  view.detail = pair(kDetailAt);
-  view.owner = registers[kOwnerAt];
-  view.owner_address = pair(kOwnerAddressAt);
-  view.lease_remaining_ms = registers[kLeaseAt];
-  view.error_code = registers[kErrorCodeAt];
+  view.link = static_cast<LinkState>(word(Source::link_state));
+  view.state = static_cast<AxisState>(word(Source::axis_state));
+  view.motion = static_cast<MotionState>(word(Source::motion_state));
+  view.motion_id = word(Source::motion_id);
+  view.command_id_seen = word(Source::command_id_seen);
+  view.result = static_cast<CommandResult>(word(Source::command_result));
+  view.detail = pair(Source::command_detail);
+  view.owner = word(Source::owner);
+  view.owner_address = pair(Source::owner_address);
+  view.lease_remaining_ms = word(Source::lease_remaining_ms);
+  view.error_code = word(Quantity::error_code);
   view.inputs = inputs;
-  if (pair(kUnitsAt) != 0 && pair(kUnitsDenominatorAt) != 0)
-    view.units_per_rev = Rational(pair(kUnitsAt), pair(kUnitsDenominatorAt));
-  view.turns = number_at(registers, kPositionAt, listener, view.units_per_rev.to_double());
-  view.rpm = number_at(registers, kVelocityAt, listener, kPerRpm);
-  view.turns_good = (pair(kValidAt) & bit(Quantity::position_actual)) != 0;
-  view.rpm_good = (pair(kValidAt) & bit(Quantity::velocity_actual)) != 0;
+  if (pair(Source::units_numerator) != 0 && pair(Source::units_denominator) != 0)
+    view.units_per_rev = Rational(pair(Source::units_numerator), pair(Source::units_denominator));
+  view.turns = number_at(registers, axis_offset(Quantity::position_actual), listener, view.units_per_rev.to_double());
+  view.rpm = number_at(registers, axis_offset(Quantity::velocity_actual), listener, kPerRpm);
+  view.turns_good = (pair(Source::valid) & bit(Quantity::position_actual)) != 0;
+  view.rpm_good = (pair(Source::valid) & bit(Quantity::velocity_actual)) != 0;
   return view;
 }
 
@@ -149,27 +126,27 @@ std::string hand_line(AxisNumber axis, const HandView& view, std::string_view do
 std::optional<std::vector<Byte>> hand_request(const HandWrite& write, AxisNumber axis, const HandListener& listener,
                                               const Rational& units_per_rev) {
   using What = HandWrite::What;
-  const std::uint16_t first = first_register(axis);
-  const auto at = [&](std::uint16_t offset) { return static_cast<std::uint16_t>(first + offset); };
+  const std::uint16_t first = address_of(Block::axis, axis);
+  const auto at = [&](auto what) { return static_cast<std::uint16_t>(first + axis_offset(what)); };
   const auto number = static_cast<std::uint16_t>(write.command);
   constexpr std::uint16_t kCoilOn = 0xFF00;
   switch (write.what) {
     case What::target_position:
-      return write_number(at(kTargetPositionAt), write.number, units_per_rev, RegisterType::i32, listener);
+      return write_number(at(Quantity::target_position), write.number, units_per_rev, RegisterType::i32, listener);
     case What::profile_velocity:
-      return write_number(at(kProfileVelocityAt), write.number, Rational(kPerRpm), RegisterType::u32, listener);
+      return write_number(at(Quantity::profile_velocity), write.number, Rational(kPerRpm), RegisterType::u32, listener);
     case What::jog_velocity:
-      return write_number(at(kJogVelocityAt), write.number, Rational(kPerRpm), RegisterType::u32, listener);
+      return write_number(at(Source::jog_velocity), write.number, Rational(kPerRpm), RegisterType::u32, listener);
     case What::command:
-      return write_two(at(kCommandAt), number, write.id);
+      return write_two(at(Source::command), number, write.id);
     case What::stop:
-      return request_of(kWriteRegister, at(kCommandAt), number);
+      return request_of(kWriteRegister, at(Source::command), number);
     case What::coil:
-      return request_of(kWriteCoil, at(write.coil), write.on ? kCoilOn : 0);
+      return request_of(kWriteCoil, static_cast<std::uint16_t>(first + write.coil), write.on ? kCoilOn : 0);
     case What::heartbeat:
       break;
   }
-  return request_of(kWriteRegister, at(kHeartbeatAt), write.id);
+  return request_of(kWriteRegister, at(Source::heartbeat), write.id);
 }
 
 std::vector<Byte> identification_request(std::uint8_t object) { return {0x2B, 0x0E, 0x04, object}; }

@@ -21,12 +21,6 @@ inline constexpr std::uint16_t kAxisRegisters = 39;
 /// Of the gateway block: up to and with the word-order test.
 inline constexpr std::uint16_t kGatewayRegisters = 12;
 
-[[nodiscard]] constexpr std::uint16_t first_register(AxisNumber axis) { return static_cast<std::uint16_t>(100 * axis); }
-/// The first of two that are not both 0 where there is such an axis.
-[[nodiscard]] constexpr std::uint16_t supported_register(AxisNumber axis) {
-  return static_cast<std::uint16_t>(first_register(axis) + 20);
-}
-
 struct AxisReading {
   AxisNumber axis = 0;
   std::array<std::uint16_t, kAxisRegisters> registers{};
@@ -50,12 +44,17 @@ void mark_out_of_reach(AxisReading& axis);
 /// Below this one line an axis has no room.
 inline constexpr std::size_t kNarrow = 80;
 
-/// Lines ended by '\n'. The first tells of the gateway, the next names the columns, then the axes: one line each, or
-/// two and more where that would not fit into `columns` (at least kNarrow is needed; 0: there is no end).
-[[nodiscard]] std::string render_table(const TopReading& reading, std::size_t columns = 0);
-
 /// How much a line of the table asks for somebody's attention.
 enum class Attention : std::uint8_t { none, look, act };
-[[nodiscard]] Attention attention(std::string_view line);
+struct TopLine {
+  std::string text;
+  Attention asks = Attention::none;
+};
+
+/// The first line tells of the gateway, the next names the columns, then the axes: one line each, or two and more where
+/// that would not fit into `columns` (at least kNarrow is needed; 0: there is no end).
+[[nodiscard]] std::vector<TopLine> table_lines(const TopReading& reading, std::size_t columns = 0);
+/// The same as text, each line ended by '\n'.
+[[nodiscard]] std::string text_of(std::span<const TopLine> lines);
 
 }  // namespace axisgate::app

@@ -51,7 +51,7 @@ void Axis::owe(const WriteBatch& stop) {
 bool Axis::stop_comes_first(const WriteBatch& batch) const {
   const LinkState link = core_.turn.link;
   const bool back = link != LinkState::offline && link != LinkState::link_down;
-  return owed_.gates() && back && !reads_alone(batch) && !stops_alone(batch) && batch.command != Command::jog_end;
+  return owed_.gates() && back && !reads_alone(batch) && !stops_at_most(batch);
 }
 
 // What is not surely read disabled counts as enabled: the motor of a cut cable may be running.

@@ -42,8 +42,7 @@ std::string in_words(Command stop) { return stop == Command::quick_stop ? "quick
 // Reads are free, and stops are open to every operator, without taking the lease.
 Errc Axis::judge_owner(const WriteBatch& batch) const {
   if (reads_alone(batch)) return Errc::ok;
-  const bool stops_alone = holds_stop(batch) && !batch.claims;
-  if (stops_alone || batch.command == Command::jog_end) return Errc::ok;
+  if ((holds_stop(batch) && !batch.claims) || batch.command == Command::jog_end) return Errc::ok;
   if (batch.command == Command::take_over) return ownership_.may_take_over(batch.life);
   if (asks_nothing(batch) && !batch.jog_again) return Errc::ok;
   return ownership_.judge(batch.life, batch.claims);
@@ -90,9 +89,7 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
     ownership_.wrote(batch.renews ? batch.life : nullptr, batch.beats, !asks_nothing(batch) || batch.jog_again,
                      core_.turn.now);
   if (refusal == Errc::ok && !asks_nothing(batch) && stop_comes_first(batch)) refusal = Errc::stop_owed;
-  if (refusal == Errc::ok && closing_ && !asks_nothing(batch) && !stops_alone(batch) &&
-      batch.command != Command::jog_end)
-    refusal = Errc::never_started;
+  if (refusal == Errc::ok && closing_ && !asks_nothing(batch) && !stops_at_most(batch)) refusal = Errc::never_started;
   if (refusal != Errc::ok) {
     if (!holds_stop(batch)) return refuse(asked, refusal);
     batch = stop_alone(batch);

@@ -90,20 +90,6 @@ std::string value_text(const AxisCore& core, Quantity quantity, std::int64_t val
 
 }  // namespace
 
-std::optional<Quantity> target_of(Command command) {
-  switch (command) {
-    case Command::move_absolute:
-    case Command::move_relative:
-      return Quantity::target_position;
-    case Command::run_velocity:
-      return Quantity::target_velocity;
-    case Command::run_torque:
-      return Quantity::target_torque;
-    default:
-      return std::nullopt;
-  }
-}
-
 bool sets(const WriteBatch& batch, Quantity quantity) {
   return std::any_of(batch.setpoints.begin(), batch.setpoints.end(),
                      [quantity](const Setpoint& sp) { return sp.quantity == quantity; });

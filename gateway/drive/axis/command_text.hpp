@@ -19,8 +19,6 @@ inline constexpr std::size_t kMaxToldValues = 6;
 /// `batch` as its client has asked for it; `jog_velocity`: of a jog.
 [[nodiscard]] std::string command_text(const AxisCore& core, const WriteBatch& batch, std::uint32_t jog_velocity);
 
-/// What a start moves to, or runs with; none: it is no such command.
-[[nodiscard]] std::optional<Quantity> target_of(Command command);
 /// The write batch itself carries this quantity.
 [[nodiscard]] bool sets(const WriteBatch& batch, Quantity quantity);
 

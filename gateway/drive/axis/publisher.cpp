@@ -156,9 +156,7 @@ std::uint32_t alarms_of(const AxisCore& core) {
 }  // namespace
 
 void show_model(const AxisModel& model, AxisImage& image) {
-  image.supported = model.supported;
-  image.writable = model.writable;
-  image.supported_commands = model.supported_commands;
+  static_cast<Capabilities&>(image) = model;
   if (model.lease.on)
     for (const Command command : {Command::release, Command::take_over})
       image.supported_commands |= 1U << static_cast<unsigned>(command);

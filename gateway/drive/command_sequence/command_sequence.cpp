@@ -207,14 +207,13 @@ CommandSequence::Move CommandSequence::advance() {
       const Action emulated = action;
       pop();
       // A stop never opens the gate: another one may have closed it since this halt was planned.
-      const bool opens = enables(emulated.number);
       const AxisFacts facts = core_.facts();
       const bool stays_open = facts.enabled() && facts.commanded;
-      if (emulated.object != core_.model.controlword || !opens || !is_stop() || stays_open)
+      if (!is_enabling_word(core_, emulated.object, emulated.number) || !is_stop() || stays_open)
         core_.make(emulated.object, emulated.number);
       acted_ = acted_ || in_command();
       result_.command_sent = result_.command_sent || in_command();
-    } else if (would_enable(action)) {
+    } else if (enables_unasked(action)) {
       // It was enabled when this was planned. The same word would now take it back there, which nobody asked for.
       if (phase_ == Phase::stop) {
         stop_attempt_.withhold();
@@ -230,11 +229,11 @@ CommandSequence::Move CommandSequence::advance() {
 }
 
 bool CommandSequence::tells_enable(const Action& action) const {
-  return action.object == core_.model.controlword && enables(number_of(action));
+  return is_enabling_word(core_, action.object, number_of(action));
 }
 
 // A word with the bits of operation enabled, for an axis that is not, by a write batch that does not ask for an enable.
-bool CommandSequence::would_enable(const Action& action) const {
+bool CommandSequence::enables_unasked(const Action& action) const {
   const bool asked = batch_.command == Command::enable || phase_ == Phase::controlword;
   if (asked || action.kind != Action::Kind::write || writes_.verifying || !tells_enable(action)) return false;
   const AxisFacts facts = core_.facts();

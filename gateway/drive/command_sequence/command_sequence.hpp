@@ -101,7 +101,7 @@ class CommandSequence {
     return phase_ == Phase::controlword || phase_ == Phase::preparation || phase_ == Phase::command;
   }
   [[nodiscard]] bool tells_enable(const Action& action) const;
-  [[nodiscard]] bool would_enable(const Action& action) const;
+  [[nodiscard]] bool enables_unasked(const Action& action) const;
   [[nodiscard]] bool is_command_of_motion(ObjectId object) const;
   [[nodiscard]] bool has_lost_torque() const;
   [[nodiscard]] bool within_nvm_budget(const bus::Exchange& exchange);

@@ -10,12 +10,10 @@
 namespace axisgate::drive {
 namespace {
 
-bool writable(const AxisCore& core, Quantity q) { return (core.model.writable & bit(q)) != 0; }
-
 Errc admit_command(const AxisCore& core, Command command) {
   if (command == Command::none || command == Command::end_halt) return Errc::ok;
   // Every drive can be halted: where it has no halt, quick_stop takes its place.
-  return supports(command, core.model.supported_commands) ? Errc::ok : Errc::not_supported;
+  return core.model.supports(command) ? Errc::ok : Errc::not_supported;
 }
 
 // The steps of a command that is nothing but this one write.
@@ -163,10 +161,10 @@ std::optional<std::uint16_t> refused_row(const AxisCore& core, const WriteBatch&
 
 Errc admit(const AxisCore& core, const WriteBatch& batch) {
   for (const Setpoint& sp : batch.setpoints)
-    if (!writable(core, sp.quantity)) return Errc::not_supported;
-  if (batch.mode && !writable(core, Quantity::mode)) return Errc::not_supported;
-  if (batch.controlword && !writable(core, Quantity::controlword)) return Errc::not_supported;
-  if (batch.set_position_value && !core.model.command(Command::set_position)) return Errc::not_supported;
+    if (!core.model.takes(sp.quantity)) return Errc::not_supported;
+  if (batch.mode && !core.model.takes(Quantity::mode)) return Errc::not_supported;
+  if (batch.controlword && !core.model.takes(Quantity::controlword)) return Errc::not_supported;
+  if (batch.set_position_value && !core.model.supports(Command::set_position)) return Errc::not_supported;
   const Binding* velocity = core.model.binding(Quantity::target_velocity);
   if (batch.jog_velocity && (velocity == nullptr || !core.model.command(Command::run_velocity)))
     return Errc::not_supported;
@@ -207,6 +205,8 @@ bool stops_alone(const WriteBatch& batch) {
          !batch.jog_velocity && (batch.command == Command::none || is_stop(batch.command)) &&
          (!batch.controlword || stops_by_word(batch));
 }
+
+bool stops_at_most(const WriteBatch& batch) { return stops_alone(batch) || batch.command == Command::jog_end; }
 
 bool asks_to_enable(const WriteBatch& batch) {
   return batch.command == Command::enable || (batch.controlword && enables(*batch.controlword));

@@ -24,6 +24,8 @@ namespace axisgate::drive {
 [[nodiscard]] bool holds_stop(const WriteBatch& batch);
 /// The write batch holds a stop and nothing else.
 [[nodiscard]] bool stops_alone(const WriteBatch& batch);
+/// The same, or it ends a jog, which is a stop where there is one: it passes where only stops do.
+[[nodiscard]] bool stops_at_most(const WriteBatch& batch);
 /// The write batch asks for operation_enabled, by command or controlword.
 [[nodiscard]] bool asks_to_enable(const WriteBatch& batch);
 /// What is left of a write batch that holds a stop when everything else is taken out of it.

@@ -23,10 +23,10 @@ Condition not_enabled(const AxisCore& core) {
 }
 
 // Kinco's halt word is 0x010F: its low bits ask for "enabled", also of a drive that is not.
-bool would_enable(const AxisCore& core, const Steps& steps) {
+bool hold_an_enabling_word(const AxisCore& core, const Steps& steps) {
   return std::any_of(steps.begin(), steps.end(), [&](const Step& s) {
-    return s.verb == Step::Verb::write && s.object == core.model.controlword && s.source == Step::Source::literal &&
-           enables(s.literal);
+    return s.verb == Step::Verb::write && s.source == Step::Source::literal &&
+           is_enabling_word(core, s.object, s.literal);
   });
 }
 
@@ -57,7 +57,7 @@ Plan halt(const AxisCore& core) {
   if (halt_is_quick_stop(core)) return quick_stop(core);
   const Steps* steps = steps_of(core, Command::halt);
   Plan plan;
-  if (would_enable(core, *steps)) {
+  if (hold_an_enabling_word(core, *steps)) {
     const ObjectState& status = core.store[core.model.statusword];
     const ObjectState& word = core.store[core.model.controlword];
     if (core.turn.link != LinkState::online || !status.known || !word.known || word.unsure) return quick_stop(core);
@@ -103,6 +103,10 @@ Plan by_controlword(const AxisCore& core, std::uint16_t word) {
 }
 
 }  // namespace
+
+bool is_enabling_word(const AxisCore& core, ObjectId object, std::int64_t number) {
+  return object == core.model.controlword && enables(number);
+}
 
 Condition torque_off(const AxisCore& core) {
   Condition c = not_enabled(core);

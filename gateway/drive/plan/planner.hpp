@@ -94,6 +94,8 @@ void add_target_here(const AxisCore& core, Plan& plan);
 [[nodiscard]] bool is_target(Quantity quantity);
 /// One object, or two at one place in the drive.
 [[nodiscard]] bool same_place(const AxisCore& core, ObjectId a, ObjectId b);
+/// Written to this object, the number is a controlword that takes the axis to operation enabled, or keeps it there.
+[[nodiscard]] bool is_enabling_word(const AxisCore& core, ObjectId object, std::int64_t number);
 /// The plan writes this object.
 [[nodiscard]] bool writes(const Plan& plan, ObjectId object);
 /// The steps of a command in the mode in force, or null where the drive has none.

@@ -207,8 +207,8 @@ TEST(RegisterMap, CoilsAndInputsStandAtTheirOffsets) {
 TEST(RegisterMap, ACoilNeedsTheCommandThatItAsksForAndJoggingARunAtAVelocity) {
   for (const CoilRow& coil : coil_rows()) {
     const unsigned needed = coil.offset < 8 ? static_cast<unsigned>(coil.on) : 8U;
-    EXPECT_TRUE(supports(coil, 1U << needed)) << coil.name;
-    EXPECT_FALSE(supports(coil, ~(1U << needed))) << coil.name;
+    EXPECT_TRUE(supports(Capabilities{.supported_commands = 1U << needed}, coil)) << coil.name;
+    EXPECT_FALSE(supports(Capabilities{.supported_commands = ~(1U << needed)}, coil)) << coil.name;
   }
   EXPECT_FALSE(supports(Command::jog_reverse, ~0U)) << "no register value, so no bit of supported_commands";
 }

@@ -22,7 +22,7 @@ class RtuWireTest : public WireStage {
     auto made = std::make_unique<ScriptedRtuLink>();
     link = made.get();
     wire = std::make_unique<modbus_rtu::RtuWire>(
-        "lift", std::vector{kinco_node(1), stepper_node(2), modbus_rtu::RtuNode{.node = 3}},
+        "lift", std::vector{kinco_node(1), stepper_node(2), modbus_rtu::RtuNode{.node = 3, .worst_reply = 1s}},
         modbus_rtu::LineSpeed{.baud = 19200, .parity_bits = 0}, std::move(made), runtime, log);
     wire->start(*this);
     link->events->on_link_up();
@@ -111,6 +111,23 @@ TEST_F(RtuWireTest, an_early_answer_that_may_be_owed_from_before_does_not_end_th
   wire->send(read_of(0x3300));
   runtime.advance_by(4ms);
   link->bring(kStatus);
+  EXPECT_THAT(replies, SizeIs(2));
+  EXPECT_EQ(late(), 1u);
+}
+
+TEST_F(RtuWireTest, a_drive_that_may_take_long_may_owe_an_answer_for_as_much_longer) {
+  wire->send(write_of(0x3100, 0x0F, 2, 3));
+  wire->abandon();
+  runtime.advance_by(3s);
+  wire->send(write_of(0x3100, 0x0F, 2, 3));
+  runtime.advance_by(1ms);
+  link->bring("03 06 31 00 00 0F");
+  wire->send(read_of(0x3200, 2, 3));
+  runtime.advance_by(12ms);
+  link->bring("03 03 02 C0 37");
+  wire->send(read_of(0x3300, 2, 3));
+  runtime.advance_by(4ms);
+  link->bring("03 03 02 C0 37");
   EXPECT_THAT(replies, SizeIs(2));
   EXPECT_EQ(late(), 1u);
 }

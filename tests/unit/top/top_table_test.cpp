@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <sstream>
+#include <array>
 
 #include "gateway/commands/top_screen.hpp"
 #include "gateway/core/words.hpp"
@@ -49,14 +49,13 @@ TopReading reading_of(std::vector<AxisReading> axes) {
   return reading;
 }
 
-std::vector<std::string> lines_of(const std::string& table) {
+std::vector<std::string> lines_of(const std::vector<TopLine>& table) {
   std::vector<std::string> lines;
-  std::istringstream stream(table);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  for (const TopLine& line : table) lines.push_back(line.text);
   return lines;
 }
 
-std::string axis_line(const AxisReading& axis) { return lines_of(render_table(reading_of({axis}))).at(2); }
+std::string axis_line(const AxisReading& axis) { return lines_of(table_lines(reading_of({axis}))).at(2); }
 
 std::vector<std::string> words(const std::string& line) {
   std::vector<std::string> words;
@@ -66,7 +65,7 @@ std::vector<std::string> words(const std::string& line) {
 }
 
 TEST(TopTable, TellsOfTheGatewayInItsFirstLine) {
-  EXPECT_EQ(lines_of(render_table(reading_of({good_axis(1)})))[0],
+  EXPECT_EQ(lines_of(table_lines(reading_of({good_axis(1)})))[0],
             "axisgate 127.0.0.1:1502  running  axes online 2 of 2  up 1:02:05  role engineer  alarms: none");
 }
 
@@ -76,11 +75,11 @@ TEST(TopTable, WritesFloatsInTurnsAndRpm) {
   put32(axis, 4, 0x44BB8000);  // 1500
   TopReading reading = reading_of({axis});
   reading.float_numbers = true;
-  EXPECT_THAT(lines_of(render_table(reading)).at(2),
+  EXPECT_THAT(lines_of(table_lines(reading)).at(2),
               AllOf(HasSubstr(" -10.0000 "), HasSubstr(" 1500.000 "), HasSubstr(" -0.5 ")));
   put32(reading.axes[0], 2, 0x7FC00000);
   put32(reading.axes[0], 22, 0);
-  EXPECT_THAT(lines_of(render_table(reading)).at(2), AllOf(HasSubstr(" ? "), HasSubstr(" 1500.000? ")));
+  EXPECT_THAT(lines_of(table_lines(reading)).at(2), AllOf(HasSubstr(" ? "), HasSubstr(" 1500.000? ")));
 }
 
 TEST(TopTable, WritesAnAxisInItsUnits) {
@@ -89,7 +88,7 @@ TEST(TopTable, WritesAnAxisInItsUnits) {
 }
 
 TEST(TopTable, PutsEveryNumberUnderItsColumn) {
-  const auto lines = lines_of(render_table(reading_of({good_axis(1)})));
+  const auto lines = lines_of(table_lines(reading_of({good_axis(1)})));
   for (const auto& [column, value] : {std::pair{"position  ", "123456  "},
                                       {"velocity rpm  ", "-12.500  "},
                                       {"torque %  ", "-0.5  "},
@@ -149,7 +148,7 @@ TEST(TopTable, NamesTheGatewaysAlarmsAndState) {
   reading.gateway[2] = static_cast<std::uint16_t>(GatewayState::degraded);
   reading.gateway[6] =
       1U << static_cast<unsigned>(GatewayAlarm::bus_down) | 1U << static_cast<unsigned>(GatewayAlarm::bus_overloaded);
-  const auto lines = lines_of(render_table(reading));
+  const auto lines = lines_of(table_lines(reading));
   EXPECT_THAT(lines[0], HasSubstr("degraded"));
   EXPECT_THAT(lines[0], EndsWith("alarms: bus down, bus overloaded"));
   EXPECT_EQ(lines[2], "no axes");
@@ -157,14 +156,14 @@ TEST(TopTable, NamesTheGatewaysAlarmsAndState) {
 
 TEST(TopTable, ReadsBothWordOrders) {
   TopReading reading = reading_of({good_axis(1)});
-  const std::string high_first = render_table(reading);
+  const std::string high_first = text_of(table_lines(reading));
   std::swap(reading.gateway[4], reading.gateway[5]);
   std::swap(reading.gateway[10], reading.gateway[11]);
   for (const std::size_t pair : {2U, 4U, 8U, 12U, 20U, 22U, 34U}) {
     std::swap(reading.axes[0].registers[pair], reading.axes[0].registers[pair + 1]);
   }
   EXPECT_EQ(word_order(reading.gateway), WordOrder::low_first);
-  EXPECT_EQ(render_table(reading), high_first);
+  EXPECT_EQ(text_of(table_lines(reading)), high_first);
   reading.gateway[10] = 0;
   EXPECT_EQ(word_order(reading.gateway), WordOrder::unknown);
 }
@@ -191,8 +190,9 @@ TEST(TopTable, FitsIntoEightyColumnsWithEveryNumberWhole) {
   TopReading reading = reading_of({axis});
   reading.server = "a-rather-long-name.of-a-gateway.example.org:1502";
   reading.gateway[6] = 0x1FFF;
-  const std::string table = render_table(reading, kNarrow);
-  for (const std::string& line : lines_of(table)) EXPECT_LE(line.size(), kNarrow) << line;
+  const std::vector<TopLine> lines = table_lines(reading, kNarrow);
+  for (const TopLine& line : lines) EXPECT_LE(line.text.size(), kNarrow) << line.text;
+  const std::string table = text_of(lines);
   for (const char* whole :
        {" -2147483647? ", " -2147483.647? ", " -3276.7?", "lift: profile position?, -327.67? A, age 12 ms",
         "error 0x8130 no contact", "offline", "discrete motion"})
@@ -206,11 +206,11 @@ TEST(TopTable, FitsIntoEightyColumnsWithEveryNumberWhole) {
 TEST(TopTable, StaysOneLineAnAxisWhereThereIsRoom) {
   AxisReading axis = good_axis(1);
   axis.name = "lift";
-  const std::string table = render_table(reading_of({axis}), 200);
+  const std::vector<TopLine> table = table_lines(reading_of({axis}), 200);
   EXPECT_THAT(lines_of(table), SizeIs(3));
   EXPECT_THAT(words(lines_of(table)[1])[1], "name");
   EXPECT_THAT(words(lines_of(table)[2])[1], "lift");
-  EXPECT_THAT(lines_of(render_table(reading_of({axis}), kNarrow)), SizeIs(5)) << "the first line takes two";
+  EXPECT_THAT(lines_of(table_lines(reading_of({axis}), kNarrow)), SizeIs(5)) << "the first line takes two";
 }
 
 TEST(TopScreen, ColoursLinesThatAskForAttentionWithoutCuttingTheirColour) {
@@ -218,7 +218,7 @@ TEST(TopScreen, ColoursLinesThatAskForAttentionWithoutCuttingTheirColour) {
   failed.registers[31] = 6;
   AxisReading uncertain = good_axis(3);
   uncertain.registers[18] = 3;
-  const std::string table = render_table(reading_of({good_axis(1), failed, uncertain}));
+  const std::vector<TopLine> table = table_lines(reading_of({good_axis(1), failed, uncertain}));
   const std::string frame = terminal_frame(table, 60, 50, true);
   EXPECT_THAT(frame, HasSubstr("\x1b[31m   2  online     error stop"));
   EXPECT_THAT(frame, HasSubstr("\x1b[33m   3  suspect"));
@@ -233,19 +233,19 @@ TEST(TopScreen, ColoursAnAxisWithAlarmsInBothLayoutsAndNoOther) {
   put32(newer, 34, 1U << 31);  // of a gateway that knows more alarms
   const TopReading reading = reading_of({good_axis(1), alarmed, newer});
   std::vector<Attention> wide;
-  for (const std::string& line : lines_of(render_table(reading))) wide.push_back(attention(line));
+  for (const TopLine& line : table_lines(reading)) wide.push_back(line.asks);
   using enum Attention;
   EXPECT_THAT(wide, ElementsAre(none, none, none, look, look));
-  EXPECT_THAT(terminal_frame(render_table(reading), 60, 50, true), HasSubstr("\x1b[33m   2  online"))
+  EXPECT_THAT(terminal_frame(table_lines(reading), 60, 50, true), HasSubstr("\x1b[33m   2  online"))
       << "also where the window cuts the alarms off";
   std::vector<std::string> narrow;
-  for (const std::string& line : lines_of(render_table(reading, kNarrow)))
-    if (attention(line) == look) narrow.push_back(line);
+  for (const TopLine& line : table_lines(reading, kNarrow))
+    if (line.asks == look) narrow.push_back(line.text);
   EXPECT_THAT(narrow, ElementsAre(EndsWith("alarms: not_homed"), EndsWith("alarms: bit 31")));
 }
 
 TEST(TopScreen, AFrameIsCutToTheWindowAndWipesWhatWasThereBefore) {
-  const std::string frame = terminal_frame("abcdef\nx\nthird\n", 4, 2);
+  const std::string frame = terminal_frame(std::array<TopLine, 3>{{{"abcdef"}, {"x"}, {"third"}}}, 4, 2);
   EXPECT_EQ(frame, "\x1b[Habcd\x1b[K\r\nx\x1b[K\x1b[J");
 }
 

@@ -10,17 +10,6 @@ bool register_claims(const WriteBatch& batch) {
 }
 
 // Coil 1 (fault_reset) neither takes nor needs the lease while nobody owns the axis: it never enables.
-bool coil_claims(Command command) {
-  switch (command) {
-    case Command::enable:
-    case Command::move_absolute:
-    case Command::move_relative:
-    case Command::home:
-    case Command::run_velocity:
-      return true;
-    default:
-      return is_jog(command);
-  }
-}
+bool coil_claims(Command command) { return command == Command::enable || asks_to_move(command); }
 
 }  // namespace axisgate::modbus_tcp

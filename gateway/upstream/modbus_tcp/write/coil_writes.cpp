@@ -19,9 +19,6 @@ constexpr std::array kOrder{Command::quick_stop,  Command::disable,       Comman
 /// Both sides of a jog coil, and each of the others, ask for one thing at most.
 using Acting = boost::container::static_vector<Command, kCoils + 1>;
 
-/// A button's press is a start as well.
-bool starts(Command command) { return starts_motion(command) || is_jog(command); }
-
 bool has(const Acting& acting, Command command) {
   return std::find(acting.begin(), acting.end(), command) != acting.end();
 }
@@ -30,7 +27,7 @@ bool has(const Acting& acting, Command command) {
 std::uint16_t first_start(const Acting& acting) {
   std::uint16_t first = kCoils;
   for (const Command command : acting)
-    if (starts(command)) first = std::min(first, coil_of(command));
+    if (asks_to_move(command)) first = std::min(first, coil_of(command));
   return first;
 }
 
@@ -40,15 +37,14 @@ bool any_of(const Acting& acting, bool (*is)(Command)) { return std::any_of(acti
 bool dropped_by_stop(Command command, const Acting& acting) {
   const bool off = has(acting, Command::quick_stop) || has(acting, Command::disable);
   if (command == Command::enable) return off;
-  return starts(command) &&
-         (off || has(acting, Command::halt) || has(acting, Command::jog_end) || has(acting, Command::end_run));
+  return asks_to_move(command) && any_of(acting, asks_to_stop);
 }
 
 /// Reserved coils take a 0. Coils that this drive cannot do take a 0 in a longer write, which asks for nothing: a
 /// scanner may write the whole row of coils.
 bool takes(const AxisImage& axis, std::uint16_t offset, bool value, bool single) {
   if (offset >= kCoils) return offset < kReservedCoilsEnd && !value;
-  return supports(coil_rows()[offset], axis.supported_commands) || (!value && !single);
+  return supports(axis, coil_rows()[offset]) || (!value && !single);
 }
 
 struct Asked {
@@ -71,7 +67,7 @@ Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, Wr
   JogWrite jog;
   for (std::uint16_t i = 0; i < request.write_count && first + i < kCoils; ++i) {
     const CoilRow& coil = coil_rows()[first + i];
-    if (!supports(coil, axis.supported_commands)) continue;
+    if (!supports(axis, coil)) continue;
     const bool value = request.written_coil(i);
     if (coil.offset == kJogForward || coil.offset == kJogReverse) {
       (coil.offset == kJogForward ? jog.forward : jog.reverse) = value;
@@ -87,8 +83,7 @@ Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, Wr
   if (jogs.ends) asked.acting.push_back(ends_anybodys_jog(request, first, axis) ? Command::halt : Command::jog_end);
   if (jogs.start) asked.acting.push_back(*jogs.start);
   asked.not_new = asked.not_new || jogs.not_new;
-  const bool stops = any_of(asked.acting, is_stop) || jogs.ends || has(asked.acting, Command::end_run);
-  if (!stops && !any_of(asked.acting, starts)) asked.jog_again = jogs.again;
+  if (!any_of(asked.acting, asks_to_stop) && !any_of(asked.acting, asks_to_move)) asked.jog_again = jogs.again;
   return asked;
 }
 
@@ -138,7 +133,7 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
   const Writing writing = writing_to(axis, onlooker, single ? WriteForm::single : WriteForm::block);
   const Asked asked = ask(request, first->offset, axis, writing, rows, edges);
   // Two starts at once: no one can say which motion was meant.
-  if (std::count_if(asked.acting.begin(), asked.acting.end(), starts) > 1)
+  if (std::count_if(asked.acting.begin(), asked.acting.end(), asks_to_move) > 1)
     return refuse(Errc::bad_value, first_start(asked.acting));
 
   WritePlan plan;

@@ -46,11 +46,10 @@ MailboxWrite write_mailbox(const RowWrites& found, const Mailbox& before) {
   }
   write.requested = found.of(Source::object_request) != nullptr && box.request != 0;
   if (!write.requested) return write;
-  constexpr std::uint16_t kSubindexRow = 82, kSizeRow = 83;
   if (box.subindex > UINT8_MAX)
-    write.refused = {Errc::bad_value, kSubindexRow};
+    write.refused = {Errc::bad_value, axis_offset(Source::object_subindex)};
   else if (box.size != 1 && box.size != 2 && box.size != 4)
-    write.refused = {Errc::bad_value, kSizeRow};
+    write.refused = {Errc::bad_value, axis_offset(Source::object_size)};
   else if (before.status == ObjectStatus::busy)
     write.refused = {Errc::busy};
   return write;
@@ -162,7 +161,7 @@ class BatchMaker {
     const AxisImage& axis = *found_.axis;
     const bool runs = axis.axis_state == AxisState::continuous_motion && axis.lease.owned_by(client_.id);
     for (const Quantity target : {Quantity::target_velocity, Quantity::target_torque})
-      if (runs && (axis.supported & axis.writable & bit(target)) != 0) batch_.setpoints.push_back({target, 0});
+      if (runs && axis.takes(target)) batch_.setpoints.push_back({target, 0});
   }
 
   void put_heartbeat() {

@@ -23,25 +23,7 @@ std::uint32_t written_bits(const Request& request, std::size_t i, int registers,
 }
 
 /// In a block, 0 in these rows means "leave as it is" (mode: CiA 402-2, 6060h, "no mode change"); alone it is refused.
-bool leaves_as_it_is(const RegisterRow& row, std::int64_t value) {
-  if (value != 0) return false;
-  switch (row.offset) {
-    case 41:  // mode
-    case 47:  // max_torque
-    case 48:  // profile_velocity
-    case 50:  // profile_acceleration
-    case 52:  // profile_deceleration
-    case 58:  // jog_velocity
-    case 62:  // homing_speed_switch
-    case 64:  // homing_speed_zero
-    case 66:  // homing_acceleration
-    case 70:  // quick_stop_deceleration
-    case 76:  // max_velocity
-      return true;
-    default:
-      return false;
-  }
-}
+bool leaves_as_it_is(const RegisterRow& row, std::int64_t value) { return value == 0 && row.zero_leaves; }
 
 /// A number other than 0 that is 0 in register units would be taken for the 0 that leaves a row as it is.
 std::int64_t number_of_float(const RegisterRow& row, std::uint32_t bits, const AxisImage& axis) {
@@ -88,23 +70,12 @@ RowWrites gather(const Request& request, const UnitView& view, const Onlooker& o
   return found;
 }
 
-bool exists(const RegisterRow& row, const AxisImage* axis) {
-  if (axis == nullptr) return true;
-  if (row.source == Source::quantity) return (axis->supported & axis->writable & bit(row.quantity)) != 0;
-  if (row.source == Source::set_position_value) {
-    return supports(Command::set_position, axis->supported_commands);
-  }
-  if (row.source == Source::jog_velocity) return supports(Command::run_velocity, axis->supported_commands);
-  return true;
-}
-
 /// A row that this drive does not have, written in a block with what it reads as or with 0: one function block serves
 /// all axes, and a scanner may write back the block that it has read.
 bool is_ignored(const RowWrite& write, const AxisImage& axis, const Onlooker& onlooker) {
   const RegisterRow& row = *write.row;
   if (leaves_as_it_is(row, write.value)) return true;
-  return !exists(row, &axis) &&
-         (write.value == 0 || number_of(axis_value(row, axis, onlooker), row.type) == write.value);
+  return !takes(axis, row) && (write.value == 0 || number_of(axis_value(row, axis, onlooker), row.type) == write.value);
 }
 
 /// "In a block write a row whose value the drive already holds is skipped without asking the role."
@@ -153,9 +124,10 @@ WrongRow check_role(const RowWrites& found, Role role) {
 }
 
 bool is_not_there(const RowWrite& write, const AxisImage* axis) {
-  if (!exists(*write.row, axis)) return true;
+  if (axis == nullptr) return false;
+  if (!takes(*axis, *write.row)) return true;
   const bool known_command = write.row->source == Source::command && write.value >= 1 && write.value <= kLastCommand;
-  return known_command && (axis->supported_commands >> write.value & 1U) == 0;
+  return known_command && !axis->supports(Command{static_cast<std::uint8_t>(write.value)});
 }
 
 WrongRow check_addresses(const RowWrites& found) {

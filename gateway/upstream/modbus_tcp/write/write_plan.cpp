@@ -68,8 +68,7 @@ bool asks_for_a_stop(const Request& request, const UnitView& view, const Process
     const auto place = view.place_bit(request.write_address, image);
     if (!place || place->offset >= kCoils) return false;
     const CoilRow& coil = coil_rows()[place->offset];
-    const Command asked = request.written_coil(0) ? coil.on : coil.off;
-    return is_stop(asked) || asked == Command::jog_end;
+    return asks_to_stop(request.written_coil(0) ? coil.on : coil.off);
   }
   const auto place = view.place_register(request.write_address, image);
   if (!place || place->block != Block::axis) return false;
