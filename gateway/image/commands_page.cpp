@@ -250,6 +250,9 @@ bit 1 or bit 2 at 0 is a stop of any operator; so is one whose bits 0 to 3 are 6
 single write alone. Going to 0 in a block is a stop. While a stop is latched only stops pass, and the two steps out of it: 6 or 7,
 then 15. A CiA 402 drive is sent the word as it is. On iD286pro and Keya bit 4 rising is a start (mode 1: move_absolute, with bit 6
 move_relative; mode 6: home), and bit 8 rising a halt; falling they do nothing.
+In modes 3, 4, 9 and 10 a word with bits 0 to 3 = 15 runs at the `target_velocity` or `target_torque` accepted since the last motion
+ended, else at 0. On an axis that is enabled already one that came in the request of a stop, or from another owner, does not count:
+write the target anew, then the word; command 8 takes it as it is.
 
 **Jog.** Coil 8 or 9 at 1 turns the axis at `jog_velocity` as long as its owner writes the 1 again within `jog_timeout_ms` (500);
 reads and other writes do not count. It ends by a halt: when the 1 is 0 or too late, with both coils at 1, and at a position limit of

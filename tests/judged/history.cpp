@@ -20,11 +20,14 @@ bool History::was_at(std::int64_t position, std::int64_t age_ms) const {
   return !any || (position >= least - kClose && position <= most + kClose);
 }
 
+bool History::was(std::int64_t ms, const std::function<bool(const Sight&)>& holds) const {
+  const std::int64_t from_ms = seen_.back().now_ms - ms - kReadingMs;
+  return seen_.front().now_ms > from_ms ||
+         std::ranges::any_of(seen_, [&](const Sight& sight) { return sight.now_ms >= from_ms && holds(sight); });
+}
+
 bool History::was_enabled(bool enabled, std::int64_t age_ms) const {
-  if (seen_.front().now_ms > seen_.back().now_ms - age_ms - kReadingMs) return true;
-  return std::ranges::any_of(seen_, [&](const Sight& sight) {
-    return sight.now_ms >= seen_.back().now_ms - age_ms - kReadingMs && sight.enabled == enabled;
-  });
+  return was(age_ms, [enabled](const Sight& sight) { return sight.enabled == enabled; });
 }
 
 }  // namespace axisgate::test::judged

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 
 #include "tests/model/contract.hpp"
 
@@ -18,6 +19,8 @@ class History {
   /// Within the last `age_ms`, or too long ago to tell.
   [[nodiscard]] bool was_at(std::int64_t position, std::int64_t age_ms) const;
   [[nodiscard]] bool was_enabled(bool enabled, std::int64_t age_ms) const;
+  /// Within the last `ms`, or too long ago to tell, it was one that this holds for.
+  [[nodiscard]] bool was(std::int64_t ms, const std::function<bool(const model::Sight&)>& holds) const;
 
  private:
   static constexpr std::size_t kMost = 4'000;

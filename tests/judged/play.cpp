@@ -172,6 +172,7 @@ void Play::die(const Step& step) {
   contract_->gateway_died();
   open_.clear();
   clients_.gateway_died();
+  told_ = {};
   plant_.crash_gateway();
 }
 

@@ -24,8 +24,13 @@ void Play::send(std::size_t client, Write write, bool at_once) {
   outcome_.story.push_back(before + ": " + kNames.at(client) + " " + text(write) + "  -> " + contract_->predicted());
   const bool of_object = rows_of(write).contains(row::object_request);
   const bool posted = plant_.listener.posted_writes && client != kDds && !of_object;
+  if (client != kDds && !of_object) told_.at(client).reset();
+  const Rows rows = write.coils() ? Rows{} : rows_of(write);
+  ids_.insert(client == kDds                   ? static_cast<std::int64_t>(number & 0xFFFF)
+              : rows.contains(row::command_id) ? rows.at(row::command_id)
+                                               : 0);
   if (posted) lose_sight_of_posted(client);
-  open_.push_back({request, client, number, now_ms(), outcome_.story.size() - 1, posted});
+  open_.push_back({request, client, number, now_ms(), outcome_.story.size() - 1, of_object, posted});
   collect();
   while (!at_once && !over() && std::ranges::any_of(open_, [&](const Open& open) { return open.request == request; }))
     pass(kStepMs);
@@ -47,6 +52,9 @@ void Play::collect() {
         line += "]";
       }
       const std::string expected = contract_->expected();
+      const bool tells = open.client != kDds && !open.posted && !open.of_object;
+      if (tells && (!answer->contains(0) || contract_->surely_acts(open.request)))
+        told_.at(open.client) = *answer->begin();
       if (!contract_->answered(open.request, *answer)) {
         line += "  <-- NO READING HAS THIS ANSWER";
         violated("no reading has this answer; expected: " + expected);
@@ -104,6 +112,7 @@ void Play::replace(std::size_t client, bool silently) {
     if (open.client == client) never_answered(open);
   std::erase_if(open_, [&](const Open& open) { return open.client == client; });
   contract_->left(client, silently);
+  if (client != kDds) told_.at(client).reset();
   clients_.replace(client, silently);
   outcome_.story.push_back(stamp() + ": " + kNames.at(client) + (silently ? " vanishes" : " begins anew"));
 }
@@ -126,6 +135,11 @@ void Play::read(std::size_t client) {
               .float_numbers = plant_.listener.float_numbers,
               .statusword_tells = obey::is_cia402(program_.subject)};
   look();
+  const bool open = std::ranges::any_of(open_, [client](const Open& each) { return each.client == client; });
+  if (told_.at(client) && !open && !result_fits(*told_.at(client), shown.words[obey::shown::result]))
+    violated("register 25 reads " + std::to_string(shown.words[obey::shown::result]) + " after exception " +
+             std::to_string(*told_.at(client)));
+  if (!ids_.contains(shown.words[obey::shown::motion_id])) violated("register 33 shows an id that nobody has written");
   if (const auto wrong = wrong_in(shown, client, *contract_, seen_))
     violated(std::string("to ") + kNames.at(client) + " " + *wrong);
 }

@@ -4,6 +4,7 @@
 // decides what is right.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <set>
 #include <string>
@@ -43,6 +44,7 @@ class Play {
     obey::RequestNumber number = 0;
     std::int64_t sent_ms = 0;
     std::size_t line = 0;
+    bool of_object = false;
     bool posted = false;   ///< the answer comes after the checks, register 25 tells the rest
     bool checked = false;  ///< that answer is there
     bool pending = false;  ///< register 25 has said so
@@ -95,6 +97,10 @@ class Play {
   Instant began_{};
   std::vector<Open> open_;
   History seen_;
+  /// The exception that this client's newest request of registers was answered with; none: what register 25 tells is
+  /// not known. Without one only of what surely acted.
+  std::array<std::optional<int>, model::kDds> told_{};
+  std::set<std::int64_t> ids_{0};  ///< of commands, that anybody has written
   bool wire_whole_ = true;
   bool had_outage_ = false;
   std::int64_t whole_since_ms_ = 0;

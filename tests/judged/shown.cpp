@@ -3,6 +3,9 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdlib>
+#include <map>
+#include <set>
 
 #include "tests/obey/client.hpp"
 
@@ -11,28 +14,47 @@ namespace {
 
 using namespace model;
 
+/// 3.2: what the motor did for as long as a drive may take to tell it.
+bool velocity_fits(std::int64_t shown, std::int64_t age_ms, const History& history) {
+  constexpr std::int64_t kLagMs = 700, kCreep = 15'000;
+  return history.was(age_ms + kLagMs, [shown](const Sight& sight) {
+    if (std::abs(shown) <= kCreep) return std::abs(sight.velocity) <= 2 * kCreep;
+    return sight.velocity != 0 && (sight.velocity > 0) == (shown > 0);
+  });
+}
+
 bool bit_of(std::uint32_t word, unsigned bit) { return (word >> bit & 1U) != 0; }
 
 }  // namespace
 
-std::int64_t Shown::position() const {
-  constexpr double kUnitsPerTurn = 10'000;
-  const std::uint32_t whole = wide(obey::shown::position);
-  return float_numbers ? std::llround(kUnitsPerTurn * static_cast<double>(std::bit_cast<float>(whole)))
+std::int64_t Shown::number(std::size_t at, double units) const {
+  const std::uint32_t whole = wide(at);
+  return float_numbers ? std::llround(units * static_cast<double>(std::bit_cast<float>(whole)))
                        : static_cast<std::int32_t>(whole);
+}
+
+// 3.3 Outcomes, and 3.3 Not new (0x06: 10), 3.3 Not reached (0x04: 11), 3.4 Owed stops ("0x06, result 9").
+bool result_fits(int exception, int result) {
+  static const std::map<int, std::set<int>> kResults{
+      {0, {2}}, {1, {0}}, {2, {0}}, {3, {0}}, {4, {3, 8, 9, 11}}, {6, {0, 5, 6, 7, 8, 9, 10}}, {10, {6}}, {11, {4, 8}}};
+  const auto found = kResults.find(exception);
+  return found != kResults.end() && found->second.contains(result);
 }
 
 std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Contract& contract,
                                     const History& history) {
-  constexpr std::size_t kLink = 18, kAge = 19, kValid = 22, kAlarms = 34;
+  constexpr std::size_t kErrorCode = 10, kLink = 18, kAge = 19, kValid = 22, kAlarms = 34;
+  constexpr unsigned kBitOfVelocity = 3, kBitOfErrorCode = 7;
+  constexpr std::int64_t kCauseMs = 1'000;  // from the end of a fault until it is read
   constexpr std::uint16_t kOnline = 2, kSuspect = 3, kUnknown = 7;
   constexpr unsigned kBitOfStatusword = 0, kBitOfPosition = 2, kBitOfStopLatched = 7;
   const int owner = shown.words[obey::shown::owner];
   const bool latched = bit_of(shown.wide(kAlarms), kBitOfStopLatched);
   const std::string expected = contract.expected();
-  if (!contract.shown(client, owner, latched))
-    return "shown owner " + std::to_string(owner) + (latched ? ", stop-latched" : ", not stop-latched") +
-           "; the contract: " + expected;
+  const int lease_ms = shown.words[obey::shown::lease_remaining];
+  if (!contract.shown(client, {owner, latched, lease_ms}))
+    return "shown owner " + std::to_string(owner) + ", its lease for " + std::to_string(lease_ms) + " ms" +
+           (latched ? ", stop-latched" : ", not stop-latched") + "; the contract: " + expected;
   // 3.2 Unknown: "axis_state 7 unknown while link_state is not 2 or 3"; 3.2: "statusword and discrete inputs 0..10 read
   // 0".
   const std::uint16_t link = shown.words[kLink];
@@ -50,7 +72,17 @@ std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Cont
   const std::string old = ", " + std::to_string(age_ms) + " ms old, ";
   if (bit_of(valid, kBitOfPosition) && !history.was_at(shown.position(), age_ms))
     return "position " + std::to_string(shown.position()) + " is shown as valid" + old + "and the motor was elsewhere";
+  if (bit_of(valid, kBitOfVelocity) && !velocity_fits(shown.velocity(), age_ms, history))
+    return "velocity " + std::to_string(shown.velocity()) + " is shown as valid" + old + "and the motor did otherwise";
+  // 3.1: error_code is that of the first active row; 3.2 Causes of faults: "fault bit, error_code ... appear in one
+  // step".
+  const std::uint16_t code = shown.words[kErrorCode];
+  const auto faulted = [](const Sight& sight) { return sight.faulted; };
+  if (in_sight && bit_of(valid, kBitOfErrorCode) && code != 0 && !history.was(age_ms + kCauseMs, faulted))
+    return "error_code " + std::to_string(code) + " is shown as valid" + old + "of a drive without a fault";
   if (!bit_of(valid, kBitOfStatusword) || !shown.statusword_tells) return {};
+  constexpr std::uint16_t kFault = 0x08;
+  if ((shown.words[obey::shown::statusword] & kFault) != 0 && code == 0) return "a fault is shown without a cause";
   constexpr std::uint16_t kStateBits = 0x6F, kOperationEnabled = 0x27;
   const bool enabled = (shown.words[obey::shown::statusword] & kStateBits) == kOperationEnabled;
   if (history.was_enabled(enabled, age_ms)) return {};

@@ -21,14 +21,18 @@ struct Shown {
   bool float_numbers = false;
   bool statusword_tells = true;  ///< whether it is enabled; a virtual axis tells what it was told
 
-  /// In 1/10000 turn. Only where it is valid.
-  [[nodiscard]] std::int64_t position() const;
+  /// In 1/10000 turn, and in 0.001 rpm. Only where they are valid.
+  [[nodiscard]] std::int64_t position() const { return number(2, 10'000); }
+  [[nodiscard]] std::int64_t velocity() const { return number(4, 1'000); }
+  [[nodiscard]] std::int64_t number(std::size_t at, double units) const;
   [[nodiscard]] std::uint32_t wide(std::size_t at) const {
     const std::size_t low = low_word_first ? 0 : 1;
     return std::uint32_t{words[at + 1 - low]} << 16 | words[at + low];
   }
 };
 
+/// 3.3 Outcomes: what register 25 may tell of a request that was answered so; 0: done.
+[[nodiscard]] bool result_fits(int exception, int result);
 [[nodiscard]] std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, model::Contract& contract,
                                                   const History& history);
 

@@ -253,7 +253,10 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
     // sent, 0x0A: a stop is owed all the same (3.4 Owed stops).
     const bool not_done = pending.void_ || pending.alone;
     const bool unclear = pending.verdict.any_answer && !done;
-    const bool fits = (expected && (!pending.void_ || unclear)) ||
+    // 3.3 Not reached: what a drive has acknowledged and does not show is answered 0x04, and "before the answer the
+    // gateway withdraws what might still happen ...; unconfirmed: an owed stop".
+    const bool withdrawn = asked.troubled && pending.verdict.starts && !pending.void_ && exceptions.contains(4);
+    const bool fits = withdrawn || (expected && (!pending.void_ || unclear)) ||
                       (dropped && (not_done || pending.more || !pending.verdict.stop)) ||
                       (lost && (not_done || exceptions.contains(11) || pending.verdict.stop));
     if (!fits) continue;
@@ -276,6 +279,18 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
     constexpr std::int64_t kTakenBackMs = 6000;
     if (lost && pending.enables && exceptions.contains(kUnknownOutcome))
       next.taken_back_by_ms = sight_.now_ms + kTakenBackMs;
+    if (withdrawn && !expected) {
+      const World before = next;
+      next.motor = Motor::stands;
+      next.jog = 0;
+      next.stale_speed = next.latch_unsure = true;
+      changed(next, before);
+      World quick = next;  // 3.4 Owed stops: "An owed halt becomes quick_stop"
+      quick.latched = true;
+      quick.enabled = false;
+      quick.ladder = 0;
+      fitting.push_back(std::move(quick));
+    }
     // An enable that was broken off between its steps.
     if (!done && pending.enables && next.enabled && sight_.enabled == false) {
       World off = next;

@@ -187,8 +187,13 @@ class Contract {
   void unanswered(int request);
   /// Any other request of this client.
   void asked(std::size_t client);
-  /// What registers 28 and 34 (bit 7) tell this client now. False: no reading of the contract has it.
-  bool shown(std::size_t client, int owner, bool latched);
+  /// What registers 28, 34 (bit 7) and 29 tell this client now. False: no reading of the contract has it.
+  struct Told {
+    int owner = 0;
+    bool latched = false;
+    int lease_ms = 0;
+  };
+  bool shown(std::size_t client, const Told& told);
   /// Whether registers 0 (bit 10) and 32 may tell of a target that is reached.
   [[nodiscard]] bool may_be_over() const;
   /// False: no reading of the contract lets the motor do this.

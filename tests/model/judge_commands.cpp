@@ -310,7 +310,7 @@ void Judge::answer_not_new(std::int64_t number, const Item& item, Verdict& verdi
   else if (number == 1 && seen_.now_ms - world_.enable_asked_ms < kUnderWayMs)
     verdict.answers = {0, 6};
   else if (number == 1)
-    verdict.answers = world_.enabled && !world_.latched ? std::set<int>{0} : std::set<int>{0, 6};
+    verdict.answers = world_.enabled && !world_.latched && !world_.adopted ? std::set<int>{0} : std::set<int>{0, 6};
   else if (item.ended)
     verdict = {"not new, perhaps ended by a stop: 0x06", {0, 6}};
   else if (item.changed)
@@ -366,12 +366,19 @@ bool Judge::controlword(std::int64_t value, bool single, Verdict& verdict) {
       world_.motor = world_.held ? Motor::unknown : Motor::moves;
       world_.target = world_.accepted.contains(row::target_position) ? world_.accepted[row::target_position] : 0;
     }
-    // In mode 3, standing: see accept().
-    if (world_.raw_mode == 3 && world_.motor == Motor::stands && readings_.other()) world_.motor = Motor::runs;
+    // Whether a mode that a command has left is a raw mode is not said.
+    if (world_.speed_mode && readings_.other()) world_.raw_mode = kVelocityMode;
+    // In mode 3, standing: see accept(). 3.4, what survives: "velocity, torque and start are needed anew": by one that
+    // was accepted before a stop, or beside it, nothing runs.
+    if (world_.raw_mode == 3 && world_.motor == Motor::stands && !world_.stale_speed && readings_.other())
+      world_.motor = Motor::runs;
     return true;
   }
   // 3.3: bit 1 = 0, bit 2 = 0, or bits 0..3 = 6 or 7; 3.3 Zeros: going to 0 is a stop.
   stopped(step == 0 && readings_.other());
+  // 3.4: "from a client that does not own the axis these last two count only as single writes": also where nobody does.
+  if ((step == 6 || step == 7) && !single && (!options_.leases || world_.owner != client_) && readings_.other())
+    stopped_ = false;
   world_.off_asked_ms = seen_.now_ms;
   const bool from_ready = world_.ladder == 6 || world_.ladder == 7 || world_.enabled;
   world_.enabled = false;

@@ -57,7 +57,7 @@ void Contract::asked(std::size_t client) {
 void Contract::expire(World& world) const {
   const World before = world;
   world.owner.reset();
-  world.orphan = false;
+  world.orphan = world.found = false;
   world.lease_until(kNever);
   // Whether a loss has closed the gate of an axis whose state is the gateway's own is not known until it is read.
   world.latch_unsure = trouble_ || world.adopted || (world.latch_unsure && !world.enabled);
@@ -118,6 +118,8 @@ void Contract::left(std::size_t client, bool silently) {
     for (const World& world : now) {
       worlds_.push_back(world);
       expire(worlds_.back());
+      // 3.4 Stops: "accepted in every state": one that is being disabled still turns, and is latched by it.
+      worlds_.back().latched = worlds_.back().latched || sight_.now_ms - world.off_asked_ms < options_.settles_ms;
     }
   }
   for (World& world : worlds_) {
@@ -161,8 +163,9 @@ void Contract::trouble_ends() {
     world.latch_unsure = true;  // whether what ended out of sight was enabled then the gateway has not seen
     // Of an axis whose state is the gateway's own nobody knows what it has made of a loss.
     world.adopted = options_.by_gateway && world.enabled;
-    if (!gateway_is_new_ || !options_.leases || !world.enabled || world.owner) continue;
-    world.lease_until(sight_.now_ms + options_.lease_ms);
+    if (!options_.leases || !world.enabled || world.owner) continue;
+    world.found = true;  // 3.5 Signs of life: "an adopted axis [is taken over] by any write but an all-zero block"
+    if (gateway_is_new_ || world.lease_ends_ms == kNever) world.lease_until(sight_.now_ms + options_.lease_ms);
     world.lease_unsure = true;
     more.push_back(world);
     expire(more.back());

@@ -101,22 +101,28 @@ bool Contract::motion_fits(World& world, const Sight& sight) const {
 
 // 3.1: "owner: 0 nobody, 1 this client, 2 another"; 3.4 Owed stops: "The latch is set when the stop is accepted or the
 // lease ends".
-bool Contract::shown(std::size_t client, int owner, bool latched) {
+bool Contract::shown(std::size_t client, const Told& told) {
   const auto unsure = [](const World& world) { return world.lease_unsure || !world.pending.empty(); };
   if (lost_count_ || trouble_ || std::ranges::any_of(worlds_, unsure)) return true;
   const auto fits = [&](const World& world) {
     const bool former = world.orphan && !options_.by_address;  // a connection that has ended is another client
     const int expected = !world.owner ? 0 : *world.owner == client ? 1 : 2;
-    return (world.latched == latched || world.latch_unsure || world.faulted) &&
-           (owner == expected || (former && expected == 1 && owner == 2));
+    // 3.5: "until ... its lease runs out".
+    constexpr std::int64_t kUnsureMs = 60;
+    const std::int64_t least = std::max<std::int64_t>(0, world.lease_ends_ms - sight_.now_ms - kUnsureMs);
+    const std::int64_t most = world.lease_ends_by_ms - sight_.now_ms + kUnsureMs;
+    const bool lasts = world.lease_ends_ms == kNever ? told.lease_ms == 0 || !world.owner
+                                                     : told.lease_ms >= least && told.lease_ms <= most;
+    return (world.latched == told.latched || world.latch_unsure || world.faulted) && lasts &&
+           (told.owner == expected || (former && expected == 1 && told.owner == 2));
   };
   std::vector<World> fitting;
   std::ranges::copy_if(worlds_, std::back_inserter(fitting), fits);
   if (fitting.empty()) return false;
   worlds_ = std::move(fitting);
   for (World& world : worlds_) {
-    world.enabled = world.enabled && (!latched || world.latched);
-    world.latched = latched;
+    world.enabled = world.enabled && (!told.latched || world.latched);
+    world.latched = told.latched;
     world.latch_unsure = false;
   }
   return true;

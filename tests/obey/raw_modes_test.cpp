@@ -3,6 +3,9 @@
 // long as the mode runs.
 #include <gtest/gtest.h>
 
+#include <functional>
+
+#include "tests/obey/dds_writer.hpp"
 #include "tests/obey/plant.hpp"
 
 namespace axisgate::test::obey {
@@ -118,6 +121,112 @@ TEST_P(RawVelocity, StartsAgainAndAgainWithABlockThatIsTheSameButForItsControlwo
   }
 }
 
+/// Its motion was ended, and a target is there that nobody has asked a run for.
+class RawVelocityEnded : public RawVelocity {
+ protected:
+  void run_and_halt(const std::function<void()>& halt) {
+    ASSERT_EQ(plant_.a.command(0), kOk);  // on an empty memory a block only remembers its set-points
+    ASSERT_EQ(plant_.a.row(row::mode, kVelocityMode), kOk);
+    ASSERT_NO_FATAL_FAILURE(enable_raw());
+    ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+    ASSERT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
+    halt();
+    ASSERT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+    plant_.run(2s);
+  }
+  void a_word_alone_moves_nothing() {
+    EXPECT_EQ(plant_.b.row(row::controlword, 15), kOk);
+    plant_.run(1s);
+    EXPECT_TRUE(plant_.stands()) << plant_.velocity();
+    EXPECT_EQ(plant_.b.row(row::controlword, kFifteen), kOk);
+    plant_.run(1s);
+    EXPECT_TRUE(plant_.stands()) << plant_.velocity() << " by the second word";
+  }
+  /// "Velocity, torque and start are needed anew": with both it runs.
+  void a_target_and_a_word_run() {
+    if (is_cia402(GetParam())) {
+      EXPECT_EQ(plant_.a.row(row::target_velocity, kOtherSpeed), kOk);
+      EXPECT_EQ(plant_.a.row(row::controlword, kFifteen), kOk);
+    } else {  // a virtual axis runs raw from its enable on
+      EXPECT_EQ(plant_.a.row(row::controlword, 6), kOk);
+      EXPECT_EQ(plant_.a.row(row::controlword, 7), kOk);
+      EXPECT_EQ(plant_.a.row(row::target_velocity, kOtherSpeed), kOk);
+      EXPECT_EQ(plant_.a.row(row::controlword, 15), kOk);
+    }
+    EXPECT_TRUE(plant_.reaches(kOtherSpeed)) << plant_.velocity();
+    plant_.run(2s);
+    EXPECT_EQ(plant_.a.row(row::controlword, 15), kOk);
+    EXPECT_TRUE(plant_.reaches(kOtherSpeed)) << "the word once more: " << plant_.velocity();
+  }
+  static constexpr std::int64_t kFifteen = 0x4F;  // the same for every drive, and not the one that is remembered
+};
+
+TEST_P(RawVelocityEnded, ByAHaltWithATargetBesideItNeedsATargetAnewBeforeAWordRunsIt) {
+  ASSERT_NO_FATAL_FAILURE(run_and_halt([&] {
+    Rows rows = plant_.profile_rows();
+    rows[row::target_velocity] = kSpeed;
+    rows[row::command] = kHalt;
+    ASSERT_EQ(plant_.a.rows(row::target_velocity, row::command_id, rows), kOk);
+  }));
+  a_word_alone_moves_nothing();
+  a_target_and_a_word_run();
+}
+
+TEST_P(RawVelocityEnded, ByADdsHaltWithATargetBesideItNeedsATargetAnewBeforeAWordRunsIt) {
+  DdsWriter writer(plant_.stage, 1);
+  ASSERT_NO_FATAL_FAILURE(run_and_halt([&] {
+    const auto request =
+        writer.begin({.function = fc::sample, .sample = {{row::command, kHalt}, {row::target_velocity, kOtherSpeed}}});
+    ASSERT_TRUE(plant_.stage.run_until([&] { return writer.result_of(request).has_value(); }, 5s));
+  }));
+  a_word_alone_moves_nothing();
+  a_target_and_a_word_run();
+}
+
+TEST_P(RawVelocityEnded, IsNotBegunAnewByAModeEither) {
+  ASSERT_NO_FATAL_FAILURE(run_and_halt([&] {
+    ASSERT_EQ(
+        plant_.a.rows(row::target_velocity, row::command_id, {{row::target_velocity, kSpeed}, {row::command, kHalt}}),
+        kOk);
+  }));
+  plant_.b.row(row::mode, kTorqueMode);  // not every drive has it
+  plant_.b.row(row::mode, kVelocityMode);
+  plant_.run(1s);
+  EXPECT_TRUE(plant_.stands()) << plant_.velocity();
+}
+
+// Where command 8 starts it, the set-point accepted last counts (3.3 What asks), and a word beside that run ends
+// nothing.
+TEST_P(RawVelocityEnded, RunsByACommandAtTheTargetThatCameBesideTheHalt) {
+  ASSERT_NO_FATAL_FAILURE(run_and_halt([&] {
+    ASSERT_EQ(plant_.a.rows(row::target_velocity, row::command_id,
+                            {{row::target_velocity, kOtherSpeed}, {row::command, kHalt}}),
+              kOk);
+  }));
+  ASSERT_EQ(plant_.a.command(kRun), kOk);
+  EXPECT_TRUE(plant_.reaches(kOtherSpeed)) << plant_.velocity();
+  EXPECT_EQ(plant_.a.row(row::controlword, kFifteen), kOk);
+  plant_.run(1s);
+  EXPECT_TRUE(plant_.reaches(kOtherSpeed)) << plant_.velocity();
+}
+
+class RawVelocityOfAnother : public testing::TestWithParam<Subject> {};
+
+// 3.5: whoever owns the axis now has not asked for it.
+TEST_P(RawVelocityOfAnother, IsNotRunByAWordOfTheNextOwner) {
+  Plant plant(GetParam(), with_leases());
+  plant.ready_but_disabled();
+  ASSERT_EQ(plant.a.row(row::mode, kVelocityMode), kOk);
+  for (const std::int64_t word : {6, 7, 15}) ASSERT_EQ(plant.a.row(row::controlword, word), kOk) << word;
+  ASSERT_EQ(plant.a.command(kHalt), kOk);
+  ASSERT_EQ(plant.a.row(row::target_velocity, kSpeed), kOk);
+  ASSERT_EQ(plant.a.command(kRelease), kOk);
+  EXPECT_EQ(plant.b.row(row::controlword, 15), kOk);
+  EXPECT_EQ(plant.b.word(shown::owner), kMe);
+  plant.run(1s);
+  EXPECT_TRUE(plant.stands()) << plant.velocity();
+}
+
 class RawTorque : public testing::TestWithParam<Subject> {
  protected:
   RawTorque() {
@@ -168,6 +277,8 @@ TEST_P(RawTorque, ScannedInABlockDoesTheSame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, ShownRawVelocity, testing::ValuesIn(subjects(is_cia402)), named);
+INSTANTIATE_TEST_SUITE_P(Every, RawVelocityEnded, testing::ValuesIn(subjects(has_speeds)), named);
+INSTANTIATE_TEST_SUITE_P(Every, RawVelocityOfAnother, testing::ValuesIn(subjects(has_speeds)), named);
 INSTANTIATE_TEST_SUITE_P(Every, RawVelocity, testing::ValuesIn(subjects(has_speeds)), named);
 INSTANTIATE_TEST_SUITE_P(Every, RawTorque, testing::ValuesIn(subjects(has_torque)), named);
 

@@ -55,6 +55,7 @@ void Axis::claim(const WriteBatch& batch) {
   const auto before = ownership_.owner();
   const Ownership::Taken taken = ownership_.take(batch.life, core_.turn.now);
   if (taken == Ownership::Taken::nothing) return;
+  if (taken != Ownership::Taken::orphan && taken != Ownership::Taken::same_hand) core_.motion.owner_changed();
   if (jog_.client() != batch.client) halt_jog("another client has taken the axis");
   tell_owner(drive::text(taken, *batch.life) + named_before(before));
 }

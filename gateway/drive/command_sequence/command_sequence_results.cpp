@@ -263,7 +263,7 @@ void CommandSequence::reach(const Action& action) {
       break;
     case Mark::run_raw:
       core_.sent_to.reset();
-      motion.run_raw();
+      motion.run_raw(action.number != 0);
       break;
     case Mark::mode_changed:
       motion.mode_changed();

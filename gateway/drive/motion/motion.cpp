@@ -95,6 +95,22 @@ void Motion::start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t
   raw_run_ = found_ = arrived_ = false;
   stopping_ = false;
   awaits_fall_ = kind == MotionKind::discrete && !acknowledges_;
+  if (kind == MotionKind::velocity || kind == MotionKind::torque) mark_targets(true);
+}
+
+void Motion::run_raw(bool by_enable) {
+  raw_run_ = true;
+  if (by_enable) mark_targets(true);
+}
+
+void Motion::owner_changed() {
+  const bool follows = kind_ == MotionKind::velocity || kind_ == MotionKind::torque || raw_run_;
+  if (!follows) mark_targets(false);
+}
+
+void Motion::mark_targets(bool anew) {
+  for (const Target target : {kVelocity, kTorque})
+    if (wanted_[target]) wanted_[target]->anew = anew;
 }
 
 void Motion::mode_changed() {

@@ -52,6 +52,9 @@ struct AxisFacts {
 struct Wanted {
   std::int64_t value = 0;               ///< in register units
   std::optional<std::int64_t> exact{};  ///< as the drive counts, where the object mailbox gave it so
+  /// False: a velocity or torque that came in the request of a stop, or from who owns the axis no more. A command
+  /// starts by it, and an enable; no raw word or mode on an axis that is enabled does.
+  bool anew = true;
 };
 
 class Motion {
@@ -109,13 +112,16 @@ class Motion {
   /// The drive has acknowledged a start in this exchange; a motion under way is aborted by it.
   void start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t exchange);
   /// A raw enable or mode write that lets set-points act at once (raw modes 3, 4, 9, 10). A drive may take its time to
-  /// become enabled after it: only leaving that state ends the run, not that it is not reached yet.
-  void run_raw() { raw_run_ = true; }
+  /// become enabled after it: only leaving that state ends the run, not that it is not reached yet. `by_enable`: it was
+  /// not enabled before.
+  void run_raw(bool by_enable = false);
   [[nodiscard]] bool runs_raw() const { return raw_run_; }
   /// Of a target that acts by this: a run that was found running goes on in the drive, in a mode that follows it.
   [[nodiscard]] bool goes_on(Quantity target, const AxisFacts& facts) const;
   /// It was enabled when the gateway first saw it, and nothing was asked of it since: whose motion it is nobody knows.
   [[nodiscard]] bool found_at_start() const { return found_at_start_ && !raw_run_; }
+  /// Another client owns the axis: what runs goes on, and what stands is not run by what the one before has asked for.
+  void owner_changed();
   /// The mode was changed: what ran in the mode before is over.
   void mode_changed();
   /// How often velocity and torque were made void until now.
@@ -154,6 +160,7 @@ class Motion {
 
  private:
   void end(MotionState how);
+  void mark_targets(bool anew);
   void complete(Instant now);
   /// The statusword shows the end of the motion: completes it once the position shown is no older.
   void complete_with_position(const AxisFacts& facts);

@@ -35,7 +35,8 @@ struct Action {
   enum class Kind : std::uint8_t { write, read, wait, mark };
   Kind kind = Kind::write;
   ObjectId object = kNoObject;   ///< write, read; see Mark::values_invalidated
-  std::int64_t number = 0;       ///< write: as the drive counts; Mark::start_discrete: 1, the target is a distance
+  std::int64_t number = 0;       ///< write: as the drive counts; Mark::start_discrete: 1, the target is a distance;
+                                 ///< Mark::run_raw: 1, it was not enabled before
   ObjectId copy_of = kNoObject;  ///< write: the newest number of this object instead
   Condition until;               ///< wait: must hold on a sample asked for after the last acknowledgement
   Effect effect = Effect::none;  ///< wait: for this instead of a condition
@@ -85,6 +86,11 @@ struct Action {
     a.kind = Kind::mark;
     a.mark = mark;
     a.object = object;
+    return a;
+  }
+  [[nodiscard]] static Action run_raw(bool by_enable) {
+    Action a = at(Mark::run_raw);
+    a.number = by_enable ? 1 : 0;
     return a;
   }
 };

@@ -74,7 +74,7 @@ Plan plan_controlword(const AxisCore& core, std::uint16_t word, bool command_fol
   if (halts) plan.add(Action::at(Mark::halted));
   if (moves) plan.add(Action::at(Mark::start_discrete));
   if (homes) plan.add(Action::at(Mark::start_homing));
-  if (runs) plan.add(Action::at(Mark::run_raw));
+  if (runs) plan.add(Action::run_raw(!facts.enabled()));
   // A command that finds the axis as enabled as before would be told done, and the axis is disabled.
   const bool disables = !enables && request != Request402::other && facts.enabled();
   if (disables && command_follows) plan.add(Action::wait(torque_off(core), kStopLimit));

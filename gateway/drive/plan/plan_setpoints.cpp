@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "gateway/drive/plan/admission.hpp"
 #include "gateway/drive/plan/planner.hpp"
 
 namespace axisgate::drive {
@@ -146,7 +147,8 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
   for (const Quantity q : {Quantity::target_velocity, Quantity::target_torque}) {
     const Binding* binding = core.model.binding(q);
     if (binding == nullptr || !binding->writable || moves_by_write(core, binding->object)) continue;
-    const Wanted wanted = keep_wanted ? core.running_target(q) : Wanted{};
+    Wanted wanted = keep_wanted ? core.running_target(q) : Wanted{};
+    if (!wanted.anew && core.facts().enabled()) wanted = {};
     const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, core.object(binding->object));
     add_running_target(core, binding->object, raw.value_or(0), plan, look_again);
   }
@@ -190,7 +192,8 @@ void remember_setpoints(AxisCore& core, const WriteBatch& batch) {
   for (const Setpoint& sp : batch.setpoints) {
     const bool beside_jog = core.velocity_beside_jog && sp.quantity == Quantity::target_velocity && !batch.jogs;
     if (beside_jog) core.velocity_beside_jog = Wanted{sp.value, sp.exact};
-    if (!waits_for_jog(core, batch, sp.quantity)) core.motion.want(sp.quantity, {sp.value, sp.exact});
+    if (!waits_for_jog(core, batch, sp.quantity))
+      core.motion.want(sp.quantity, {sp.value, sp.exact, !holds_stop(batch)});
     if (sp.quantity == Quantity::homing_method) core.homing_method = sp.value;
     if (sp.quantity == Quantity::homing_offset) core.offset_owed.reset();
   }

@@ -39,7 +39,7 @@ std::optional<Command> start_of(const AxisCore& core, std::uint16_t word) {
 // In velocity or torque mode an enabled axis follows its target: what was asked for since the last stop, else nothing.
 Plan plan_follow(const AxisCore& core) {
   Plan plan;
-  plan.add(Action::at(Mark::run_raw));
+  plan.add(Action::run_raw(true));
   const auto quantity = setpoint_of_mode(core.mode_in_force());
   if (!quantity) return plan;
   const Wanted wanted = core.running_target(*quantity);

@@ -82,7 +82,7 @@ bool add_command_steps(const AxisCore& core, Command command, Plan& plan);
 /// numbers.
 [[nodiscard]] bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan);
 /// Makes the velocity and torque set-points in the drive 0, or, with `keep_wanted`, what was asked for since the last
-/// stop.
+/// stop; of an axis that is enabled only what was asked for anew (Wanted::anew).
 void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan);
 /// Makes the position set-point the actual position.
 void add_target_here(const AxisCore& core, Plan& plan);
