@@ -97,6 +97,7 @@ TEST_F(Governance, ThatLetsAnybodyInIsRefused) {
 
 TEST_F(Governance, WithoutAllPluginsIsRefused) {
   for (auto& property : qos_.properties().properties()) {
+    if (!property.name().starts_with("dds.sec.")) continue;  // the library has some of its own
     const std::string value = property.value();
     property.value("");
     EXPECT_THAT(refused(rule("false", "ENCRYPT")), HasSubstr("whose a writer is must be proven")) << property.name();
