@@ -39,6 +39,12 @@ std::string samples_text(const DdsSettings& settings) {
 
 std::string commands_text(const DdsSettings& settings) {
   if (!settings.commands) return "off: DDS clients read, and own nothing";
+  if (!settings.roles.empty()) {
+    std::string out;
+    for (const dds::CertificateRole& each : settings.roles)
+      out += fmt::format("{} commands as {}; ", each.certificate, axisgate::text(each.role));
+    return out + fmt::format("all others as {}", axisgate::text(settings.role));
+  }
   return fmt::format("every participant of domain {} that reaches {} may command as {}: DDS has no passwords",
                      settings.domain, fmt::join(settings.interfaces, ", "), axisgate::text(settings.role));
 }
@@ -86,7 +92,7 @@ ReportLines dds_lines(const DdsSettings& settings) {
 
 ReportLines dds_master_lines(const DdsSettings& settings, const AxisConfig& axis, const BusBudget& budget) {
   const LeaseRules& lease = axis.lease;
-  if (!settings.commands || settings.role == Role::viewer) return {};
+  if (!settings.commands || most_rights(settings) == Role::viewer) return {};
   ReportLines out;
   // Names of topics have letters, digits and underscores alone; the joint is called as the axis is.
   if (settings.ros2 && dds::ros_token(axis.name) != axis.name) {

@@ -38,6 +38,7 @@ std::vector<std::string_view> changed_dds_keys(const std::optional<dds::DdsSetti
                                                      {"qos_file", a.qos_file != b.qos_file},
                                                      {"commands", a.commands != b.commands},
                                                      {"role", a.role != b.role},
+                                                     {"roles", a.roles != b.roles},
                                                      {"max_age_ms", a.max_age != b.max_age},
                                                      {"ros2", a.ros2 != b.ros2},
                                                      {"sync_tolerance", a.sync_tolerance != b.sync_tolerance},

@@ -76,7 +76,8 @@ std::string listener_text(const modbus_tcp::ListenerSettings& listener) {
 std::string dds_line(const dds::DdsSettings& settings) {
   std::string out = fmt::format("domain {}, interfaces", settings.domain);
   for (const std::string& interface : settings.interfaces) out += " " + interface;
-  return out + (settings.commands ? fmt::format(", commands are taken, role {}", text(settings.role))
+  return out + (settings.commands ? fmt::format(", commands are taken, role {}{}", text(settings.role),
+                                              settings.roles.empty() ? "" : " or that of their certificate")
                                   : ", no commands are taken");
 }
 

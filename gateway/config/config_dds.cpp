@@ -96,18 +96,27 @@ void check_reach(const ConfigNode& node, const DdsSettings& settings, ConfigFaul
   check_reached("discovery_servers", settings.discovery_servers);
 }
 
-void read_qos_file(const ConfigNode& node, DdsSettings& settings, ConfigFaults& faults) {
-  const auto name = node.string("qos_file");
-  if (!name || faults.within(node.pointer("qos_file"))) return;
+/// The file that this key names; empty: there is none.
+std::string read_file_name(const ConfigNode& node, std::string_view key, ConfigFaults& faults) {
+  const auto name = node.string(key);
+  if (!name || faults.within(node.pointer(key))) return {};
   const auto file = std::filesystem::path(faults.file()).parent_path() / *name;
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    faults.add(
-        node.pointer("qos_file"),
-        fmt::format("there is no file {}: a path that does not begin with / counts from this file", file.string()));
-    return;
+  if (std::filesystem::is_regular_file(file, error)) return file.string();
+  faults.add(
+      node.pointer(key),
+      fmt::format("there is no file {}: a path that does not begin with / counts from this file", file.string()));
+  return {};
+}
+
+void read_roles(const ConfigNode& node, DdsSettings& settings, ConfigFaults& faults) {
+  for (const ConfigNode& each : node.items("roles"))
+    settings.roles.push_back({read_file_name(each, "certificate", faults), role_named(each.string("role").value_or(""))});
+  if (!settings.roles.empty() && !node.has("qos_file")) {
+    faults.add(node.pointer("roles"),
+               "without DDS-Security nobody proves whose certificate is whose: add the \"qos_file\" that turns it on "
+               "(docs/dds/networks.md)");
   }
-  settings.qos_file = file.string();
 }
 
 void read_gateway(const ConfigNode& root, DdsSettings& settings) {
@@ -118,14 +127,17 @@ void read_gateway(const ConfigNode& root, DdsSettings& settings) {
 
 void read_role(const ConfigNode& node, DdsSettings& settings, ConfigFaults& faults) {
   settings.commands = node.flag("commands", settings.commands);
+  read_roles(node, settings, faults);
   settings.role = loopback_only(settings) ? Role::engineer : Role::operator_;
+  // Who has no certificate of those must not be given more than who has one.
+  if (!settings.roles.empty()) settings.role = Role::viewer;
   if (const Role given = role_named(node.string("role").value_or("")); given != Role::none) settings.role = given;
   if (!settings.commands) {
-    for (const std::string_view key : {"role", "start_deadline_ms", "reply_deadline_ms", "max_age_ms"})
+    for (const std::string_view key : {"role", "roles", "start_deadline_ms", "reply_deadline_ms", "max_age_ms"})
       if (node.has(key)) faults.warn(node.pointer(key), "without \"commands\": true this has no effect");
     return;
   }
-  if (settings.role == Role::viewer)
+  if (most_rights(settings) == Role::viewer)
     faults.warn(node.pointer("role"), "every request of a DDS client is refused: a viewer commands nothing");
   if (loopback_only(settings) || settings.role == Role::viewer) return;
   faults.warn(node.pointer("commands"),
@@ -187,7 +199,7 @@ std::optional<DdsSettings> read_dds(const ConfigNode& root, const std::vector<Bu
   read_network(*node, settings, faults);
   read_shared_memory(*node, settings);
   check_reach(*node, settings, faults);
-  read_qos_file(*node, settings, faults);
+  settings.qos_file = read_file_name(*node, "qos_file", faults);
   read_role(*node, settings, faults);
   read_ros2(*node, settings, buses, faults);
   read_times(*node, settings, faults);

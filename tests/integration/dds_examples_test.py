@@ -11,6 +11,7 @@ CYCLONE_HERE = "<General><Interfaces><NetworkInterface address='127.0.0.1'/></In
     "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>20</MaxAutoParticipantIndex>" \
     "<Peers><Peer address='127.0.0.1'/></Peers></Discovery>"
 
+EXAMPLES = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "deploy", "examples", "dds")
 DONE = "result (2,|21, detail 0x2$)"  # 21: the first reply was lost, and it was so
 
 
@@ -24,6 +25,11 @@ class Writers(DdsStory):
 
     def position(self):
         return self.registers(1)["position_actual"] / 10000 * 2 * math.pi
+
+    def test_each_is_short(self):
+        for name in ("command_fastdds.cpp", "command_cyclonedds.c"):
+            with open(os.path.join(EXAMPLES, name), encoding="utf-8") as source:
+                self.assertLess(len(source.readlines()), 100, name)
 
     def test_each_moves_its_axis_and_lets_it_go(self):
         for turn, vendor in enumerate(("fastdds", "cyclonedds"), 1):

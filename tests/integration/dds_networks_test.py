@@ -6,7 +6,7 @@ from own_network import HOST_ADDRESS, OTHER, OTHER_ADDRESS, in_host, make_host, 
 import os
 import subprocess
 
-from dds_stage import CYCLONE, FAST, DdsStory, Peer, main
+from dds_stage import CYCLONE, DONE, FAST, ROLE, DdsStory, Peer, main
 from processes import Program, until
 
 DISCOVERY_PORT = 11811
@@ -141,7 +141,8 @@ class Domains(Networks):
 class Secured(Networks):
     """PKI-DH, permissions and AES-GCM, by a QoS file. Debian's Cyclone DDS comes without its security plugins."""
 
-    dds = {"interfaces": [OTHER], "qos_file": "secure.xml", "role": "engineer", "ros2": True}
+    dds = {"interfaces": [OTHER], "qos_file": "secure.xml", "ros2": True,
+           "roles": [{"certificate": "operator.cert.pem", "role": "operator"}, {"certificate": "engineer.cert.pem", "role": "engineer"}]}
     lives_by = ("strength", 3, "manual", 20000)  # so that the reader of its lease takes part as well
     story_folder = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
@@ -155,6 +156,16 @@ class Secured(Networks):
         node = self.node(FAST, FASTRTPS_DEFAULT_PROFILES_FILE=self.path("operator.xml"))
         self.assert_it_reads_and_commands(node)
         self.assertEqual(stranger.all("sample", "axis_state"), [])
+
+    def test_who_commands_has_the_role_of_its_certificate(self):
+        results = {}
+        for name in ("operator", "engineer"):
+            node = self.node(FAST, FASTRTPS_DEFAULT_PROFILES_FILE=self.path(f"{name}.xml"))
+            node.ask_objects()
+            results[name] = node.object(1, 0x6081, size=4, write=1, value=1000)["result"]
+            self.assertEqual(node.object(1, 0x6081, size=4)["result"], DONE)
+            node.leave()
+        self.assertEqual(results, {"operator": ROLE, "engineer": DONE})
 
     def test_who_may_read_alone_commands_nothing(self):
         viewer = self.node(FAST, FASTRTPS_DEFAULT_PROFILES_FILE=self.path("viewer.xml"))

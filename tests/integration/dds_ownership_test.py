@@ -2,8 +2,9 @@
 """Who may command an axis when several want to: DDS writers by their strength, and DDS beside Modbus clients."""
 import collections
 import itertools
+import signal
 
-from dds_stage import CYCLONE, DONE, FAST, LEASE, NO_AXIS, NOT_NOW, NOT_OWNER, RPM, VENDORS, DdsStory, main
+from dds_stage import CYCLONE, DONE, FAST, LEASE, NO_AXIS, NOT_NOW, NOT_OWNER, RPM, VENDORS, DdsStory, fits, main
 from lease_stage import ANOTHER, ME, NOBODY
 from modbus import BUSY, Axis
 from processes import until
@@ -223,6 +224,47 @@ class ManyRequests(DdsStory):
                      if len(results[request]) != 1 or results[request][0] not in allowed}
             self.assertEqual(wrong, {})
         self.at = None
+
+
+class FallenBehind(DdsStory):
+    """A reader of replies that stands still, beside one that does not. The gateway keeps the newest replies of each axis for it."""
+
+    lines_of = ("serial",)
+    kept = 64
+    rounds = 4
+
+    def test_it_hears_the_newest_of_each_axis_and_holds_up_nobody(self):
+        self.begin()
+        asker = self.commander(FAST)
+        for vendor in self.each_vendor():
+            deaf = self.peer_of(vendor).read("command_reply")
+            self.addCleanup(deaf.send, signal.SIGCONT)
+            until("it has heard the newest of those that it has missed", lambda deaf=deaf: self.misses_some(deaf, asker))
+
+    def misses_some(self, deaf, asker):
+        """False: it was away for so long that it counted as gone."""
+        mine = {"axis": asker.nowhere, "writer": asker.guids["axis_command"]}
+
+        def hears(request, seconds):
+            try:
+                deaf.wait("sample", "command_reply", lambda told: fits(told["data"], {**mine, "request_id": request}), seconds=seconds)
+                return True
+            except AssertionError:
+                return False
+
+        until("both know each other", lambda: hears(asker.ask(asker.nowhere, "enable"), 0.5))
+        deaf.send(signal.SIGSTOP)
+        for _ in range(self.rounds):
+            requests = [asker.ask(asker.nowhere, "enable") for _ in range(self.kept // 2)]
+            for request in requests:
+                asker.answer(request)
+        deaf.send(signal.SIGCONT)
+        if not hears(requests[-1], 5):
+            return False
+        heard = [reply["request_id"] for reply in deaf.samples("command_reply", **mine)]
+        heard = heard[:heard.index(requests[-1]) + 1]
+        self.assertEqual(heard[-self.kept:], list(range(requests[-1] - self.kept + 1, requests[-1] + 1)))
+        return True
 
 
 if __name__ == "__main__":

@@ -37,25 +37,53 @@ std::string client_name(const Guid& writer, const std::string& where) {
 
 DdsClient* DdsClients::find(const Guid& writer) {
   const auto found = clients_.find(writer);
-  return found == clients_.end() ? nullptr : &found->second;
+  return found == clients_.end() || found->second.life == nullptr ? nullptr : &found->second;
+}
+
+std::string DdsClients::name_of(const Guid& writer) const {
+  const auto found = clients_.find(writer);
+  return client_name(writer, found == clients_.end() ? std::string() : found->second.where);
+}
+
+std::size_t DdsClients::size() const {
+  return static_cast<std::size_t>(
+      std::count_if(clients_.begin(), clients_.end(), [](const auto& each) { return each.second.life != nullptr; }));
 }
 
 std::shared_ptr<ClientLife> DdsClients::new_life(const Guid& writer) {
   auto life = std::make_shared<ClientLife>();
   life->id = next_id_++;
-  life->role = role_;
+  life->role = identities_.role_of(writer);
   life->origin = origin_of(writer);
   life->name = client_name(writer, {});
   life->strength = 0;
   return life;
 }
 
-DdsClient* DdsClients::known(const Guid& writer) {
-  if (DdsClient* const found = find(writer)) return found;
-  if (clients_.size() >= kMaxWriters) return nullptr;
-  DdsClient& added = clients_[writer];
-  added.life = new_life(writer);
-  return &added;
+bool DdsClients::has_place(const Guid& writer) const {
+  return clients_.contains(writer) || clients_.size() < kMaxWritersKnown;
+}
+
+bool DdsClients::makes_way(const DdsClient& client) const {
+  if (client.life == nullptr || client.unleased || !client.held.empty()) return false;
+  return std::none_of(image_.axes().begin(), image_.axes().end(),
+                      [&](const auto& axis) { return axis->lease.owned_by(client.life->id); });
+}
+
+/// Of those that make way the one that was heard longest ago is no client any more, until it asks again.
+bool DdsClients::make_room() {
+  if (size() < kMaxWriters) return true;
+  DdsClient* longest = nullptr;
+  for (auto& [guid, client] : clients_) {
+    if (!makes_way(client)) continue;
+    if (longest == nullptr || client.life->last_request < longest->life->last_request) longest = &client;
+  }
+  if (longest == nullptr) return false;
+  end(*longest);
+  longest->released.clear();
+  longest->counter.reset();
+  longest->commands = false;
+  return true;
 }
 
 std::shared_ptr<ClientLife> DdsClients::stranger(const Guid& writer, Instant now) {
@@ -79,13 +107,18 @@ std::string DdsClients::on_writer(const WriterRecord& record, Instant now) {
   std::string told;
   if (record.gone) {
     if (const auto found = clients_.find(record.writer); found != clients_.end()) forget(found);
-  } else if (DdsClient* const client = known(record.writer)) {
-    client->life->strength = record.strength;
-    client->life->name = client_name(record.writer, record.where);
-    client->returns_by = kNever;
-    heard(*client->life, now);
+  } else if (has_place(record.writer)) {
+    DdsClient& client = clients_[record.writer];
+    client.strength = record.strength;
+    client.where = record.where;
+    client.returns_by = kNever;
+    if (client.life != nullptr) {
+      client.life->strength = record.strength;
+      client.life->name = name_of(record.writer);
+      heard(*client.life, now);
+    }
     told = told_of_liveliness(record.liveliness);
-    if (!told.empty()) told = std::exchange(client->told_of_liveliness, true) ? "" : client->life->name + ": " + told;
+    if (!told.empty()) told = std::exchange(client.told_of_liveliness, true) ? "" : name_of(record.writer) + ": " + told;
   }
   look_at_deadlines();
   return told;
@@ -114,12 +147,18 @@ void DdsClients::on_heartbeat(const HeartbeatRecord& record, Instant now) {
 }
 
 DdsClient* DdsClients::on_sample(const Guid& writer, std::optional<std::int32_t> strength, bool fresh, Instant now) {
-  const bool is_new = find(writer) == nullptr;
-  DdsClient* const client = known(writer);
-  if (client == nullptr) return nullptr;
+  const bool is_told_of = clients_.contains(writer);
+  DdsClient* client = find(writer);
+  if (client == nullptr) {
+    if (!has_place(writer) || !make_room()) return nullptr;
+    client = &clients_[writer];
+    client->life = new_life(writer);
+    client->life->name = name_of(writer);
+    client->life->strength = client->strength;
+  }
   if (strength) client->life->strength = strength;
   if (fresh) heard(*client->life, now);
-  if (is_new || client->returns_by != kNever) {
+  if (!is_told_of || client->returns_by != kNever) {
     client->returns_by = now + kReturnsWithin;
     look_at_deadlines();
   }
@@ -129,7 +168,7 @@ DdsClient* DdsClients::on_sample(const Guid& writer, std::optional<std::int32_t>
 std::shared_ptr<ClientLife> DdsClients::asks_for_objects(const ClientLife& owner, const ClientLife& other) const {
   if (owner.id == other.id || owner.origin != other.origin) return nullptr;
   for (const auto& [guid, client] : clients_)
-    if (client.life->id == owner.id && !client.commands) return client.life;
+    if (client.life != nullptr && client.life->id == owner.id && !client.commands) return client.life;
   return nullptr;
 }
 
@@ -142,17 +181,22 @@ void DdsClients::on_link_up(Instant now) {
 // Once: it is a time added to when a client was last heard, so a second loss of the link before that adds nothing.
 void DdsClients::on_link_down() {
   link_up_ = false;
-  for (auto& [guid, client] : clients_) client.life->grace = kGrace;
+  for (auto& [guid, client] : clients_)
+    if (client.life != nullptr) client.life->grace = kGrace;
   look_at_deadlines();
 }
 
-DdsClients::Clients::iterator DdsClients::forget(Clients::iterator client) {
-  const std::shared_ptr<ClientLife> life = client->second.life;
+void DdsClients::end(DdsClient& client) {
+  const std::shared_ptr<ClientLife> life = std::exchange(client.life, nullptr);
+  if (life == nullptr) return;
   life->connected = false;
   life->grace = Duration{};
-  const auto next = clients_.erase(client);
   commands_.client_gone(life->id);
-  return next;
+}
+
+DdsClients::Clients::iterator DdsClients::forget(Clients::iterator client) {
+  end(client->second);
+  return clients_.erase(client);
 }
 
 void DdsClients::on_time(Instant now) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The DDS writers as clients of the gateway: one ClientLife each, by which leases are judged (design 3.5 and 4).
-// Promises that their number is bounded, that a writer whose end is told or who does not come back is dead to its
-// leases, and that the silence of axisgate-dds itself is not taken for theirs for as long as their grace. Never speaks
-// to an axis, but to say that a client is gone.
+// The DDS writers as clients of the gateway: one ClientLife each, by which leases are judged (design 3.5 and 4). A writer
+// is a client from its first sample for this gateway on.
+// Promises that their number is bounded, and that none makes way for a newcomer that owns an axis, holds a button or
+// may have a motor running; that a writer whose end is told or who does not come back is dead to its leases; that the
+// silence of axisgate-dds itself is not taken for theirs for as long as their grace. Never speaks to an axis, but to
+// say that a client is gone.
 #pragma once
 
 #include <map>
@@ -10,6 +12,7 @@
 
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/process_image.hpp"
+#include "gateway/upstream/dds/identities.hpp"
 #include "gateway/upstream/dds/signs_of_life.hpp"
 #include "gateway/upstream/dds_link/records.hpp"
 
@@ -29,12 +32,15 @@ struct HeldJog {
   bool starting = true;          ///< it has no result yet
 };
 
-/// One writer. `life` is never null and outlives the client where it owns an axis.
+/// One writer. `life` is null as long as it has asked for nothing; it outlives the client where it owns an axis.
 struct DdsClient {
-  std::shared_ptr<ClientLife> life;
+  std::shared_ptr<ClientLife> life{};
+  std::int32_t strength = 0;  ///< as it was told of
+  std::string where{};
   std::map<AxisNumber, HeldJog> held{};
   std::map<AxisNumber, SteadyNs> released{};  ///< when the newest jog_end was received, of axes that are there
   bool commands = false;                   ///< it writes axis_command; else it may be one that asks for objects alone
+  bool unleased = false;                   ///< it has commanded an axis that nobody owns: a motor may run by it
   Instant returns_by = kNever;             ///< kNever: it was told of since the link is up
   std::optional<std::uint32_t> counter{};  ///< of its last heartbeat
   bool told_of_liveliness = false;         ///< the log has its line
@@ -42,19 +48,21 @@ struct DdsClient {
 
 class DdsClients {
  public:
-  DdsClients(Role role, const SignsOfLife& signs, const ProcessImage& image, CommandPort& commands)
-      : role_(role), signs_(signs), image_(image), commands_(commands) {}
+  DdsClients(const Identities& identities, const SignsOfLife& signs, const ProcessImage& image, CommandPort& commands)
+      : identities_(identities), signs_(signs), image_(image), commands_(commands) {}
 
   /// A line for the log; mostly empty.
   [[nodiscard]] std::string on_writer(const WriterRecord& record, Instant now);
   void on_beats(const BeatRecord& record, Instant now);
   void on_heartbeat(const HeartbeatRecord& record, Instant now);
-  /// Who sends this sample: known from now on, also where the record of it is still to come. nullptr: too many.
+  /// Who sends this sample: a client from now on, also where the record of it is still to come. nullptr: too many.
   [[nodiscard]] DdsClient* on_sample(const Guid& writer, std::optional<std::int32_t> strength, bool fresh, Instant now);
   /// One of those that are too many, for a stop, which is open to everybody.
   [[nodiscard]] std::shared_ptr<ClientLife> stranger(const Guid& writer, Instant now);
-  /// nullptr where it is unknown or gone.
+  /// nullptr where it has asked for nothing, or is gone.
   [[nodiscard]] DdsClient* find(const Guid& writer);
+  /// For the log.
+  [[nodiscard]] std::string name_of(const Guid& writer) const;
 
   /// This owner of an axis asks for objects alone, and `other` is of the same participant: one program with two
   /// writers, since the topics are two. nullptr: it is not so.
@@ -65,17 +73,21 @@ class DdsClients {
   /// Forgets those that did not come back.
   void on_time(Instant now);
   [[nodiscard]] Instant deadline() const { return deadline_; }
-  [[nodiscard]] std::size_t size() const { return clients_.size(); }
+  /// Writers that are clients.
+  [[nodiscard]] std::size_t size() const;
 
  private:
   using Clients = std::map<Guid, DdsClient>;
   [[nodiscard]] std::shared_ptr<ClientLife> new_life(const Guid& writer);
-  [[nodiscard]] DdsClient* known(const Guid& writer);
+  [[nodiscard]] bool has_place(const Guid& writer) const;
+  [[nodiscard]] bool makes_way(const DdsClient& client) const;
+  [[nodiscard]] bool make_room();
+  void end(DdsClient& client);
   void heard(ClientLife& life, Instant now);
   Clients::iterator forget(Clients::iterator client);
   void look_at_deadlines();
 
-  Role role_;
+  const Identities& identities_;
   const SignsOfLife& signs_;
   const ProcessImage& image_;
   CommandPort& commands_;

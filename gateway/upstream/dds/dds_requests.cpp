@@ -152,7 +152,10 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
   CommandRecord record = asked;
   if (!fresh || !named) record.mask = 0;
   DdsClient* const client = clients_.find(record.writer);
-  if (client != nullptr) client->commands = true;
+  if (client != nullptr) {
+    client->commands = true;
+    if (axis != nullptr && !axis->lease.rules.on && !exempt) client->unleased = true;
+  }
   bool held = false;
   if (client != nullptr && is_press(record)) {
     const auto found = client->held.find(record.axis);
@@ -240,9 +243,7 @@ void DdsRequests::tell_refused(const Guid& writer, AxisNumber axis, std::string_
 
 void DdsRequests::tell(const Guid& writer, const std::string& what, Instant now) {
   if (!tell_ || !refused_lines_.takes(now)) return;
-  const DdsClient* const client = clients_.find(writer);
-  tell_((client != nullptr ? client->life->name : client_name(writer, {})) + ": " + what +
-        left_out_text(refused_lines_.left_out()));
+  tell_(clients_.name_of(writer) + ": " + what + left_out_text(refused_lines_.left_out()));
 }
 
 // --- Carrying it out -------------------------------------------------------------------------------------------------

@@ -32,12 +32,13 @@ struct DdsSession::Impl {
         wake(std::move(on_wake)),
         told(std::move(to_tell)),
         signs(settings.max_age),
-        clients(settings.role, signs, image, commands),
+        identities(settings),
+        clients(identities, signs, image, commands),
         namesakes(image),
         requests(
             settings, units, image, commands, clients, signs, namesakes, stop_order, replies, [this] { wake_up(); },
             told.line),
-        ros(settings, units, image, commands, signs, namesakes, stop_order, told.line),
+        ros(settings, units, image, commands, signs, identities, namesakes, stop_order, told.line),
         events(ring),
         states(settings.min_period, settings.max_period) {
     add_axes(kLongAgo);
@@ -80,6 +81,7 @@ struct DdsSession::Impl {
   std::function<void()> wake;
   DdsTold told;
   SignsOfLife signs;
+  Identities identities;
   DdsClients clients;
   Namesakes namesakes;
   bool name_taken = false;  ///< as it was told last
@@ -139,6 +141,7 @@ void DdsSession::on_record(const Record& record, Instant now) {
     it.namesakes.on_record(*namesake);
     it.look_at_name();
   }
+  if (const auto* const identity = std::get_if<IdentityRecord>(&record)) it.identities.on_record(*identity);
   if (const auto* const beats = std::get_if<BeatRecord>(&record)) it.clients.on_beats(*beats, now);
   if (const auto* const command = std::get_if<CommandRecord>(&record)) it.requests.on_command(*command, now);
   if (const auto* const object = std::get_if<ObjectRequestRecord>(&record)) it.requests.on_object(*object, now);

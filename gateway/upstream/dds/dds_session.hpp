@@ -18,7 +18,8 @@ namespace axisgate::dds {
 
 /// Gateway state goes out this often.
 inline constexpr Duration kGatewayPeriod = std::chrono::seconds(1);
-/// DDS writers whose requests are taken at the same time; those of others are refused (queue_full).
+/// DDS writers that are clients at a time: those that ask for something. One that has nothing makes way for another;
+/// where none does, the requests of others are refused (queue_full), but not their stops.
 inline constexpr std::size_t kMaxWriters = kMaxBeats;
 /// What leases of DDS clients last longer once, when axisgate-dds has died (design 4).
 inline constexpr Duration kGrace = std::chrono::seconds(3);

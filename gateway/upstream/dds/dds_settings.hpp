@@ -4,6 +4,7 @@
 // Never changes while the gateway runs.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,6 +26,13 @@ struct AxisUnits {
   friend bool operator==(const AxisUnits&, const AxisUnits&) = default;
 };
 
+/// Configuration key "roles": who proves by DDS-Security to have this certificate's subject.
+struct CertificateRole {
+  std::string certificate{};  ///< a PEM file
+  Role role = Role::viewer;
+  friend bool operator==(const CertificateRole&, const CertificateRole&) = default;
+};
+
 struct DdsSettings {
   GatewayId gateway{};                           ///< configuration key "gateway"
   std::uint32_t domain = 0;                      ///< 0..232
@@ -35,7 +43,8 @@ struct DdsSettings {
   bool multicast = false;                        ///< data goes to multicast addresses that readers name
   std::string qos_file{};                        ///< Fast DDS XML profiles; empty: none
   bool commands = false;                         ///< axis_command and object_request are read
-  Role role = Role::engineer;                    ///< of every DDS writer
+  Role role = Role::engineer;                    ///< of every DDS writer that `roles` does not name
+  std::vector<CertificateRole> roles{};
   /// A command that was written longer ago, or as far ahead, is not carried out; none: its age is not looked at.
   std::optional<Duration> max_age{};
   bool ros2 = false;             ///< the topics of ROS 2 (schemas/ros2)
@@ -48,5 +57,12 @@ struct DdsSettings {
   std::vector<AxisUnits> units{};                            ///< one an axis
   friend bool operator==(const DdsSettings&, const DdsSettings&) = default;
 };
+
+/// Of all DDS writers: viewer: none commands anything.
+[[nodiscard]] inline Role most_rights(const DdsSettings& settings) {
+  Role most = settings.role;
+  for (const CertificateRole& each : settings.roles) most = std::max(most, each.role);
+  return most;
+}
 
 }  // namespace axisgate::dds

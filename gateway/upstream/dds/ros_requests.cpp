@@ -69,13 +69,14 @@ bool changes(Command command, const AxisImage& axis) {
 }  // namespace
 
 RosRequests::RosRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image,
-                         CommandPort& commands, const SignsOfLife& signs, const Namesakes& namesakes,
+                         CommandPort& commands, const SignsOfLife& signs, const Identities& identities, const Namesakes& namesakes,
                          StopOrder& stop_order, TellLine tell)
     : settings_(settings),
       units_(units),
       image_(image),
       commands_(commands),
       signs_(signs),
+      identities_(identities),
       namesakes_(namesakes),
       stop_order_(stop_order),
       tell_(std::move(tell)) {}
@@ -85,7 +86,8 @@ RosRequests::Joint& RosRequests::joint_of(AxisNumber axis) {
   if (joint.life == nullptr) {
     joint.life = std::make_shared<ClientLife>();
     joint.life->id = kFirstRosClient + axis;
-    joint.life->role = settings_.role;
+    // Whose sample may move it is judged before; none needs more.
+    joint.life->role = std::max(settings_.role, Role::operator_);
     // No participant has this GUID prefix: nobody is of the same hand.
     joint.life->origin = {'r', 'o', 's', '2', static_cast<std::uint8_t>(axis >> 8U), static_cast<std::uint8_t>(axis)};
     joint.life->name = "ros2";
@@ -149,7 +151,7 @@ void RosRequests::complain(const std::string& line, Instant now) {
 // --- joint_commands --------------------------------------------------------------------------------------------------
 
 void RosRequests::on_joint_commands(const JointCommandsRecord& record, Instant now) {
-  if (!settings_.commands || settings_.role < Role::operator_) return;
+  if (!settings_.commands || identities_.role_of(record.writer) < Role::operator_) return;
   if (!signs_.fresh(record.written, now)) return complain(kTooOld, now);
   if (const std::string wrong = wrong_with(record); !wrong.empty())
     return complain("a sample of joint_commands is refused as a whole: " + wrong, now);
@@ -244,7 +246,8 @@ void RosRequests::submit_alone(AxisNumber axis, const WriteBatch& batch) {
 void RosRequests::on_action(const RosActionRecord& record, Instant now) {
   const Command command = command_of(RosAction{record.action});
   const AxisImage* const axis = image_.find(record.axis);
-  if (!settings_.commands || settings_.role < Role::operator_ || axis == nullptr || command == Command::none) return;
+  if (!settings_.commands || identities_.role_of(record.writer) < Role::operator_) return;
+  if (axis == nullptr || command == Command::none) return;
   if (!supports(command, axis->supported_commands))
     return complain(fmt::format("ros2: {} of {}: this drive cannot do it", text(command), axis->name), now);
   const bool starts = command == Command::enable || command == Command::home;

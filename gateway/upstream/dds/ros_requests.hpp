@@ -13,6 +13,7 @@
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/process_image.hpp"
 #include "gateway/upstream/dds/dds_requests.hpp"
+#include "gateway/upstream/dds/identities.hpp"
 #include "gateway/upstream/dds/joint_stream.hpp"
 #include "gateway/upstream/dds/namesakes.hpp"
 #include "gateway/upstream/dds/signs_of_life.hpp"
@@ -30,7 +31,7 @@ class RosRequests {
  public:
   /// `tell`: a line for the log, of what is refused here.
   RosRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image, CommandPort& commands,
-              const SignsOfLife& signs, const Namesakes& namesakes, StopOrder& stop_order, TellLine tell);
+              const SignsOfLife& signs, const Identities& identities, const Namesakes& namesakes, StopOrder& stop_order, TellLine tell);
   RosRequests(const RosRequests&) = delete;
   RosRequests& operator=(const RosRequests&) = delete;
 
@@ -65,6 +66,7 @@ class RosRequests {
   const ProcessImage& image_;
   CommandPort& commands_;
   const SignsOfLife& signs_;
+  const Identities& identities_;
   const Namesakes& namesakes_;
   StopOrder& stop_order_;
   TellLine tell_;

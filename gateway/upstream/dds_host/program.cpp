@@ -52,6 +52,7 @@ std::vector<std::string> serve_arguments(const DdsSettings& settings, int link_d
   out.insert(out.end(), participant.begin(), participant.end());
   if (!settings.gateway.name.empty()) out.push_back("--gateway-name=" + settings.gateway.name);
   if (settings.commands) out.emplace_back("--commands");
+  for (const auto& each : settings.roles) out.push_back("--certificate=" + each.certificate);
   if (settings.ros2) {
     out.emplace_back("--ros2");
     out.push_back("--min-period-ms=" + std::to_string(settings.min_period / std::chrono::milliseconds(1)));

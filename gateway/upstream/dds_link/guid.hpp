@@ -22,6 +22,16 @@ using GuidPrefix = std::array<std::uint8_t, kGuidPrefix>;
   return out;
 }
 
+/// With DDS-Security these come from the subject of the participant's certificate (DDS-Security 1.1, 9.3.3).
+inline constexpr std::size_t kIdentityBytes = 6;
+using Identity = std::array<std::uint8_t, kIdentityBytes>;
+
+[[nodiscard]] inline Identity identity_of(const Guid& guid) {
+  Identity out{};
+  std::copy_n(guid.begin(), kIdentityBytes, out.begin());
+  return out;
+}
+
 [[nodiscard]] inline bool same_participant(const Guid& a, const Guid& b) {
   return std::equal(a.begin(), a.begin() + kGuidPrefix, b.begin());
 }

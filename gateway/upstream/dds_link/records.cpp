@@ -102,6 +102,11 @@ void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>,
 }
 
 template <typename Coder, typename R>
+void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, IdentityRecord> {
+  coder(r.number, r.guid);
+}
+
+template <typename Coder, typename R>
 void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, HeartbeatRecord> {
   coder(r.writer, r.client, r.counter, r.lease_ms, r.written);
 }

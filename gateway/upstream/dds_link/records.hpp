@@ -26,6 +26,9 @@ inline constexpr std::size_t kMaxBusesShown = 100;
 inline constexpr std::size_t kMaxJoints = 512;        ///< of one sample of joint_commands
 inline constexpr std::uint16_t kMaxAxisNumber = 499;  ///< of one gateway
 inline constexpr std::size_t kMaxBeats = 64;          ///< of one record
+inline constexpr std::size_t kMaxIdentities = 64;     ///< certificates that have a role of their own
+/// Writers of commands at a time, of a whole domain: most may command other gateways.
+inline constexpr std::size_t kMaxWritersKnown = 1024;
 
 /// On the steady clock, in nanoseconds: it is the same one in both processes. 0: unknown.
 using SteadyNs = std::int64_t;
@@ -232,10 +235,18 @@ struct RosActionRecord {
   friend bool operator==(const RosActionRecord&, const RosActionRecord&) = default;
 };
 
+/// Which participants have the subject of the `number`-th certificate of "roles": DDS-Security makes the first
+/// kIdentityBytes of their GUIDs from it (dds_link/guid.hpp), and proves that they are theirs.
+struct IdentityRecord {
+  std::uint16_t number = 0;
+  Guid guid{};
+  friend bool operator==(const IdentityRecord&, const IdentityRecord&) = default;
+};
+
 /// In the order of their kinds on the wire.
 using Record = std::variant<StateRecord, EventRecord, GatewayRecord, ReplyRecord, ObjectReplyRecord, ReadyRecord,
                             LogRecord, WriterRecord, BeatRecord, CommandRecord, ObjectRequestRecord, HeartbeatRecord,
-                            NamesakeRecord, JointCommandsRecord, RosActionRecord>;
+                            NamesakeRecord, JointCommandsRecord, RosActionRecord, IdentityRecord>;
 
 /// Texts and lists longer than their bound are cut.
 [[nodiscard]] std::vector<Byte> encode(const Record& record);

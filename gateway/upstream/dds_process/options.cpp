@@ -74,6 +74,12 @@ std::variant<int, ServeOptions, TopicsOptions> parse_command_line(int argc, char
       })
       ->type_name("NAME");
   serve_command->add_flag("--commands", serve.commands, "read axis_command and object_request");
+  serve_command
+      ->add_option("--certificate", serve.certificates,
+                   "FILE of a certificate whose writers the gateway tells from others; may be given more than once. "
+                   "Needs DDS-Security in --qos-file")
+      ->type_name("FILE")
+      ->expected(1, static_cast<int>(kMaxIdentities));
   serve_command->add_flag("--ros2", serve.ros2, "the topics of ROS 2");
   serve_command->add_option("--min-period-ms", serve.min_period_ms, "joint_states are at least this far apart")
       ->check(CLI::Range(1U, 60'000U))

@@ -33,6 +33,7 @@ struct ServeOptions {
   ParticipantOptions participant{};
   std::string gateway_name{};
   bool commands = false;
+  std::vector<std::string> certificates{};  ///< PEM files whose subjects the gateway wants to tell apart
   bool ros2 = false;
   std::uint32_t min_period_ms = 10;  ///< of what is gathered here: joint_states
   std::uint32_t memory_limit_mib = 512;

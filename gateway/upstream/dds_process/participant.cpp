@@ -6,7 +6,9 @@
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/attributes/LibrarySettingsAttributes.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <algorithm>
 #include <charconv>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -23,6 +25,7 @@ namespace {
 using eprosima::fastrtps::rtps::IPLocator;
 using eprosima::fastrtps::rtps::Locator_t;
 using eprosima::fastrtps::types::ReturnCode_t;
+using fastrtps_settings = eprosima::fastrtps::xmlparser::XMLProfileManager;
 
 /// A peer without port: the ports of this many participants of its host are tried.
 constexpr std::uint32_t kParticipantsPerPeer = 16;
@@ -100,6 +103,14 @@ void set_discovery(fastdds::DomainParticipantQos& qos, const ParticipantOptions&
   }
 }
 
+/// The two participants of this process would write straight into each other's built-in readers, and Fast DDS 2.9.1 does
+/// so into those of the one that was removed first (StatefulWriter::intraprocess_gap): at its end the process died of it.
+void keep_participants_apart() {
+  eprosima::fastrtps::LibrarySettingsAttributes settings = fastrtps_settings::library_settings();
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  fastrtps_settings::library_settings(settings);
+}
+
 std::string read_qos_file(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw StartError(kExitParticipant, fmt::format("--qos-file {}: cannot be read", path));
@@ -120,6 +131,7 @@ Participant::Participant(const ParticipantOptions& options, fastdds::DomainParti
                       options.qos_file));
     }
   }
+  keep_participants_apart();
   fastdds::DomainParticipantQos qos;
   if (in_qos_file(kParticipantProfile)) {
     if (factory->get_participant_qos_from_profile(kParticipantProfile, qos) != ReturnCode_t::RETCODE_OK) {

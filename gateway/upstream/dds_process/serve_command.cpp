@@ -13,6 +13,7 @@
 
 #include "gateway/core/log.hpp"
 #include "gateway/upstream/dds_link/exit_codes.hpp"
+#include "gateway/upstream/dds_process/certificates.hpp"
 #include "gateway/upstream/dds_process/command_readers.hpp"
 #include "gateway/upstream/dds_process/dds_log.hpp"
 #include "gateway/upstream/dds_process/dead_segments.hpp"
@@ -54,6 +55,9 @@ class Server {
         participant_(options.participant, &discovery_),
         publishers_(participant_, gateway_id(options.gateway_name), wake_),
         namesake_reader_(participant_, !options.participant.discovery_servers.empty(), namesakes_, wake_) {
+    if (!options.certificates.empty()) require_authentication(participant_.qos());
+    for (const std::string& file : options.certificates)
+      identities_.push_back({static_cast<std::uint16_t>(identities_.size()), guid_of_certificate(file)});
     if (options.ros2)
       ros_.emplace(participant_, wake_, options.gateway_name, options.min_period_ms * kMillisecond, options.commands);
     if (options.commands) {
@@ -64,6 +68,7 @@ class Server {
 
   int run() {
     link_.send(ReadyRecord{AXISGATE_VERSION});
+    for (const IdentityRecord& record : identities_) link_.send(record);
     SteadyNs next_beat = steady_now();
     SteadyNs next_memory_check = steady_now();
     for (;;) {
@@ -179,6 +184,7 @@ class Server {
   std::optional<RosTopics> ros_;
   std::optional<CommandReaders> readers_;
   std::optional<LivelinessReaders> liveliness_;
+  std::vector<IdentityRecord> identities_;
   ClockDifference difference_ = time_of_day_difference();
   bool more_ = false;
 };

@@ -15,8 +15,6 @@
 
 namespace axisgate::dds {
 
-/// Of a whole domain: most may command other gateways.
-inline constexpr std::size_t kMaxWritersKnown = 1024;
 /// What beats() may say at once.
 inline constexpr std::size_t kMostBeatRecords = kMaxWritersKnown / kMaxBeats;
 /// What a writer with a lease gets beside it when it appears: until its assertions are heard.

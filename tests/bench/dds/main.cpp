@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // axisgate-dds-bench: from a change of the image to the sample at a subscriber, beside a bare Fast DDS writer of the
-// same run; and what both processes take of the machine with 64 axes at 100 Hz.
+// same run, and one in a process of its own that is told by a socket; and what both processes take of the machine with 64 axes at 100 Hz.
 #include <fmt/format.h>
+#include <spawn.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
@@ -17,6 +21,8 @@
 #include "tests/bench/dds/subscriber.hpp"
 #include "tests/bench/report.hpp"
 
+extern char** environ;
+
 namespace {
 
 using namespace axisgate::bench;
@@ -25,8 +31,8 @@ using std::chrono::milliseconds;
 
 constexpr std::chrono::microseconds kEvery{2000};
 
-/// A domain of its own for each run and each half of it, so that runs side by side do not meet.
-std::uint32_t domain_of(std::uint32_t half) { return 1 + 2 * (static_cast<std::uint32_t>(::getpid()) % 50) + half; }
+/// A domain of its own for each run and each part of it, so that runs side by side do not meet.
+std::uint32_t domain_of(std::uint32_t part) { return 1 + 3 * (static_cast<std::uint32_t>(::getpid()) % 33) + part; }
 
 /// What a program of Fast DDS alone does: the same type, QoS and network.
 class BareWriter {
@@ -47,17 +53,13 @@ class BareWriter {
   void write() {
     timespec time{};
     ::clock_gettime(CLOCK_REALTIME, &time);
+    write(time);
+  }
+  void write(const timespec& time) {
     sample_.stamp().sec(static_cast<std::int32_t>(time.tv_sec));
     sample_.stamp().nanosec(static_cast<std::uint32_t>(time.tv_nsec));
     sample_.sequence_number(sample_.sequence_number() + 1);
     writer_->write(&sample_);
-  }
-  void write_for(milliseconds lasting) {
-    const auto end = std::chrono::steady_clock::now() + lasting;
-    for (auto due = std::chrono::steady_clock::now(); due < end; due += kEvery) {
-      std::this_thread::sleep_until(due);
-      write();
-    }
   }
 
  private:
@@ -71,23 +73,95 @@ class BareWriter {
   axisgate::AxisState sample_;
 };
 
+/// A process of its own that writes what it is told to, as axisgate-dds does, and nothing else: what the way through a
+/// second process costs by itself.
+class Relay {
+ public:
+  explicit Relay(std::uint32_t domain) {
+    int pair[2];
+    if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) != 0) throw std::runtime_error("no socket pair");
+    posix_spawn_file_actions_t actions;
+    ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_adddup2(&actions, pair[1], kSocket);
+    std::string name = "axisgate-dds-bench", mode = "relay", number = std::to_string(domain);
+    char* arguments[] = {name.data(), mode.data(), number.data(), nullptr};
+    const int failed = ::posix_spawn(&pid_, "/proc/self/exe", &actions, nullptr, arguments, environ);
+    ::posix_spawn_file_actions_destroy(&actions);
+    ::close(pair[1]);
+    socket_ = pair[0];
+    if (failed != 0) throw std::runtime_error("cannot start the relay");
+  }
+  ~Relay() {
+    ::close(socket_);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  Relay(const Relay&) = delete;
+  Relay& operator=(const Relay&) = delete;
+
+  void write() {
+    timespec time{};
+    ::clock_gettime(CLOCK_REALTIME, &time);
+    if (::send(socket_, &time, sizeof time, MSG_NOSIGNAL) < 0) throw std::runtime_error("the relay has ended");
+  }
+  /// The side of that process, to the end of its socket.
+  static int run(std::uint32_t domain) {
+    BareWriter writer(domain);
+    for (timespec time{}; ::recv(kSocket, &time, sizeof time, 0) == sizeof time;) writer.write(time);
+    return 0;
+  }
+
+ private:
+  static constexpr int kSocket = 3;
+  pid_t pid_ = -1;
+  int socket_ = -1;
+};
+
+/// One sample each kEvery.
+template <typename Writer>
+void write_for(Writer& writer, milliseconds lasting) {
+  const auto end = std::chrono::steady_clock::now() + lasting;
+  for (auto due = std::chrono::steady_clock::now(); due < end; due += kEvery) {
+    std::this_thread::sleep_until(due);
+    writer.write();
+  }
+}
+
+/// Returns when the subscriber has heard of it. What is written before they know each other nobody hears.
+template <typename Writer>
+void meet(Writer& writer, Subscriber& subscriber) {
+  std::atomic<bool> met = false;
+  std::jthread writing([&] {
+    while (!met) write_for(writer, milliseconds(20));
+  });
+  subscriber.await_first_sample();
+  met = true;
+}
+
+template <typename Writer>
+void measure(Writer& writer, Subscriber& subscriber, milliseconds lasting, Samples& to) {
+  subscriber.forget();
+  write_for(writer, lasting);
+  append(to, subscriber.latencies());
+}
+
 void latency(Report& report, bool quick) {
   const milliseconds lasting(quick ? 300 : 4000);
   const int rounds = quick ? 1 : 5;
   BareWriter bare(domain_of(0));
   Subscriber of_bare(domain_of(0));
+  Relay relay(domain_of(2));
+  Subscriber of_relay(domain_of(2));
   ChangingImage image({domain_of(1), 1, kEvery, milliseconds(1)});
   Subscriber of_image(domain_of(1));
   image.change(true);
   of_image.await_first_sample();
-  bare.write_for(milliseconds(200));
-  of_bare.await_first_sample();
-  Samples bare_samples, image_samples;
+  meet(bare, of_bare);
+  meet(relay, of_relay);
+  Samples bare_samples, relay_samples, image_samples;
   for (int round = 0; round < rounds; ++round) {
     image.change(false);
-    of_bare.forget();
-    bare.write_for(lasting);
-    append(bare_samples, of_bare.latencies());
+    measure(bare, of_bare, lasting, bare_samples);
+    measure(relay, of_relay, lasting, relay_samples);
     of_image.forget();
     image.change(true);
     std::this_thread::sleep_for(lasting);
@@ -95,6 +169,7 @@ void latency(Report& report, bool quick) {
   }
   // A change each 2 ms, the two in turns; the bare one is write() to the same subscriber. Goal: 50 us more.
   report.rows("change of the image to a subscriber, us", image_samples, "bare writer", bare_samples);
+  report.rows("change of the image to a subscriber, us", image_samples, "two processes", relay_samples);
 }
 
 struct Usage {
@@ -152,6 +227,7 @@ int main(int argc, char** argv) {
   try {
     if (words.size() == 2 && words[0] == "subscribe")
       return subscribe(static_cast<std::uint32_t>(std::stoul(words[1])));
+    if (words.size() == 2 && words[0] == "relay") return Relay::run(static_cast<std::uint32_t>(std::stoul(words[1])));
     const bool quick = std::erase(words, "--quick") != 0;
     std::string json;
     if (words.size() > 2 && words[0] == "--json") {

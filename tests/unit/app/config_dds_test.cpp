@@ -120,6 +120,19 @@ TEST_F(ConfigDds, MakesWhoReachesLoopbackAnEngineerAndOthersOperators) {
   EXPECT_EQ(settings(R"({"commands": true, "interfaces": ["eth0"], "role": "engineer"})").role, Role::engineer);
 }
 
+TEST_F(ConfigDds, GivesRolesByCertificateAndAllOthersNone) {
+  std::filesystem::create_directory(folder_);
+  for (const char* const name : {"/qos.xml", "/a.pem", "/b.pem"}) std::ofstream(folder_ + name) << "";
+  const std::string roles =
+      R"("commands": true, "qos_file": "qos.xml", "roles": [{"certificate": "a.pem", "role": "operator"}, {"certificate": "b.pem", "role": "engineer"}])";
+  const auto given = settings("{" + roles + "}");
+  EXPECT_THAT(given.roles, ElementsAre(dds::CertificateRole{folder_ + "/a.pem", Role::operator_},
+                                       dds::CertificateRole{folder_ + "/b.pem", Role::engineer}));
+  EXPECT_EQ(given.role, Role::viewer);
+  EXPECT_EQ(settings("{" + roles + R"(, "role": "operator"})").role, Role::operator_);
+  EXPECT_THAT(warnings("{" + roles + R"(, "interfaces": ["eth0"]})"), IsEmpty());
+}
+
 TEST_F(ConfigDds, KnowsTheUnitsOfEveryAxis) {
   const LoadedConfig loaded = load("{}", R"(, "dds_unit": "m", "metres_per_rev": "0.005")");
   ASSERT_THAT(loaded.config.dds->units, SizeIs(2));

@@ -27,7 +27,8 @@ const char* const kRunning = R"({
   "modbus_tcp": [
     {"listen": "127.0.0.1:1502", "allow": [{"from": "127.0.0.1", "role": "engineer"}]},
     {"listen": "127.0.0.1:1503"}],
-  "dds": {"interfaces": ["lo"], "commands": true},
+  "dds": {"interfaces": ["lo"], "commands": true, "qos_file": "/etc/passwd",
+          "roles": [{"certificate": "/etc/passwd", "role": "operator"}]},
   "buses": [
     {"name": "serial", "adapter": "kinco-serial", "device": "/dev/ttyUSB0", "drives": [
       {"profile": "kinco-jd", "node": 1, "constants": {"peak_current_a": 27.5}, "axes": [{"axis": 1, "lease": {}}]}]},
@@ -71,11 +72,14 @@ const Row kRows[] = {
     {"/modbus_tcp/*/max_clients_per_address", "/modbus_tcp/1/max_clients_per_address", "10",
      "listener 127.0.0.1:1503: changed"},
     {"/dds/domain", "/dds/domain", "3", "refused: domain"},
-    {"/dds/interfaces", "/dds/interfaces", R"(["eth0"])", "refused: interfaces, role, max_age_ms"},
+    {"/dds/interfaces", "/dds/interfaces", R"(["eth0"])", "refused: interfaces, max_age_ms"},
     {"/dds/shared_memory", "/dds/shared_memory", "true", "refused: shared_memory"},
     {"/dds/peers", "/dds/peers", R"(["127.0.0.1"])", "refused: peers"},
     {"/dds/discovery_servers", "/dds/discovery_servers", R"(["127.0.0.1:11811"])", "refused: discovery_servers"},
-    {"/dds/qos_file", "/dds/qos_file", R"("/etc/passwd")", "refused: qos_file"},
+    {"/dds/qos_file", "/dds/qos_file", R"("/etc/group")", "refused: qos_file"},
+    {"/dds/roles", "/dds/roles", R"([{"certificate": "/etc/group", "role": "viewer"}])", "refused: roles"},
+    {"/dds/roles/*/certificate", "/dds/roles/0/certificate", R"("/etc/group")", "refused: roles"},
+    {"/dds/roles/*/role", "/dds/roles/0/role", R"("engineer")", "refused: roles"},
     {"/dds/commands", "/dds/commands", "false", "refused: commands"},
     {"/dds/role", "/dds/role", R"("operator")", "refused: role"},
     {"/dds/ros2", "/dds/ros2", "true", "refused: shared_memory, ros2"},

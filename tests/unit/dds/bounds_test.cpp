@@ -136,9 +136,25 @@ TEST(Requests, BeyondTheMemoryAreRefusedAndNotRunButStopsAreCarriedOut) {
   EXPECT_EQ(plain.ask(command(guid(1), 1, 100'000)), kDone);
 }
 
+TEST(Requests, BesideMoreBystandersThanThereIsRoomForAreAnsweredAndTheirWriterLives) {
+  PlainSession plain;
+  plain.port.at_once = BatchResult{};
+  for (std::uint8_t i = 1; i <= kMaxWriters + 6; ++i)
+    plain.session->on_record(test::writer_there(guid(i)), plain.now);
+  EXPECT_EQ(plain.ask(command(guid(kMaxWriters + 6), 3, 1)), kDone) << "a stop of the last one";
+  EXPECT_EQ(plain.port.submitted.back().batch.command, Command::quick_stop);
+  plain.session->on_record(test::writer_there(guid(200), 5), plain.now);
+  EXPECT_EQ(plain.ask(command(guid(200), 1, 1)), kDone);
+  const auto life = plain.port.submitted.back().batch.life;
+  plain.now += 1s;
+  plain.session->on_record(test::beat(guid(200)), plain.now);
+  EXPECT_EQ(life->heartbeat, plain.now);
+}
+
 TEST(Requests, OfMoreWritersThanThereIsRoomForAreRefusedButTheirStops) {
   PlainSession plain;
   plain.port.at_once = BatchResult{};
+  plain.image.find(1)->lease.rules.on = false;  // so that each of them might have a motor running
   for (std::uint8_t i = 1; i <= kMaxWriters; ++i) EXPECT_EQ(plain.ask(command(guid(i), 1, 1)), kDone);
   EXPECT_EQ(plain.ask(command(guid(200), 1, 1)), kBusy);
   EXPECT_EQ(plain.ask(command(guid(200), 2, 2)), kDone);

@@ -24,14 +24,24 @@ struct Writers : testing::Test {
   ProcessImage image;
   test::FakePort port;
   SignsOfLife signs{500ms};
-  DdsClients clients{Role::operator_, signs, image, port};
+  DdsSettings settings;
+  Identities identities{settings};
+  DdsClients clients{identities, signs, image, port};
   Writers() {
+    settings.role = Role::operator_;
     image.add_axis(1, "lift", 0);
     clients.on_link_up(kStart);
   }
+  /// Told of, and it has asked for something.
   std::shared_ptr<ClientLife> there(const Guid& writer, std::int32_t strength = 0, Instant now = kStart) {
     static_cast<void>(clients.on_writer(writer_there(writer, strength), now));
-    return clients.find(writer)->life;
+    return clients.on_sample(writer, strength, true, now)->life;
+  }
+  void give(const std::shared_ptr<ClientLife>& life) {
+    Lease& lease = image.find(1)->lease;
+    lease.owner = life;
+    lease.running = lease.any_sign = true;
+    lease.renewed = kStart;
   }
 };
 
@@ -49,6 +59,21 @@ TEST_F(Writers, AreClientsOfTheirOwnWithTheSettingsRole) {
   EXPECT_EQ(a->name, "dds 192.168.1.7 010f01000000000000000000:000001");
   EXPECT_NE(a->name, b->name);
   EXPECT_EQ(client_name(guid(1), ""), "dds 010f01000000000000000000:000001");
+}
+
+TEST_F(Writers, HaveTheRoleOfTheirCertificateOrThatOfAllOthers) {
+  settings.role = Role::viewer;
+  settings.roles = {{"a.pem", Role::operator_}, {"b.pem", Role::engineer}};
+  identities.on_record({1, guid(7)});
+  identities.on_record({2, guid(8)});
+  EXPECT_EQ(there(guid(7, 2))->role, Role::engineer);
+  EXPECT_EQ(there(guid(8))->role, Role::viewer) << "no such certificate was asked for";
+  Guid near = guid(7);
+  near[kIdentityBytes - 1] ^= 1U;
+  EXPECT_EQ(there(near)->role, Role::viewer);
+  Guid other_program = guid(7);
+  other_program[kIdentityBytes] ^= 1U;
+  EXPECT_EQ(there(other_program)->role, Role::engineer);
 }
 
 TEST_F(Writers, AreHeardByTheirBeatsWhichAreHeartbeats) {
@@ -112,10 +137,8 @@ TEST_F(Writers, AnOldHeartbeatRenewsNothing) {
 
 TEST_F(Writers, AHeartbeatMakesItsLeasesShorterAndNeverLonger) {
   const auto life = there(guid(1));
-  Lease& lease = image.find(1)->lease;
-  lease.owner = life;
-  lease.running = lease.any_sign = true;
-  lease.renewed = kStart;
+  give(life);
+  const Lease& lease = image.find(1)->lease;
   clients.on_heartbeat(heartbeat(guid(1), 1, kStart, 300), kStart);
   EXPECT_EQ(lease.until(), kStart + 300ms);
   clients.on_heartbeat(heartbeat(guid(1), 2, kStart, 9000), kStart);
@@ -169,13 +192,61 @@ TEST_F(Writers, ASampleOfOneThatIsNeverToldOfIsForgottenWithIt) {
   EXPECT_EQ(clients.size(), 0U);
 }
 
-TEST_F(Writers, AreBoundedAndAGoneOneMakesRoom) {
-  for (std::uint8_t i = 1; i <= kMaxWriters; ++i) static_cast<void>(there(guid(i)));
-  EXPECT_EQ(clients.on_sample(guid(200), 0, true, kStart), nullptr);
-  static_cast<void>(clients.on_writer(writer_there(guid(200)), kStart));
+struct Slots : Writers {
+  const Guid late = guid(200);
+  /// All slots have their client; the one with the lowest number was heard longest ago.
+  void fill() {
+    for (std::uint8_t i = 1; i <= kMaxWriters; ++i) static_cast<void>(there(guid(i), 0, kStart + i * 1ms));
+    ASSERT_EQ(clients.size(), kMaxWriters);
+  }
+};
+
+TEST_F(Slots, AreNotForWritersThatAskForNothing) {
+  for (std::uint8_t i = 1; i <= kMaxWriters + 6; ++i) static_cast<void>(clients.on_writer(writer_there(guid(i)), kStart));
+  EXPECT_EQ(clients.size(), 0U);
+  static_cast<void>(clients.on_writer(writer_there(late, 7), kStart));
+  const auto life = clients.on_sample(late, std::nullopt, true, kStart)->life;
+  EXPECT_EQ(life->strength, 7) << "as it was told of";
+  EXPECT_EQ(life->name, client_name(late, "192.168.1.7"));
+  EXPECT_EQ(clients.deadline(), kNever);
+  clients.on_beats(beat(late), kStart + 1s);
+  EXPECT_EQ(life->heartbeat, kStart + 1s);
+  clients.on_heartbeat(heartbeat(late, 1, kStart + 2s), kStart + 2s);
+  EXPECT_EQ(life->heartbeat, kStart + 2s);
+}
+
+TEST_F(Slots, OfOneThatOwnsNothingAndWasHeardLongestAgoGoesToALateOne) {
+  fill();
+  const auto first = clients.find(guid(1))->life;
+  give(first);
+  ASSERT_NE(clients.on_sample(late, 3, true, kStart + 1s), nullptr);
+  EXPECT_EQ(clients.find(guid(2)), nullptr);
+  EXPECT_EQ(clients.find(guid(1))->life, first) << "an owner's is never taken";
+  EXPECT_TRUE(first->connected);
+  EXPECT_EQ(clients.size(), kMaxWriters);
+  const auto back = clients.on_sample(guid(2), std::nullopt, true, kStart + 2s);
+  ASSERT_NE(back, nullptr) << "it is there still, and asks again";
+  EXPECT_EQ(back->life->name, client_name(guid(2), "192.168.1.7"));
+  EXPECT_EQ(clients.find(guid(3)), nullptr);
+}
+
+TEST_F(Slots, OfOneThatHoldsAButtonOrWasTrustedWithoutALeaseAreKept) {
+  fill();
+  clients.find(guid(1))->held[1] = {Command::jog_forward, 1, false};
+  clients.find(guid(2))->unleased = true;
+  ASSERT_NE(clients.on_sample(late, 3, true, kStart + 1s), nullptr);
+  EXPECT_NE(clients.find(guid(1)), nullptr);
+  EXPECT_NE(clients.find(guid(2)), nullptr);
+  EXPECT_EQ(clients.find(guid(3)), nullptr);
+}
+
+TEST_F(Slots, AreRefusedWhereNoneCanBeTakenUntilOneIsGone) {
+  fill();
+  for (std::uint8_t i = 1; i <= kMaxWriters; ++i) clients.find(guid(i))->unleased = true;
+  EXPECT_EQ(clients.on_sample(late, 0, true, kStart), nullptr);
   EXPECT_EQ(clients.size(), kMaxWriters);
   static_cast<void>(clients.on_writer(writer_gone(guid(3)), kStart));
-  EXPECT_NE(clients.on_sample(guid(200), 0, true, kStart), nullptr);
+  EXPECT_NE(clients.on_sample(late, 0, true, kStart), nullptr);
 }
 
 struct Grace : Writers {
@@ -183,10 +254,7 @@ struct Grace : Writers {
   Lease& lease = image.find(1)->lease;
   void own(LeaseRenewal renew) {
     lease.rules.renew = renew;
-    lease.owner = life;
-    lease.running = true;
-    lease.any_sign = true;
-    lease.renewed = kStart;
+    give(life);
   }
 };
 

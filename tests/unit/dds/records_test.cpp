@@ -51,7 +51,8 @@ std::vector<Record> one_of_each() {
           HeartbeatRecord{a_guid(), Guid{1, 2}, 0xFFFFFFFE, 300, -9},
           NamesakeRecord{a_guid(), 499, "192.168.1.8", true},
           JointCommandsRecord{a_guid(), 77, {"lift", "", "feeder"}, {1.5, -2, 0}, {3}, 2},
-          RosActionRecord{a_guid(), -78, 499, 3}};
+          RosActionRecord{a_guid(), -78, 499, 3},
+          IdentityRecord{0x8001, a_guid()}};
 }
 
 TEST(Records, EveryKindComesThroughAsItWas) {

@@ -151,6 +151,7 @@ TEST(Reader, ThatComesBackGetsAllAxesAndTheNewestEventsAgain) {
 TEST(Reader, ThatComesBackWithoutOneOfItsWritersHasLostIt) {
   PlainSession plain;
   plain.session->on_record(test::writer_there(guid(1)), plain.now);
+  plain.session->on_record(test::command(guid(1), 3, 1), plain.now);
   static_cast<void>(plain.read());
   plain.session->on_link_down(plain.now);
   plain.now += 2s;

@@ -52,6 +52,7 @@ TEST(CommandLine, NamesEverySetting) {
   settings.discovery_servers = {"192.168.1.7:11811"};
   settings.qos_file = "/etc/qos file.xml";
   settings.commands = true;
+  settings.roles = {{"/etc/a.pem", Role::operator_}, {"/etc/b.pem", Role::engineer}};
   settings.ros2 = true;
   settings.min_period = std::chrono::milliseconds(20);
   settings.memory_limit_mib = 64;
@@ -59,7 +60,7 @@ TEST(CommandLine, NamesEverySetting) {
               ElementsAre("serve", "--link-fd=3", "--domain=7", "--interface=eth0", "--interface=192.168.1.2",
                           "--shared-memory", "--peer=192.168.1.5", "--peer=192.168.1.6:7410",
                           "--discovery-server=192.168.1.7:11811", "--qos-file=/etc/qos file.xml", "--commands",
-                          "--ros2", "--min-period-ms=20", "--memory-limit-mib=64"));
+                          "--certificate=/etc/a.pem", "--certificate=/etc/b.pem", "--ros2", "--min-period-ms=20", "--memory-limit-mib=64"));
 }
 
 }  // namespace
