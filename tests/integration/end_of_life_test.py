@@ -2,6 +2,7 @@
 """How a gateway ends, and how the next one finds an axis that runs."""
 import fcntl
 import os
+import re
 import signal
 import subprocess
 import time
@@ -249,6 +250,33 @@ class LoopThatStands(End):
         self.assertTrue(self.runs(DRIVES[1]), "shorter than its lease")
 
 
+class LoopThatStandsLongerThanALease(End):
+    """Two owners, one on each axis: one has asked meanwhile, the other has not."""
+
+    lease_s = 6
+
+    def buses(self):
+        buses = super().buses()
+        for entry in buses:
+            entry["drives"][0]["axes"][0]["lease"] = {"timeout_ms": 1000 * self.lease_s}
+        return buses
+
+    def test_who_asked_meanwhile_is_not_gone_and_who_did_not_is(self):
+        asks, falls_silent = self.connect(), self.connect()
+        self.run_velocity(asks.axis(1))
+        self.run_velocity(falls_silent.axis(2))
+        self.gateway.send(signal.SIGSTOP)
+        self.addCleanup(self.gateway.send, signal.SIGCONT)
+        asked = self.later(asks.gateway)
+        time.sleep(self.lease_s + 1)
+        self.gateway.send(signal.SIGCONT)
+        asked.result(timeout=NEVER)
+        until("the silent one's axis is stopped and latched", lambda: asks.gateway() and "stop_latched" in asks.axis(2).inputs())
+        self.until_it_stands(DRIVES[2])
+        self.assertTrue(self.runs(DRIVES[1]), "its owner lives")
+        self.assertEqual(asks.axis(1).get("axis_state"), CONTINUOUS)
+
+
 class LogThatNobodyReads(Story):
     """A pipe to a program that hangs, or has gone, or a disk that is full: no reason to leave a motor alone."""
 
@@ -270,10 +298,17 @@ class LogThatNobodyReads(Story):
             return None
 
     def assert_it_lives(self, gateway):
-        for number in DRIVES:
-            self.axis(number).command("enable")
-            self.axis(number).command("disable")
-            self.assert_online(self.axis(number))
+        for number, drive in DRIVES.items():
+            axis = self.axis(number)
+            axis.set(profile_acceleration=30000, profile_deceleration=30000, target_velocity=100 * RPM)
+            axis.command("enable")
+            axis.command("run_velocity")
+            before = self.sim.object(drive, "6063.00")
+            until("its motor turns", lambda drive=drive, before=before: self.sim.object(drive, "6063.00") > before)
+            axis.command("quick_stop")
+            until("its motor stands", lambda drive=drive: self.sim.object(drive, "606C.00") == 0)
+            axis.command("disable")
+            self.assert_online(axis)
         self.assertIsNone(gateway.poll())
         gateway.terminate()
         self.assertEqual(gateway.wait(timeout=NEVER), 0)
@@ -295,7 +330,17 @@ class LogThatNobodyReads(Story):
         gateway = self.start_with_log(write_end)
         requests = self.client.bus(0)["requests"]
         until("more frames than the pipe holds lines", lambda: self.client.bus(0)["requests"] > requests + 200)
+        # Whoever reads on is told how much is missing.
+        os.set_blocking(read_end, False)
+        until("the gap is told", lambda: re.search(rb"\(\d+ lines lost here", self.drained(read_end)))
+        until("it is full again", lambda: self.client.bus(0)["requests"] > requests + 600)
         self.assert_it_lives(gateway)
+
+    def drained(self, read_end):
+        try:
+            return os.read(read_end, 1 << 16)
+        except BlockingIOError:
+            return b""
 
 
 if __name__ == "__main__":

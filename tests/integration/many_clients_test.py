@@ -5,7 +5,7 @@ import struct
 
 from pymodbus.client import ModbusTcpClient
 
-from modbus import ABORTED, AXIS, COMPLETED, NO_FUNCTION, OFFLINE, ONLINE, REFUSED, STANDSTILL, SUSPECT, Axis, Client, Closed, encode
+from modbus import ABORTED, AXIS, COMPLETED, CONTINUOUS, NO_FUNCTION, OFFLINE, ONLINE, REFUSED, STANDSTILL, SUSPECT, Axis, Client, Closed, encode
 from processes import NEVER, until
 from stage import Story, main
 
@@ -148,22 +148,46 @@ class AllAtOnce(Story):
 
 
 class Limits(Story):
+    """What others do to the gateway; meanwhile somebody's motor runs, and he can stop it."""
+
+    def set_running(self, axis):
+        axis.set(profile_acceleration=30000, profile_deceleration=30000, target_velocity=100000)
+        axis.command("enable")
+        axis.command("run_velocity")
+        self.assert_runs()
+
+    def assert_runs(self):
+        before = self.sim.object("lift/1", "6063.00")
+        until("the motor turns on", lambda: self.sim.object("lift/1", "6063.00") > before)
+
+    def assert_obeys(self, axis):
+        self.assert_runs()
+        self.assertEqual(axis.get("axis_state"), CONTINUOUS)
+        axis.command("quick_stop")
+        until("the motor stands", lambda: self.sim.object("lift/1", "606C.00") == 0)
+        axis.until_input("stop_latched")
+
     def assert_closed(self, client):
         with self.assertRaises(Closed):
             client.registers(0)
 
     def test_one_client_too_many_is_closed_and_the_others_stay(self):
+        self.simulate()
         for option in ("max_clients", "max_clients_per_address"):
             with self.subTest(option):
                 self.configure([self.listener(**{option: 3})])
                 self.run_gateway()
                 clients = [self.connect() for _ in range(3)]
+                self.client = clients[2]
+                self.until_online()
                 for client in clients:
                     client.registers(0)
+                self.set_running(self.axis(1))
                 self.assert_closed(self.connect())
                 self.gateway.wait_for("refused")
                 for client in clients:
                     self.assertEqual(client.gateway()["map_version"], 1)
+                self.assert_obeys(self.axis(1))
                 clients[0].close()
                 until("a place is free", self.is_served)
                 self.gateway.terminate()
@@ -179,6 +203,7 @@ class Limits(Story):
 
     def test_a_slow_client_is_cut_off_while_others_are_served(self):
         self.start()
+        self.set_running(self.axis(1))
         slow = [socket.create_connection(("127.0.0.1", self.ports[0]), timeout=NEVER) for _ in range(20)]
         self.addCleanup(lambda: [connection.close() for connection in slow])
         for index, connection in enumerate(slow):
@@ -200,9 +225,11 @@ class Limits(Story):
             return not left
 
         until("all slow clients are gone", look)
+        self.assert_obeys(self.axis(1))
 
     def test_a_client_that_never_reads_its_answers_harms_nobody(self):
         self.start()
+        self.set_running(self.axis(1))
         with socket.create_connection(("127.0.0.1", self.ports[0]), timeout=NEVER) as deaf:
             deaf.setblocking(False)
 
@@ -218,8 +245,7 @@ class Limits(Story):
                 return False
 
             until("it is cut off", look)
-        self.axis(1).command("enable")
-        self.assertEqual(self.axis(1).get("axis_state"), STANDSTILL)
+        self.assert_obeys(self.axis(1))
 
 
 class AllowList(Story):

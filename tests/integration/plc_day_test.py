@@ -224,6 +224,17 @@ class Running(Day):
             self.until("standstill", lambda number=number: self.day[number].ReadStatus.Standstill)
         self.run_all()
 
+    def test_what_is_switched_off_in_the_cycle_of_a_stop_stops_and_has_no_torque(self):
+        self.run_all()
+        for number in self.running():
+            self.day[number].Stop.Execute, self.day[number].Power.Enable = True, False
+        self.go_on()
+        self.until("all are disabled", lambda: all(self.day[number].ReadStatus.Disabled for number in self.running()))
+        self.end_all("Stop", "Done", self.running())
+        self.until_motor_stands(*self.running())
+        self.day.enable(*self.running())
+        self.run_all()
+
     def until_jogging(self, number, sign):
         station = self.day[number]
         self.day.until_or_over(f"axis {number} jogs", lambda: abs(station.Axis.Velocity - sign * SPEED) < SPEED / 10,
