@@ -77,7 +77,7 @@ std::string dds_line(const dds::DdsSettings& settings) {
   std::string out = fmt::format("domain {}, interfaces", settings.domain);
   for (const std::string& interface : settings.interfaces) out += " " + interface;
   return out + (settings.commands ? fmt::format(", commands are taken, role {}{}", text(settings.role),
-                                              settings.roles.empty() ? "" : " or that of their certificate")
+                                                settings.roles.empty() ? "" : " or that of their certificate")
                                   : ", no commands are taken");
 }
 

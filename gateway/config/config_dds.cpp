@@ -111,7 +111,8 @@ std::string read_file_name(const ConfigNode& node, std::string_view key, ConfigF
 
 void read_roles(const ConfigNode& node, DdsSettings& settings, ConfigFaults& faults) {
   for (const ConfigNode& each : node.items("roles"))
-    settings.roles.push_back({read_file_name(each, "certificate", faults), role_named(each.string("role").value_or(""))});
+    settings.roles.push_back(
+        {read_file_name(each, "certificate", faults), role_named(each.string("role").value_or(""))});
   if (!settings.roles.empty() && !node.has("qos_file")) {
     faults.add(node.pointer("roles"),
                "without DDS-Security nobody proves whose certificate is whose: add the \"qos_file\" that turns it on "

@@ -118,7 +118,8 @@ std::string DdsClients::on_writer(const WriterRecord& record, Instant now) {
       heard(*client.life, now);
     }
     told = told_of_liveliness(record.liveliness);
-    if (!told.empty()) told = std::exchange(client.told_of_liveliness, true) ? "" : name_of(record.writer) + ": " + told;
+    if (!told.empty())
+      told = std::exchange(client.told_of_liveliness, true) ? "" : name_of(record.writer) + ": " + told;
   }
   look_at_deadlines();
   return told;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The DDS writers as clients of the gateway: one ClientLife each, by which leases are judged (design 3.5 and 4). A writer
-// is a client from its first sample for this gateway on.
-// Promises that their number is bounded, and that none makes way for a newcomer that owns an axis, holds a button or
-// may have a motor running; that a writer whose end is told or who does not come back is dead to its leases; that the
-// silence of axisgate-dds itself is not taken for theirs for as long as their grace. Never speaks to an axis, but to
-// say that a client is gone.
+// The DDS writers as clients of the gateway: one ClientLife each, by which leases are judged (design 3.5 and 4). A
+// writer is a client from its first sample for this gateway on. Promises that their number is bounded, and that none
+// makes way for a newcomer that owns an axis, holds a button or may have a motor running; that a writer whose end is
+// told or who does not come back is dead to its leases; that the silence of axisgate-dds itself is not taken for theirs
+// for as long as their grace. Never speaks to an axis, but to say that a client is gone.
 #pragma once
 
 #include <map>

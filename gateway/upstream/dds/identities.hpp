@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a DDS writer may do: the role of its certificate where DDS-Security tells it, else that of all others (design 4).
-// Promises that nobody has a certificate's role whose participant does not carry its subject. Never proves that itself:
-// axisgate-dds takes no `roles` without authentication.
+// What a DDS writer may do: the role of its certificate where DDS-Security tells it, else that of all others (design
+// 4). Promises that nobody has a certificate's role whose participant does not carry its subject. Never proves that
+// itself: axisgate-dds takes no `roles` without authentication.
 #pragma once
 
 #include <map>

@@ -69,8 +69,8 @@ bool changes(Command command, const AxisImage& axis) {
 }  // namespace
 
 RosRequests::RosRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image,
-                         CommandPort& commands, const SignsOfLife& signs, const Identities& identities, const Namesakes& namesakes,
-                         StopOrder& stop_order, TellLine tell)
+                         CommandPort& commands, const SignsOfLife& signs, const Identities& identities,
+                         const Namesakes& namesakes, StopOrder& stop_order, TellLine tell)
     : settings_(settings),
       units_(units),
       image_(image),

@@ -31,7 +31,8 @@ class RosRequests {
  public:
   /// `tell`: a line for the log, of what is refused here.
   RosRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image, CommandPort& commands,
-              const SignsOfLife& signs, const Identities& identities, const Namesakes& namesakes, StopOrder& stop_order, TellLine tell);
+              const SignsOfLife& signs, const Identities& identities, const Namesakes& namesakes, StopOrder& stop_order,
+              TellLine tell);
   RosRequests(const RosRequests&) = delete;
   RosRequests& operator=(const RosRequests&) = delete;
 

@@ -54,8 +54,10 @@ Guid guid_of_certificate(const std::string& file) {
       opened ? PEM_read_X509(opened.get(), nullptr, nullptr, nullptr) : nullptr, X509_free);
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned int size = 0;
-  if (!certificate || X509_NAME_digest(X509_get_subject_name(certificate.get()), EVP_sha256(), digest.data(), &size) != 1)
-    throw StartError(kExitParticipant, fmt::format("--certificate {}: no certificate in PEM can be read from it", file));
+  if (!certificate ||
+      X509_NAME_digest(X509_get_subject_name(certificate.get()), EVP_sha256(), digest.data(), &size) != 1)
+    throw StartError(kExitParticipant,
+                     fmt::format("--certificate {}: no certificate in PEM can be read from it", file));
   // One bit that is 1, then 47 of the digest.
   Guid out{};
   unsigned carried = 1;

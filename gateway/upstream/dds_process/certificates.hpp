@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whose GUIDs are those of a certificate's subject. DDS-Security (1.1, 9.3.3) makes the first bytes of a participant's
-// GUID from the subject of its certificate, and each side of a handshake checks that of the other (Fast DDS 2.9.1 does).
-// Promises to refuse where a participant could be heard without such a handshake. Never reads a private key.
+// GUID from the subject of its certificate, and each side of a handshake checks that of the other (Fast DDS 2.9.1
+// does). Promises to refuse where a participant could be heard without such a handshake. Never reads a private key.
 #pragma once
 
 #include <string>

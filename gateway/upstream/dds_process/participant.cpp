@@ -103,8 +103,9 @@ void set_discovery(fastdds::DomainParticipantQos& qos, const ParticipantOptions&
   }
 }
 
-/// The two participants of this process would write straight into each other's built-in readers, and Fast DDS 2.9.1 does
-/// so into those of the one that was removed first (StatefulWriter::intraprocess_gap): at its end the process died of it.
+/// The two participants of this process would write straight into each other's built-in readers, and Fast DDS 2.9.1
+/// does so into those of the one that was removed first (StatefulWriter::intraprocess_gap): at its end the process died
+/// of it.
 void keep_participants_apart() {
   eprosima::fastrtps::LibrarySettingsAttributes settings = fastrtps_settings::library_settings();
   settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;

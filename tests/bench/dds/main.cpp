@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // axisgate-dds-bench: from a change of the image to the sample at a subscriber, beside a bare Fast DDS writer of the
-// same run, and one in a process of its own that is told by a socket; and what both processes take of the machine with 64 axes at 100 Hz.
+// same run, and one in a process of its own that is told by a socket; and what both processes take of the machine with
+// 64 axes at 100 Hz.
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/resource.h>

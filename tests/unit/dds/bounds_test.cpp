@@ -139,8 +139,7 @@ TEST(Requests, BeyondTheMemoryAreRefusedAndNotRunButStopsAreCarriedOut) {
 TEST(Requests, BesideMoreBystandersThanThereIsRoomForAreAnsweredAndTheirWriterLives) {
   PlainSession plain;
   plain.port.at_once = BatchResult{};
-  for (std::uint8_t i = 1; i <= kMaxWriters + 6; ++i)
-    plain.session->on_record(test::writer_there(guid(i)), plain.now);
+  for (std::uint8_t i = 1; i <= kMaxWriters + 6; ++i) plain.session->on_record(test::writer_there(guid(i)), plain.now);
   EXPECT_EQ(plain.ask(command(guid(kMaxWriters + 6), 3, 1)), kDone) << "a stop of the last one";
   EXPECT_EQ(plain.port.submitted.back().batch.command, Command::quick_stop);
   plain.session->on_record(test::writer_there(guid(200), 5), plain.now);

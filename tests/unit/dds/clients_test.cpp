@@ -202,7 +202,8 @@ struct Slots : Writers {
 };
 
 TEST_F(Slots, AreNotForWritersThatAskForNothing) {
-  for (std::uint8_t i = 1; i <= kMaxWriters + 6; ++i) static_cast<void>(clients.on_writer(writer_there(guid(i)), kStart));
+  for (std::uint8_t i = 1; i <= kMaxWriters + 6; ++i)
+    static_cast<void>(clients.on_writer(writer_there(guid(i)), kStart));
   EXPECT_EQ(clients.size(), 0U);
   static_cast<void>(clients.on_writer(writer_there(late, 7), kStart));
   const auto life = clients.on_sample(late, std::nullopt, true, kStart)->life;

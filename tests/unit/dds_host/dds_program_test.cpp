@@ -60,7 +60,8 @@ TEST(CommandLine, NamesEverySetting) {
               ElementsAre("serve", "--link-fd=3", "--domain=7", "--interface=eth0", "--interface=192.168.1.2",
                           "--shared-memory", "--peer=192.168.1.5", "--peer=192.168.1.6:7410",
                           "--discovery-server=192.168.1.7:11811", "--qos-file=/etc/qos file.xml", "--commands",
-                          "--certificate=/etc/a.pem", "--certificate=/etc/b.pem", "--ros2", "--min-period-ms=20", "--memory-limit-mib=64"));
+                          "--certificate=/etc/a.pem", "--certificate=/etc/b.pem", "--ros2", "--min-period-ms=20",
+                          "--memory-limit-mib=64"));
 }
 
 }  // namespace
