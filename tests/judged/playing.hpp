@@ -98,7 +98,7 @@ class Play {
   std::vector<Open> open_;
   History seen_;
   /// The exception that this client's newest request of registers was answered with; none: what register 25 tells is
-  /// not known. Without one only of what surely acted.
+  /// not known. Of what is done it may tell of an older one, or 10 of another row of the block.
   std::array<std::optional<int>, model::kDds> told_{};
   std::set<std::int64_t> ids_{0};  ///< of commands, that anybody has written
   bool wire_whole_ = true;

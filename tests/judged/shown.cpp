@@ -36,7 +36,7 @@ std::int64_t Shown::number(std::size_t at, double units) const {
 // 3.3 Outcomes, and 3.3 Not new (0x06: 10), 3.3 Not reached (0x04: 11), 3.4 Owed stops ("0x06, result 9").
 bool result_fits(int exception, int result) {
   static const std::map<int, std::set<int>> kResults{
-      {0, {2}}, {1, {0}}, {2, {0}}, {3, {0}}, {4, {3, 8, 9, 11}}, {6, {0, 5, 6, 7, 8, 9, 10}}, {10, {6}}, {11, {4, 8}}};
+      {1, {0}}, {2, {0}}, {3, {0}}, {4, {3, 8, 9, 11}}, {6, {0, 5, 6, 7, 8, 9, 10}}, {10, {6}}, {11, {4, 8}}};
   const auto found = kResults.find(exception);
   return found != kResults.end() && found->second.contains(result);
 }
