@@ -19,7 +19,7 @@
 namespace axisgate::dds::test {
 namespace {
 
-const std::string kProgram = test::build_path("bin/axisgate-dds");
+const std::string kProgram = axisgate::test::build_path("bin/axisgate-dds");
 constexpr int kChildLink = 3;
 
 pid_t start(const std::vector<std::string>& arguments, int link, int errors) {

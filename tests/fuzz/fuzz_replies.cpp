@@ -131,10 +131,7 @@ void top_table(Input input) {
     reading.axes.push_back(axis);
   }
   static_cast<void>(app::word_order(reading.gateway));
-  const std::string table = app::render_table(reading, columns);
-  must_be_shown(table, true);
-  std::istringstream lines(table);
-  for (std::string line; std::getline(lines, line);) static_cast<void>(app::attention(line));
+  must_be_shown(app::text_of(app::table_lines(reading, columns)), true);
 }
 
 void can_errors(Input input) {

@@ -7,6 +7,7 @@
 #include "gateway/manual/generate.hpp"
 #include "gateway/upstream/dds_link/exit_codes.hpp"
 #include "gateway/upstream/dds_link/gateway_name.hpp"
+#include "gateway/upstream/dds_link/records.hpp"
 
 namespace axisgate::dds {
 namespace {

@@ -257,7 +257,8 @@ class Player {
 
 std::vector<Dialogue> all_dialogues() {
   std::vector<Dialogue> all;
-  for (const auto& entry : std::filesystem::directory_iterator(test::source_path("tests/unit/modbus_tcp/dialogues"))) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(axisgate::test::source_path("tests/unit/modbus_tcp/dialogues"))) {
     std::ifstream file(entry.path());
     int number = 0;
     for (std::string line; std::getline(file, line);) {
