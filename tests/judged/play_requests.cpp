@@ -24,7 +24,10 @@ void Play::send(std::size_t client, Write write, bool at_once) {
   outcome_.story.push_back(before + ": " + kNames.at(client) + " " + text(write) + "  -> " + contract_->predicted());
   const bool of_object = rows_of(write).contains(row::object_request);
   const bool posted = plant_.listener.posted_writes && client != kDds && !of_object;
-  if (client != kDds && !of_object) told_.at(client).reset();
+  if (client != kDds && !of_object) {
+    told_.at(client).reset();
+    newest_.at(client) = request;
+  }
   const Rows rows = write.coils() ? Rows{} : rows_of(write);
   ids_.insert(client == kDds                   ? static_cast<std::int64_t>(number & 0xFFFF)
               : rows.contains(row::command_id) ? rows.at(row::command_id)
@@ -52,7 +55,7 @@ void Play::collect() {
         line += "]";
       }
       const std::string expected = contract_->expected();
-      const bool tells = open.client != kDds && !open.posted && !open.of_object;
+      const bool tells = open.client != kDds && !open.posted && newest_.at(open.client) == open.request;
       if (tells && !answer->contains(0)) told_.at(open.client) = *answer->begin();
       if (!contract_->answered(open.request, *answer)) {
         line += "  <-- NO READING HAS THIS ANSWER";

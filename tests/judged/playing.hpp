@@ -100,7 +100,8 @@ class Play {
   /// The exception that this client's newest request of registers was answered with; none: what register 25 tells is
   /// not known. Of what is done it may tell of an older one, or 10 of another row of the block.
   std::array<std::optional<int>, model::kDds> told_{};
-  std::set<std::int64_t> ids_{0};  ///< of commands, that anybody has written
+  std::array<int, model::kDds> newest_{};  ///< of each client, but of objects
+  std::set<std::int64_t> ids_{0};          ///< of commands, that anybody has written
   bool wire_whole_ = true;
   bool had_outage_ = false;
   std::int64_t whole_since_ms_ = 0;

@@ -111,8 +111,10 @@ bool Contract::shown(std::size_t client, const Told& told) {
     constexpr std::int64_t kUnsureMs = 60;
     const std::int64_t least = std::max<std::int64_t>(0, world.lease_ends_ms - sight_.now_ms - kUnsureMs);
     const std::int64_t most = world.lease_ends_by_ms - sight_.now_ms + kUnsureMs;
-    const bool lasts = world.lease_ends_ms == kNever ? told.lease_ms == 0 || !world.owner
-                                                     : told.lease_ms >= least && told.lease_ms <= most;
+    // Of one that is open to all, which readings may have joined with one that nobody has, nothing is said.
+    const bool lasts =
+        !world.owner ||
+        (world.lease_ends_ms == kNever ? told.lease_ms == 0 : told.lease_ms >= least && told.lease_ms <= most);
     return (world.latched == told.latched || world.latch_unsure || world.faulted) && lasts &&
            (told.owner == expected || (former && expected == 1 && told.owner == 2));
   };

@@ -68,8 +68,8 @@ class ByteLinkSim final : public bus::ByteLink, public SerialCable {
     return {frame.begin(), frame.end()};
   }
   void forget() override { arrived_.clear(); }
-  void deliver() override {
-    if (events_ == nullptr) return;
+  bool deliver() override {
+    if (events_ == nullptr) return false;
     if (plugged() != up_) {
       up_ = plugged();
       if (up_)
@@ -77,10 +77,12 @@ class ByteLinkSim final : public bus::ByteLink, public SerialCable {
       else
         events_->on_link_down("unplugged");
     }
-    if (!up_ || arrived_.empty()) return;
-    const std::vector<Byte> bytes = std::exchange(arrived_, {});
-    on_traffic(false, bytes);
-    events_->on_bytes(bytes);
+    if (up_ && !arrived_.empty()) {
+      const std::vector<Byte> bytes = std::exchange(arrived_, {});
+      on_traffic(false, bytes);
+      events_->on_bytes(bytes);
+    }
+    return true;
   }
   [[nodiscard]] Instant due() const override { return arrived_.empty() ? kNever : runtime_.now(); }
 

@@ -56,8 +56,8 @@ void RtuLinkSim::transmit(modbus_rtu::ExchangeNumber number, Bytes frame) {
   carry(whole);
 }
 
-void RtuLinkSim::deliver() {
-  if (events_ == nullptr) return;
+bool RtuLinkSim::deliver() {
+  if (events_ == nullptr) return false;
   if (reopening_ && up_) {
     up_ = false;
     events_->on_link_down(*reopening_);
@@ -75,6 +75,7 @@ void RtuLinkSim::deliver() {
     take(chunk);
   }
   if (now() >= silence_at()) hear_silence();
+  return true;
 }
 
 void RtuLinkSim::hear_silence() {

@@ -46,7 +46,7 @@ class RtuLinkSim final : public modbus_rtu::RtuLink, public SerialCable {
   /// Its error reply (exception 3).
   std::vector<Byte> refusal(Bytes request) override;
   void forget() override;
-  void deliver() override;
+  bool deliver() override;
   [[nodiscard]] Instant due() const override;
   void take(const Chunk& chunk);
   void take_frames(modbus_rtu::ExchangeNumber newest);

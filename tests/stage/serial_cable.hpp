@@ -108,8 +108,8 @@ class SerialCable {
   virtual std::vector<Byte> refusal(Bytes request) = 0;
   /// What was heard and not taken is gone.
   virtual void forget() = 0;
-  /// Tells what there is to tell.
-  virtual void deliver() = 0;
+  /// Tells what there is to tell. False: nobody listens.
+  virtual bool deliver() = 0;
   /// When there is more to tell without an event of the line.
   [[nodiscard]] virtual Instant due() const = 0;
 
@@ -117,8 +117,7 @@ class SerialCable {
   void turn() {
     advance_drives();
     if (cuts()) unplug();
-    if (!last_words.dead()) deliver();
-    arm();
+    if (!last_words.dead() && deliver()) arm();
   }
   void arm() {
     Instant next = due();
