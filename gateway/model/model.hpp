@@ -229,7 +229,8 @@ struct AxisModel : Capabilities {
   Rational units_per_rev{10000};
   std::optional<std::uint32_t> rated_speed;  ///< 0.001 rpm; where the profile has a constant for it
   std::int64_t standstill_velocity = 1000;   ///< 0.001 rpm
-  /// For so long after a start, a stop or an end velocity_actual may still show what was before.
+  /// For so long after a start, a stop or an end velocity_actual may still show what was before. Of a drive whose
+  /// profile does not say it nobody knows: too long only waits, too short takes an axis that turns for one that stands.
   Duration velocity_lag = std::chrono::milliseconds(300);
   Duration homing_timeout = std::chrono::seconds(60);
   std::optional<std::int16_t> homing_method;  ///< configured

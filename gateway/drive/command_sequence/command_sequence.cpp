@@ -139,37 +139,11 @@ CommandSequence::Move CommandSequence::granted() {
   return move;
 }
 
-// A write that wears out the drive's memory is sent on change only.
-bool CommandSequence::object_is_cached() const {
-  const ObjectRequest& o = *batch_.object;
-  const ObjectId id = core_.drive.find({o.index, o.subindex});
-  if (!o.write || id == kNoObject) return false;
-  const ObjectDef& object = core_.object(id);
-  const bool wears = object.nvm != Nvm::no && !object.trigger && object.size == o.size;
-  return wears && core_.store[id].cached && core_.store[id].number == object.number(o.data);
-}
-
 // Stops are exempt: a worn memory cell is the smaller harm.
 bool CommandSequence::within_nvm_budget(const bus::Exchange& exchange) {
   if (exchange.access == bus::Access::read || phase_ == Phase::stop) return true;
   const ObjectId id = core_.drive.find(exchange.object);
   return core_.nvm.take(id == kNoObject ? core_.drive.nvm : core_.object(id).nvm, core_.turn.now);
-}
-
-CommandSequence::Move CommandSequence::advance_object() const {
-  const ObjectRequest& o = *batch_.object;
-  bus::Exchange exchange{core_.drive.node,
-                         o.write ? bus::Access::write : bus::Access::read,
-                         {o.index, o.subindex},
-                         o.size,
-                         o.write ? wire_bits(o.data, o.size) : 0};
-  if (o.size == 0 && core_.drive.resync.by_length)
-    exchange.size = static_cast<std::uint8_t>(o.count == 0 ? 2 : o.count);
-  if (o.size == 0 && is_canopen(core_.drive)) {
-    exchange.part = object_.chain_open ? bus::Part::next : bus::Part::first;
-    if (!object_.chain_open) exchange.bytes = o.bytes;
-  }
-  return {Move::Kind::exchange, exchange, kLongAgo};
 }
 
 CommandSequence::Move CommandSequence::advance() {
@@ -184,7 +158,8 @@ CommandSequence::Move CommandSequence::advance() {
       continue;
     }
     if (phase_ == Phase::object) {
-      if (batch_.object && !object_.done && !object_is_cached()) return advance_object();
+      if (batch_.object && !mailbox_.done() && !MailboxAccess::is_needless(core_, *batch_.object))
+        return {Move::Kind::exchange, mailbox_.next(core_.drive, *batch_.object), kLongAgo};
       next_phase();
       continue;
     }

@@ -10,6 +10,7 @@
 
 #include "adapters/bus/exchange.hpp"
 #include "gateway/drive/command_sequence/awaiting.hpp"
+#include "gateway/drive/command_sequence/mailbox_access.hpp"
 #include "gateway/drive/command_sequence/stop_attempt.hpp"
 #include "gateway/drive/plan/planner.hpp"
 
@@ -58,7 +59,7 @@ class CommandSequence {
   /// A stop that would be sent once more if the exchange on the wire stays without an answer.
   [[nodiscard]] bool would_repeat() const { return phase_ == Phase::stop && stop_attempt_.may_repeat(); }
   /// A long object is under way: another exchange with this drive would end it.
-  [[nodiscard]] bool chain_open() const { return object_.chain_open && !finished(); }
+  [[nodiscard]] bool chain_open() const { return mailbox_.chain_open() && !finished(); }
   /// The stop itself is over: what is left of the write batch has no claim to go first.
   [[nodiscard]] bool stop_is_over() const {
     return stop_ && !stop_attempt_.handed_over() && phase_ > Phase::settle_stop;
@@ -95,8 +96,6 @@ class CommandSequence {
   [[nodiscard]] std::optional<Move> advance_wait(const Action& action);
   [[nodiscard]] bool has_come(const Action& action, const ObjectState& looked_at);
   [[nodiscard]] std::optional<Move> advance_settle() const;
-  [[nodiscard]] Move advance_object() const;
-  [[nodiscard]] bool object_is_cached() const;
   [[nodiscard]] bool in_command() const {
     return phase_ == Phase::controlword || phase_ == Phase::preparation || phase_ == Phase::command;
   }
@@ -114,7 +113,6 @@ class CommandSequence {
   void on_lost_write(const Action& action);
   void on_read(ObjectId object, const bus::ExchangeResult& result);
   void on_object(const bus::ExchangeResult& result);
-  [[nodiscard]] std::uint32_t abort_code(std::uint32_t detail) const;
   [[nodiscard]] std::int64_t number_of(const Action& action) const;
 
   AxisCore& core_;
@@ -144,11 +142,7 @@ class CommandSequence {
     bool verifying = false;             ///< it was not acknowledged: its object is read back
     std::uint64_t acknowledged_by = 0;  ///< exchange of the last one: samples asked for earlier are too old
   } writes_;
-  /// The object of the mailbox.
-  struct {
-    bool done = false;
-    bool chain_open = false;
-  } object_;
+  MailboxAccess mailbox_{};
   bool begun_ = false;
   bool acted_ = false;
   bool moved_by_write_ = false;     ///< a set-point that moves by being written went to an enabled axis

@@ -11,9 +11,7 @@ namespace axisgate::drive {
 
 namespace {
 
-constexpr std::uint32_t kNoSuchObject = 0x06020000,
-                        kNoSuchSubindex = 0x06090011;  // CiA 301 table 22; Kinco's serial too
-constexpr std::uint32_t kModbusIllegalAddress = 2;
+constexpr std::uint32_t kNoSuchSubindex = 0x06090011;  // CiA 301 table 22; Kinco's serial too
 
 bool is_not_there(std::uint32_t detail) {
   return detail == kNoSuchObject || detail == kNoSuchSubindex || detail == kModbusIllegalAddress;
@@ -118,36 +116,12 @@ void CommandSequence::on_read(ObjectId object, const bus::ExchangeResult& result
   }
 }
 
-// What the drive said, as CiA 301 would have said it (design 3.1, FC 43/13).
-std::uint32_t CommandSequence::abort_code(std::uint32_t detail) const {
-  constexpr std::uint32_t kGeneral = 0x08000000;
-  if (is_canopen(core_.drive) || detail == kNoSuchObject) return detail;
-  return core_.drive.resync.by_length && detail == kModbusIllegalAddress ? kNoSuchObject : kGeneral;
-}
-
 void CommandSequence::on_object(const bus::ExchangeResult& result) {
-  if (result.code != Errc::ok) {
-    if (result.code == Errc::refused_by_drive) result_.abort_code = abort_code(result.detail);
-    fail(result.code, result.detail);
-    return;
-  }
-  object_.chain_open = result.more;
-  if (object_.chain_open) return;
-  object_.done = true;
-  if (batch_.object->write) {
-    writes_.acknowledged_by = core_.store.exchange();
-    core_.store.invalidate_all();
-  } else if (result.bytes) {
-    result_.object_bytes = result.bytes;
-  } else {
-    // Neighbours may have been read in the same request.
-    const bus::ObjectAddress asked{batch_.object->index, batch_.object->subindex};
-    const auto field = std::find_if(result.fields.begin(), result.fields.end(),
-                                    [&](const bus::ReplyField& f) { return f.object == asked; });
-    if (field == result.fields.end()) return fail(Errc::bad_reply);
-    result_.object_data = field->raw;
-    result_.object_size = field->size;
-  }
+  const Outcome outcome = mailbox_.take(core_.drive, *batch_.object, result, result_);
+  if (outcome.code != Errc::ok) return fail(outcome.code, outcome.detail);
+  if (!mailbox_.done() || !batch_.object->write) return;
+  writes_.acknowledged_by = core_.store.exchange();
+  core_.store.invalidate_all();
 }
 
 // --- Not reached ---------------------------------------------------------------------------------------------------

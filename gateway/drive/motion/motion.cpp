@@ -49,7 +49,7 @@ void Motion::stop(bool latch, Instant now) {
   const bool stood = rests_ && kind_ == MotionKind::none && !raw_run_ && !target_reached_masked_;
   end(MotionState::aborted);
   ++stops_;
-  found_ = false;
+  sightings_.asked();
   if (!stood) {
     stopping_ = true;
     settled_from_ = now + velocity_lag_;
@@ -92,7 +92,8 @@ void Motion::start(MotionKind kind, std::uint16_t id, Instant now, std::uint64_t
   started_by_ = exchange;
   homing_until_ = kNever;
   ended_by_.reset();
-  raw_run_ = found_ = arrived_ = false;
+  sightings_.asked();
+  raw_run_ = arrived_ = false;
   stopping_ = false;
   awaits_fall_ = kind == MotionKind::discrete && !acknowledges_;
   if (kind == MotionKind::velocity || kind == MotionKind::torque) mark_targets(true);
@@ -117,7 +118,8 @@ void Motion::mode_changed() {
   if (kind_ != MotionKind::none) state_ = ended_by_ ? MotionState::completed : MotionState::aborted;
   kind_ = MotionKind::none;
   ended_by_.reset();
-  raw_run_ = found_ = false;
+  raw_run_ = false;
+  sightings_.asked();
 }
 
 // What survives: nothing. A fault, a drive restart, a disable, the loss of the drive and a stop end every motion for
@@ -159,21 +161,11 @@ void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
   acknowledges_ = facts.acknowledges;
   if (!facts.reachable || stands(facts)) stopping_ = false;
   // Targets written while it is disabled or faulted are kept for the start that follows: only the change ends things.
-  const bool newly_faulted = facts.faulted() && !was_faulted_;
-  const bool newly_lost = !facts.reachable && was_reachable_;
-  const bool newly_disabled = !facts.enabled() && was_enabled_;
-  found_ = facts.enabled() && (found_ || !was_reachable_);
-  found_at_start_ = found_ && (found_at_start_ || !seen_before_);
-  seen_before_ = seen_before_ || facts.reachable;
-  was_faulted_ = facts.faulted();
-  was_reachable_ = facts.reachable;
-  was_enabled_ = facts.enabled();
-  if (newly_faulted) ++faults_;
-  if (newly_lost) ++losses_;
+  const Sightings::Changes changes = sightings_.see(facts);
   if (!facts.enabled()) {
     // A start is given to an enabled axis alone. A raw 15 is what enables it: the statusword from before it, and those
     // of the time that the drive needs, end nothing.
-    if (newly_faulted || newly_lost || newly_disabled || kind_ != MotionKind::none) end(MotionState::failed);
+    if (changes.any() || kind_ != MotionKind::none) end(MotionState::failed);
     return;
   }
   const bool seen_after_start = facts.statusword_exchange > started_by_ && !target_reached_masked_;
@@ -296,7 +288,8 @@ bool Motion::move_under_way(const AxisFacts& facts) const {
 // has ended, and needs a start.
 bool Motion::goes_on(Quantity target, const AxisFacts& facts) const {
   const bool fits = followed_target(facts) == target;
-  return found_ && fits && kind_ == MotionKind::none && !raw_run_ && !latched_ && facts.enabled() && facts.follows;
+  return sightings_.found() && fits && kind_ == MotionKind::none && !raw_run_ && !latched_ && facts.enabled() &&
+         facts.follows;
 }
 
 bool Motion::target_acts_now(Quantity target, const AxisFacts& facts, bool held_back) const {

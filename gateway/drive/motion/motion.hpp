@@ -9,44 +9,12 @@
 #include <cstdint>
 #include <optional>
 
+#include "gateway/drive/motion/sightings.hpp"
 #include "gateway/image/axis_image.hpp"
-#include "gateway/model/cia402.hpp"
 
 namespace axisgate::drive {
 
 enum class MotionKind : std::uint8_t { none, discrete, velocity, torque, homing };
-
-/// What the drive shows, from its newest samples.
-struct AxisFacts {
-  Instant at = kLongAgo;   ///< now
-  bool reachable = false;  ///< link_state online or suspect
-  State402 state = State402::not_ready_to_switch_on;
-  int mode = 0;                    ///< mode in force, unified number
-  bool own_velocity_mode = false;  ///< and it is one of the drive's own that follows a target velocity
-  /// The controlword in effect has the bits of operation enabled: without them the axis is on its way out of it,
-  /// however long its ramp takes, and only shows it still.
-  bool commanded = true;
-  bool moving = false;
-  std::optional<Instant> moving_at{};  ///< when that was asked for; none: nothing is sampled for it, it is of now
-  /// The velocity or torque set-point in the drive makes it turn, as far as it tells.
-  bool follows = false;
-  bool target_reached = false;
-  bool acknowledges = true;     ///< bit 12 tells in mode 1 that a set-point was taken
-  bool reference_tells = true;  ///< what says that it is homed means that in the mode in force
-  bool reference = false;       ///< the drive says that it is homed
-  bool homing_failed = false;
-  bool motion_failed = false;                        ///< a move has ended elsewhere than at its target
-  std::uint64_t statusword_exchange = 0;             ///< the exchange that gave the newest statusword
-  std::optional<std::uint64_t> position_exchange{};  ///< and the newest position; none: nothing tells of it
-
-  [[nodiscard]] bool enabled() const { return reachable && state == State402::operation_enabled; }
-  [[nodiscard]] bool faulted() const { return state == State402::fault || state == State402::fault_reaction_active; }
-};
-
-/// A target velocity or torque acts at once in the mode in force.
-[[nodiscard]] bool is_continuous(const AxisFacts& facts);
-/// Which of the two: a torque in modes 4 and 10; none where is_continuous() is false.
-[[nodiscard]] std::optional<Quantity> followed_target(const AxisFacts& facts);
 
 /// A target as a client asked for it.
 struct Wanted {
@@ -119,7 +87,7 @@ class Motion {
   /// Of a target that acts by this: a run that was found running goes on in the drive, in a mode that follows it.
   [[nodiscard]] bool goes_on(Quantity target, const AxisFacts& facts) const;
   /// It was enabled when the gateway first saw it, and nothing was asked of it since: whose motion it is nobody knows.
-  [[nodiscard]] bool found_at_start() const { return found_at_start_ && !raw_run_; }
+  [[nodiscard]] bool found_at_start() const { return sightings_.found_at_start() && !raw_run_; }
   /// Another client owns the axis: what runs goes on, and what stands is not run by what the one before has asked for.
   void owner_changed();
   /// The mode was changed: what ran in the mode before is over.
@@ -127,8 +95,8 @@ class Motion {
   /// How often velocity and torque were made void until now.
   [[nodiscard]] std::uint64_t ends() const { return ends_; }
   /// How often a fault, and the loss of the drive, were seen.
-  [[nodiscard]] std::uint64_t faults() const { return faults_; }
-  [[nodiscard]] std::uint64_t losses() const { return losses_; }
+  [[nodiscard]] std::uint64_t faults() const { return sightings_.faults(); }
+  [[nodiscard]] std::uint64_t losses() const { return sightings_.losses(); }
   /// New samples. Ends the motion where they show its end.
   void observe(const AxisFacts& facts, Duration homing_timeout);
   /// Homing has run longer than its timeout: the axis must be halted (once).
@@ -174,8 +142,6 @@ class Motion {
   bool unlatch_armed_ = false;
   std::uint64_t stops_ = 0;
   std::uint64_t ends_ = 0;
-  std::uint64_t faults_ = 0;
-  std::uint64_t losses_ = 0;
   bool raw_run_ = false;
   bool stopping_ = false;
   bool rests_ = false;  ///< by the newest samples, with no set-point that it follows
@@ -198,12 +164,7 @@ class Motion {
   /// It does not: bit 10 may still tell of the move before, until it was seen to fall or the axis stands all the same.
   bool awaits_fall_ = false;
   Instant seen_ = kLongAgo;  ///< the newest instant of observe()
-  bool was_faulted_ = false;
-  bool was_reachable_ = false;
-  bool was_enabled_ = false;
-  bool seen_before_ = false;
-  bool found_at_start_ = false;
-  bool found_ = false;  ///< enabled when it came into sight, and nothing was started or stopped since
+  Sightings sightings_{};
   /// What clients last asked for: position, velocity, torque.
   std::array<std::optional<Wanted>, 3> wanted_;
 };

@@ -232,7 +232,10 @@ bool stop_latches(const AxisCore& core, const WriteBatch& batch) {
 
 bool starts_motion(const AxisCore& core, const WriteBatch& batch) {
   if (starts_motion(batch.command)) return true;
-  return batch.controlword && (*batch.controlword & ~core.controlword() & controlword::kStart) != 0;
+  if (!batch.controlword) return false;
+  // What waits before it may enable the axis.
+  const bool enabled = core.facts().enabled();
+  return word_starts(core, *batch.controlword, true) || (!enabled && word_starts(core, *batch.controlword, false));
 }
 
 Translated as_quantities(const AxisCore& core, const WriteBatch& batch) {

@@ -13,14 +13,6 @@ Condition torque_on(const AxisCore& core) {
   return c;
 }
 
-// Bit 4 rising starts; so does the maker's bit that makes the drive follow its target, even in the word that enables.
-bool starts_move(const AxisFacts& facts, std::uint16_t follow_bits, std::uint16_t before, std::uint16_t word) {
-  if (facts.mode != 1) return false;
-  const bool follows = (word & controlword::kStart) != 0 && (word & follow_bits) != 0;
-  if (!facts.enabled()) return follows && enables(word);
-  return rising(before, word, controlword::kStart) || (follows && rising(before, word, follow_bits));
-}
-
 // A raw start: the set-point held back until now goes first, and the move must lie within the limits.
 Plan plan_raw_move(const AxisCore& core, std::uint16_t word) {
   const bool relative = (word & controlword::kRelative) != 0;
@@ -42,6 +34,15 @@ Plan plan_raw_homing(const AxisCore& core) {
 
 }  // namespace
 
+// Bit 4 rising starts; so does the maker's bit that makes the drive follow its target, even in the word that enables.
+bool word_starts(const AxisCore& core, std::uint16_t word, bool enabled) {
+  const std::uint16_t before = core.controlword();
+  const std::uint16_t follow_bits = core.is_virtual() ? std::uint16_t{0} : core.model.cia402.follow_bits;
+  const bool follows = (word & controlword::kStart) != 0 && (word & follow_bits) != 0;
+  if (!enabled) return follows && enables(word);
+  return rising(before, word, controlword::kStart) || (follows && rising(before, word, follow_bits));
+}
+
 Plan plan_controlword(const AxisCore& core, std::uint16_t word, bool command_follows) {
   const Request402 request = request_of(word);
   if (core.motion.pass(request) == Motion::Pass::refused) return Plan::refuse(Errc::state_unsuitable);
@@ -51,7 +52,7 @@ Plan plan_controlword(const AxisCore& core, std::uint16_t word, bool command_fol
   const std::uint16_t before = core.controlword();
   const bool enables = request == Request402::enable_operation;
   const bool halts = facts.enabled() && rising(before, word, controlword::kHalt);
-  const bool moves = starts_move(facts, core.model.cia402.follow_bits, before, word);
+  const bool moves = facts.mode == 1 && word_starts(core, word, facts.enabled());
   const bool homes = facts.enabled() && facts.mode == 6 && rising(before, word, controlword::kStart);
 
   const bool halted = (word & controlword::kHalt) != 0;

@@ -95,7 +95,7 @@ Plan plan_virtual_controlword(const AxisCore& core, std::uint16_t word) {
 
   const bool halted = (word & controlword::kHalt) != 0;
   if (!enables || halted) return plan;
-  if (facts.enabled() && rising(before, word, controlword::kStart)) {
+  if (facts.enabled() && word_starts(core, word, true)) {
     if (const auto command = start_of(core, word)) {
       const Plan judged = plan_preparation(core, *command);
       if (judged.refused()) return judged;

@@ -29,6 +29,8 @@ void remember_setpoints(AxisCore& core, const WriteBatch& batch);
 /// A raw controlword that is no stop. `command_follows`: in the same write batch, and is planned from what the word has
 /// led to.
 [[nodiscard]] Plan plan_controlword(const AxisCore& core, std::uint16_t controlword, bool command_follows);
+/// A raw controlword that starts a motion, in a mode that has starts, of an axis that is enabled then, or not.
+[[nodiscard]] bool word_starts(const AxisCore& core, std::uint16_t controlword, bool enabled);
 /// What must be so before a command's own actions are planned: the halt ended, the mode it needs in force.
 [[nodiscard]] Plan plan_preparation(const AxisCore& core, Command command);
 /// A start that the axis's state refuses now: the set-points that came with it are not accepted either (design 3.3 What

@@ -115,6 +115,34 @@ TEST(TargetReached, IsNeverThatOfTheMoveBefore) {
   }
 }
 
+// Bit 12 of a Kinco's controlword starts a move where bit 4 was set before (0x103F).
+TEST(TargetReached, IsNotThatOfTheMoveBeforeWhereTheMakersBitAloneStarts) {
+  for (const KincoType type : {KincoType::jd, KincoType::md}) {
+    Rig rig(type);
+    rig.bring_to(enabled);
+    const auto reached = [&] {
+      return rig.axis().has(AxisInput::target_reached) || (shown_value(rig.axis(), Quantity::statusword) & 0x0400) != 0;
+    };
+    ASSERT_EQ(rig.write(Quantity::mode, 1).outcome.code, Errc::ok);
+    ASSERT_EQ(rig.write(Quantity::profile_velocity, 900'000).outcome.code, Errc::ok);
+    ASSERT_EQ(rig.write(Quantity::target_position, 20'000).outcome.code, Errc::ok);
+    ASSERT_EQ(rig.ask(with_controlword(0x003F)).outcome.code, Errc::ok);
+    ASSERT_TRUE(rig.stage.run_until(reached));
+    ASSERT_EQ(rig.write(Quantity::target_position, -5'000).outcome.code, Errc::ok);
+    ASSERT_TRUE(reached());
+    const auto place = rig.stage.begin(1, with_controlword(0x103F));
+    while (!place->has_value()) {
+      EXPECT_FALSE(reached()) << "from the acceptance until the reply";
+      rig.stage.run(1ms);
+    }
+    EXPECT_FALSE(reached());
+    ASSERT_TRUE(rig.stage.run_until(reached));
+    EXPECT_NEAR(static_cast<double>(shown_value(rig.axis(), Quantity::position_actual)), -5'000, 20);
+    ASSERT_EQ(rig.stage.begin(1, with_controlword(0x103F))->has_value(), false);
+    EXPECT_TRUE(reached()) << "the same word again has no edge";
+  }
+}
+
 TEST(TargetReached, ComesBackWhenTheStartIsRefusedOrDropped) {
   Rig rig(KincoType::jd);
   rig.bring_to(enabled);

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/command_sequence/mailbox_access.hpp"
+
+#include <algorithm>
+
+namespace axisgate::drive {
+namespace {
+
+// What the drive said, as CiA 301 would have said it.
+std::uint32_t abort_code(const DriveModel& drive, std::uint32_t detail) {
+  constexpr std::uint32_t kGeneral = 0x08000000;
+  if (is_canopen(drive) || detail == kNoSuchObject) return detail;
+  return drive.resync.by_length && detail == kModbusIllegalAddress ? kNoSuchObject : kGeneral;
+}
+
+}  // namespace
+
+bool MailboxAccess::is_needless(const AxisCore& core, const ObjectRequest& request) {
+  const ObjectId id = core.drive.find({request.index, request.subindex});
+  if (!request.write || id == kNoObject) return false;
+  const ObjectDef& object = core.object(id);
+  const bool wears = object.nvm != Nvm::no && !object.trigger && object.size == request.size;
+  return wears && core.store[id].cached && core.store[id].number == object.number(request.data);
+}
+
+bus::Exchange MailboxAccess::next(const DriveModel& drive, const ObjectRequest& request) const {
+  bus::Exchange exchange{drive.node,
+                         request.write ? bus::Access::write : bus::Access::read,
+                         {request.index, request.subindex},
+                         request.size,
+                         request.write ? wire_bits(request.data, request.size) : 0};
+  if (request.size == 0 && drive.resync.by_length)
+    exchange.size = static_cast<std::uint8_t>(request.count == 0 ? 2 : request.count);
+  if (request.size == 0 && is_canopen(drive)) {
+    exchange.part = chain_open_ ? bus::Part::next : bus::Part::first;
+    if (!chain_open_) exchange.bytes = request.bytes;
+  }
+  return exchange;
+}
+
+Outcome MailboxAccess::take(const DriveModel& drive, const ObjectRequest& request, const bus::ExchangeResult& result,
+                            BatchResult& told) {
+  if (result.code != Errc::ok) {
+    if (result.code == Errc::refused_by_drive) told.abort_code = abort_code(drive, result.detail);
+    return {result.code, result.detail};
+  }
+  chain_open_ = result.more;
+  done_ = !chain_open_;
+  if (chain_open_ || request.write) return {Errc::ok, 0};
+  if (result.bytes) {
+    told.object_bytes = result.bytes;
+    return {Errc::ok, 0};
+  }
+  // Neighbours may have been read in the same request.
+  const bus::ObjectAddress asked{request.index, request.subindex};
+  const auto field = std::find_if(result.fields.begin(), result.fields.end(),
+                                  [&](const bus::ReplyField& f) { return f.object == asked; });
+  if (field == result.fields.end()) return {Errc::bad_reply, 0};
+  told.object_data = field->raw;
+  told.object_size = field->size;
+  return {Errc::ok, 0};
+}
+
+}  // namespace axisgate::drive
