@@ -142,12 +142,12 @@ bool RtuWire::is_broadcast(std::uint8_t unit) const {
          std::ranges::any_of(nodes_, [&](const RtuNode& n) { return n.broadcast == unit; });
 }
 
-/// Of a broadcast: a drive that obeys it. They are of one type, or nothing sensible could be said to all of them.
 bool RtuWire::may_owe(std::uint8_t unit) const {
   constexpr int kTimesAsLate = 4;
   return runtime_.now() < given_up_[unit] + kTimesAsLate * node_of(unit).worst_reply;
 }
 
+/// Of a broadcast: a drive that obeys it. They are of one type, or nothing sensible could be said to all of them.
 const RtuNode& RtuWire::node_of(std::uint8_t unit) const {
   const auto own = std::ranges::find(nodes_, unit, &RtuNode::node);
   if (own != nodes_.end()) return *own;

@@ -129,11 +129,9 @@ std::uint16_t address_of(Block block, std::uint16_t number) {
 std::span<const CoilRow> coil_rows() { return kCoilRows; }
 std::span<const InputRow> input_rows() { return kInputRows; }
 
-bool supports(Command command, std::uint32_t supported_commands) {
+bool Capabilities::supports(Command command) const {
   return command <= Command{kLastCommand} && (supported_commands >> static_cast<unsigned>(command) & 1U) != 0;
 }
-
-bool Capabilities::supports(Command command) const { return axisgate::supports(command, supported_commands); }
 
 bool supports(const Capabilities& axis, const CoilRow& coil) {
   return axis.supports(is_jog(coil.on) ? Command::run_velocity : coil.on);

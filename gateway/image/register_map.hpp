@@ -154,8 +154,6 @@ inline constexpr std::uint16_t kReservedCoilsEnd = 16;  ///< 10..15: a 0 is acce
 [[nodiscard]] std::span<const CoilRow> coil_rows();     ///< in the order of their offsets 0..9
 [[nodiscard]] std::span<const InputRow> input_rows();
 
-/// Register 36 says that the drive can do it.
-[[nodiscard]] bool supports(Command command, std::uint32_t supported_commands);
 /// What 1 asks for; jogging is running at a velocity for as long as the coil is held.
 [[nodiscard]] bool supports(const Capabilities& axis, const CoilRow& coil);
 /// A row of the axis's block: its quantity is there, or what its value is for. Rows of the gateway's own always are.

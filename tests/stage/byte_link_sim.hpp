@@ -70,13 +70,7 @@ class ByteLinkSim final : public bus::ByteLink, public SerialCable {
   void forget() override { arrived_.clear(); }
   bool deliver() override {
     if (events_ == nullptr) return false;
-    if (plugged() != up_) {
-      up_ = plugged();
-      if (up_)
-        events_->on_link_up();
-      else
-        events_->on_link_down("unplugged");
-    }
+    tell_plugged(*events_);
     if (up_ && !arrived_.empty()) {
       const std::vector<Byte> bytes = std::exchange(arrived_, {});
       on_traffic(false, bytes);

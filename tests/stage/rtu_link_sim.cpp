@@ -61,12 +61,8 @@ bool RtuLinkSim::deliver() {
   if (reopening_ && up_) {
     up_ = false;
     events_->on_link_down(*reopening_);
-  } else if (plugged() != up_) {
-    up_ = plugged();
-    if (up_)
-      events_->on_link_up();
-    else
-      events_->on_link_down("unplugged");
+  } else {
+    tell_plugged(*events_);
   }
   reopening_.reset();
   for (const Chunk& chunk : std::exchange(arrived_, {})) {

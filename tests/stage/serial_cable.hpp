@@ -93,6 +93,15 @@ class SerialCable {
     }
     arm();
   }
+  /// It was plugged or unplugged: tells the link's events.
+  void tell_plugged(auto& events) {
+    if (plugged_ == up_) return;
+    up_ = plugged_;
+    if (up_)
+      events.on_link_up();
+    else
+      events.on_link_down("unplugged");
+  }
   void forget_heard() {
     cut_when_heard_.reset();
     forget();

@@ -48,22 +48,18 @@ bool is_known(const CommandRecord& record) { return record.command <= kLastComma
 
 bool has(const CommandRecord& record, std::uint32_t bits) { return (record.mask & bits) != 0; }
 
-bool writable(const AxisImage& axis, Quantity quantity) {
-  return (axis.supported & axis.writable & bit(quantity)) != 0;
-}
-
 /// The drive has everything that the mask names.
 bool members_exist(const CommandRecord& record, const AxisImage& axis) {
   for (const Member& member : kMembers)
-    if (has(record, member.has) && !writable(axis, member.quantity)) return false;
-  if (has(record, kHasMode) && !writable(axis, Quantity::mode)) return false;
-  if (has(record, kHasHomingMethod) && !writable(axis, Quantity::homing_method)) return false;
-  if (has(record, kHasJogVelocity) && !supports(Command::run_velocity, axis.supported_commands)) return false;
-  return !has(record, kHasSetPositionValue) || supports(Command::set_position, axis.supported_commands);
+    if (has(record, member.has) && !axis.takes(member.quantity)) return false;
+  if (has(record, kHasMode) && !axis.takes(Quantity::mode)) return false;
+  if (has(record, kHasHomingMethod) && !axis.takes(Quantity::homing_method)) return false;
+  if (has(record, kHasJogVelocity) && !axis.supports(Command::run_velocity)) return false;
+  return !has(record, kHasSetPositionValue) || axis.supports(Command::set_position);
 }
 
 bool command_exists(Command command, const AxisImage& axis) {
-  return command == Command::none || supports(jogs(command) ? Command::run_velocity : command, axis.supported_commands);
+  return command == Command::none || axis.supports(jogs(command) ? Command::run_velocity : command);
 }
 
 /// Puts what the mask names into the write batch; false: a register could not hold it.
@@ -142,17 +138,8 @@ bool stops(const CommandRecord& record) { return is_stop_command(record.command)
 bool lets_go(const CommandRecord& record) { return stops(record) || command_of(record) == Command::release; }
 
 bool starts(const CommandRecord& record, bool held) {
-  switch (command_of(record)) {
-    case Command::enable:
-    case Command::move_absolute:
-    case Command::move_relative:
-    case Command::run_velocity:
-    case Command::run_torque:
-    case Command::home:
-      return true;
-    default:
-      return is_jog(command_of(record)) && !held;
-  }
+  const Command command = command_of(record);
+  return command == Command::enable || (asks_to_move(command) && !(is_jog(command) && held));
 }
 
 PlannedCommand plan_command(const CommandRecord& record, const WriteBatch& from, const AxisImage* axis,

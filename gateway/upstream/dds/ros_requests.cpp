@@ -248,7 +248,7 @@ void RosRequests::on_action(const RosActionRecord& record, Instant now) {
   const AxisImage* const axis = image_.find(record.axis);
   if (!settings_.commands || identities_.role_of(record.writer) < Role::operator_) return;
   if (axis == nullptr || command == Command::none) return;
-  if (!supports(command, axis->supported_commands))
+  if (!axis->supports(command))
     return complain(fmt::format("ros2: {} of {}: this drive cannot do it", text(command), axis->name), now);
   const bool starts = command == Command::enable || command == Command::home;
   if (!is_stop(command) && !signs_.fresh(record.written, now)) return complain(kTooOld, now);

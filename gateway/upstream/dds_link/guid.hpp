@@ -16,21 +16,20 @@ inline constexpr std::size_t kGuidPrefix = 12;
 
 using GuidPrefix = std::array<std::uint8_t, kGuidPrefix>;
 
-[[nodiscard]] inline GuidPrefix participant_of(const Guid& guid) {
-  GuidPrefix out{};
-  std::copy_n(guid.begin(), kGuidPrefix, out.begin());
+template <std::size_t Count>
+[[nodiscard]] std::array<std::uint8_t, Count> first_bytes(const Guid& guid) {
+  std::array<std::uint8_t, Count> out{};
+  std::copy_n(guid.begin(), Count, out.begin());
   return out;
 }
+
+[[nodiscard]] inline GuidPrefix participant_of(const Guid& guid) { return first_bytes<kGuidPrefix>(guid); }
 
 /// With DDS-Security these come from the subject of the participant's certificate (DDS-Security 1.1, 9.3.3).
 inline constexpr std::size_t kIdentityBytes = 6;
 using Identity = std::array<std::uint8_t, kIdentityBytes>;
 
-[[nodiscard]] inline Identity identity_of(const Guid& guid) {
-  Identity out{};
-  std::copy_n(guid.begin(), kIdentityBytes, out.begin());
-  return out;
-}
+[[nodiscard]] inline Identity identity_of(const Guid& guid) { return first_bytes<kIdentityBytes>(guid); }
 
 [[nodiscard]] inline bool same_participant(const Guid& a, const Guid& b) {
   return std::equal(a.begin(), a.begin() + kGuidPrefix, b.begin());

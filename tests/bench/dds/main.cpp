@@ -3,10 +3,8 @@
 // same run, and one in a process of its own that is told by a socket; and what both processes take of the machine with
 // 64 axes at 100 Hz.
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -19,10 +17,9 @@
 #include "axisgatePubSubTypes.h"
 #include "gateway/upstream/dds_process/participant.hpp"
 #include "tests/bench/dds/changing_image.hpp"
+#include "tests/bench/dds/other_self.hpp"
 #include "tests/bench/dds/subscriber.hpp"
 #include "tests/bench/report.hpp"
-
-extern char** environ;
 
 namespace {
 
@@ -78,43 +75,22 @@ class BareWriter {
 /// second process costs by itself.
 class Relay {
  public:
-  explicit Relay(std::uint32_t domain) {
-    int pair[2];
-    if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) != 0) throw std::runtime_error("no socket pair");
-    posix_spawn_file_actions_t actions;
-    ::posix_spawn_file_actions_init(&actions);
-    ::posix_spawn_file_actions_adddup2(&actions, pair[1], kSocket);
-    std::string name = "axisgate-dds-bench", mode = "relay", number = std::to_string(domain);
-    char* arguments[] = {name.data(), mode.data(), number.data(), nullptr};
-    const int failed = ::posix_spawn(&pid_, "/proc/self/exe", &actions, nullptr, arguments, environ);
-    ::posix_spawn_file_actions_destroy(&actions);
-    ::close(pair[1]);
-    socket_ = pair[0];
-    if (failed != 0) throw std::runtime_error("cannot start the relay");
-  }
-  ~Relay() {
-    ::close(socket_);
-    ::waitpid(pid_, nullptr, 0);
-  }
-  Relay(const Relay&) = delete;
-  Relay& operator=(const Relay&) = delete;
+  explicit Relay(std::uint32_t domain) : other_("relay", domain, SOCK_SEQPACKET) {}
 
   void write() {
     timespec time{};
     ::clock_gettime(CLOCK_REALTIME, &time);
-    if (::send(socket_, &time, sizeof time, MSG_NOSIGNAL) < 0) throw std::runtime_error("the relay has ended");
+    if (::send(other_.socket(), &time, sizeof time, MSG_NOSIGNAL) < 0) throw std::runtime_error("the relay has ended");
   }
   /// The side of that process, to the end of its socket.
   static int run(std::uint32_t domain) {
     BareWriter writer(domain);
-    for (timespec time{}; ::recv(kSocket, &time, sizeof time, 0) == sizeof time;) writer.write(time);
+    for (timespec time{}; ::recv(OtherSelf::kSocket, &time, sizeof time, 0) == sizeof time;) writer.write(time);
     return 0;
   }
 
  private:
-  static constexpr int kSocket = 3;
-  pid_t pid_ = -1;
-  int socket_ = -1;
+  OtherSelf other_;
 };
 
 /// One sample each kEvery.

@@ -2,9 +2,7 @@
 #include "tests/bench/dds/subscriber.hpp"
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -19,12 +17,9 @@
 #include "axisgatePubSubTypes.h"
 #include "gateway/upstream/dds_process/participant.hpp"
 
-extern char** environ;
-
 namespace axisgate::bench {
 namespace {
 
-constexpr int kSocketOfSubscriber = 3;
 constexpr std::size_t kMostSamples = 1'000'000;
 
 double realtime_us() {
@@ -100,42 +95,24 @@ int subscribe(std::uint32_t domain) {
   qos.resource_limits().max_samples = kMostAxes;
   static_cast<void>(participant.make_reader(
       "axisgate/axis_state", dds::fastdds::TypeSupport(new axisgate::AxisStatePubSubType), qos, &latencies));
-  for (char question = 0; ::read(kSocketOfSubscriber, &question, 1) == 1;) {
+  for (char question = 0; ::read(OtherSelf::kSocket, &question, 1) == 1;) {
     if (question == 'a') latencies.await_one();
     const std::vector<double> taken = latencies.take();
     const std::uint64_t count = question == 'l' ? taken.size() : 0;
-    send_all(kSocketOfSubscriber, &count, sizeof count);
-    send_all(kSocketOfSubscriber, taken.data(), count * sizeof(double));
+    send_all(OtherSelf::kSocket, &count, sizeof count);
+    send_all(OtherSelf::kSocket, taken.data(), count * sizeof(double));
   }
   return 0;
 }
 
-Subscriber::Subscriber(std::uint32_t domain) {
-  int pair[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0) throw std::runtime_error(std::strerror(errno));
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_adddup2(&actions, pair[1], kSocketOfSubscriber);
-  std::string name = "axisgate-dds-bench", mode = "subscribe", number = std::to_string(domain);
-  char* arguments[] = {name.data(), mode.data(), number.data(), nullptr};
-  const int failed = ::posix_spawn(&pid_, "/proc/self/exe", &actions, nullptr, arguments, environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  ::close(pair[1]);
-  socket_ = pair[0];
-  if (failed != 0) throw std::runtime_error(std::string("cannot start the subscriber: ") + std::strerror(failed));
-}
-
-Subscriber::~Subscriber() {
-  ::close(socket_);
-  ::waitpid(pid_, nullptr, 0);
-}
+Subscriber::Subscriber(std::uint32_t domain) : other_("subscribe", domain, SOCK_STREAM) {}
 
 std::string Subscriber::ask(const std::string& question) {
-  send_all(socket_, question.data(), question.size());
+  send_all(other_.socket(), question.data(), question.size());
   std::uint64_t count = 0;
-  receive_all(socket_, &count, sizeof count);
+  receive_all(other_.socket(), &count, sizeof count);
   std::string bytes(count * sizeof(double), '\0');
-  receive_all(socket_, bytes.data(), bytes.size());
+  receive_all(other_.socket(), bytes.data(), bytes.size());
   return bytes;
 }
 

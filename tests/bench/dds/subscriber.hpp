@@ -4,11 +4,11 @@
 // Never counts samples that were published before it was asked to begin.
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "tests/bench/dds/other_self.hpp"
 
 namespace axisgate::bench {
 
@@ -20,9 +20,6 @@ class Subscriber {
  public:
   /// Starts /proc/self/exe as `subscribe DOMAIN`.
   explicit Subscriber(std::uint32_t domain);
-  ~Subscriber();
-  Subscriber(const Subscriber&) = delete;
-  Subscriber& operator=(const Subscriber&) = delete;
 
   /// Returns when a sample has been received: discovery is over.
   void await_first_sample();
@@ -33,8 +30,7 @@ class Subscriber {
  private:
   std::string ask(const std::string& question);
 
-  pid_t pid_ = -1;
-  int socket_ = -1;
+  OtherSelf other_;
 };
 
 }  // namespace axisgate::bench

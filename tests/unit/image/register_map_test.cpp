@@ -210,7 +210,8 @@ TEST(RegisterMap, ACoilNeedsTheCommandThatItAsksForAndJoggingARunAtAVelocity) {
     EXPECT_TRUE(supports(Capabilities{.supported_commands = 1U << needed}, coil)) << coil.name;
     EXPECT_FALSE(supports(Capabilities{.supported_commands = ~(1U << needed)}, coil)) << coil.name;
   }
-  EXPECT_FALSE(supports(Command::jog_reverse, ~0U)) << "no register value, so no bit of supported_commands";
+  EXPECT_FALSE(Capabilities{.supported_commands = ~0U}.supports(Command::jog_reverse))
+      << "no register value, so no bit of supported_commands";
 }
 
 TEST(RegisterMapPage, IsTheOneInSchemas) {
