@@ -95,12 +95,11 @@ Outcome Play::run() {
 
 void Play::look() {
   const obey::Truth truth = plant_.motor();
-  const std::string expected = over() ? "" : contract_->expected();
   const Sight sight{now_ms(), truth.position, truth.velocity, truth.enabled, truth.faulted};
   seen_.add(sight);
   if (!contract_->see(sight))
     violated("the motor does what nobody asked for: velocity " + std::to_string(truth.velocity) +
-             "; the contract: " + expected);
+             "; the contract: " + contract_->expected());
   watches_->look();
 }
 

@@ -54,12 +54,11 @@ void Play::collect() {
         for (const int each : *answer) line += " " + std::to_string(each);
         line += "]";
       }
-      const std::string expected = contract_->expected();
       const bool tells = open.client != kDds && !open.posted && newest_.at(open.client) == open.request;
       if (tells && !answer->contains(0)) told_.at(open.client) = *answer->begin();
       if (!contract_->answered(open.request, *answer)) {
         line += "  <-- NO READING HAS THIS ANSWER";
-        violated("no reading has this answer; expected: " + expected);
+        violated("no reading has this answer; expected: " + contract_->expected());
       } else {
         line += "\n      then, " + std::to_string(contract_->worlds().size()) + " readings: " + contract_->expected();
       }

@@ -50,11 +50,10 @@ std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Cont
   constexpr unsigned kBitOfStatusword = 0, kBitOfPosition = 2, kBitOfStopLatched = 7;
   const int owner = shown.words[obey::shown::owner];
   const bool latched = bit_of(shown.wide(kAlarms), kBitOfStopLatched);
-  const std::string expected = contract.expected();
   const int lease_ms = shown.words[obey::shown::lease_remaining];
   if (!contract.shown(client, {owner, latched, lease_ms}))
     return "shown owner " + std::to_string(owner) + ", its lease for " + std::to_string(lease_ms) + " ms" +
-           (latched ? ", stop-latched" : ", not stop-latched") + "; the contract: " + expected;
+           (latched ? ", stop-latched" : ", not stop-latched") + "; the contract: " + contract.expected();
   // 3.2 Unknown: "axis_state 7 unknown while link_state is not 2 or 3"; 3.2: "statusword and discrete inputs 0..10 read
   // 0".
   const std::uint16_t link = shown.words[kLink];
@@ -67,7 +66,7 @@ std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Cont
   constexpr std::uint16_t kCompleted = 2, kTargetReached = 0x400;
   const bool reached = bit_of(valid, kBitOfStatusword) && (shown.words[obey::shown::statusword] & kTargetReached) != 0;
   if ((reached || shown.words[obey::shown::motion_state] == kCompleted) && !contract.may_be_over())
-    return (reached ? "target_reached" : "a completed motion") + (" is shown; the contract: " + expected);
+    return (reached ? "target_reached" : "a completed motion") + (" is shown; the contract: " + contract.expected());
   const std::int64_t age_ms = shown.words[kAge];
   const std::string old = ", " + std::to_string(age_ms) + " ms old, ";
   if (bit_of(valid, kBitOfPosition) && !history.was_at(shown.position(), age_ms))

@@ -74,8 +74,7 @@ Write Writers::registers(const Step& step) {
     default:
       rows[row::controlword] = next_word(step, writer);
   }
-  std::erase_if(rows, [&](const auto& r) { return r.first < first || r.first > last; });
-  return block(first, last, rows, function);
+  return block(first, last, {rows.lower_bound(first), rows.upper_bound(last)}, function);
 }
 
 Write Writers::write_of(const Step& step) {

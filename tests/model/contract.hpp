@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <boost/container/flat_set.hpp>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -67,10 +68,11 @@ struct Half {
 struct ClientMemory {
   Item command, controlword;
   std::array<Item, 10> coils{};
-  std::optional<std::int64_t> id{};        ///< the last one that was not 0; belongs to the address
-  Rows rows{};                             ///< as written last, whatever became of it
-  std::set<std::uint16_t> refused_rows{};  ///< of these it was refused; whether that counts is not said
-  bool rows_unsure = false;                ///< or otherwise
+  std::optional<std::int64_t> id{};  ///< the last one that was not 0; belongs to the address
+  Rows rows{};                       ///< as written last, whatever became of it
+  boost::container::flat_set<std::uint16_t>
+      refused_rows{};        ///< of these it was refused; whether that counts is not said
+  bool rows_unsure = false;  ///< or otherwise
   std::optional<Half> half{};
   bool operator==(const ClientMemory&) const = default;
 };
@@ -110,8 +112,6 @@ struct Pending {
 
 /// One reading of all that was written and seen so far.
 struct World {
-  std::array<ClientMemory, kClients> clients{};
-  Rows accepted{};
   std::optional<std::size_t> owner{};      ///< kGhost and more: a connection that is silent for ever
   bool orphan = false;                     ///< its connection has ended
   bool retaken = false;                    ///< it was, before the last request
@@ -146,7 +146,9 @@ struct World {
   std::int64_t changed_ms = 0;
   std::int64_t stopped_at = 0;  ///< where a stop came
   int awaits = 0;               ///< the answer of this request; 0: of none
-  std::map<int, Pending> pending{};
+  boost::container::flat_map<int, Pending> pending{};
+  Rows accepted{};
+  std::array<ClientMemory, kClients> clients{};  // the last: most worlds that differ do so before it
   bool operator==(const World&) const = default;
   [[nodiscard]] Motion motion() const;
   /// It stands where its move ends.

@@ -144,13 +144,12 @@ bool Contract::see(const Sight& sight) {
   sight_ = sight;
   if (sight.velocity == 0) stood_at_ = sight.position;
   pass_time(sight.now_ms);
-  std::vector<World> fitting;
   if (!lost_count_) {
     for (World& world : worlds_) world.faulted = sight.faulted;
-    for (World& world : worlds_)
-      if (enabling_fits(world, sight) && motion_fits(world, sight)) fitting.push_back(std::move(world));
-    if (fitting.empty()) return false;
-    worlds_ = std::move(fitting);
+    std::vector<bool> fits;
+    for (World& world : worlds_) fits.push_back(enabling_fits(world, sight) && motion_fits(world, sight));
+    if (std::ranges::count(fits, true) == 0) return false;
+    std::erase_if(worlds_, [&](const World& world) { return !fits[static_cast<std::size_t>(&world - worlds_.data())]; });
   }
   if (sight.velocity == 0 || std::abs(sight.velocity) > kCreep) way_ = way(sight);
   was_enabled_ = sight.enabled;

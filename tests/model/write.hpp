@@ -3,15 +3,15 @@
 // 32 bits is written whole, high word first, on axis 1. Never knows a gateway.
 #pragma once
 
+#include <boost/container/flat_map.hpp>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace axisgate::test::model {
 
-using Rows = std::map<std::uint16_t, std::int64_t>;  ///< offset in the axis's block: value
+using Rows = boost::container::flat_map<std::uint16_t, std::int64_t>;  ///< offset in the axis's block: value
 
 namespace row {
 inline constexpr std::uint16_t controlword = 40, mode = 41, target_position = 42, target_velocity = 44,
