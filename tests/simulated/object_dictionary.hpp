@@ -4,8 +4,8 @@
 // Never gives a value a meaning: that is the drive's part.
 #pragma once
 
+#include <boost/container/flat_map.hpp>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 
@@ -58,7 +58,7 @@ class ObjectDictionary {
   };
   Cell& cell(ObjectKey key);
 
-  std::map<ObjectKey, Cell> cells_;
+  boost::container::flat_map<ObjectKey, Cell> cells_;
   OutOfRange out_of_range_;
 };
 
