@@ -16,7 +16,7 @@ constexpr Byte kPreOperational = 127;
 /// Disconnected, connecting, preparing: states of CAL's guarding that some manuals still list (JD 2.3, LD2-CAN 2.5).
 constexpr Byte kFirstPassing = 1;
 constexpr Byte kLastPassing = 3;
-constexpr Byte kToggle = 0x80;
+constexpr Byte kToggleBit = 0x80;
 
 can::CanFrame error_control_frame(std::uint8_t node, Byte state) {
   return can::data_frame(error_control_id(node), std::array{state});
@@ -41,7 +41,7 @@ can::CanFrame guard_frame(std::uint8_t node) { return can::remote_frame(error_co
 std::optional<ErrorControl> decode_error_control(Bytes bytes) {
   if (bytes.size() != 1) return std::nullopt;  // a node that babbles under its id has not started anew
   if (bytes[0] == kBootUp) return ErrorControl{.boot_up = true, .state = bus::NodeState::pre_operational};
-  ErrorControl heard{.toggle = (bytes[0] & kToggle) != 0};
+  ErrorControl heard{.toggle = (bytes[0] & kToggleBit) != 0};
   switch (const Byte state = bytes[0] & 0x7F; state) {
     case kStopped:
       heard.state = bus::NodeState::stopped;

@@ -16,16 +16,7 @@
 namespace axisgate::dds::test {
 namespace {
 
-constexpr const char* kCommands = "axisgate/axis_command";
-constexpr const char* kObjects = "axisgate/object_request";
 constexpr std::chrono::milliseconds kShortLease{5000};  // longer than a busy machine stands still
-
-AxisCommand command(std::uint16_t axis, std::uint64_t request_id) {
-  AxisCommand sample;
-  sample.axis(axis);
-  sample.request_id(request_id);
-  return sample;
-}
 
 /// Sent again until it comes: the program may not know the reader yet, and these topics keep nothing for it.
 template <typename Sample>
@@ -306,12 +297,6 @@ TEST(CommandWriter, WhoseProcessIsKilledIsGoneWhenItsLeaseIsOver) {
 }
 
 /// The next command of this writer.
-std::optional<CommandRecord> command_of(Child& child, const Guid& writer) {
-  while (const std::optional<CommandRecord> record = child.next<CommandRecord>())
-    if (record->writer == writer) return record;
-  return std::nullopt;
-}
-
 TEST(EverySample, IsHeardOfEveryWriterWithItsStrength) {
   Child child({"--commands"});
   Peer peer;

@@ -14,13 +14,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kLongLease{20000};
 
-/// The next command of this writer.
-std::optional<CommandRecord> command_of(Child& child, const Guid& writer) {
-  while (std::optional<CommandRecord> record = child.next<CommandRecord>())
-    if (record->writer == writer) return record;
-  return std::nullopt;
-}
-
 TEST(FirstCommand, IsHeardAsSoonAsItsWriterMeetsAReader) {
   constexpr int kPrograms = 20;
   Child child({"--commands"});
@@ -28,8 +21,7 @@ TEST(FirstCommand, IsHeardAsSoonAsItsWriterMeetsAReader) {
     Peer peer;
     // Whoever states a lease meets two readers, and may write when it has met the first of them.
     auto writer = peer.writer<AxisCommand>(
-        "axisgate/axis_command",
-        {.exclusive = turn % 3 != 0, .liveliness = Liveliness::manual_by_topic, .lease = kLongLease});
+        kCommands, {.exclusive = turn % 3 != 0, .liveliness = Liveliness::manual_by_topic, .lease = kLongLease});
     ASSERT_TRUE(writer->wait_matched());
     AxisCommand sample;
     sample.request_id(7);
@@ -44,7 +36,7 @@ TEST(Reply, WaitsForTheReaderOfANewClient) {
   bool heard = false;
   for (int tries = 0; tries < kMostTries && !heard; ++tries) {
     Peer peer;
-    auto writer = peer.writer<AxisCommand>("axisgate/axis_command");
+    auto writer = peer.writer<AxisCommand>(kCommands);
     ASSERT_TRUE(writer->wait_matched());
     AxisCommand sample;
     sample.request_id(7);

@@ -11,16 +11,6 @@
 namespace axisgate::dds::test {
 namespace {
 
-constexpr const char* kCommands = "axisgate/axis_command";
-constexpr const char* kObjects = "axisgate/object_request";
-
-AxisCommand command(std::uint16_t axis, std::uint64_t request_id) {
-  AxisCommand sample;
-  sample.axis(axis);
-  sample.request_id(request_id);
-  return sample;
-}
-
 TEST(EverySample, SaysWhenItWasReceived) {
   Child child({"--commands"});
   Peer peer;

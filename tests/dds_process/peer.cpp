@@ -240,4 +240,17 @@ template std::unique_ptr<Writer<Heartbeat>> Peer::writer(const std::string&, con
 template std::unique_ptr<Writer<std_msgs::msg::dds_::Empty_>> Peer::writer(const std::string&, const WriterSettings&);
 template std::unique_ptr<Writer<ObjectRequest>> Peer::writer(const std::string&, const WriterSettings&);
 
+AxisCommand command(std::uint16_t axis, std::uint64_t request_id) {
+  AxisCommand sample;
+  sample.axis(axis);
+  sample.request_id(request_id);
+  return sample;
+}
+
+std::optional<CommandRecord> command_of(Child& child, const Guid& writer) {
+  while (std::optional<CommandRecord> record = child.next<CommandRecord>())
+    if (record->writer == writer) return record;
+  return std::nullopt;
+}
+
 }  // namespace axisgate::dds::test

@@ -72,4 +72,11 @@ class Peer {
   std::unique_ptr<Impl> impl_;
 };
 
+inline constexpr const char* kCommands = "axisgate/axis_command";
+inline constexpr const char* kObjects = "axisgate/object_request";
+
+[[nodiscard]] AxisCommand command(std::uint16_t axis, std::uint64_t request_id);
+/// The next command of this writer.
+[[nodiscard]] std::optional<CommandRecord> command_of(Child& child, const Guid& writer);
+
 }  // namespace axisgate::dds::test

@@ -14,7 +14,7 @@
 namespace axisgate::fuzz {
 namespace {
 
-const std::string kProfiles = test::source_path("schemas/drives");
+const std::string kShippedProfiles = test::source_path("schemas/drives");
 
 /// A file in memory alone, with a path.
 class MemoryFile {
@@ -35,13 +35,13 @@ class MemoryFile {
 
 void profile(Bytes content) {
   const MemoryFile file(content);
-  const drive::LoadedProfile loaded = drive::load_profile(file.path(), {kProfiles});
+  const drive::LoadedProfile loaded = drive::load_profile(file.path(), {kShippedProfiles});
   for (const drive::Fault& fault : loaded.faults) must(!fault.message.empty(), "a mistake has its words");
 }
 
 void configuration(Bytes content) {
   const MemoryFile file(content);
-  const app::LoadResult loaded = app::load_config(file.path(), {kProfiles});
+  const app::LoadResult loaded = app::load_config(file.path(), {kShippedProfiles});
   if (const auto* faults = std::get_if<std::vector<app::ConfigFault>>(&loaded)) {
     must(!faults->empty(), "what is refused has its reason");
     for (const app::ConfigFault& fault : *faults) must(!app::text(fault).empty(), "a mistake has its words");
@@ -55,7 +55,8 @@ void eds(Bytes content) {
   const drive::Eds sheet = drive::parse_eds({reinterpret_cast<const char*>(content.data()), content.size()});
   must(sheet.objects.size() <= drive::kMaxEdsObjects, "objects have their bound");
   must(sheet.faults.size() <= drive::kMaxEdsFaults, "mistakes have their bound");
-  static const drive::LoadedProfile kProfile = drive::load_profile(kProfiles + "/leadshine-ld2-can.json", {kProfiles});
+  static const drive::LoadedProfile kProfile =
+      drive::load_profile(kShippedProfiles + "/leadshine-ld2-can.json", {kShippedProfiles});
   for (const auto& each : drive::contradictions(kProfile.profile, sheet))
     must(!each.message.empty(), "a contradiction has its words");
 }

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 using bus::Exchange;
 
 /// What the bus would hear, and its promises.
-class Heard final : public bus::WireEvents {
+class Listening final : public bus::WireEvents {
  public:
   void on_wire_up() override { up = true; }
   void on_wire_down(std::string_view why) override {
@@ -60,7 +60,7 @@ class WirePlay {
  public:
   test::ManualRuntime runtime;
   Log log{[](LogLevel, std::string_view, std::string_view) {}};
-  Heard heard;
+  Listening heard;
   std::unique_ptr<bus::Wire> wire;
 
   void run(Input input, const Far& far) {

@@ -149,7 +149,8 @@ bool Contract::see(const Sight& sight) {
     std::vector<bool> fits;
     for (World& world : worlds_) fits.push_back(enabling_fits(world, sight) && motion_fits(world, sight));
     if (std::ranges::count(fits, true) == 0) return false;
-    std::erase_if(worlds_, [&](const World& world) { return !fits[static_cast<std::size_t>(&world - worlds_.data())]; });
+    std::erase_if(worlds_,
+                  [&](const World& world) { return !fits[static_cast<std::size_t>(&world - worlds_.data())]; });
   }
   if (sight.velocity == 0 || std::abs(sight.velocity) > kCreep) way_ = way(sight);
   was_enabled_ = sight.enabled;

@@ -20,8 +20,6 @@ constexpr std::int64_t kLastSynchronousType = 240;
 constexpr std::int64_t kFirstEventType = 254;
 constexpr bus::ObjectAddress kProducerHeartbeat{0x1017, 0};
 
-Duration milliseconds(std::int64_t count) { return std::chrono::milliseconds(count); }
-
 void read_guard(const json& node, CanopenSpec& out) {
   const json* guard = member(node, "guard");
   if (guard == nullptr) return;

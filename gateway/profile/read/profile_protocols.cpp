@@ -16,8 +16,6 @@ namespace {
 constexpr std::int64_t kDefaultTimeoutMs = 100;
 constexpr std::int64_t kFirstErrorFunction = 0x80, kLastErrorFunction = 0xFF;  // bit 7 is what makes it one
 
-Duration milliseconds(std::int64_t count) { return std::chrono::milliseconds(count); }
-
 /// Ranges of registers without holes, in their order.
 void read_runs(Reading& reading, const json& node, const std::string& pointer, RtuProperties& out) {
   const json* runs = member(node, "runs");

@@ -66,6 +66,7 @@ class Reading {
 /// 47, "47", "0x2F".
 [[nodiscard]] std::optional<std::int64_t> whole(const nlohmann::json& node);
 [[nodiscard]] std::int64_t whole_in(const nlohmann::json& node, std::string_view key, std::int64_t otherwise);
+[[nodiscard]] inline Duration milliseconds(std::int64_t count) { return std::chrono::milliseconds(count); }
 [[nodiscard]] std::vector<std::string> names_in(const nlohmann::json& node, std::string_view key);
 [[nodiscard]] std::optional<DataType> type_named(std::string_view name);
 [[nodiscard]] Nvm nvm_named(std::string_view name);

@@ -13,8 +13,8 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::int64_t kLowestMode = -128;
-constexpr std::int64_t kHighestMode = 127;
+constexpr std::int64_t kLowestMethod = -128;
+constexpr std::int64_t kHighestMethod = 127;
 
 std::optional<std::int64_t> key_number(const std::string& key) { return whole(json(key)); }
 
@@ -99,7 +99,7 @@ void read_reached(Reading& reading, const json& state, StateSpec& out) {
 /// A method number as a key or an entry of a list.
 void add_method(Reading& reading, std::int64_t method, std::int64_t raw, const std::string& pointer) {
   HomingSpec& out = reading.profile.homing;
-  if (method < kLowestMode || method > kHighestMode)
+  if (method < kLowestMethod || method > kHighestMethod)
     return reading.fault(pointer, std::to_string(method) + " is no homing method: they are -128 to 127");
   for (const auto& [known, code] : out.methods)
     if (code == raw && known != method)
@@ -119,7 +119,7 @@ void read_need(Reading& reading, const std::string& key, const json& node) {
   const std::string pointer = pointer_to("/homing/needs", key);
   const std::int64_t method = key_number(key).value_or(INT64_MAX);
   HomingSpec& homing = reading.profile.homing;
-  if (method < kLowestMode || method > kHighestMode || !homing.methods.contains(static_cast<std::int16_t>(method)))
+  if (method < kLowestMethod || method > kHighestMethod || !homing.methods.contains(static_cast<std::int16_t>(method)))
     return reading.fault(pointer, "\"" + key + "\" is not under /homing/methods");
   HomingSpec::Need out{names_in(node, "any_of"), whole_in(node, "equals", 0)};
   for (const std::string& name : out.any_of) {

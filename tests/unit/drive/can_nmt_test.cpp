@@ -18,12 +18,12 @@ using testing::IsEmpty;
 enum class Node : std::uint8_t { leadshine, jd, md, keya };
 constexpr std::array kNodes{Node::leadshine, Node::jd, Node::md, Node::keya};
 
-std::string name(Node node) {
+std::string node_name(Node node) {
   static const std::array<const char*, 4> kNames{"Leadshine", "KincoJd", "KincoMd", "Keya"};
   return kNames.at(static_cast<std::size_t>(node));
 }
 
-GatewayStage::Line line_of(Node node) {
+GatewayStage::Line line_with(Node node) {
   switch (node) {
     case Node::leadshine:
       return can_line_of({options_of(CanType::leadshine, 1)}, 1);
@@ -43,7 +43,7 @@ bool starts_a_node(const can::CanFrame& frame) { return frame.id == 0 && frame.d
 
 class CanNodeState : public testing::TestWithParam<Node> {
  protected:
-  CanNodeState() : rig(line_of(GetParam())) {}
+  CanNodeState() : rig(line_with(GetParam())) {}
 
   /// The next so many starts that we send reach nobody.
   void lose_starts(int count) {
@@ -91,7 +91,8 @@ class CanNodeState : public testing::TestWithParam<Node> {
   std::unique_ptr<Timer> back_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Drives, CanNodeState, testing::ValuesIn(kNodes), [](const auto& i) { return name(i.param); });
+INSTANTIATE_TEST_SUITE_P(Drives, CanNodeState, testing::ValuesIn(kNodes),
+                         [](const auto& i) { return node_name(i.param); });
 
 TEST_P(CanNodeState, OneLostStartIsNoticedByTheSignsOfLifeAndMadeGood) {
   lose_starts(1);

@@ -49,20 +49,6 @@ struct OwnedDrive {
   std::shared_ptr<ClientLife> owner = client(1, "10.0.0.1");
 };
 
-std::string name(LeaseAction action) {
-  switch (action) {
-    case LeaseAction::quick_stop:
-      return "quick_stop";
-    case LeaseAction::halt:
-      return "halt";
-    case LeaseAction::disable:
-      return "disable";
-    case LeaseAction::none:
-      break;
-  }
-  return "none";
-}
-
 class OwnerDies : public testing::TestWithParam<std::tuple<Subject, LeaseAction>> {};
 
 TEST_P(OwnerDies, TheMotorIsStoppedAndLatchedUntilAFreshEnable) {

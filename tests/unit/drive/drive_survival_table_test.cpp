@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 enum class Ended : std::uint8_t { by_fault, by_restart, by_disable, by_quick_stop, by_halt };
 constexpr std::array kEnds{Ended::by_fault, Ended::by_restart, Ended::by_disable, Ended::by_quick_stop, Ended::by_halt};
 
-std::string name(Ended how) {
+std::string ended_name(Ended how) {
   static const std::vector<std::string> names{"fault", "restart", "disable", "quick_stop", "halt"};
   return names.at(static_cast<std::size_t>(how));
 }
@@ -77,7 +77,7 @@ TEST_P(MotionEnded, DoesNotComeBackWithTheNextEnable) {
 
 INSTANTIATE_TEST_SUITE_P(Table, MotionEnded, testing::Combine(testing::ValuesIn(kSubjects), testing::ValuesIn(kEnds)),
                          [](const auto& case_of) {
-                           return name(std::get<0>(case_of.param)) + "_" + name(std::get<1>(case_of.param));
+                           return name(std::get<0>(case_of.param)) + "_" + ended_name(std::get<1>(case_of.param));
                          });
 
 }  // namespace

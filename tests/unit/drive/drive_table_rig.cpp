@@ -104,6 +104,20 @@ bool commands_by_sdo(const can::CanFrame& frame, bool keya) {
 
 }  // namespace
 
+std::string name(LeaseAction action) {
+  switch (action) {
+    case LeaseAction::quick_stop:
+      return "quick_stop";
+    case LeaseAction::halt:
+      return "halt";
+    case LeaseAction::disable:
+      return "disable";
+    case LeaseAction::none:
+      break;
+  }
+  return "none";
+}
+
 std::string name(Subject subject) {
   static const std::vector<std::string> names{
       "Id286proRtu",     "KincoJdRtu",        "KincoMdRtu",        "LeadshineCan",

@@ -49,6 +49,7 @@ inline constexpr std::array kSubjects{
     Subject::keya_canopen_position,
 };
 [[nodiscard]] std::string name(Subject subject);
+[[nodiscard]] std::string name(LeaseAction action);
 [[nodiscard]] constexpr bool is_keya(Subject s) { return s >= Subject::keya_can_speed; }
 [[nodiscard]] constexpr bool positions_alone(Subject s) { return s >= Subject::keya_can_position; }
 [[nodiscard]] constexpr bool is_keya_canopen(Subject s) {

@@ -71,10 +71,10 @@ TEST_P(Returning, OwedAStopItTakesNothingElseUntilItWasSeenToStop) {
   const auto motion = axis.rig.stage.begin(1, axis.rig.motion());
   const auto enable = axis.rig.stage.begin(1, with_command(Command::enable));
   const auto mode = axis.rig.stage.begin(1, setpoints({{Quantity::profile_acceleration, 100'000}}));
-  for (const auto& refused : {motion, enable, mode}) {
-    ASSERT_TRUE(refused->has_value());
-    EXPECT_EQ(command_result((*refused)->outcome.code), CommandResult::state_unsuitable);
-    EXPECT_EQ(modbus_exception((*refused)->outcome.code), ModbusException::server_device_busy);
+  for (const auto& each : {motion, enable, mode}) {
+    ASSERT_TRUE(each->has_value());
+    EXPECT_EQ(command_result((*each)->outcome.code), CommandResult::state_unsuitable);
+    EXPECT_EQ(modbus_exception((*each)->outcome.code), ModbusException::server_device_busy);
   }
   ASSERT_TRUE(axis.comes_to_rest());
   axis.expect_usable();
@@ -143,8 +143,6 @@ TEST_P(LeaseInAGap, WhileItRunsOnTheMotorGoesOnAndIsShownAsAdopted) {
   axis.run(2500ms, false);
   EXPECT_TRUE(axis.comes_to_rest()) << "its owner is still asked for";
 }
-
-std::string name(LeaseAction action) { return std::string(text(command_of(action))); }
 
 INSTANTIATE_TEST_SUITE_P(Table, LeaseInAGap,
                          testing::Combine(testing::ValuesIn(all_subjects()), testing::ValuesIn(kCuts),

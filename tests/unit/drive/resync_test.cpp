@@ -7,7 +7,7 @@
 namespace axisgate::drive {
 namespace {
 
-constexpr Instant kBegin = kLongAgo + std::chrono::hours(1);
+constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
 constexpr ObjectId kShort = 0, kLong = 1;
 
 bus::Exchange read(std::uint8_t bytes) { return {1, bus::Access::read, {}, bytes, 0}; }
@@ -21,7 +21,7 @@ class RtuResync : public testing::Test {
     facts.candidates = {{kShort, 0}, {kLong, 0}};
   }
   void lose(std::uint8_t bytes, int times) {
-    for (int i = 0; i < times; ++i) resync.lost(read(bytes), kBegin);
+    for (int i = 0; i < times; ++i) resync.lost(read(bytes), kStart);
   }
   /// Reads of this object that are answered and not believed before another is.
   int counted(ObjectId object) {
@@ -76,14 +76,14 @@ TEST_F(RtuResync, AWriteThatIsLostChangesNothing) {
   lose(4, 3);
   EXPECT_EQ(resync.counted().object, kShort);
   resync.counted_one();
-  resync.lost({1, bus::Access::write, {}, 4, 0}, kBegin);
+  resync.lost({1, bus::Access::write, {}, 4, 0}, kStart);
   EXPECT_EQ(counted(kShort), 1);
 }
 
 TEST_F(RtuResync, LeavesTheSilenceAloneWhereTheProfileHasOneLengthOrTheDriveRefusesTheOther) {
   lose(2, 1);
   lose(4, 1);
-  resync.refused(read(4), kBegin);
+  resync.refused(read(4), kStart);
   EXPECT_FALSE(resync.counts_out());
   resync.answered();
   facts.candidates = {{kShort, 0}};

@@ -20,7 +20,7 @@ constexpr Duration kLost = 220ms;
 /// Which replies of the drive under test are late.
 enum class Late : std::uint8_t { one, three_in_a_row, every_fifth, every_tenth, of_the_position, of_the_state };
 
-std::string name(Late late) {
+std::string late_name(Late late) {
   static const std::vector<std::string> names{"One",        "ThreeInARow",   "EveryFifth",
                                               "EveryTenth", "OfThePosition", "OfTheState"};
   return names[static_cast<std::size_t>(late)];
@@ -68,7 +68,7 @@ using Case = std::tuple<RtuKind, Late, int>;
 
 std::string case_name(const testing::TestParamInfo<Case>& of) {
   const auto [kind, late, by] = of.param;
-  return name(kind) + name(late) + std::to_string(by) + "MsLate";
+  return name(kind) + late_name(late) + std::to_string(by) + "MsLate";
 }
 
 class RtuLateReply : public testing::TestWithParam<Case> {};

@@ -12,7 +12,6 @@ namespace axisgate::modbus_tcp {
 namespace {
 
 using test::bytes;
-using enum ModbusException;
 
 ModbusException wrong(const std::string& told) {
   const auto zeros = told.find('+');
@@ -20,7 +19,7 @@ ModbusException wrong(const std::string& told) {
   if (zeros != std::string::npos) pdu.resize(pdu.size() + std::stoul(told.substr(zeros + 1)));
   const auto decoded = decode_request(pdu);
   const auto* exception = std::get_if<ModbusException>(&decoded);
-  return exception == nullptr ? none : *exception;
+  return exception == nullptr ? ModbusException::none : *exception;
 }
 
 Request right(const std::string& hex) {
@@ -41,7 +40,7 @@ TEST(Pdu, RefusesEveryFunctionItDoesNotHaveWhateverItsLength) {
       const auto decoded = decode_request(pdu);
       const auto* exception = std::get_if<ModbusException>(&decoded);
       if (!known) {
-        ASSERT_TRUE(exception != nullptr && *exception == illegal_function) << function;
+        ASSERT_TRUE(exception != nullptr && *exception == ModbusException::illegal_function) << function;
       }
     }
   }
@@ -62,7 +61,7 @@ TEST(Pdu, takes_requests_whose_lengths_counts_and_values_hold) {
            "16 0064 F200 2500|0F 0064 0008 01 FF|0F 0064 0009 02 FF01|0F 0064 07B0 F6 +246|10 0064 0001 02 1234|"
            "10 0064 007B F6 +246|17 0064 007D 008C 0001 02 0006|17 0064 0001 008C 0079 F2 +242|08 0000 A537|"
            "08 0000 A537 0102|2B 0E 01 00|2B 0E 04 80|2B 0D 00 00 01 1008 00 0000 0000")) {
-    EXPECT_EQ(wrong(pdu), none) << pdu;
+    EXPECT_EQ(wrong(pdu), ModbusException::none) << pdu;
   }
 }
 
@@ -77,9 +76,9 @@ TEST(Pdu, refuses_every_other) {
                "17 0064 0001 008C 0000 00|17 0064 0001 008C 0001 04 0006|17 0064 0001 008C 0001 02 00|17 0064 0001|"
                "17 0064 0001 008C 007A F3 +243|08 0000|08 0000 A5|2B 0E 00 00|2B 0E 05 00|2B 0E 01|2B 0E 01 00 00|"
                "2B 0D 00 00 01 1008 00 0000 00|2B 0D|2B")) {
-    EXPECT_EQ(wrong(pdu), illegal_data_value) << pdu;
+    EXPECT_EQ(wrong(pdu), ModbusException::illegal_data_value) << pdu;
   }
-  EXPECT_EQ(wrong("2B 0F"), illegal_function);
+  EXPECT_EQ(wrong("2B 0F"), ModbusException::illegal_function);
 }
 
 TEST(Pdu, DecodesWhatIsAsked) {
@@ -117,7 +116,7 @@ TEST(Pdu, RepliesToWritesRepeatTheirHead) {
 }
 
 TEST(Pdu, ExceptionsCarryTheFunctionWithItsHighBitSet) {
-  const Pdu pdu = exception_pdu(0x03, illegal_data_address);
+  const Pdu pdu = exception_pdu(0x03, ModbusException::illegal_data_address);
   EXPECT_EQ(hex_text({pdu.data(), pdu.size()}), "83 02");
 }
 
