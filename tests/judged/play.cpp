@@ -57,6 +57,7 @@ void Play::begin() {
   watches_.emplace(plant_, neighbour_, other_bus_, [this](std::string what) { violated(std::move(what)); });
   clients_.connect();
   std::ranges::copy(kRanks, beginning.options.ranks.begin());
+  beginning.options.strengths = kStrengths.at(seed_ % kStrengths.size());
   writers_.emplace(program_, plant_.profile_rows(), beginning.commands);
   began_ = plant_.stage.runtime().now();
   const obey::Truth truth = plant_.motor();
@@ -232,10 +233,16 @@ void Play::act(const Step& step) {
       read(step.client);
       break;
     case Deed::sample:
-      send(kDds, writers_->write_of(step), step.at_once);
+      send(kModbus + step.client, writers_->write_of(step), step.at_once);
       break;
     case Deed::new_writer:
-      replace(kDds, true);  // another GUID: the lease goes on until it runs out
+      replace(kModbus + step.client, step.on);
+      break;
+    case Deed::masters:
+      follow_each_other(step);
+      break;
+    case Deed::dds_jog:
+      jog_by_dds(step);
       break;
     case Deed::bystander:
       if (!over() && plant_.stage.gateway_runs())

@@ -27,7 +27,7 @@ class Play {
         neighbour_(seed % 2 == 0),
         other_bus_(seed % 4 == 3),
         plant_(program.subject, options_of(program, seed)),
-        clients_(plant_),
+        clients_(plant_, kStrengths.at(seed % kStrengths.size())),
         plague_(plant_, program_.nemesis, seed) {}
 
   Outcome run();
@@ -70,6 +70,10 @@ class Play {
   void use_monitor(const Step& step);
   void take_away(const Step& step);
   void press_out_of_sight(const Step& step);
+  void follow_each_other(const Step& step);
+  void jog_by_dds(const Step& step);
+  void be_alive(std::size_t writer);
+  void beat(std::size_t writer, bool counts_on);
   void look_up(std::size_t client);
   void watch_trouble();
   void begin_trouble();
@@ -99,9 +103,9 @@ class Play {
   History seen_;
   /// The exception that this client's newest request of registers was answered with; none: what register 25 tells is
   /// not known. Of what is done it may tell of an older one, or 10 of another row of the block.
-  std::array<std::optional<int>, model::kDds> told_{};
-  std::array<int, model::kDds> newest_{};  ///< of each client, but of objects
-  std::set<std::int64_t> ids_{0};          ///< of commands, that anybody has written
+  std::array<std::optional<int>, model::kModbus> told_{};
+  std::array<int, model::kModbus> newest_{};  ///< of each client, but of objects
+  std::set<std::int64_t> ids_{0};             ///< of commands, that anybody has written
   bool wire_whole_ = true;
   bool had_outage_ = false;
   std::int64_t whole_since_ms_ = 0;

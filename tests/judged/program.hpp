@@ -46,7 +46,9 @@ enum class Deed : std::uint8_t {
   halves,         ///< one target by two writes of function 6, sometimes with another write between
   bystander,      ///< a viewer writes
   sample,         ///< of a DDS writer
-  new_writer,     ///< it is deleted, and another one begins
+  new_writer,     ///< it is deleted, or its liveliness is lost, and another one begins
+  masters,        ///< a DDS master is alive in one way or another, or is not, and another one comes
+  dds_jog,        ///< a jog by samples, held and let go or forgotten
   release,        ///< command 13
   reconnect,      ///< the connection ends, a new one begins
   vanish,         ///< silent for ever; a new connection begins after a while

@@ -6,8 +6,8 @@ namespace axisgate::test::judged {
 using namespace model;
 
 namespace {
-constexpr std::int64_t kMoveNow = 63;  // start, and change at once
-constexpr std::uint8_t kHomeCoil = 23;
+constexpr std::int64_t kMoveNow = 63;                                 // start, and change at once
+constexpr std::uint8_t kHomeCoil = 23, kReleases = 22, kTooOld = 21;  // of Step::number
 }  // namespace
 
 std::int64_t Writers::start_command(const Step& step) const {
@@ -91,13 +91,14 @@ Write Writers::write_of(const Step& step) {
     case Deed::sample: {
       Rows rows;
       const std::int64_t command = start_command(step);
-      rows[row::command] = command > kRun && command != kHome ? kHalt : command;
+      rows[row::command] = command > kRun && command != kHome && command != kTakeOver ? kHalt : command;
+      if (step.number == kReleases && leases_) rows[row::command] = kRelease;
       if (step.position < kPositions.size() && obey::has_positions(subject_))
         rows[row::target_position] = kPositions[step.position];
       if (step.speed < kSpeeds.size() && obey::has_speeds(subject_)) rows[row::target_velocity] = kSpeeds[step.speed];
       // A sample that asks for nothing is an error of its own.
       if (rows.size() == 1 && rows[row::command] == 0) rows[row::command] = kHalt;
-      return {.function = fc::sample, .sample = rows};
+      return {.function = fc::sample, .sample = rows, .stale = step.number == kTooOld};
     }
     case Deed::object: {
       constexpr std::uint16_t kLast = 85;

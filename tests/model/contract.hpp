@@ -6,6 +6,7 @@
 // Promises to know nothing of the gateway: it includes nothing of it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -18,7 +19,8 @@
 
 namespace axisgate::test::model {
 
-inline constexpr std::size_t kClients = 4, kDds = 3;  ///< three of Modbus, one of DDS
+inline constexpr std::size_t kModbus = 3, kWriters = 3, kClients = kModbus + kWriters;  ///< DDS writers come last
+[[nodiscard]] constexpr bool is_dds(std::size_t client) { return client >= kModbus; }
 inline constexpr std::size_t kGhost = 100;
 inline constexpr std::int64_t kNever = INT64_MAX / 4, kLongAgo = INT64_MIN / 4;
 
@@ -110,7 +112,8 @@ struct Pending {
 
 /// One reading of all that was written and seen so far.
 struct World {
-  std::array<ClientMemory, kClients> clients{};
+  std::array<ClientMemory, kModbus + 1> clients{};  ///< what a DDS writer has is forgotten with its sample
+  std::array<std::int64_t, kWriters> pressed{};     ///< by DDS: 1 jog_forward, -1 jog_reverse
   Rows accepted{};
   std::optional<std::size_t> owner{};      ///< kGhost and more: a connection that is silent for ever
   bool orphan = false;                     ///< its connection has ended
@@ -168,8 +171,14 @@ struct ContractOptions {
   bool staged = false;             ///< "halves": "staged"
   bool expiry_acts = true;         ///< false: "on_expiry": "none"
   bool only_writes_renew = false;  ///< "renew": "write"
-  std::array<int, kClients> ranks{};
+  std::array<int, kModbus> ranks{};
+  std::array<int, kWriters> strengths{};
+  std::array<std::int64_t, kWriters> limits{kNever, kNever, kNever};  ///< lease_ms of a writer's heartbeat
   std::int64_t settles_ms = 1200;  ///< so long after an answer the motor does what was asked, ramps included
+  /// Design 4, signs of life: "the lease is the smaller of lease_ms and the configured one".
+  [[nodiscard]] std::int64_t lease_of(std::size_t client) const {
+    return is_dds(client) ? std::min(lease_ms, limits.at(client - kModbus)) : lease_ms;
+  }
 };
 
 class Contract {
@@ -187,6 +196,8 @@ class Contract {
   void unanswered(int request);
   /// Any other request of this client.
   void asked(std::size_t client);
+  /// A changed counter of this DDS writer's heartbeat.
+  void beats(std::size_t client, std::int64_t lease_ms);
   /// What registers 28, 34 (bit 7) and 29 tell this client now. False: no reading of the contract has it.
   struct Told {
     int owner = 0;
@@ -200,7 +211,7 @@ class Contract {
   bool see(const Sight& sight);
 
   /// The connection has ended, or is silent for ever and the gateway believes it alive; the next one begins with an
-  /// empty memory.
+  /// empty memory. Of a DDS writer silently: its successor is of another participant.
   void left(std::size_t client, bool silently);
   /// From here on frames may be lost, and drives be gone, until the axis is online again and nothing is wrong.
   void trouble_begins();
@@ -238,7 +249,8 @@ class Contract {
   void drop_equal();
   void keep_different();
   void take_over(World& world, std::size_t client) const;
-  void renew(World& world) const;
+  void renew(World& world, std::size_t client) const;
+  void may_have_stopped_for_good();
   static void overtake(World& world, Pending& newest, bool rows);
   [[nodiscard]] static World owed_alone(World stopped, const World& none);
   [[nodiscard]] Seen seen() const;

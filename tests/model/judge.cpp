@@ -78,11 +78,17 @@ void Judge::claim() {
   if (!options_.leases) return;
   world_.owner = client_;
   world_.orphan = false;
-  world_.lease_until(seen_.now_ms + options_.lease_ms);
+  world_.lease_until(seen_.now_ms + options_.lease_of(client_));
 }
 
-// 3.3 Outcomes: "another client owns the axis: 0x06".
-bool Judge::foreign() const { return options_.leases && world_.owner && *world_.owner != client_; }
+// 3.3 Outcomes: "another client owns the axis: 0x06". Design 4: "a stronger writer takes the lease from a weaker DDS
+// writer, never from a Modbus client"; "equal strength never takes a live lease".
+bool Judge::foreign() const {
+  if (!options_.leases || !world_.owner || *world_.owner == client_) return false;
+  const std::size_t owner = *world_.owner % kGhost;
+  const auto strength = [this](std::size_t client) { return options_.strengths.at(client - kModbus); };
+  return !is_dds(client_) || !is_dds(owner) || strength(client_) <= strength(owner);
+}
 
 bool Judge::refuse_foreign(Verdict& verdict) {
   if (!foreign()) return false;
@@ -176,7 +182,7 @@ void Judge::stopped(bool asserted) {
   const bool spoils = asserted || readings_.other();
   // "Since it acted": what was only remembered never did.
   std::optional<bool> remembered_too;
-  for (std::size_t c = 0; c < kDds; ++c) {
+  for (std::size_t c = 0; c < kModbus; ++c) {
     const auto mark = [&](Item& item) {
       item.ended = true;
       if (c == client_ || !spoils || !item.value || item.unsure || item.spoilt) return;
@@ -264,6 +270,7 @@ Verdict Judge::registers(const Write& write) {
       rows.contains(row::controlword) ? edge(me().controlword, rows[row::controlword], single, false) : Edge::absent;
   const std::int64_t number = command == Edge::absent ? 0 : rows[row::command];
   bool refused = false;
+  changes_mode_ = rows.contains(row::mode);
   if (command == Edge::acts && is_start(number) && word != Edge::acts) refused = start_refused(number, verdict);
   // Whether what stands beside a take_over is its new or its old owner's is not said.
   const bool takes_over = command == Edge::acts && number == kTakeOver;
@@ -319,15 +326,24 @@ Verdict Judge::registers(const Write& write) {
 Verdict Judge::sample(const Write& write) {
   Verdict verdict{"a sample", {0}};
   const std::int64_t number = write.sample.contains(row::command) ? write.sample.at(row::command) : 0;
+  const bool jogs = number >= kJogForward;
+  // Design 4, age: what is too old "gets result 6 and is not carried out"; "Stops, jog_end and release are never
+  // refused for age".
+  const bool lets_go = is_stop(number) || number == kJogEnd || number == kRelease;
+  if (write.stale && !lets_go) return {"too old: never started", {6}};
   const bool refused = is_start(number) && start_refused(number, verdict);
   const bool claims = !options_.leases || !is_stop(number) || readings_.other();
   // 3.3 What asks: "Set-points beside a command that is refused are accepted only if they would be without it": whether
   // that speaks of samples is not said.
-  if (!refused || readings_.other())
+  if (!write.stale && (!refused || readings_.other()))
     for (const auto& [offset, value] : write.sample)
       if (offset != row::command && options_.rows.contains(offset)) accept(offset, value, claims);
   verdict.acts = number != 0;
-  if (number != 0 && !refused) command(number, me().command, verdict);
+  if (jogs)
+    jog_sample(number, verdict);
+  else if (number != 0 && !refused)
+    command(number, me().command, verdict);
+  if (write.stale) verdict.answers.insert(6);  // of what stands beside it
   tell_foreign(verdict);
   me() = {};
   return verdict;

@@ -33,6 +33,7 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
     // 3.5: "from its first accepted write": what is refused claims nothing. A fault that the gateway has not heard of
     // yet, or what it could not see, may make the drive refuse what was accepted.
     const bool unseen = world_.faulted || seen_.troubled;
+    if (world_.faulted && seen_.troubled) verdict.answers.insert(0);  // the drive has acknowledged it all the same
     if (unseen && world_.owner != client_ && options_.leases && readings_.other()) claim();
     return true;
   }
@@ -43,7 +44,7 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
       world_.motor == Motor::moves && (just_begun || std::abs(world_.target - seen_.position) > kClose);
   if (command == 7 && (just_begun || !seen_.stands || world_.motor == Motor::runs || world_.motor == Motor::unknown ||
                        !seen_.clear || under_way)) {
-    const bool unsure = !is_under_way() && (seen_.stands || !seen_.clear);
+    const bool unsure = changes_mode_ || (!is_under_way() && (seen_.stands || !seen_.clear));
     if (!unsure || readings_.other()) {
       verdict = {"refused: relative while moving", {6}};
       for (ClientMemory& client : world_.clients) client.command.ended = true;
@@ -215,10 +216,10 @@ void Judge::take_over(Verdict& verdict) {
     return;
   }
   const std::size_t owner = *world_.owner % kGhost;
-  if (owner == kDds) {
+  if (is_dds(owner) || is_dds(client_)) {
     // 3.5 speaks of ranks in `allow`; what a DDS writer's is, is not said.
     if (!readings_.other()) {
-      verdict = {"take_over from a DDS writer", {6}};
+      verdict = {"take_over of or from a DDS writer", {6}};
       return;
     }
   } else if (owner != client_ && options_.ranks.at(client_) <= options_.ranks.at(owner)) {

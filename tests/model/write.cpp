@@ -77,7 +77,7 @@ Rows rows_of(const Write& write) {
 std::string text(const Write& write) {
   std::string out = write.function == fc::sample ? "sample" : "FC" + std::to_string(write.function);
   for (const auto& [offset, value] : write.sample) out += " " + std::to_string(offset) + "=" + std::to_string(value);
-  if (write.function == fc::sample) return out;
+  if (write.function == fc::sample) return out + (write.stale ? " too old" : "");
   if (write.coils()) {
     for (std::size_t i = 0; i < write.words.size(); ++i)
       out += " coil" + std::to_string(write.first + i) + "=" + std::to_string(write.words[i]);

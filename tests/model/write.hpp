@@ -24,8 +24,9 @@ inline constexpr std::uint16_t controlword = 40, mode = 41, target_position = 42
 
 /// Of row 54.
 inline constexpr std::int64_t kEnable = 1, kDisable = 2, kQuickStop = 3, kHalt = 4, kMove = 6, kRelative = 7, kRun = 8,
-                              kTorque = 9, kHome = 10, kSetPosition = 11, kRelease = 13, kTakeOver = 14;
-inline constexpr std::int64_t kVelocityMode = 3;  ///< of row 41
+                              kTorque = 9, kHome = 10, kSetPosition = 11, kRelease = 13, kTakeOver = 14,
+                              kJogForward = 31, kJogReverse = 32, kJogEnd = 33;  // the last three by DDS alone
+inline constexpr std::int64_t kVelocityMode = 3;                                 ///< of row 41
 /// Of positions, in 1/10000 turn: a count of the coarsest encoder, and rounding.
 inline constexpr std::int64_t kClose = 8;
 
@@ -46,6 +47,7 @@ struct Write {
   std::uint16_t first = 0;             ///< offset in the axis's block of registers or coils
   std::vector<std::uint16_t> words{};  ///< one for each register, or 0 and 1 for each coil
   Rows sample{};                       ///< of fc::sample: what its mask names, and the command
+  bool stale = false;                  ///< of fc::sample: its source timestamp is older than max_age_ms
   [[nodiscard]] bool coils() const { return function == fc::write_coil || function == fc::write_coils; }
 };
 
