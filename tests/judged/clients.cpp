@@ -45,7 +45,7 @@ const std::map<int, std::set<int>> kStandsFor{{0, {1, 2, 3}}, {2, {0}},  {3, {4}
 
 void Clients::connect() {
   for (std::size_t client = 0; client < kModbus; ++client) {
-    modbus_[client]->be(Role::engineer, kRanks[client]);
+    modbus_[client]->be(operators_[client] ? Role::operator_ : Role::engineer, kRanks[client]);
     modbus_[client]->connect();
   }
   participant_ = static_cast<std::uint8_t>(participant_ + kMostWriters);

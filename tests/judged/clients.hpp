@@ -25,9 +25,11 @@ inline constexpr std::array<const char*, model::kClients> kNames{"a", "b", "c", 
 
 class Clients {
  public:
-  Clients(obey::Plant& plant, const std::array<int, model::kWriters>& strengths)
+  /// `operator_c`: c is an operator, else an engineer as a and b.
+  Clients(obey::Plant& plant, const std::array<int, model::kWriters>& strengths, bool operator_c)
       : plant_(plant),
         strengths_(strengths),
+        operators_{false, false, operator_c},
         c_(plant.connection_from(kHostOfC)),
         modbus_{&plant.a, &plant.b, c_.get()} {}
 
@@ -50,6 +52,7 @@ class Clients {
   [[nodiscard]] std::optional<Posted> posted(std::size_t client, std::uint64_t asked);
   /// A new connection; of DDS another writer, silently: of another participant.
   void replace(std::size_t client, bool silently);
+  [[nodiscard]] const std::array<bool, model::kModbus>& operators() const { return operators_; }
   [[nodiscard]] obey::DdsWriters& dds() { return *dds_; }
   [[nodiscard]] obey::Client& modbus(std::size_t client) { return *modbus_[client]; }
   /// What was wrong with what a viewer was told for a write (3.3 Roles: 0x01, and nothing changes).
@@ -59,6 +62,7 @@ class Clients {
   static constexpr std::uint8_t kHostOfC = 50;
   obey::Plant& plant_;
   std::array<int, model::kWriters> strengths_;
+  std::array<bool, model::kModbus> operators_;
   std::unique_ptr<obey::Client> c_;
   std::array<obey::Client*, model::kModbus> modbus_;
   std::optional<obey::DdsWriters> dds_;

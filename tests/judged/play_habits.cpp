@@ -86,6 +86,20 @@ void Play::use_monitor(const Step& step) {
   }
 }
 
+void Play::insist(const Step& step) {
+  constexpr int kNotNow = 6, kUnknown = 11;
+  constexpr std::array<std::int64_t, 3> kAgainMs{5, 100, 400};
+  Step order = press(step, step.on ? Deed::order : Deed::command);
+  order.id = step.id;
+  const Write write = writers_->write_of(order);
+  for (int tries = 0; tries < 4 && !over(); ++tries) {
+    send(step.client, write, false);
+    const auto told = told_.at(step.client);
+    if (told != kNotNow && told != kUnknown) return;
+    pass(kAgainMs.at(step.number % kAgainMs.size()));
+  }
+}
+
 void Play::take_away(const Step& step) {
   constexpr std::uint8_t kTakesOver = 15;  // of kCommands
   Step start = press(step, Deed::order);

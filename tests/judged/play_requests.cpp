@@ -3,6 +3,7 @@
 #include <gtest/gtest-printers.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "tests/judged/beginning.hpp"
 #include "tests/judged/playing.hpp"
@@ -12,6 +13,17 @@ namespace axisgate::test::judged {
 
 using namespace model;
 using obey::Answer;
+
+namespace {
+
+bool may_move(const Write& write) {
+  if (write.coils())
+    return write.first <= coil::start_relative && write.first + write.words.size() > coil::start_absolute;
+  const Rows rows = rows_of(write);
+  return rows.contains(row::command) && (rows.at(row::command) == kMove || rows.at(row::command) == kRelative);
+}
+
+}  // namespace
 
 void Play::send(std::size_t client, Write write, bool at_once) {
   if (over() || !clients_.connected(client)) return;
@@ -34,7 +46,7 @@ void Play::send(std::size_t client, Write write, bool at_once) {
               : rows.contains(row::command_id) ? rows.at(row::command_id)
                                                : 0);
   if (posted) lose_sight_of_posted(client);
-  open_.push_back({request, client, number, now_ms(), outcome_.story.size() - 1, of_object, posted});
+  open_.push_back({request, client, number, now_ms(), outcome_.story.size() - 1, of_object, may_move(write), posted});
   collect();
   while (!at_once && !over() && std::ranges::any_of(open_, [&](const Open& open) { return open.request == request; }))
     pass(kStepMs);
@@ -57,6 +69,7 @@ void Play::collect() {
       }
       const std::string expected = contract_->expected();
       const bool tells = !is_dds(open.client) && !open.posted && newest_.at(open.client) == open.request;
+      if (tells && answer->contains(0) && open.moves) looks_at_once_.insert(open.client);
       if (tells && !answer->contains(0)) told_.at(open.client) = *answer->begin();
       if (!contract_->answered(open.request, *answer)) {
         line += "  <-- NO READING HAS THIS ANSWER";
@@ -70,6 +83,10 @@ void Play::collect() {
     if (now_ms() - open.sent_ms > kSilenceMs) violated("a request was never answered: " + line);
     return false;
   });
+  // 3.3: "a PLC never sees the target_reached of the move before".
+  const std::set<std::size_t> clients = std::exchange(looks_at_once_, {});
+  for (const std::size_t client : clients)
+    if (!over() && std::ranges::none_of(open_, [&](const Open& open) { return open.client == client; })) read(client);
 }
 
 // 3.3, "posted": "answered after the checks, the outcome in 25, 26, 30". Empty: nobody can tell.

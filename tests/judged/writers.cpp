@@ -78,11 +78,26 @@ Write Writers::registers(const Step& step) {
   return block(first, last, rows, function);
 }
 
+// What the drive holds, or somewhat less where no motion depends on it.
+Write Writers::parameter(const Step& step) const {
+  constexpr std::array<std::uint16_t, 10> kRows{46, 47, 62, 64, 66, 68, 70, 72, 74, 76};
+  constexpr std::int64_t kMostOfAFloat = 1 << 23;
+  const std::uint16_t offset = kRows.at(step.number % kRows.size());
+  const auto held = parameters_.find(offset);
+  std::int64_t value = held == parameters_.end() ? 1 : held->second;
+  const bool harmless = offset >= row::homing_speed_switch && offset <= row::homing_acceleration;
+  if (harmless && step.on) value -= value / 4;
+  if (value <= 0 || value >= kMostOfAFloat) return one(row::command, kHalt);  // 0 alone is refused; never received
+  return one(offset, value);
+}
+
 Write Writers::write_of(const Step& step) {
   Writer& writer = writers_.at(step.client);
   switch (step.deed) {
     case Deed::command:
       return one(row::command, start_command(step), step.number % 4 == 3 ? fc::mask_write : 0);
+    case Deed::parameter:
+      return parameter(step);
     case Deed::release:
       return one(row::command, leases_ ? kRelease : kHalt);
     case Deed::word:

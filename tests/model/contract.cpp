@@ -99,6 +99,7 @@ std::string text(const World& world) {
   if (motion.kind == Motor::runs) out += (world.jog != 0 ? "jogs at " : "runs at ") + std::to_string(motion.value);
   if (motion.kind == Motor::unknown) out += "nobody can tell";
   if (world.broken && motion.kind != Motor::stands) out += ", or was broken off";
+  if (world.mode) out += ", in mode " + std::to_string(*world.mode);
   if (world.owner)
     out += std::string(", owned by ") + (*world.owner == 0       ? "a"
                                          : *world.owner == 1     ? "b"
@@ -273,6 +274,9 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
     // Whether it is remembered is not said.
     if (!expected || (!done && pending.verdict.any_answer))
       make_uncertain(next.clients[std::min(asked.client, kModbus)]);
+    // 3.5, "renew": whether a request that waits for the drive renews when it comes or when it is answered is not said.
+    if (asked.troubled && next.owner == asked.client && !next.orphan)
+      next.lease_ends_by_ms = std::max(next.lease_ends_by_ms, sight_.now_ms + options_.lease_of(asked.client));
     if (done && pending.verdict.takes_over) {
       next.owner = asked.client;
       next.lease_until(sight_.now_ms + options_.lease_of(asked.client));

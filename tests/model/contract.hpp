@@ -130,6 +130,7 @@ struct World {
   bool held = false;                       ///< coil 3 is 1
   std::int64_t ladder = 15;                ///< the last raw step of CiA 402 that was taken: 0, 6, 7 or 15
   std::optional<std::int64_t> raw_mode{};  ///< written to row 41 since the last command that selects a mode
+  std::optional<std::int64_t> mode{};      ///< what mode_display shows; none: that is not said
   bool speed_mode = false;                 ///< the last command that selects a mode selected 3
   bool other_mode = false;                 ///< it selected torque or homing: how a drive halts there is its own affair
   bool start_bit = false;                  ///< bit 4 may be set in the controlword in effect
@@ -171,7 +172,10 @@ struct ContractOptions {
   bool staged = false;             ///< "halves": "staged"
   bool expiry_acts = true;         ///< false: "on_expiry": "none"
   bool only_writes_renew = false;  ///< "renew": "write"
+  std::int64_t rearm_ms = 1000;
   std::array<int, kModbus> ranks{};
+  std::array<bool, kModbus> operators{};  ///< the others are engineers
+  std::set<std::uint16_t> parameters{};   ///< of the rows 46, 47 and 62 to 76 those that the drive has
   std::array<int, kWriters> strengths{};
   std::array<std::int64_t, kWriters> limits{kNever, kNever, kNever};  ///< lease_ms of a writer's heartbeat
   std::int64_t settles_ms = 1200;  ///< so long after an answer the motor does what was asked, ramps included
@@ -198,11 +202,12 @@ class Contract {
   void asked(std::size_t client);
   /// A changed counter of this DDS writer's heartbeat.
   void beats(std::size_t client, std::int64_t lease_ms);
-  /// What registers 28, 34 (bit 7) and 29 tell this client now. False: no reading of the contract has it.
+  /// What registers 28, 34 (bit 7), 29 and 1 tell this client now. False: no reading of the contract has it.
   struct Told {
     int owner = 0;
     bool latched = false;
     int lease_ms = 0;
+    std::optional<int> mode{};  ///< where it is valid
   };
   bool shown(std::size_t client, const Told& told);
   /// Whether registers 0 (bit 10) and 32 may tell of a target that is reached.

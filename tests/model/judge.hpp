@@ -35,6 +35,9 @@ class Readings {
 inline constexpr std::int64_t kUnderWayMs = 1000;
 /// 3.4 Stops: "Asserted stops are commands 2, 3, 4 and coils 2, 3 = 1, nothing else."
 [[nodiscard]] constexpr bool is_stop(std::int64_t command) { return command >= 2 && command <= 4; }
+/// 3.4: stops act "without taking the lease", release "gives the lease back": whether set-points beside one take it is
+/// not said.
+[[nodiscard]] constexpr bool takes_no_lease(std::int64_t command) { return is_stop(command) || command == kRelease; }
 [[nodiscard]] constexpr bool is_start(std::int64_t command) { return command >= kMove && command <= kHome; }
 
 class Judge {
@@ -92,6 +95,8 @@ class Judge {
   void take_over(Verdict& verdict);
   void set_position(Verdict& verdict);
   void object(int function, Verdict& verdict);
+  [[nodiscard]] bool forbidden(const Write& write) const;
+  Verdict parameter(std::uint16_t offset, std::int64_t value);
 
   const ContractOptions& options_;
   World& world_;

@@ -61,6 +61,7 @@ void Judge::begin_jog(std::int64_t direction, Verdict& verdict) {
   world_.motor = world_.motor == Motor::stands ? Motor::runs : Motor::unknown;
   world_.jog = direction;
   world_.speed_mode = true;
+  world_.mode = kVelocityMode;
   world_.jog_client = client_;
   world_.jog_ends_ms = seen_.now_ms + options_.jog_timeout_ms;
   world_.started_ms = seen_.now_ms;

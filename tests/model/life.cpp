@@ -71,6 +71,7 @@ void Contract::expire(World& world) const {
   if (!world.enabled || !options_.expiry_acts) return;
   world.motor = Motor::stands;
   world.jog = 0;
+  world.mode.reset();
   world.latched = true;
   world.enabled = false;
   world.off_asked_ms = sight_.now_ms;
@@ -100,6 +101,7 @@ void Contract::pass_time(std::int64_t now_ms) {
       const World before = world;
       world.motor = Motor::stands;
       world.jog = 0;
+      world.mode.reset();
       world.stale_speed = true;
       ended_by_nobody(world);
       changed(world, before);
@@ -159,6 +161,7 @@ void Contract::trouble_begins() {
   trouble_ = true;
   for (auto& [number, asked] : asked_) asked.troubled = true;
   for (World& world : worlds_) {
+    world.mode.reset();
     world.broken = world.motor != Motor::stands ||
                    std::ranges::any_of(world.earlier, [](const Motion& m) { return m.kind != Motor::stands; });
     // 3.3 Edges: "a fault, a link loss": a level or a command held since asks for nothing; what counts as one is not
@@ -177,6 +180,7 @@ void Contract::trouble_ends() {
   std::vector<World> more;
   for (World& world : worlds_) {
     world.changed_ms = sight_.now_ms;
+    world.mode.reset();
     world.latch_unsure = true;  // whether what ended out of sight was enabled then the gateway has not seen
     // Of an axis whose state is the gateway's own nobody knows what it has made of a loss.
     world.adopted = options_.by_gateway && world.enabled;

@@ -21,6 +21,11 @@ bool in(const List& list, std::uint16_t offset) {
 
 bool is_wide(std::uint16_t offset) { return in(kWide, offset); }
 
+bool is_parameter(std::uint16_t offset) {
+  return offset == row::target_torque || offset == row::max_torque ||
+         (offset >= row::homing_speed_switch && offset <= row::max_velocity);
+}
+
 std::optional<std::uint16_t> half_row(const Write& write) {
   if (write.function != fc::write_register) return {};
   if (is_wide(write.first)) return write.first;
