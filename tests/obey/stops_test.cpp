@@ -182,6 +182,24 @@ TEST_P(Stops, StayLatchedThroughADisable) {
   EXPECT_FALSE(latched());
 }
 
+// A drive that was away may have restarted: a 6 or 7 of before is no step out of the latch any more.
+TEST_P(Stops, StayLatchedWhereTheDriveWasGoneBetweenTheTwoStepsOutOfIt) {
+  constexpr std::int64_t kSwitchOn = 7, kEnableOperation = 15;
+  start_with_ids();
+  ASSERT_EQ(a_.command(kQuickStop, 3), kOk);
+  ASSERT_TRUE(plant_.comes_to_stand());
+  ASSERT_EQ(a_.row(row::controlword, kSwitchOn), kOk);
+  plant_.unplug();
+  plant_.run(1s);
+  plant_.restart_drive();
+  plant_.plug();
+  ASSERT_TRUE(plant_.stage.run_until([&] { return plant_.stage.axis(1).link_state == LinkState::online; }, 90s));
+  EXPECT_EQ(a_.row(row::controlword, kEnableOperation), kFailed);
+  plant_.run(1s);
+  EXPECT_EQ(a_.word(shown::axis_state), kStopLatched);
+  EXPECT_FALSE(plant_.motor().enabled.value_or(false));
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, Stops, testing::ValuesIn(kSubjects), named);
 
 }  // namespace

@@ -58,12 +58,14 @@ bool Axis::stop_comes_first(const WriteBatch& batch) const {
 bool Axis::may_be_enabled() const { return core_.turn.link != LinkState::online || core_.facts().enabled(); }
 
 void Axis::on_restarted() {
+  core_.motion.disarm();
   core_.begin_mode();
   end_jog();
   owed_.restarted();
 }
 
 void Axis::lose_sight() {
+  core_.motion.disarm();
   late_enable_.lost();
   owed_.link_lost(shown_.heard(), core_.store.exchange());
   if (owed_.take_news())

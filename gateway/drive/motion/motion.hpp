@@ -51,8 +51,8 @@ class Motion {
     unlatch_armed_ = false;
   }
   [[nodiscard]] bool latched() const { return latched_; }
-  /// The quick stop that latched it goes to the drive now: a 6 or 7 that went before it, in the same request, was no
-  /// step out of the latch.
+  /// The quick stop that latched it goes to the drive now, or the drive has restarted or is out of sight: a 6 or 7 that
+  /// went before it was no step out of the latch.
   void disarm() { unlatch_armed_ = false; }
 
   enum class Pass : std::uint8_t { refused, passes, passes_and_unlatches };
