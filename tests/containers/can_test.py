@@ -13,11 +13,12 @@ import tempfile
 import unittest
 
 ROOT, SIMULATOR, SOURCE = (os.path.abspath(path) for path in sys.argv[1:4])
-sys.path.insert(0, f"{SOURCE}/tests/integration")
+sys.path[:0] = [f"{SOURCE}/tests/integration", f"{SOURCE}/tests/docs"]
 
 from pymodbus.client import ModbusTcpClient  # noqa: E402
 
 from modbus import COMPLETED, LINK_DOWN, ONLINE, STANDSTILL, Client  # noqa: E402
+from page_commands import of_page  # noqa: E402
 from processes import NEVER, Program, until  # noqa: E402
 
 USER = 10001
@@ -84,7 +85,8 @@ class CanInAContainer(unittest.TestCase):
             status = dict(line.rstrip("\n").split(":\t", 1) for line in file if ":\t" in line)
         self.assertEqual((int(status["CapEff"], 16), status["Uid"].split()[0]), (0, str(USER)))
         # Granted: it is this network's alone from now on.
-        run("ip", "link", "set", "can-gateway", "netns", NETWORK, "name", "can0")
+        moved = of_page("docs/containers.md", "ip link set can0 netns").replace("can0", "can-gateway").replace("NAME", NETWORK)
+        run(*moved.split(), "name", "can0")
         run("ip", "-n", NETWORK, "link", "set", "can0", "up")
         axis.until(link_state=ONLINE)
         axis.set(profile_velocity=600 * 1000, profile_acceleration=30000, profile_deceleration=30000)

@@ -7,7 +7,7 @@ import shlex
 import sys
 
 SIMULATOR, SOURCE = (os.path.abspath(path) for path in sys.argv[2:4])
-sys.path.insert(0, f"{SOURCE}/tests/integration")
+sys.path[:0] = [f"{SOURCE}/tests/integration", f"{SOURCE}/tests/docs"]
 
 from compose import Engine  # noqa: E402
 

@@ -3,11 +3,13 @@
 by a discovery server. Run by tests/containers/run."""
 import json
 import os
+import shlex
 import tempfile
 import unittest
 
-from compose import Container
+from compose import LIMITS, Container
 from container_stage import ENGINE, SIMULATOR, SOURCE, USER, patient, plain_json
+from page_commands import of_page
 from processes import NEVER, Program, until
 
 SEALED = ["--read-only", "--read-only-tmpfs=false", "--cap-drop=all", "--security-opt=no-new-privileges"]
@@ -26,13 +28,15 @@ class OneGateway(unittest.TestCase):
         self.simulator.wait_for("^control ")
         self.device = os.path.realpath(f"{self.folder}/lift")
 
-    def gateway(self, image, *options, **more):
+    def configuration(self):
         config = patient(plain_json(f"{SOURCE}/deploy/container/compose.json"))
         config["modbus_tcp"] = [{"listen": "127.0.0.1:1502"}]
         del config["dds"], config["buses"][1]
         config["buses"][0]["device"] = "/dev/lift"
-        config.update(more)
-        self.write(config)
+        return config
+
+    def gateway(self, image, *options, **more):
+        self.write({**self.configuration(), **more})
         container = Container(ENGINE, "one")
         self.addCleanup(container.remove)
         container.create([*SEALED, "--network", "none", "--volume", f"{self.folder}/gateway.json:/etc/axisgate/gateway.json:ro", *options], image, [])
@@ -64,6 +68,33 @@ class OneGateway(unittest.TestCase):
         reload = ("exec", container.name, "/usr/bin/axisgate", "reload", "/etc/axisgate/gateway.json")
         until("it is taken up", lambda: ": changed" in ENGINE.done(*reload).stdout)
         until("as axis 7", lambda: "   7  online" in self.top(container))
+
+    def typed(self, command, **mine):
+        """A command of docs/containers.md as it stands there, but for what is the reader's own. What it prints."""
+        for named, is_here in {"./gateway.json": f"{self.folder}/gateway.json", **mine}.items():
+            command = command.replace(named, is_here)
+        engine, verb, *words = shlex.split(command)
+        self.assertEqual(engine, "podman")
+        return ENGINE(verb, *(["--pull=never", *LIMITS] if verb == "run" else []), *words)
+
+    def test_the_pages_commands_run_one(self):
+        self.addCleanup(Container(ENGINE, "gateway").remove)
+        self.write({**self.configuration(), "modbus_tcp": [{"listen": "0.0.0.0:1502", "allow": [{"from": "127.0.0.1", "role": "operator"}]}]})
+        self.assertIn("is valid", self.typed(of_page("docs/containers.md", "podman run --rm")))
+        # A pseudo-terminal is no device that can be made anew in a container: it is granted as a file. The rest of the line stays, the group too.
+        os.chown(self.device, 0, 20)
+        os.chmod(self.device, 0o660)
+        command = of_page("docs/containers.md", "podman run -d")
+        granted = "--device /dev/serial/by-id/usb-FTDI_...:/dev/lift"
+        self.assertIn(granted, command)
+        # Not every root may raise a limit: see LIMITS.
+        self.typed(command.replace(granted, f"--volume {self.device}:/dev/lift:dev").replace("nofile=4096", "nofile=1024:1024"))
+        look = of_page("docs/containers.md", "podman exec gateway")
+        until("its axis is online", lambda: "axes online 1 of 1" in self.typed(look))
+        self.config["buses"][0]["drives"][0]["axes"][0]["axis"] = 7
+        self.write(self.config)
+        self.assertIn(": changed", self.typed(of_page("docs/containers.md", "podman exec NAME"), NAME="gateway"))
+        until("as axis 7", lambda: "   7  online" in self.typed(look))
 
     def test_a_device_that_was_not_granted_is_not_there_and_all_else_works(self):
         container = self.gateway("localhost/axisgate")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of the manual, printed from the files that the gateway itself reads: drive profiles and panels' tag lists."""
+"""Tables of the manual, printed from the files that are used: drive profiles, panels' tag lists and the PLC's function blocks."""
 import csv
 import json
 import re
@@ -151,6 +151,21 @@ def tags(root, name):
     return table(head, rows)
 
 
+def declared(text, section):
+    """Names and types of a block's VAR_INPUT, say."""
+    made = re.search(rf"^{section}\n(.*?)^END_VAR$", text, re.DOTALL | re.MULTILINE)
+    return re.findall(r"^  (\w+) : (\w+)", made[1], re.MULTILINE) if made else []
+
+
+def blocks(root, name):
+    """Those that a program calls: AXG_Cycle, and all behind the ones that they are made of."""
+    text = (root / f"deploy/plc/{name}.st").read_text(encoding="utf-8")
+    first, rest = text.split("(* --- What the blocks are made of ")
+    found = re.findall(r"^FUNCTION_BLOCK (\w+)\n(.*?)^END_FUNCTION_BLOCK$", first + rest.split("(* --- The blocks ")[1], re.DOTALL | re.MULTILINE)
+    columns = [[", ".join(f"{each} {kind}" for each, kind in declared(body, section)) for section in ("VAR_INPUT", "VAR_OUTPUT")] for _, body in found]
+    return table(["block", "inputs", "outputs"], [[block, *column] for (block, _), column in zip(found, columns)])
+
+
 PRINTED = {"quantities": quantities, "protocols": protocols_of, "constants": constants, "checks": checks, "setup": setup,
            "faults": faults, "homing": homing}
 
@@ -158,4 +173,5 @@ PRINTED = {"quantities": quantities, "protocols": protocols_of, "constants": con
 def printed(root, what):
     """The text of `<!-- printed: what -->`: "checks of kinco-jd", or "tags of coils"."""
     kind, _, name = what.partition(" of ")
-    return tags(root, name) if kind == "tags" else PRINTED[kind](profile(root, name))
+    of_files = {"tags": tags, "blocks": blocks}
+    return of_files[kind](root, name) if kind in of_files else PRINTED[kind](profile(root, name))

@@ -1,24 +1,54 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The example writers of deploy/examples/dds, as a user calls them: the axis is enabled, moves, is kept and is let go."""
+"""The examples of deploy/examples/dds, called as their page has it: writers enable the axis, move it, keep it and let it go; readers show it."""
 import math
 import os
+import shlex
 import signal
+import subprocess
+import sys
 
 from dds_stage import PEERS, DdsStory, main
 from processes import Program, until
+from stage import AXISGATE, SOURCE
 
-CYCLONE_HERE = "<General><Interfaces><NetworkInterface address='127.0.0.1'/></Interfaces><AllowMulticast>false</AllowMulticast></General>" \
-    "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>20</MaxAutoParticipantIndex>" \
-    "<Peers><Peer address='127.0.0.1'/></Peers></Discovery>"
+sys.path.insert(0, f"{SOURCE}/tests/docs")
+from page_commands import of_page  # noqa: E402
 
-EXAMPLES = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "deploy", "examples", "dds")
+EXAMPLES = f"{SOURCE}/deploy/examples/dds"
+CYCLONE_HERE = shlex.split(of_page("deploy/examples/dds/README.md", "export CYCLONEDDS_URI="))[1]
 DONE = "result (2,|21, detail 0x2$)"  # 21: the first reply was lost, and it was so
 
 
-class Writers(DdsStory):
+class OfExamples(DdsStory):
     lines_of = ("serial",)
     gateway_name = "cell_7"
 
+    def example(self, words):
+        return self.keep(Program(words[0], ["env", CYCLONE_HERE, f"{PEERS}/{os.path.basename(words[0])}", *words[1:]]))
+
+    def command(self, vendor, target):
+        name, domain, gateway, axis, position = shlex.split(of_page("deploy/examples/dds/README.md", "build/command_fastdds"))
+        self.assertEqual((domain, gateway, axis, position), ("0", "", "1", "6.28"))
+        return self.example([name.replace("fastdds", vendor), str(self.domain), self.gateway_name, axis, str(target)])
+
+
+class Readers(OfExamples):
+    def test_each_shows_the_axis(self):
+        self.begin()
+        for command in (of_page("deploy/examples/dds/README.md", "build/axes_fastdds"), of_page("deploy/examples/dds/README.md", "build/axes_cyclonedds")):
+            name, domain = command.split()
+            self.assertEqual(domain, "0")
+            self.example([name, str(self.domain)]).wait_for("^cell_7 axis 1 serial  link 2 ")
+
+    def test_lines_of_json_are_for_any_language(self):
+        self.begin()
+        here = f"topics --json --once --domain {self.domain}"
+        command = of_page("deploy/examples/dds/README.md", "axisgate-dds topics --json |").replace("topics --json", here, 1)
+        path = {**os.environ, "PATH": f"{os.path.dirname(AXISGATE)}:{os.environ['PATH']}"}
+        until("the axis is shown", lambda: "1 serial" in subprocess.run(["bash", "-c", command], env=path, capture_output=True, text=True, check=True).stdout)
+
+
+class Writers(OfExamples):
     def setUp(self):
         super().setUp()
         self.begin()
@@ -35,8 +65,7 @@ class Writers(DdsStory):
         for turn, vendor in enumerate(("fastdds", "cyclonedds"), 1):
             self.at = vendor
             target = 3.0 * turn
-            program = self.keep(Program(f"command_{vendor}", [
-                "env", f"CYCLONEDDS_URI={CYCLONE_HERE}", os.path.join(PEERS, f"command_{vendor}"), str(self.domain), "cell_7", "1", str(target)]))
+            program = self.command(vendor, target)
             program.wait_for(f"command 1: {DONE}")
             program.wait_for(f"command 6: {DONE}")
             until("it is there", lambda target=target: abs(self.position() - target) < 0.005)
@@ -48,14 +77,12 @@ class Writers(DdsStory):
         self.at = None
 
 
-class Death(DdsStory):
-    lines_of = ("serial",)
-    gateway_name = "cell_7"
+class Death(OfExamples):
     lease = {"timeout_ms": 10000}
 
     def test_its_axis_is_stopped(self):
         self.begin()
-        program = self.keep(Program("command_fastdds", [os.path.join(PEERS, "command_fastdds"), str(self.domain), "cell_7", "1", "9000"]))
+        program = self.command("fastdds", 9000)
         program.wait_for("command 6: result")
         self.until_it_turns(1)
         program.process.kill()

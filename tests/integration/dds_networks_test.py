@@ -3,11 +3,15 @@
 hosts, static peers, a discovery server, the environment variables of ROS 2, DDS-Security. The second host is a network namespace."""
 from own_network import HOST_ADDRESS, OTHER, OTHER_ADDRESS, in_host, make_host, make_interfaces  # first: see there
 
-import os
 import subprocess
+import sys
 
 from dds_stage import CYCLONE, DONE, FAST, ROLE, DdsStory, Peer, main
 from processes import Program, until
+from stage import SOURCE
+
+sys.path.insert(0, f"{SOURCE}/tests/docs")
+from page_commands import of_page  # noqa: E402
 
 DISCOVERY_PORT = 11811
 CYCLONE_PEERS = "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address='{own}'/></Interfaces><AllowMulticast>false" \
@@ -144,11 +148,12 @@ class Secured(Networks):
     dds = {"interfaces": [OTHER], "qos_file": "secure.xml", "ros2": True,
            "roles": [{"certificate": "operator.cert.pem", "role": "operator"}, {"certificate": "engineer.cert.pem", "role": "engineer"}]}
     lives_by = ("strength", 3, "manual", 20000)  # so that the reader of its lease takes part as well
-    story_folder = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
     def prepare(self):
-        script = os.path.join(self.story_folder, "deploy/examples/dds/security/make")
-        subprocess.run([script, self.folder, str(self.domain), OTHER_ADDRESS], check=True, capture_output=True)
+        command = of_page("docs/dds/networks.md", "deploy/examples/dds/security/make")
+        program, *given = command.split()
+        self.assertEqual(given, ["/etc/axisgate/dds", "0", "192.168.1.10"])
+        subprocess.run([program, self.folder, str(self.domain), OTHER_ADDRESS], cwd=SOURCE, check=True, capture_output=True)
 
     def test_who_has_a_certificate_reads_and_commands_and_a_stranger_sees_nothing(self):
         stranger = self.node(FAST)

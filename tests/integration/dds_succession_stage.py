@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A DDS master on another host goes, in each way in which one can, and another program wants its axis: what the stories of that and the
-table of its times (tests/bench/dds/deaths) share."""
+table of its times (tests/bench/dds/masters) share."""
 from own_network import HOST, OTHER, OTHER_ADDRESS, in_host, make_host, make_interfaces  # first: see there
 
 import signal

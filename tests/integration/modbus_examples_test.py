@@ -5,9 +5,15 @@ import os
 import re
 import signal
 import subprocess
+import sys
 
 from examples_stage import EXAMPLES, FAR, PROGRAMS, TOOLS, TURN, Examples, main
+from modbus import DISABLED, ERROR_STOP
 from processes import Program, until
+from stage import SOURCE
+
+sys.path.insert(0, f"{SOURCE}/tests/docs")
+from page_commands import of_page  # noqa: E402
 
 TURNS = 2.5
 
@@ -90,6 +96,36 @@ class ProgramsDie(OfPrograms):
             self.axis(1).until_input("stop_latched")
             until("it stands", lambda: self.speed() == 0 and self.speed() == 0)
             self.axis(1).until(owner=0)
+
+
+class CommandsOfPages(Examples):
+    """mbpoll, as the first pages have it, at the listener for tools."""
+
+    lease_ms = 60000
+
+    def typed(self, command):
+        # More time for an answer: this machine may be busy with something else.
+        command = command.replace("1502", str(self.ports[TOOLS])).replace("mbpoll", "mbpoll -o 10", 1).replace("./sim.sock", self.path("control"))
+        return subprocess.run(command, shell=True, check=True, stdout=subprocess.PIPE, text=True).stdout
+
+    def test_a_fault_is_made_and_reset(self):
+        self.typed(of_page("docs/quick_start.md", "echo 'fault lift/1"))
+        self.axis(1).until(axis_state=ERROR_STOP, error_code=0x3210)
+        self.typed(of_page("docs/quick_start.md", "echo 'clear lift/1"))
+        self.typed(of_page("docs/quick_start.md", "mbpoll -0 -m tcp -p 1502 -t 0 -r 101"))
+        self.axis(1).until(axis_state=DISABLED, error_code=0)
+
+    def test_they_read_enable_and_stop(self):
+        enable = of_page("README.md", "mbpoll -0 -m tcp -p 1502 -t 0 -r 100 127.0.0.1 1")
+        self.assertRegex(self.typed(of_page("README.md", "mbpoll -0 -m tcp -p 1502 -t 4:hex")), r"(?m)^\[118\]:\s+0x0002$")
+        self.typed(enable)
+        self.axis(1).until_input("enabled")
+        self.typed(of_page("README.md", "mbpoll -0 -m tcp -p 1502 -t 0 -r 102"))
+        self.until_it_stands_without_torque()
+        self.axis(1).until_input("stop_latched")
+        self.typed(of_page("README.md", "mbpoll -0 -m tcp -p 1502 -t 0 -r 100 127.0.0.1 0"))
+        self.typed(enable)
+        self.axis(1).until_input("enabled")
 
 
 if __name__ == "__main__":

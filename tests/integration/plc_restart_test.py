@@ -29,6 +29,11 @@ class Interrupted(PlcStory):
         self.until("both are active", lambda: plc[RUNS].MoveVelocity.Active and plc[MOVES].MoveAbsolute.Active)
         self.until_motor_turns(RUNS, MOVES)
 
+    def until_told_and_ready(self):
+        plc = self.first
+        self.until("both are told", lambda: not plc[RUNS].MoveVelocity.Busy and not plc[MOVES].MoveAbsolute.Busy)
+        self.until("the gateway answers for both", lambda: all(plc[number].Axis.Ready for number in (RUNS, MOVES)))
+
     def assert_nothing_starts(self):
         """In cycles of a program that is ready and asks for nothing."""
         self.until("each PLC is ready", lambda: all(s.Axis.Ready for plc in self.plcs for s in plc.stations.values()))
@@ -246,11 +251,6 @@ class GatewayStarted(Interrupted):
         self.gateway.ended()
         self.run_gateway()
 
-    def until_told_and_ready(self):
-        plc = self.first
-        self.until("both are told", lambda: not plc[RUNS].MoveVelocity.Busy and not plc[MOVES].MoveAbsolute.Busy)
-        self.until("the gateway answers for both", lambda: all(plc[number].Axis.Ready for number in (RUNS, MOVES)))
-
     def test_anew_while_motors_turn(self):
         for number in (signal.SIGTERM, signal.SIGKILL):
             self.set_out()
@@ -270,6 +270,24 @@ class GatewayStarted(Interrupted):
         self.assertFalse(plc[RUNS].Axis.Ready, "it has noticed")
         self.assert_nothing_starts()
         self.assert_it_goes_on(plc)
+
+
+class GatewayMissed(Interrupted):
+    """By drives that watch for it."""
+
+    lines_of = ("kincocan", "leadshine")
+
+    def test_and_started_anew(self):
+        self.set_out()
+        self.gateway.send(signal.SIGKILL)
+        self.gateway.ended()
+        self.until_motor_stands(RUNS, MOVES)
+        self.run_gateway()
+        self.until_told_and_ready()
+        # A reset before that is refused: result 6.
+        self.until("the gateway sees both drives", lambda: all(self.first[number].ReadStatus.Valid for number in (RUNS, MOVES)))
+        self.assert_nothing_starts()
+        self.assert_it_goes_on(self.first)
 
 
 if __name__ == "__main__":

@@ -74,8 +74,9 @@ class CleanRoot:
         for name in ("resolv.conf", "hosts"):
             (self.path / "etc" / name).write_bytes(Path("/etc", name).read_bytes())
         proxies = [line for line in run("apt-config", "dump").splitlines() if re.match(r"Acquire::https?::proxy ", line, re.IGNORECASE)]
-        (self.path / "etc/apt/apt.conf.d/99test").write_text("\n".join((*proxies, 'Acquire::Retries "5";', 'APT::Sandbox::User "root";')) + "\n")
         # As in a container or at an installer: nothing may be left to chance, and nobody can be asked.
+        settings = ('Acquire::Retries "5";', 'APT::Sandbox::User "root";', 'APT::Get::Assume-Yes "true";', 'APT::Install-Recommends "false";')
+        (self.path / "etc/apt/apt.conf.d/99test").write_text("\n".join((*proxies, *settings)) + "\n")
         self.environment = {"PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", "DEBIAN_FRONTEND": "noninteractive",
                             "LC_ALL": "C.UTF-8", "HOME": "/root"}
 
@@ -87,12 +88,18 @@ class CleanRoot:
         return run(*self.command(*command, network=network))
 
     def apt(self, *words):
-        return self.run("apt-get", "-q", "-y", "--no-install-recommends", *words)
+        return self.run("apt-get", "-q", *words)
 
-    def put(self, deb):
+    def type(self, folder, command):
+        """A command of a page, in a folder of /root."""
+        return self.run("sh", "-c", f"cd /root/{folder} && {command}")
+
+    def put(self, deb, folder="."):
         """The file where apt in there finds it: its path there."""
-        (self.path / "root" / deb.name).write_bytes(deb.read_bytes())
-        return f"/root/{deb.name}"
+        to = self.path / "root" / folder / deb.name
+        to.parent.mkdir(parents=True, exist_ok=True)
+        to.write_bytes(deb.read_bytes())
+        return f"/root/{folder}/{deb.name}"
 
     def installed(self):
         """Names of all packages that dpkg knows something of, with their state."""

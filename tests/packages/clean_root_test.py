@@ -15,6 +15,9 @@ from pathlib import Path
 from clean_root import CleanRoot, Network, Program, Unit, run, until
 
 SOURCE, BUILD, WORK, TAR = (Path(path).absolute() for path in sys.argv[1:5])
+sys.path.insert(0, f"{SOURCE}/tests/docs")
+from page_commands import of_page, single  # noqa: E402
+
 GATEWAY_ADDRESS, PLC_ADDRESS = "192.168.1.10", "192.168.1.20"  # as the example has them
 CONFIGURATION = "etc/axisgate/gateway.json"
 ONLINE = 2
@@ -65,6 +68,10 @@ class UdevTest(unittest.TestCase):
         self.assertIn("ID_MM_DEVICE_IGNORE=1", named)
         other = self.shown('SUBSYSTEM=="tty", KERNEL=="tty", SYMLINK+="other"\n')
         self.assertNotRegex(other, "71-axisgate-lines.rules:|ID_MM_DEVICE_IGNORE")
+        # The page's two commands do nothing in a changed root: are they words of Debian's?
+        for program, command, *options in single(of_page("docs/installation.md", "udevadm control")):
+            known = (self.root.path / "usr/bin" / program).read_bytes()
+            self.assertEqual([word for word in (command, *options) if word.encode() not in known], [])
         # Whoever copies the example has no line of it misread.
         example = (self.root.path / "usr/share/doc/axisgate/examples/70-axisgate.rules").read_text(encoding="utf-8")
         self.assertNotRegex(self.shown(example), "70-axisgate.rules:[^\\n]*(nvalid|nknown|ignoring)")
@@ -145,7 +152,11 @@ class CleanRootTest(unittest.TestCase):
         return int(self.ask(f"writes lift-serial/1 {CONTROLWORD}"))
 
     def test_01_installing_starts_nothing_and_needs_no_dds(self):
-        self.root.apt("install", *(self.root.put(self.debs[name]) for name in ("axisgate", "axisgate-sim")))
+        self.root.put(self.debs["axisgate"], "build/packages/debs")
+        self.root.type(".", of_page("docs/installation.md", "apt install ./build/packages/debs/axisgate_*.deb"))
+        for name in ("axisgate", "axisgate-sim"):
+            self.root.put(self.debs[name], "first")
+        self.root.type("first", of_page("docs/quick_start.md", "apt install ./axisgate_*.deb"))
         packages = self.root.installed()
         self.assertEqual({packages["axisgate"], packages["axisgate-sim"]}, {"ii"})
         self.assertEqual([name for name in packages if re.search("fast|dds", name)], [])
@@ -159,7 +170,9 @@ class CleanRootTest(unittest.TestCase):
         self.assertRegex(self.root.run("getent", "passwd", "axisgate"), "nologin")
 
     def test_02_the_example_is_edited_and_accepted(self):
-        """One line of it, with a simulated drive at its end."""
+        """As it is, and then one line of it, with a simulated drive at its end."""
+        self.root.type(".", of_page("docs/installation.md", "cp /usr/share/doc/axisgate/examples/gateway.json"))
+        self.root.type(".", of_page("docs/installation.md", "axisgate check /etc/axisgate/gateway.json"))
         text = (self.root.path / "usr/share/doc/axisgate/examples/gateway.json").read_text(encoding="utf-8")
         config = json.loads(re.sub(r"(^|\s)//.*", "", text))
         config["buses"] = config["buses"][:1]
@@ -197,6 +210,10 @@ class CleanRootTest(unittest.TestCase):
         until("moving", lambda: self.position() > begin)
 
     def test_05_an_upgrade_adopts_the_axis_while_it_moves(self):
+        # What the page does before: would the new one take the configuration?
+        self.root.put(self.newer["axisgate"], "newer")
+        self.root.type("newer", of_page("docs/upgrade.md", "dpkg-deb -x"))
+        self.assertIn("is valid", self.root.type("newer", f"new/usr/bin/axisgate check /{CONFIGURATION}"))
         text = (self.root.path / CONFIGURATION).read_bytes()
         old, words, begin = self.unit.program, self.controlwords(), self.position()
         self.root.apt("install", self.root.put(self.newer["axisgate"]))
@@ -249,7 +266,9 @@ class CleanRootTest(unittest.TestCase):
         log = self.root.path / "var/log/dpkg.log"
         log.write_text("")
         both = make("--version", "1000.3")
-        self.root.apt("install", *(self.root.put(both[name]) for name in ("axisgate", "axisgate-dds")))
+        for name in ("axisgate", "axisgate-dds"):
+            self.root.put(both[name], "both")
+        self.root.type("both", of_page("docs/upgrade.md", "apt install ./axisgate_*.deb"))
         self.assertIsNone(self.unit.failure)
         text = log.read_text()
         self.assertLess(text.index(" upgrade axisgate-dds:"), text.index(" configure axisgate:"))
@@ -264,7 +283,8 @@ class CleanRootTest(unittest.TestCase):
         wants = self.root.path / "etc/systemd/system/multi-user.target.wants"
         wants.mkdir(parents=True, exist_ok=True)
         (wants / "axisgate.service").symlink_to("/lib/systemd/system/axisgate.service")
-        self.root.apt("remove", "axisgate", "axisgate-sim")
+        self.root.type(".", of_page("docs/installation.md", "apt remove"))
+        self.root.apt("remove", "axisgate-sim")
         self.assertIsNone(self.unit.program)
         self.assertIsNone(self.unit.failure)
         self.assertEqual(self.root.processes_of("axisgate"), [])
@@ -276,7 +296,7 @@ class CleanRootTest(unittest.TestCase):
         (self.root.path / "var/lib/axisgate/state").touch()
         foreign = self.root.path / "etc/axisgate/own-drive.json"
         foreign.touch()
-        self.root.apt("purge", "axisgate", "axisgate-dds", "axisgate-sim")
+        self.root.type(".", of_page("docs/installation.md", "apt purge"))
         self.root.apt("autoremove", "--purge")
         self.assertEqual(os.listdir(foreign.parent), [foreign.name], "what nobody of us wrote stays")
         foreign.unlink()
