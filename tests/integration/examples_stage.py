@@ -22,12 +22,13 @@ class Examples(Story):
 
     lines = {"lift": "jd@1"}
     lease_ms = None  # as it is written there
+    listener_options = {}
 
     def setUp(self):
         super().setUp()
         with open(f"{EXAMPLES}/modbus/gateway.json", encoding="utf-8") as file:
             config = json.loads(without_comments(file.read()))
-        listeners = [{**entry, "listen": self.listener()["listen"]} for entry in config["modbus_tcp"]]
+        listeners = [{**entry, **self.listener_options, "listen": self.listener()["listen"]} for entry in config["modbus_tcp"]]
         for bus in config["buses"]:
             # A machine that is busy with something else keeps a simulated drive from its answer.
             bus.update(device=self.path(os.path.basename(bus["device"])), timeout_ms=1000)

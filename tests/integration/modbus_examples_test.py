@@ -102,16 +102,21 @@ class CommandsOfPages(Examples):
     """mbpoll, as the first pages have it, at the listener for tools."""
 
     lease_ms = 60000
+    listener_options = {"start_deadline_ms": 60000, "reply_deadline_ms": 60000}
 
     def typed(self, command):
         # More time for an answer: this machine may be busy with something else.
         command = command.replace("1502", str(self.ports[TOOLS])).replace("mbpoll", "mbpoll -o 10", 1).replace("./sim.sock", self.path("control"))
         return subprocess.run(command, shell=True, check=True, stdout=subprocess.PIPE, text=True).stdout
 
+    def told(self, command):
+        """socat waits for an answer half a second and no longer."""
+        until("the simulator has answered", lambda: self.typed(command) == "ok\n")
+
     def test_a_fault_is_made_and_reset(self):
-        self.typed(of_page("docs/quick_start.md", "echo 'fault lift/1"))
+        self.told(of_page("docs/quick_start.md", "echo 'fault lift/1"))
         self.axis(1).until(axis_state=ERROR_STOP, error_code=0x3210)
-        self.typed(of_page("docs/quick_start.md", "echo 'clear lift/1"))
+        self.told(of_page("docs/quick_start.md", "echo 'clear lift/1"))
         self.typed(of_page("docs/quick_start.md", "mbpoll -0 -m tcp -p 1502 -t 0 -r 101"))
         self.axis(1).until(axis_state=DISABLED, error_code=0)
 
