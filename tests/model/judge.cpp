@@ -316,6 +316,8 @@ Verdict Judge::registers(const Write& write) {
     if (command == Edge::acts && is_stop(number)) {
       this->command(number, me().command, verdict);
       verdict.any_answer = true;
+    } else if (command == Edge::acts) {
+      me().command.refused = true;
     }
     return verdict;
   }
