@@ -46,7 +46,8 @@ void Play::send(std::size_t client, Write write, bool at_once) {
               : rows.contains(row::command_id) ? rows.at(row::command_id)
                                                : 0);
   if (posted) lose_sight_of_posted(client);
-  open_.push_back({request, client, number, now_ms(), outcome_.story.size() - 1, of_object, may_move(write), posted});
+  open_.push_back({request, client, number, now_ms(), outcome_.story.size() - 1, of_object, may_move(write),
+                   rows.size() > 1 && rows.contains(row::command), posted});
   collect();
   while (!at_once && !over() && std::ranges::any_of(open_, [&](const Open& open) { return open.request == request; }))
     pass(kStepMs);
@@ -69,7 +70,8 @@ void Play::collect() {
       }
       const bool tells = !is_dds(open.client) && !open.posted && newest_.at(open.client) == open.request;
       if (tells && answer->contains(0) && open.moves) looks_at_once_.insert(open.client);
-      if (tells && !answer->contains(0)) told_.at(open.client) = *answer->begin();
+      const bool new_ = !open.repeats || contract_->surely_acts(open.request);
+      if (tells && new_ && !answer->contains(0)) told_.at(open.client) = *answer->begin();
       if (!contract_->answered(open.request, *answer)) {
         line += "  <-- NO READING HAS THIS ANSWER";
         violated("no reading has this answer; expected: " + contract_->expected());

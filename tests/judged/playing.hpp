@@ -46,6 +46,7 @@ class Play {
     std::size_t line = 0;
     bool of_object = false;
     bool moves = false;    ///< it may begin a move
+    bool repeats = false;  ///< perhaps: "in a block, repeating ... leaves result and detail alone" (3.3 Not new)
     bool posted = false;   ///< the answer comes after the checks, register 25 tells the rest
     bool checked = false;  ///< that answer is there
     bool pending = false;  ///< register 25 has said so

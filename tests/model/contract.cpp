@@ -159,6 +159,9 @@ int Contract::send(std::size_t client, const Write& write) {
       Judge judge(options_, next, readings, seen, client);
       Pending pending;
       pending.verdict = judge.write(write);
+      // 3.5, "renew": whether "a write to this axis" that is refused is one is not said.
+      if (options_.only_writes_renew && next.owner == world.owner && !pending.verdict.answers.contains(0))
+        next.lease_ends_ms = std::min(next.lease_ends_ms, world.lease_ends_ms);
       pending.verdict.stop = judge.stopped();
       pending.verdict.takes_over = judge.takes_over();
       pending.verdict.any_answer = pending.verdict.any_answer || judge.unclear();

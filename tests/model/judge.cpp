@@ -245,15 +245,6 @@ bool Judge::forbidden(const Write& write) const {
   return std::ranges::any_of(rows, engineers);
 }
 
-// A row of what a program sets once, alone.
-Verdict Judge::parameter(std::uint16_t offset, std::int64_t value) {
-  Verdict verdict{"a parameter", {0}};
-  me().rows[offset] = value;
-  if (!options_.parameters.contains(offset)) return {"a row that the drive has not", {2}};  // 3.3 Outcomes
-  if (!refuse_foreign(verdict)) claim();
-  return verdict;
-}
-
 // 3.1 Panels: "either half of a 32-bit row first, then the other, same connection, no other write between; a lone half
 // is dropped after 1 s; ... a half that comes later than that is a new first half."
 Verdict Judge::half(const Half& newest, const std::optional<Half>& before) {
@@ -316,6 +307,8 @@ Verdict Judge::registers(const Write& write) {
     if (command == Edge::acts && is_stop(number)) {
       this->command(number, me().command, verdict);
       verdict.any_answer = true;
+    } else if (command == Edge::acts) {
+      me().command.refused = true;
     }
     return verdict;
   }

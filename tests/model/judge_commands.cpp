@@ -266,6 +266,15 @@ void Judge::set_position(Verdict& verdict) {
   if (world_.accepted.contains(row::set_position_value)) verdict.position = world_.accepted[row::set_position_value];
 }
 
+// A row of what a program sets once, alone.
+Verdict Judge::parameter(std::uint16_t offset, std::int64_t value) {
+  Verdict verdict{"a parameter", {0}};
+  me().rows[offset] = value;
+  if (!options_.parameters.contains(offset)) return {"a row that the drive has not", {2}};  // 3.3 Outcomes
+  if (!refuse_foreign(verdict)) claim();
+  return verdict;
+}
+
 // 3.4, command 5: "clears, never enables: the axis ends disabled". Whether its cause is gone the drive alone knows.
 bool Judge::reset_fault(Verdict& verdict) {
   if (!world_.faulted) return false;
