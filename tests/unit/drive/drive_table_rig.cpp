@@ -104,19 +104,7 @@ bool commands_by_sdo(const can::CanFrame& frame, bool keya) {
 
 }  // namespace
 
-std::string name(LeaseAction action) {
-  switch (action) {
-    case LeaseAction::quick_stop:
-      return "quick_stop";
-    case LeaseAction::halt:
-      return "halt";
-    case LeaseAction::disable:
-      return "disable";
-    case LeaseAction::none:
-      break;
-  }
-  return "none";
-}
+std::string name(LeaseAction action) { return std::string(text(command_of(action))); }
 
 std::string name(Subject subject) {
   static const std::vector<std::string> names{
