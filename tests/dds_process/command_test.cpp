@@ -296,7 +296,6 @@ TEST(CommandWriter, WhoseProcessIsKilledIsGoneWhenItsLeaseIsOver) {
             (WriterRecord{there->writer, 8, true, "127.0.0.1", LivelinessKind::manual_by_topic}));
 }
 
-/// The next command of this writer.
 TEST(EverySample, IsHeardOfEveryWriterWithItsStrength) {
   Child child({"--commands"});
   Peer peer;

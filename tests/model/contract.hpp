@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <boost/container/flat_map.hpp>
 #include <boost/container/flat_set.hpp>
 #include <cstdint>
 #include <map>
@@ -70,8 +71,8 @@ struct ClientMemory {
   std::array<Item, 10> coils{};
   std::optional<std::int64_t> id{};  ///< the last one that was not 0; belongs to the address
   Rows rows{};                       ///< as written last, whatever became of it
-  boost::container::flat_set<std::uint16_t>
-      refused_rows{};        ///< of these it was refused; whether that counts is not said
+  /// Of these it was refused; whether that counts is not said.
+  boost::container::flat_set<std::uint16_t> refused_rows{};
   bool rows_unsure = false;  ///< or otherwise
   std::optional<Half> half{};
   bool operator==(const ClientMemory&) const = default;
