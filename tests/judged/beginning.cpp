@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/judged/beginning.hpp"
 
+#include <array>
 #include <stdexcept>
+#include <utility>
 
 namespace axisgate::test::judged {
 
@@ -10,6 +12,9 @@ using namespace model;
 namespace {
 
 constexpr std::int64_t kJogSpeed = 45'000, kHomeSwitch = 19;
+/// And their bits in `supported` (3.1).
+constexpr std::array<std::pair<std::uint16_t, unsigned>, 10> kParameters{
+    {{46, 18}, {47, 19}, {62, 24}, {64, 25}, {66, 26}, {68, 27}, {70, 28}, {72, 29}, {74, 30}, {76, 31}}};
 
 ContractOptions options_of(const obey::Plant& plant, const Program& program, std::uint64_t seed) {
   const Subject subject = program.subject;
@@ -17,7 +22,9 @@ ContractOptions options_of(const obey::Plant& plant, const Program& program, std
   options.by_address = plant.listener.client_is_address;
   options.staged = plant.listener.staged_halves;
   options.leases = program.leases;
+  options.rearm_ms = plant.listener.rearm / std::chrono::milliseconds(1);
   const LeaseRules lease = lease_of(program, seed);
+  options.lease_ms = lease.timeout / std::chrono::milliseconds(1);
   options.expiry_acts = lease.on_expiry != LeaseAction::none;
   options.only_writes_renew = lease.renew == LeaseRenewal::write;
   options.no_halt = obey::is_kinco(subject) && !obey::is_md(subject) && program.flavour != Flavour::speeds;
@@ -40,6 +47,7 @@ LeaseRules lease_of(const Program& program, std::uint64_t seed) {
   // A drive that must be told again and again stops when nobody owns it.
   if (seed % 7 == 6 && obey::is_cia402(program.subject)) rules.on_expiry = LeaseAction::none;
   if (seed % 5 == 4) rules.renew = LeaseRenewal::write;
+  if (seed % 4 == 2) rules.timeout = std::chrono::milliseconds(seed % 8 == 2 ? 700 : 5000);
   return rules;
 }
 
@@ -58,6 +66,11 @@ Beginning begin(obey::Plant& plant, const Program& program, std::uint64_t seed) 
   if (!rows.empty()) fitter->command(kRelease);
   out.commands = static_cast<std::uint32_t>(fitter->wide(obey::shown::supported_commands));
   if ((out.commands >> kSetPosition & 1U) != 0) out.options.rows.insert(row::set_position_value);
+  for (const auto& [offset, bit] : kParameters) {
+    if (!plant.has(bit)) continue;
+    out.options.parameters.insert(offset);
+    out.parameters[offset] = is_wide(offset) ? static_cast<std::int32_t>(fitter->wide(offset)) : fitter->word(offset);
+  }
   out.world.enabled = true;
   // It was released: the lease is open, and began a moment ago.
   if (program.leases) out.world.lease_until(out.options.lease_ms - (rows.empty() ? kSinceReady : 0));

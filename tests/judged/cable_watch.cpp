@@ -49,7 +49,8 @@ void CableWatch::asked(int request, const Write& write) {
   for (const auto& [offset, value] : write.coils() ? Rows{} : rows_of(write)) {
     const bool enabling = offset == row::controlword && (value & kLadder) == kLadder;
     if (offset == row::command && value == kEnable) ++credit.enables;
-    if (offset == row::command && value >= kMove && value < kRelease) ++credit.starts;
+    const bool jogs = value == kJogForward || value == kJogReverse;
+    if (offset == row::command && ((value >= kMove && value < kRelease) || jogs)) ++credit.starts;
     if (enabling) ++credit.enables;
     if (enabling && ((value & kStartBit) != 0 || stepper)) ++credit.starts;
     if (offset == row::target_velocity && stepper) ++credit.starts;

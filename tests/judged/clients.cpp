@@ -44,16 +44,16 @@ const std::map<int, std::set<int>> kStandsFor{{0, {1, 2, 3}}, {2, {0}},  {3, {4}
 }  // namespace
 
 void Clients::connect() {
-  for (std::size_t client = 0; client < kDds; ++client) {
-    modbus_[client]->be(Role::engineer, kRanks[client]);
+  for (std::size_t client = 0; client < kModbus; ++client) {
+    modbus_[client]->be(operators_[client] ? Role::operator_ : Role::engineer, kRanks[client]);
     modbus_[client]->connect();
   }
   participant_ = static_cast<std::uint8_t>(participant_ + kMostWriters);
-  dds_.emplace(plant_.stage, participant_);
+  dds_.emplace(plant_.stage, participant_, std::vector<std::int32_t>(strengths_.begin(), strengths_.end()));
 }
 
 std::optional<std::set<int>> Clients::answer_of(std::size_t client, std::uint64_t request) {
-  if (client != kDds) {
+  if (!is_dds(client)) {
     const std::optional<Answer> answer = modbus_[client]->answer_of(request);
     return answer ? std::optional<std::set<int>>({answer->exception}) : std::nullopt;
   }
@@ -66,7 +66,7 @@ std::optional<std::set<int>> Clients::answer_of(std::size_t client, std::uint64_
 }
 
 std::uint64_t Clients::begin(std::size_t client, const Write& write) {
-  if (client == kDds) return dds_->begin(write);
+  if (is_dds(client)) return dds_->begin(write, client - kModbus);
   return modbus_[client]->begin(plant_.listener.float_numbers ? in_floats(write) : write);
 }
 
@@ -85,7 +85,7 @@ std::optional<Clients::Posted> Clients::posted(std::size_t client, std::uint64_t
 }
 
 void Clients::replace(std::size_t client, bool silently) {
-  if (client == kDds) return dds_->replace();
+  if (is_dds(client)) return dds_->replace(client - kModbus, !silently);
   if (silently)
     modbus_[client]->vanish();
   else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clients of a run: three of Modbus, one of DDS, and a viewer who passes by, each in the words of its listener.
+// The clients of a run: three of Modbus, three of DDS, and a viewer who passes by, each in the words of its listener.
 // Promises to tell of an answer what the contract knows: exceptions, 0 for none, or those that a result may stand for.
 // Never judges one.
 #pragma once
@@ -11,25 +11,33 @@
 
 #include "tests/judged/program.hpp"
 #include "tests/model/contract.hpp"
-#include "tests/obey/dds_writer.hpp"
+#include "tests/obey/dds_writers.hpp"
 #include "tests/obey/plant.hpp"
 
 namespace axisgate::test::judged {
 
 /// Of `allow`: command 14 takes an axis from a lower one.
-inline constexpr std::array<std::uint8_t, model::kDds> kRanks{5, 3, 4};
-inline constexpr std::array<const char*, model::kClients> kNames{"a", "b", "c", "dds"};
+inline constexpr std::array<std::uint8_t, model::kModbus> kRanks{5, 3, 4};
+/// Of the DDS writers, each in some of the runs; 0 as well of a SHARED one.
+inline constexpr std::array<std::array<int, model::kWriters>, 4> kStrengths{
+    {{5, 5, 9}, {9, 5, 0}, {0, 0, 5}, {7, 7, 7}}};
+inline constexpr std::array<const char*, model::kClients> kNames{"a", "b", "c", "dds 1", "dds 2", "dds 3"};
 
 class Clients {
  public:
-  explicit Clients(obey::Plant& plant)
-      : plant_(plant), c_(plant.connection_from(kHostOfC)), modbus_{&plant.a, &plant.b, c_.get()} {}
+  /// `operator_c`: c is an operator, else an engineer as a and b.
+  Clients(obey::Plant& plant, const std::array<int, model::kWriters>& strengths, bool operator_c)
+      : plant_(plant),
+        strengths_(strengths),
+        operators_{false, false, operator_c},
+        c_(plant.connection_from(kHostOfC)),
+        modbus_{&plant.a, &plant.b, c_.get()} {}
 
   /// Each with its rank, before a gateway that runs.
   void connect();
   void gateway_died() { dds_.reset(); }
   [[nodiscard]] bool connected(std::size_t client) const {
-    return client == model::kDds ? dds_.has_value() : modbus_[client]->connected();
+    return model::is_dds(client) ? dds_.has_value() : modbus_[client]->connected();
   }
   std::uint64_t begin(std::size_t client, const model::Write& write);
   /// None yet, or never. Throws for a DDS result that stands for nothing.
@@ -42,8 +50,10 @@ class Clients {
   std::uint64_t ask_for_result(std::size_t client);
   /// None yet.
   [[nodiscard]] std::optional<Posted> posted(std::size_t client, std::uint64_t asked);
-  /// A new connection; of DDS another writer.
+  /// A new connection; of DDS another writer, silently: of another participant.
   void replace(std::size_t client, bool silently);
+  [[nodiscard]] const std::array<bool, model::kModbus>& operators() const { return operators_; }
+  [[nodiscard]] obey::DdsWriters& dds() { return *dds_; }
   [[nodiscard]] obey::Client& modbus(std::size_t client) { return *modbus_[client]; }
   /// What was wrong with what a viewer was told for a write (3.3 Roles: 0x01, and nothing changes).
   [[nodiscard]] std::optional<std::string> bystand(const Step& step);
@@ -51,9 +61,11 @@ class Clients {
  private:
   static constexpr std::uint8_t kHostOfC = 50;
   obey::Plant& plant_;
+  std::array<int, model::kWriters> strengths_;
+  std::array<bool, model::kModbus> operators_;
   std::unique_ptr<obey::Client> c_;
-  std::array<obey::Client*, model::kDds> modbus_;
-  std::optional<obey::DdsWriter> dds_;
+  std::array<obey::Client*, model::kModbus> modbus_;
+  std::optional<obey::DdsWriters> dds_;
   std::uint8_t participant_ = 0;
 };
 

@@ -18,6 +18,13 @@ constexpr std::int64_t kComebackMs = 150'000;  // from the end of the last fault
 constexpr std::int64_t kOnlineMs = 1'200;      // so long online: what was late has come
 constexpr std::int64_t kTailMs = 6'000;        // after the last step
 
+/// Of the longest ones some are longer.
+std::int64_t length_of_outage(const Step& step) {
+  constexpr std::array<std::int64_t, 2> kVeryLong{30'000, 60'000};
+  const bool longer = step.length + 1U == kLengths.size() && step.id < kVeryLong.size();
+  return longer ? kVeryLong.at(step.id) : kLengths.at(step.length);
+}
+
 }  // namespace
 
 PlantOptions Play::options_of(const Program& program, std::uint64_t seed) {
@@ -29,6 +36,7 @@ PlantOptions Play::options_of(const Program& program, std::uint64_t seed) {
   // What a listener may be told, each in some of the runs.
   options.listener.client_is_address = seed % 4 == 1;
   options.listener.low_word_first = seed % 3 == 2;
+  if (seed % 6 == 2) options.listener.rearm = std::chrono::milliseconds(seed % 12 == 2 ? 300 : 3000);
   options.listener.per_axis_units = seed % 5 == 3;
   options.listener.posted_writes = seed % 7 % 3 == 2;
   options.listener.staged_halves = seed % 3 == 0;
@@ -57,7 +65,9 @@ void Play::begin() {
   watches_.emplace(plant_, neighbour_, other_bus_, [this](std::string what) { violated(std::move(what)); });
   clients_.connect();
   std::ranges::copy(kRanks, beginning.options.ranks.begin());
-  writers_.emplace(program_, plant_.profile_rows(), beginning.commands);
+  beginning.options.operators = clients_.operators();
+  beginning.options.strengths = kStrengths.at(seed_ % kStrengths.size());
+  writers_.emplace(program_, plant_.profile_rows(), beginning.parameters, beginning.commands);
   began_ = plant_.stage.runtime().now();
   const obey::Truth truth = plant_.motor();
   contract_.emplace(beginning.options, beginning.world);
@@ -176,7 +186,7 @@ void Play::die(const Step& step) {
 }
 
 void Play::outage(const Step& step) {
-  const std::int64_t length = kLengths.at(step.length);
+  const std::int64_t length = length_of_outage(step);
   outcome_.story.push_back(stamp() + ": " + text(step) + " " + std::to_string(length) + " ms");
   const bool once_more = step.deed == Deed::restart || step.deed == Deed::trip || step.deed == Deed::crash;
   if (!plant_.stage.gateway_runs() || (!wire_whole_ && !once_more)) return;
@@ -231,17 +241,27 @@ void Play::act(const Step& step) {
       read(step.client);
       break;
     case Deed::sample:
-      send(kDds, writers_->write_of(step), step.at_once);
+      send(kModbus + step.client, writers_->write_of(step), step.at_once);
       break;
     case Deed::new_writer:
-      replace(kDds, true);  // another GUID: the lease goes on until it runs out
+      replace(kModbus + step.client, step.on);
+      break;
+    case Deed::masters:
+      follow_each_other(step);
+      break;
+    case Deed::dds_jog:
+      jog_by_dds(step);
       break;
     case Deed::bystander:
       if (!over() && plant_.stage.gateway_runs())
         if (const auto wrong = clients_.bystand(step)) violated(*wrong);
       break;
+    case Deed::insist:
+      insist(step);
+      break;
     case Deed::reconnect:
     case Deed::vanish:
+      if (step.on) writers_->started_anew(step.client);
       replace(step.client, step.deed == Deed::vanish);
       break;
     case Deed::cross:

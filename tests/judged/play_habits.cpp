@@ -29,7 +29,7 @@ void Play::send_crossed(const Step& step) {
   unsigned drawn = step.command + 18U * (step.number + 24U * (step.position + 6U * step.speed));
   for (unsigned i = 0; i < 3U + step.id % 3U; ++i, drawn /= static_cast<unsigned>(kCrossed.size())) {
     Step one{.deed = Deed::command, .command = kCrossed.at(drawn % kCrossed.size())};
-    one.client = static_cast<std::uint8_t>((step.client + (step.on ? 0 : i)) % kDds);
+    one.client = static_cast<std::uint8_t>((step.client + (step.on ? 0 : i)) % kModbus);
     send(one.client, writers_->write_of(one), true);
     pass(kStepMs * (step.id % 4));
   }
@@ -86,13 +86,27 @@ void Play::use_monitor(const Step& step) {
   }
 }
 
+void Play::insist(const Step& step) {
+  constexpr int kNotNow = 6, kUnknown = 11;
+  constexpr std::array<std::int64_t, 3> kAgainMs{5, 100, 400};
+  Step order = press(step, step.on ? Deed::order : Deed::command);
+  order.id = step.id;
+  const Write write = writers_->write_of(order);
+  for (int tries = 0; tries < 4 && !over(); ++tries) {
+    send(step.client, write, false);
+    const auto told = told_.at(step.client);
+    if (told != kNotNow && told != kUnknown) return;
+    pass(kAgainMs.at(step.number % kAgainMs.size()));
+  }
+}
+
 void Play::take_away(const Step& step) {
   constexpr std::uint8_t kTakesOver = 15;  // of kCommands
   Step start = press(step, Deed::order);
   start.id = 2;
   send(step.client, writers_->write_of(start), step.at_once);
   pass(kPauses.at(step.length % kPauses.size()));
-  const auto rival = static_cast<std::uint8_t>((step.client + 1U + step.number % 2U) % kDds);
+  const auto rival = static_cast<std::uint8_t>((step.client + 1U + step.number % 2U) % kModbus);
   send(rival, writers_->write_of({.deed = Deed::command, .client = rival, .command = kTakesOver}), step.at_once);
 }
 
@@ -122,6 +136,46 @@ void Play::press_out_of_sight(const Step& step) {
     send(step.client, writers_->write_of(let_go), step.on);
   pass(std::min(kLengths.at(step.length), kLongestHabitMs));
   mend();
+}
+
+// Design 4: a DDS master begins something and stays, or falls silent, or is gone; mostly another writer comes then.
+void Play::follow_each_other(const Step& step) {
+  constexpr std::int64_t kAgainMs = 200;
+  constexpr std::array<std::uint8_t, 4> kSuccessors{kEnables, kFirstStart, kStops, kStops + 1};  // of kCommands
+  enum Sign : std::uint8_t { none, liveliness, heartbeat, standing_heartbeat };
+  const auto writer = static_cast<std::uint8_t>(step.client);
+  Step start = press(step, Deed::sample);
+  send(kModbus + writer, writers_->write_of(start), step.at_once);
+  for (std::int64_t gone = 0; gone <= kLengths.at(step.length) && gone < 2 * kLongestHabitMs && !over();
+       gone += kAgainMs) {
+    if (step.id % 4 == liveliness) be_alive(writer);
+    if (step.id % 4 >= heartbeat) beat(writer, step.id % 4 == heartbeat || gone == 0);
+    pass(kAgainMs);
+  }
+  if (step.on) replace(kModbus + writer, step.number % 4 != 3);
+  if (step.number % 3 == 0) return;
+  Step next = press(step, Deed::sample);
+  next.client = static_cast<std::uint8_t>((writer + step.number % 3) % kWriters);
+  next.command = kSuccessors.at(step.position % kSuccessors.size());
+  send(kModbus + next.client, writers_->write_of(next), step.at_once);
+}
+
+// Design 4: "jog with the same deadline". Let go, or forgotten; sometimes the other direction is pressed meanwhile.
+void Play::jog_by_dds(const Step& step) {
+  constexpr std::int64_t kAgainMs = 200;
+  constexpr std::uint8_t kOtherToo = 3;  // of Step::id
+  if (!obey::has_speeds(program_.subject)) return;
+  const std::size_t client = kModbus + step.client;
+  const auto say = [&](std::int64_t command) {
+    send(client, {.function = fc::sample, .sample = {{row::command, command}}}, step.at_once);
+  };
+  const std::int64_t way = step.number % 2 == 0 ? kJogForward : kJogReverse;
+  if (step.number % 4 == 0) say(kJogEnd);
+  for (std::int64_t gone = 0; gone <= kLengths.at(step.length) && gone < kLongestHabitMs && !over(); gone += kAgainMs) {
+    say(step.id == kOtherToo && gone == kAgainMs ? kJogForward + kJogReverse - way : way);
+    pass(kAgainMs);
+  }
+  if (step.on) say(kJogEnd);
 }
 
 // 3.1 Panels: panels that only have function 6; of others a target in one request. With another write between, or a

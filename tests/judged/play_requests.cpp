@@ -3,7 +3,9 @@
 #include <gtest/gtest-printers.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "tests/judged/beginning.hpp"
 #include "tests/judged/playing.hpp"
 #include "tests/judged/shown.hpp"
 
@@ -12,9 +14,20 @@ namespace axisgate::test::judged {
 using namespace model;
 using obey::Answer;
 
+namespace {
+
+bool may_move(const Write& write) {
+  if (write.coils())
+    return write.first <= coil::start_relative && write.first + write.words.size() > coil::start_absolute;
+  const Rows rows = rows_of(write);
+  return rows.contains(row::command) && (rows.at(row::command) == kMove || rows.at(row::command) == kRelative);
+}
+
+}  // namespace
+
 void Play::send(std::size_t client, Write write, bool at_once) {
   if (over() || !clients_.connected(client)) return;
-  if (client != kDds) writers_->sent(client, write);
+  if (!is_dds(client)) writers_->sent(client, write);
   watch_trouble();
   const std::string before = stamp();
   const int request = contract_->send(client, write);
@@ -23,17 +36,18 @@ void Play::send(std::size_t client, Write write, bool at_once) {
   const std::uint64_t number = clients_.begin(client, write);
   outcome_.story.push_back(before + ": " + kNames.at(client) + " " + text(write) + "  -> " + contract_->predicted());
   const bool of_object = rows_of(write).contains(row::object_request);
-  const bool posted = plant_.listener.posted_writes && client != kDds && !of_object;
-  if (client != kDds && !of_object) {
+  const bool posted = plant_.listener.posted_writes && !is_dds(client) && !of_object;
+  if (!is_dds(client) && !of_object) {
     told_.at(client).reset();
     newest_.at(client) = request;
   }
   const Rows rows = write.coils() ? Rows{} : rows_of(write);
-  ids_.insert(client == kDds                   ? static_cast<std::int64_t>(number & 0xFFFF)
+  ids_.insert(is_dds(client)                   ? static_cast<std::int64_t>(number & 0xFFFF)
               : rows.contains(row::command_id) ? rows.at(row::command_id)
                                                : 0);
   if (posted) lose_sight_of_posted(client);
-  open_.push_back({request, client, number, now_ms(), outcome_.story.size() - 1, of_object, posted});
+  open_.push_back({request, client, number, now_ms(), outcome_.story.size() - 1, of_object, may_move(write),
+                   rows.size() > 1 && rows.contains(row::command), posted});
   collect();
   while (!at_once && !over() && std::ranges::any_of(open_, [&](const Open& open) { return open.request == request; }))
     pass(kStepMs);
@@ -54,8 +68,10 @@ void Play::collect() {
         for (const int each : *answer) line += " " + std::to_string(each);
         line += "]";
       }
-      const bool tells = open.client != kDds && !open.posted && newest_.at(open.client) == open.request;
-      if (tells && !answer->contains(0)) told_.at(open.client) = *answer->begin();
+      const bool tells = !is_dds(open.client) && !open.posted && newest_.at(open.client) == open.request;
+      if (tells && answer->contains(0) && open.moves) looks_at_once_.insert(open.client);
+      const bool new_ = !open.repeats || contract_->surely_acts(open.request);
+      if (tells && new_ && !answer->contains(0)) told_.at(open.client) = *answer->begin();
       if (!contract_->answered(open.request, *answer)) {
         line += "  <-- NO READING HAS THIS ANSWER";
         violated("no reading has this answer; expected: " + contract_->expected());
@@ -68,6 +84,10 @@ void Play::collect() {
     if (now_ms() - open.sent_ms > kSilenceMs) violated("a request was never answered: " + line);
     return false;
   });
+  // 3.3: "a PLC never sees the target_reached of the move before".
+  const std::set<std::size_t> clients = std::exchange(looks_at_once_, {});
+  for (const std::size_t client : clients)
+    if (!over() && std::ranges::none_of(open_, [&](const Open& open) { return open.client == client; })) read(client);
 }
 
 // 3.3, "posted": "answered after the checks, the outcome in 25, 26, 30". Empty: nobody can tell.
@@ -109,13 +129,31 @@ void Play::never_answered(const Open& open) {
 
 void Play::replace(std::size_t client, bool silently) {
   if (!clients_.connected(client)) return;
+  contract_->left(client, silently);
   for (const Open& open : open_)
     if (open.client == client) never_answered(open);
   std::erase_if(open_, [&](const Open& open) { return open.client == client; });
-  contract_->left(client, silently);
-  if (client != kDds) told_.at(client).reset();
+  if (!is_dds(client)) told_.at(client).reset();
   clients_.replace(client, silently);
   outcome_.story.push_back(stamp() + ": " + kNames.at(client) + (silently ? " vanishes" : " begins anew"));
+}
+
+// Design 4, signs of life: "MANUAL_BY_TOPIC liveliness".
+void Play::be_alive(std::size_t writer) {
+  if (over() || !clients_.connected(kModbus + writer)) return;
+  contract_->asked(kModbus + writer);
+  clients_.dds().assert_liveliness(writer);
+}
+
+// Design 4, signs of life: "a changed counter renews ...; the lease is the smaller of lease_ms and the configured one";
+// 0: as that is.
+void Play::beat(std::size_t writer, bool counts_on) {
+  constexpr std::array<std::uint32_t, kWriters> kLeases{0, 1200, 5000};
+  if (over() || !clients_.connected(kModbus + writer)) return;
+  // Where only a write renews, whether one that asks for a shorter lease ends it is not said.
+  const std::uint32_t lease_ms = lease_of(program_, seed_).renew == LeaseRenewal::any ? kLeases.at(writer) : 0;
+  if (counts_on) contract_->beats(kModbus + writer, lease_ms == 0 ? kNever : lease_ms);
+  clients_.dds().beat(writer, counts_on, lease_ms);
 }
 
 // 3.2: what is shown as valid was true at its age.

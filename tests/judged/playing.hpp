@@ -27,7 +27,7 @@ class Play {
         neighbour_(seed % 2 == 0),
         other_bus_(seed % 4 == 3),
         plant_(program.subject, options_of(program, seed)),
-        clients_(plant_),
+        clients_(plant_, kStrengths.at(seed % kStrengths.size()), seed % 3 == 1),
         plague_(plant_, program_.nemesis, seed) {}
 
   Outcome run();
@@ -45,6 +45,8 @@ class Play {
     std::int64_t sent_ms = 0;
     std::size_t line = 0;
     bool of_object = false;
+    bool moves = false;    ///< it may begin a move
+    bool repeats = false;  ///< perhaps: "in a block, repeating ... leaves result and detail alone" (3.3 Not new)
     bool posted = false;   ///< the answer comes after the checks, register 25 tells the rest
     bool checked = false;  ///< that answer is there
     bool pending = false;  ///< register 25 has said so
@@ -69,7 +71,12 @@ class Play {
   void use_tool(const Step& step);
   void use_monitor(const Step& step);
   void take_away(const Step& step);
+  void insist(const Step& step);
   void press_out_of_sight(const Step& step);
+  void follow_each_other(const Step& step);
+  void jog_by_dds(const Step& step);
+  void be_alive(std::size_t writer);
+  void beat(std::size_t writer, bool counts_on);
   void look_up(std::size_t client);
   void watch_trouble();
   void begin_trouble();
@@ -99,9 +106,10 @@ class Play {
   History seen_;
   /// The exception that this client's newest request of registers was answered with; none: what register 25 tells is
   /// not known. Of what is done it may tell of an older one, or 10 of another row of the block.
-  std::array<std::optional<int>, model::kDds> told_{};
-  std::array<int, model::kDds> newest_{};  ///< of each client, but of objects
-  std::set<std::int64_t> ids_{0};          ///< of commands, that anybody has written
+  std::array<std::optional<int>, model::kModbus> told_{};
+  std::array<int, model::kModbus> newest_{};  ///< of each client, but of objects
+  std::set<std::int64_t> ids_{0};             ///< of commands, that anybody has written
+  std::set<std::size_t> looks_at_once_;       ///< clients whose move was just answered
   bool wire_whole_ = true;
   bool had_outage_ = false;
   std::int64_t whole_since_ms_ = 0;

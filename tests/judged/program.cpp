@@ -15,12 +15,15 @@ using Weighted = std::pair<std::size_t, Deed>;
 
 rc::Gen<Deed> deed(Weather weather) {
   const std::initializer_list<Weighted> calm{
-      {2, Deed::wait},       {6, Deed::command},     {6, Deed::command_by_id}, {8, Deed::order},      {6, Deed::image},
-      {2, Deed::zeros},      {4, Deed::target},      {1, Deed::mode_block},    {1, Deed::word_block}, {2, Deed::word},
-      {4, Deed::coil},       {3, Deed::start_coils}, {1, Deed::cross},         {3, Deed::again},      {3, Deed::scan},
-      {3, Deed::button},     {3, Deed::read},        {1, Deed::release},       {1, Deed::reconnect},  {1, Deed::vanish},
-      {1, Deed::object},     {1, Deed::look_up},     {3, Deed::halves},        {1, Deed::bystander},  {5, Deed::sample},
-      {1, Deed::new_writer}, {4, Deed::tool},        {1, Deed::monitor},       {1, Deed::rival}};
+      {2, Deed::wait},      {6, Deed::command},     {6, Deed::command_by_id}, {8, Deed::order},
+      {6, Deed::image},     {2, Deed::zeros},       {4, Deed::target},        {2, Deed::parameter},
+      {2, Deed::insist},    {1, Deed::mode_block},  {1, Deed::word_block},    {2, Deed::word},
+      {4, Deed::coil},      {3, Deed::start_coils}, {1, Deed::cross},         {3, Deed::again},
+      {3, Deed::scan},      {3, Deed::button},      {3, Deed::read},          {1, Deed::release},
+      {1, Deed::reconnect}, {1, Deed::vanish},      {1, Deed::object},        {1, Deed::look_up},
+      {3, Deed::halves},    {1, Deed::bystander},   {5, Deed::sample},        {3, Deed::masters},
+      {2, Deed::dds_jog},   {1, Deed::new_writer},  {4, Deed::tool},          {1, Deed::monitor},
+      {1, Deed::rival}};
   if (weather == Weather::calm) return rc::gen::weightedElement<Deed>(calm);
   const auto rough = rc::gen::weightedElement<Deed>({{4, Deed::lost},
                                                      {4, Deed::cut},
@@ -39,21 +42,22 @@ rc::Gen<std::uint8_t> below(std::size_t bound) {
 }
 
 rc::Gen<Step> step(Weather weather) {
-  return rc::gen::build<Step>(rc::gen::set(&Step::deed, deed(weather)), rc::gen::set(&Step::client, below(model::kDds)),
-                              rc::gen::set(&Step::command, below(kCommands.size())), rc::gen::set(&Step::id, below(5)),
-                              rc::gen::set(&Step::position, below(kPositions.size() + 2)),
-                              rc::gen::set(&Step::speed, below(kSpeeds.size() + 2)),
-                              rc::gen::set(&Step::number, below(24)), rc::gen::set(&Step::on),
-                              rc::gen::set(&Step::at_once), rc::gen::set(&Step::length, below(kLengths.size())),
-                              rc::gen::set(&Step::pause, below(kPauses.size())));
+  return rc::gen::build<Step>(
+      rc::gen::set(&Step::deed, deed(weather)), rc::gen::set(&Step::client, below(model::kModbus)),
+      rc::gen::set(&Step::command, below(kCommands.size())), rc::gen::set(&Step::id, below(5)),
+      rc::gen::set(&Step::position, below(kPositions.size() + 2)),
+      rc::gen::set(&Step::speed, below(kSpeeds.size() + 2)), rc::gen::set(&Step::number, below(24)),
+      rc::gen::set(&Step::on), rc::gen::set(&Step::at_once), rc::gen::set(&Step::length, below(kLengths.size())),
+      rc::gen::set(&Step::pause, below(kPauses.size())));
 }
 
-constexpr std::array<const char*, 38> kDeeds{
-    "wait",       "command",    "command by id", "order",       "image",  "zeros",   "target", "mode block",
-    "word block", "word",       "coil",          "start coils", "cross",  "again",   "scan",   "button",
-    "tool",       "monitor",    "rival",         "read",        "object", "look up", "halves", "bystander",
-    "sample",     "new writer", "release",       "reconnect",   "vanish", "lost",    "cut",    "unplug",
-    "lose",       "late",       "twice",         "restart",     "trip",   "crash"};
+constexpr std::array<const char*, 42> kDeeds{
+    "wait",      "command",    "command by id", "order",     "image",     "zeros",       "target",
+    "parameter", "mode block", "word block",    "word",      "coil",      "start coils", "cross",
+    "again",     "scan",       "button",        "tool",      "monitor",   "insist",      "rival",
+    "read",      "object",     "look up",       "halves",    "bystander", "sample",      "new writer",
+    "masters",   "DDS jog",    "release",       "reconnect", "vanish",    "lost",        "cut",
+    "unplug",    "lose",       "late",          "twice",     "restart",   "trip",        "crash"};
 
 }  // namespace
 

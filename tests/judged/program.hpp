@@ -28,6 +28,7 @@ enum class Deed : std::uint8_t {
   image,          ///< the whole of a scanner's block, 40 to 56
   zeros,          ///< the same before its program runs
   target,         ///< one target alone
+  parameter,      ///< one row of 46, 47 and 62 to 76
   mode_block,     ///< 41 to 43
   word_block,     ///< 40 to 45
   word,           ///< controlword alone
@@ -39,6 +40,7 @@ enum class Deed : std::uint8_t {
   button,         ///< a jog button is pressed and held, written each 200 ms, and released or forgotten; or both are
   tool,           ///< a target and a press of its start, again and again; a connection for each, or one for all
   monitor,        ///< one that only reads, each 100 ms
+  insist,         ///< what was answered 0x06 or 0x0B is asked once more, until it is answered otherwise
   rival,          ///< another client takes the axis while it moves
   read,           ///< registers 0 to 38
   object,         ///< the mailbox, or 43/13, writes the drive's own position target
@@ -46,9 +48,11 @@ enum class Deed : std::uint8_t {
   halves,         ///< one target by two writes of function 6, sometimes with another write between
   bystander,      ///< a viewer writes
   sample,         ///< of a DDS writer
-  new_writer,     ///< it is deleted, and another one begins
+  new_writer,     ///< it is deleted, or its liveliness is lost, and another one begins
+  masters,        ///< a DDS master is alive in one way or another, or is not, and another one comes
+  dds_jog,        ///< a jog by samples, held and let go or forgotten
   release,        ///< command 13
-  reconnect,      ///< the connection ends, a new one begins
+  reconnect,      ///< the connection ends, a new one begins; perhaps of a PLC that was started anew, ids and all
   vanish,         ///< silent for ever; a new connection begins after a while
   lost,           ///< something is pressed, or let go, while the drive is out of sight
   cut,            ///< the wire, and nobody reports it
@@ -86,7 +90,7 @@ struct Program {
 // Few of them, so that what was written before is written again.
 inline constexpr std::array<std::int64_t, 4> kPositions{1'000, -20'000, 150'000, -500'000};
 inline constexpr std::array<std::int64_t, 4> kSpeeds{60'000, -120'000, 150'000, 0};
-inline constexpr std::array<std::int64_t, 16> kCommands{0, 1, 1, 6, 6, 6, 8, 7, 3, 4, 2, 5, 9, 10, 11, 14};
+inline constexpr std::array<std::int64_t, 17> kCommands{0, 1, 1, 6, 6, 6, 8, 7, 3, 4, 2, 5, 9, 10, 11, 14, 12};
 inline constexpr std::array<std::int64_t, 7> kPauses{0, 0, 50, 50, 300, 1200, 2500};
 inline constexpr std::array<std::int64_t, 8> kLengths{1, 20, 100, 300, 700, 1500, 4000, 12'000};
 

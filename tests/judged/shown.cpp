@@ -43,17 +43,20 @@ bool result_fits(int exception, int result) {
 
 std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Contract& contract,
                                     const History& history) {
-  constexpr std::size_t kErrorCode = 10, kLink = 18, kAge = 19, kValid = 22, kAlarms = 34;
-  constexpr unsigned kBitOfVelocity = 3, kBitOfErrorCode = 7;
+  constexpr std::size_t kMode = 1, kErrorCode = 10, kLink = 18, kAge = 19, kValid = 22, kAlarms = 34;
+  constexpr unsigned kBitOfMode = 1, kBitOfVelocity = 3, kBitOfErrorCode = 7;
   constexpr std::int64_t kCauseMs = 1'000;  // from the end of a fault until it is read
   constexpr std::uint16_t kOnline = 2, kSuspect = 3, kUnknown = 7;
   constexpr unsigned kBitOfStatusword = 0, kBitOfPosition = 2, kBitOfStopLatched = 7;
   const int owner = shown.words[obey::shown::owner];
   const bool latched = bit_of(shown.wide(kAlarms), kBitOfStopLatched);
   const int lease_ms = shown.words[obey::shown::lease_remaining];
-  if (!contract.shown(client, {owner, latched, lease_ms}))
+  std::optional<int> mode;
+  if (bit_of(shown.wide(kValid), kBitOfMode)) mode = static_cast<std::int16_t>(shown.words[kMode]);
+  if (!contract.shown(client, {owner, latched, lease_ms, mode}))
     return "shown owner " + std::to_string(owner) + ", its lease for " + std::to_string(lease_ms) + " ms" +
-           (latched ? ", stop-latched" : ", not stop-latched") + "; the contract: " + contract.expected();
+           (latched ? ", stop-latched" : ", not stop-latched") + (mode ? ", in mode " + std::to_string(*mode) : "") +
+           "; the contract: " + contract.expected();
   // 3.2 Unknown: "axis_state 7 unknown while link_state is not 2 or 3"; 3.2: "statusword and discrete inputs 0..10 read
   // 0".
   const std::uint16_t link = shown.words[kLink];

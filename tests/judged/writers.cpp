@@ -6,8 +6,8 @@ namespace axisgate::test::judged {
 using namespace model;
 
 namespace {
-constexpr std::int64_t kMoveNow = 63;  // start, and change at once
-constexpr std::uint8_t kHomeCoil = 23;
+constexpr std::int64_t kMoveNow = 63;                                 // start, and change at once
+constexpr std::uint8_t kHomeCoil = 23, kReleases = 22, kTooOld = 21;  // of Step::number
 }  // namespace
 
 std::int64_t Writers::start_command(const Step& step) const {
@@ -77,11 +77,26 @@ Write Writers::registers(const Step& step) {
   return block(first, last, {rows.lower_bound(first), rows.upper_bound(last)}, function);
 }
 
+// What the drive holds, or somewhat less where no motion depends on it.
+Write Writers::parameter(const Step& step) const {
+  constexpr std::array<std::uint16_t, 10> kRows{46, 47, 62, 64, 66, 68, 70, 72, 74, 76};
+  constexpr std::int64_t kMostOfAFloat = 1 << 23;
+  const std::uint16_t offset = kRows.at(step.number % kRows.size());
+  const auto held = parameters_.find(offset);
+  std::int64_t value = held == parameters_.end() ? 1 : held->second;
+  const bool harmless = offset >= row::homing_speed_switch && offset <= row::homing_acceleration;
+  if (harmless && step.on) value -= value / 4;
+  if (value <= 0 || value >= kMostOfAFloat) return one(row::command, kHalt);  // 0 alone is refused; never received
+  return one(offset, value);
+}
+
 Write Writers::write_of(const Step& step) {
   Writer& writer = writers_.at(step.client);
   switch (step.deed) {
     case Deed::command:
       return one(row::command, start_command(step), step.number % 4 == 3 ? fc::mask_write : 0);
+    case Deed::parameter:
+      return parameter(step);
     case Deed::release:
       return one(row::command, leases_ ? kRelease : kHalt);
     case Deed::word:
@@ -90,13 +105,14 @@ Write Writers::write_of(const Step& step) {
     case Deed::sample: {
       Rows rows;
       const std::int64_t command = start_command(step);
-      rows[row::command] = command > kRun && command != kHome ? kHalt : command;
+      rows[row::command] = command > kRun && command != kHome && command != kTakeOver ? kHalt : command;
+      if (step.number == kReleases && leases_) rows[row::command] = kRelease;
       if (step.position < kPositions.size() && obey::has_positions(subject_))
         rows[row::target_position] = kPositions[step.position];
       if (step.speed < kSpeeds.size() && obey::has_speeds(subject_)) rows[row::target_velocity] = kSpeeds[step.speed];
       // A sample that asks for nothing is an error of its own.
       if (rows.size() == 1 && rows[row::command] == 0) rows[row::command] = kHalt;
-      return {.function = fc::sample, .sample = rows};
+      return {.function = fc::sample, .sample = rows, .stale = step.number == kTooOld};
     }
     case Deed::object: {
       constexpr std::uint16_t kLast = 85;

@@ -99,11 +99,13 @@ std::string text(const World& world) {
   if (motion.kind == Motor::runs) out += (world.jog != 0 ? "jogs at " : "runs at ") + std::to_string(motion.value);
   if (motion.kind == Motor::unknown) out += "nobody can tell";
   if (world.broken && motion.kind != Motor::stands) out += ", or was broken off";
+  if (world.mode) out += ", in mode " + std::to_string(*world.mode);
   if (world.owner)
-    out += std::string(", owned by ") + (*world.owner == 0      ? "a"
-                                         : *world.owner == 1    ? "b"
-                                         : *world.owner == kDds ? "dds"
-                                                                : "one who is gone");
+    out += std::string(", owned by ") + (*world.owner == 0       ? "a"
+                                         : *world.owner == 1     ? "b"
+                                         : *world.owner == 2     ? "c"
+                                         : *world.owner < kGhost ? "dds " + std::to_string(*world.owner - kModbus + 1)
+                                                                 : "one who is gone");
   return out;
 }
 
@@ -153,10 +155,13 @@ int Contract::send(std::size_t client, const Write& write) {
     do {
       World next = world;
       const Seen seen = this->seen();
-      take_over(next, client);
+      if (!write.stale) take_over(next, client);  // Design 4, age: "stale samples and heartbeats renew nothing"
       Judge judge(options_, next, readings, seen, client);
       Pending pending;
       pending.verdict = judge.write(write);
+      // 3.5, "renew": whether "a write to this axis" that is refused is one is not said.
+      if (options_.only_writes_renew && next.owner == world.owner && !pending.verdict.answers.contains(0))
+        next.lease_ends_ms = std::min(next.lease_ends_ms, world.lease_ends_ms);
       pending.verdict.stop = judge.stopped();
       pending.verdict.takes_over = judge.takes_over();
       pending.verdict.any_answer = pending.verdict.any_answer || judge.unclear();
@@ -165,7 +170,7 @@ int Contract::send(std::size_t client, const Write& write) {
       if (next.owner) next.found = false;
       if (next.found && readings.other()) {
         next.owner = client;
-        next.lease_until(sight_.now_ms + options_.lease_ms);
+        next.lease_until(sight_.now_ms + options_.lease_of(client));
       }
       said.insert(std::exchange(pending.verdict.says, {}));
       const Rows rows = write.coils() ? Rows{} : rows_of(write);
@@ -184,6 +189,7 @@ int Contract::send(std::size_t client, const Write& write) {
       // owed all the same (3.4 Owed stops).
       World none = world;
       none.clients = next.clients;
+      none.pressed = next.pressed;
       if (none.owner == next.owner) none.lease_ends_by_ms = std::max(none.lease_ends_by_ms, next.lease_ends_by_ms);
       if (trouble_ && pending.verdict.stop) none = owed_alone(next, none);
       overtake(none, pending, sets);
@@ -269,10 +275,14 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
       next.changed_ms = sight_.now_ms;
     }
     // Whether it is remembered is not said.
-    if (!expected || (!done && pending.verdict.any_answer)) make_uncertain(next.clients[asked.client]);
+    if (!expected || (!done && pending.verdict.any_answer))
+      make_uncertain(next.clients[std::min(asked.client, kModbus)]);
+    // 3.5, "renew": whether a request that waits for the drive renews when it comes or when it is answered is not said.
+    if (asked.troubled && next.owner == asked.client && !next.orphan)
+      next.lease_ends_by_ms = std::max(next.lease_ends_by_ms, sight_.now_ms + options_.lease_of(asked.client));
     if (done && pending.verdict.takes_over) {
       next.owner = asked.client;
-      next.lease_until(sight_.now_ms + options_.lease_ms);
+      next.lease_until(sight_.now_ms + options_.lease_of(asked.client));
     }
     // An enable of which nobody knows: whether it is taken back once it shows is not said (D152).
     constexpr int kUnknownOutcome = 0x0B;

@@ -6,6 +6,7 @@
 // Promises to know nothing of the gateway: it includes nothing of it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <boost/container/flat_map.hpp>
 #include <boost/container/flat_set.hpp>
@@ -20,7 +21,8 @@
 
 namespace axisgate::test::model {
 
-inline constexpr std::size_t kClients = 4, kDds = 3;  ///< three of Modbus, one of DDS
+inline constexpr std::size_t kModbus = 3, kWriters = 3, kClients = kModbus + kWriters;  ///< DDS writers come last
+[[nodiscard]] constexpr bool is_dds(std::size_t client) { return client >= kModbus; }
 inline constexpr std::size_t kGhost = 100;
 inline constexpr std::int64_t kNever = INT64_MAX / 4, kLongAgo = INT64_MIN / 4;
 
@@ -128,6 +130,7 @@ struct World {
   bool held = false;                       ///< coil 3 is 1
   std::int64_t ladder = 15;                ///< the last raw step of CiA 402 that was taken: 0, 6, 7 or 15
   std::optional<std::int64_t> raw_mode{};  ///< written to row 41 since the last command that selects a mode
+  std::optional<std::int64_t> mode{};      ///< what mode_display shows; none: that is not said
   bool speed_mode = false;                 ///< the last command that selects a mode selected 3
   bool other_mode = false;                 ///< it selected torque or homing: how a drive halts there is its own affair
   bool start_bit = false;                  ///< bit 4 may be set in the controlword in effect
@@ -149,7 +152,9 @@ struct World {
   int awaits = 0;               ///< the answer of this request; 0: of none
   boost::container::flat_map<int, Pending> pending{};
   Rows accepted{};
-  std::array<ClientMemory, kClients> clients{};  // the last: most worlds that differ do so before it
+  std::array<std::int64_t, kWriters> pressed{};  ///< by DDS: 1 jog_forward, -1 jog_reverse
+  // The last: most worlds that differ do so before it. What a DDS writer has is forgotten with its sample.
+  std::array<ClientMemory, kModbus + 1> clients{};
   bool operator==(const World&) const = default;
   [[nodiscard]] Motion motion() const;
   /// It stands where its move ends.
@@ -171,8 +176,17 @@ struct ContractOptions {
   bool staged = false;             ///< "halves": "staged"
   bool expiry_acts = true;         ///< false: "on_expiry": "none"
   bool only_writes_renew = false;  ///< "renew": "write"
-  std::array<int, kClients> ranks{};
+  std::int64_t rearm_ms = 1000;
+  std::array<int, kModbus> ranks{};
+  std::array<bool, kModbus> operators{};  ///< the others are engineers
+  std::set<std::uint16_t> parameters{};   ///< of the rows 46, 47 and 62 to 76 those that the drive has
+  std::array<int, kWriters> strengths{};
+  std::array<std::int64_t, kWriters> limits{kNever, kNever, kNever};  ///< lease_ms of a writer's heartbeat
   std::int64_t settles_ms = 1200;  ///< so long after an answer the motor does what was asked, ramps included
+  /// Design 4, signs of life: "the lease is the smaller of lease_ms and the configured one".
+  [[nodiscard]] std::int64_t lease_of(std::size_t client) const {
+    return is_dds(client) ? std::min(lease_ms, limits.at(client - kModbus)) : lease_ms;
+  }
 };
 
 class Contract {
@@ -190,11 +204,14 @@ class Contract {
   void unanswered(int request);
   /// Any other request of this client.
   void asked(std::size_t client);
-  /// What registers 28, 34 (bit 7) and 29 tell this client now. False: no reading of the contract has it.
+  /// A changed counter of this DDS writer's heartbeat.
+  void beats(std::size_t client, std::int64_t lease_ms);
+  /// What registers 28, 34 (bit 7), 29 and 1 tell this client now. False: no reading of the contract has it.
   struct Told {
     int owner = 0;
     bool latched = false;
     int lease_ms = 0;
+    std::optional<int> mode{};  ///< where it is valid
   };
   bool shown(std::size_t client, const Told& told);
   /// Whether registers 0 (bit 10) and 32 may tell of a target that is reached.
@@ -203,7 +220,7 @@ class Contract {
   bool see(const Sight& sight);
 
   /// The connection has ended, or is silent for ever and the gateway believes it alive; the next one begins with an
-  /// empty memory.
+  /// empty memory. Of a DDS writer silently: its successor is of another participant.
   void left(std::size_t client, bool silently);
   /// From here on frames may be lost, and drives be gone, until the axis is online again and nothing is wrong.
   void trouble_begins();
@@ -241,7 +258,8 @@ class Contract {
   void drop_equal();
   void keep_different();
   void take_over(World& world, std::size_t client) const;
-  void renew(World& world) const;
+  void renew(World& world, std::size_t client) const;
+  void may_have_stopped_for_good();
   static void overtake(World& world, Pending& newest, bool rows);
   [[nodiscard]] static World owed_alone(World stopped, const World& none);
   [[nodiscard]] Seen seen() const;

@@ -8,7 +8,7 @@
 namespace axisgate::test::model {
 namespace {
 
-constexpr std::int64_t kRearmMs = 1000, kRearmUnsureMs = 150;
+constexpr std::int64_t kRearmUnsureMs = 150;
 constexpr std::array<std::uint16_t, 11> kZeroLeaves{41, 47, 48, 50, 52, 58, 62, 64, 66, 70, 76};  // 3.3 Zeros
 
 }  // namespace
@@ -42,8 +42,8 @@ Judge::Edge Judge::new_or_not(Item& item, std::int64_t value, bool single, bool 
   // is allowed too.
   const bool stop_word = (value & 6) != 6 || (value & 15) == 6 || (value & 15) == 7;
   if (single && &item == &me().controlword && stop_word && readings_.other()) return Edge::acts;
-  if (!single || item.spoilt || quiet < kRearmMs - kRearmUnsureMs) return Edge::not_new;
-  if (quiet < kRearmMs + kRearmUnsureMs && readings_.other()) return Edge::not_new;
+  if (!single || item.spoilt || quiet < options_.rearm_ms - kRearmUnsureMs) return Edge::not_new;
+  if (quiet < options_.rearm_ms + kRearmUnsureMs && readings_.other()) return Edge::not_new;
   return Edge::acts;
 }
 
@@ -78,11 +78,17 @@ void Judge::claim() {
   if (!options_.leases) return;
   world_.owner = client_;
   world_.orphan = false;
-  world_.lease_until(seen_.now_ms + options_.lease_ms);
+  world_.lease_until(seen_.now_ms + options_.lease_of(client_));
 }
 
-// 3.3 Outcomes: "another client owns the axis: 0x06".
-bool Judge::foreign() const { return options_.leases && world_.owner && *world_.owner != client_; }
+// 3.3 Outcomes: "another client owns the axis: 0x06". Design 4: "a stronger writer takes the lease from a weaker DDS
+// writer, never from a Modbus client"; "equal strength never takes a live lease".
+bool Judge::foreign() const {
+  if (!options_.leases || !world_.owner || *world_.owner == client_) return false;
+  const std::size_t owner = *world_.owner % kGhost;
+  const auto strength = [this](std::size_t client) { return options_.strengths.at(client - kModbus); };
+  return !is_dds(client_) || !is_dds(owner) || strength(client_) <= strength(owner);
+}
 
 bool Judge::refuse_foreign(Verdict& verdict) {
   if (!foreign()) return false;
@@ -111,7 +117,7 @@ void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
   }
   // 3.3: a mode that changes under a motion; 3.4 does not say what becomes of that.
   if (offset == row::mode) {
-    world_.raw_mode = value;
+    world_.raw_mode = world_.mode = value;
     world_.speed_mode = false;
     if (world_.motor != Motor::stands) world_.motor = Motor::unknown;
   }
@@ -130,9 +136,8 @@ void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlw
   // the other is not, or a stop acts on it, the sentence can be read both ways.
   const bool sure = empty == carried && (command != Edge::acts || !was_empty);
   const bool only_remembers = !single && (empty > 0 || was_empty) && (sure || readings_.other());
-  // 3.4: stops are "without taking the lease"; whether the set-points beside one take it is not said.
-  const bool beside_stop = command == Edge::acts && is_stop(rows.at(row::command));
-  const bool claims = !options_.leases || !beside_stop || readings_.other();
+  const bool takes_none = command == Edge::acts && takes_no_lease(rows.at(row::command));
+  const bool claims = !options_.leases || !takes_none || readings_.other();
   const auto was_refused = [this](const auto& r) { return me().refused_rows.contains(r.first); };
   const bool otherwise = (me().rows_unsure || std::ranges::any_of(rows, was_refused)) && readings_.other();
   const bool acts = (command == Edge::acts && !refused) || controlword == Edge::acts;
@@ -164,6 +169,7 @@ void Judge::leave_motion() {
 
 void Judge::stopped(bool asserted) {
   stopped_ = true;
+  world_.mode.reset();  // how a drive stops is its profile's affair
   // 3.3, the fixed order of one request: what its set-points began ends at once.
   leave_motion();
   if (world_.motor != Motor::stands) world_.stopped_at = seen_.position;
@@ -176,7 +182,7 @@ void Judge::stopped(bool asserted) {
   const bool spoils = asserted || readings_.other();
   // "Since it acted": what was only remembered never did.
   std::optional<bool> remembered_too;
-  for (std::size_t c = 0; c < kDds; ++c) {
+  for (std::size_t c = 0; c < kModbus; ++c) {
     const auto mark = [&](Item& item) {
       item.ended = true;
       if (c == client_ || !spoils || !item.value || item.unsure || item.spoilt) return;
@@ -217,10 +223,26 @@ bool Judge::all_zero(const Write& write, const Rows& rows, Verdict& verdict) {
 Verdict Judge::write(const Write& write) {
   if (write.function == fc::sample) return sample(write);
   const std::optional<Half> before = std::exchange(me().half, std::nullopt);  // 3.1 Panels: "no other write between"
+  if (forbidden(write)) {
+    me().command.unsure = true;  // whether what is refused so is remembered is not said
+    return {"not an operator's", {1}};
+  }
   if (write.coils()) return coils(write);
   const auto row = half_row(write);
   if (!row) return registers(write);
   return half({*row, write.first != *row, write.words[0], seen_.now_ms, seen_.troubled}, before);
+}
+
+// 3.3 Roles: "Operator: also offsets 40..69, 78 and coils, except command 12. Engineer: also 70..77, command 12,
+// mailbox and 43/13 writes ... Otherwise 0x01".
+bool Judge::forbidden(const Write& write) const {
+  if (!options_.operators.at(client_) || write.coils()) return false;
+  const Rows rows = rows_of(write);
+  const auto engineers = [](const auto& r) {
+    return (r.first >= row::quick_stop_deceleration && r.first < row::set_position_value) ||
+           r.first == row::object_request || (r.first == row::command && r.second == kSave);
+  };
+  return std::ranges::any_of(rows, engineers);
 }
 
 // 3.1 Panels: "either half of a 32-bit row first, then the other, same connection, no other write between; a lone half
@@ -251,6 +273,7 @@ Verdict Judge::registers(const Write& write) {
     rows.erase(offset);
   }
   Verdict verdict;
+  if (single && is_parameter(rows.begin()->first)) return parameter(rows.begin()->first, rows.begin()->second);
   if (rows.contains(row::object_request)) {
     object(write.function, verdict);
     return verdict;
@@ -264,6 +287,7 @@ Verdict Judge::registers(const Write& write) {
       rows.contains(row::controlword) ? edge(me().controlword, rows[row::controlword], single, false) : Edge::absent;
   const std::int64_t number = command == Edge::absent ? 0 : rows[row::command];
   bool refused = false;
+  changes_mode_ = rows.contains(row::mode);
   if (command == Edge::acts && is_start(number) && word != Edge::acts) refused = start_refused(number, verdict);
   // Whether what stands beside a take_over is its new or its old owner's is not said.
   const bool takes_over = command == Edge::acts && number == kTakeOver;
@@ -283,6 +307,8 @@ Verdict Judge::registers(const Write& write) {
     if (command == Edge::acts && is_stop(number)) {
       this->command(number, me().command, verdict);
       verdict.any_answer = true;
+    } else if (command == Edge::acts) {
+      me().command.refused = true;
     }
     return verdict;
   }
@@ -315,19 +341,44 @@ Verdict Judge::registers(const Write& write) {
   return verdict;
 }
 
+// 3.1, the mailbox: "writing 80 returns at once". The drive's own object of a target is that target (a way in like any
+// other); what its counts come to is not judged here.
+void Judge::object(int function, Verdict& verdict) {
+  if (refuse_foreign(verdict)) return;
+  // What was told later than at once, and was not carried out, has claimed nothing.
+  if (options_.leases && (!seen_.troubled || readings_.other())) claim();
+  verdict = {"object request", {0, 4, 6}};
+  // 3.1, 43/13: "Refused ...: abort", an extended exception. It "is the same path".
+  constexpr int kExtended = 0xFF;
+  if (function == fc::general_reference) verdict.answers = {0, 6, 11, kExtended};
+  world_.accepted.erase(row::target_position);
+  world_.mode.reset();
+  for (ClientMemory& client : world_.clients) client.command.changed = client.command.unsure = true;
+  if (world_.motor != Motor::stands) world_.motor = Motor::unknown;
+}
+
 // Design 4: "Every request gets its one reply"; each sample is new, and what its mask names asks.
 Verdict Judge::sample(const Write& write) {
   Verdict verdict{"a sample", {0}};
   const std::int64_t number = write.sample.contains(row::command) ? write.sample.at(row::command) : 0;
+  const bool jogs = number >= kJogForward;
+  // Design 4, age: what is too old "gets result 6 and is not carried out"; "Stops, jog_end and release are never
+  // refused for age".
+  const bool lets_go = is_stop(number) || number == kJogEnd || number == kRelease;
+  if (write.stale && !lets_go) return {"too old: never started", {6}};
   const bool refused = is_start(number) && start_refused(number, verdict);
-  const bool claims = !options_.leases || !is_stop(number) || readings_.other();
+  const bool claims = !options_.leases || !takes_no_lease(number) || readings_.other();
   // 3.3 What asks: "Set-points beside a command that is refused are accepted only if they would be without it": whether
   // that speaks of samples is not said.
-  if (!refused || readings_.other())
+  if (!write.stale && (!refused || readings_.other()))
     for (const auto& [offset, value] : write.sample)
       if (offset != row::command && options_.rows.contains(offset)) accept(offset, value, claims);
   verdict.acts = number != 0;
-  if (number != 0 && !refused) command(number, me().command, verdict);
+  if (jogs)
+    jog_sample(number, verdict);
+  else if (number != 0 && !refused)
+    command(number, me().command, verdict);
+  if (write.stale) verdict.answers.insert(6);  // of what stands beside it
   tell_foreign(verdict);
   me() = {};
   return verdict;

@@ -2,6 +2,7 @@
 // One write in one reading of the contract. Promises to change the world that it was given and nothing else.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 
 #include "tests/model/contract.hpp"
@@ -34,6 +35,9 @@ class Readings {
 inline constexpr std::int64_t kUnderWayMs = 1000;
 /// 3.4 Stops: "Asserted stops are commands 2, 3, 4 and coils 2, 3 = 1, nothing else."
 [[nodiscard]] constexpr bool is_stop(std::int64_t command) { return command >= 2 && command <= 4; }
+/// 3.4: stops act "without taking the lease", release "gives the lease back": whether set-points beside one take it is
+/// not said.
+[[nodiscard]] constexpr bool takes_no_lease(std::int64_t command) { return is_stop(command) || command == kRelease; }
 [[nodiscard]] constexpr bool is_start(std::int64_t command) { return command >= kMove && command <= kHome; }
 
 class Judge {
@@ -58,7 +62,7 @@ class Judge {
   Verdict coils(const Write& write);
   Verdict sample(const Write& write);
   Verdict half(const Half& newest, const std::optional<Half>& before);
-  [[nodiscard]] ClientMemory& me() { return world_.clients[client_]; }
+  [[nodiscard]] ClientMemory& me() { return world_.clients[std::min(client_, kModbus)]; }
   Edge edge(Item& item, std::int64_t value, bool single, bool stop);
   Edge new_or_not(Item& item, std::int64_t value, bool single, bool stop);
   Edge command_edge(const Rows& rows, bool single);
@@ -84,11 +88,15 @@ class Judge {
   void tell_foreign(Verdict& verdict) const;
   void jog(std::int64_t direction, std::int64_t value, Edge edge, bool single, Verdict& verdict);
   void jog_both(Verdict& verdict);
+  void begin_jog(std::int64_t direction, Verdict& verdict);
+  void jog_sample(std::int64_t number, Verdict& verdict);
   bool reset_fault(Verdict& verdict);
   [[nodiscard]] bool may_have_no_halt() const;
   void take_over(Verdict& verdict);
   void set_position(Verdict& verdict);
   void object(int function, Verdict& verdict);
+  [[nodiscard]] bool forbidden(const Write& write) const;
+  Verdict parameter(std::uint16_t offset, std::int64_t value);
 
   const ContractOptions& options_;
   World& world_;
@@ -96,6 +104,7 @@ class Judge {
   const Seen& seen_;
   std::size_t client_;
   bool refused_foreign_ = false;
+  bool changes_mode_ = false;  ///< before its command: what becomes of a motion is not said
   bool stopped_ = false;
   bool takes_over_ = false;
   bool unclear_ = false;

@@ -33,6 +33,7 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
     // 3.5: "from its first accepted write": what is refused claims nothing. A fault that the gateway has not heard of
     // yet, or what it could not see, may make the drive refuse what was accepted.
     const bool unseen = world_.faulted || seen_.troubled;
+    if (world_.faulted && seen_.troubled) verdict.answers.insert(0);  // the drive has acknowledged it all the same
     if (unseen && world_.owner != client_ && options_.leases && readings_.other()) claim();
     return true;
   }
@@ -43,7 +44,7 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
       world_.motor == Motor::moves && (just_begun || std::abs(world_.target - seen_.position) > kClose);
   if (command == 7 && (just_begun || !seen_.stands || world_.motor == Motor::runs || world_.motor == Motor::unknown ||
                        !seen_.clear || under_way)) {
-    const bool unsure = !is_under_way() && (seen_.stands || !seen_.clear);
+    const bool unsure = changes_mode_ || (!is_under_way() && (seen_.stands || !seen_.clear));
     if (!unsure || readings_.other()) {
       verdict = {"refused: relative while moving", {6}};
       for (ClientMemory& client : world_.clients) client.command.ended = true;
@@ -95,6 +96,8 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     }
     item.changed = item.ended = item.spoilt = item.refused = false;
     item.acted = true;
+    // 3.4: "Commands 6 to 11 select the mode they need and wait for it".
+    world_.mode.reset();
     if (refused) {
       verdict = {"refused: command " + std::to_string(number), {3, 4, 6}};
       item.refused = true;
@@ -107,6 +110,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
       return;
     }
     world_.raw_mode.reset();
+    if (number <= kRun) world_.mode = number == kRun ? kVelocityMode : kPositionMode;
     world_.speed_mode = number == kRun;
     world_.other_mode = number > kRun;
     world_.jog = 0;
@@ -201,8 +205,14 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     verdict = {"acts: release", {0, 6}};  // of one that does not own it
     return;
   }
+  // 3.4, command 12: "only disabled, else 0x06". Whether latched or faulted is disabled is not said.
+  if (number == kSave && (world_.enabled || ((world_.latched || world_.faulted) && readings_.other()))) {
+    verdict = {"save_parameters: not disabled", {6}};
+    item.refused = true;
+    return;
+  }
   claim();
-  verdict = {"acts: command " + std::to_string(number), {0}};  // 5 on an axis without a fault: nothing is sent
+  verdict = {"acts: command " + std::to_string(number), {0}};
 }
 
 // 3.5: "command 14 takes a lease from a lower rank"; 3.4: "after a halt"; 3.5 Signs of life: between connections of one
@@ -215,10 +225,10 @@ void Judge::take_over(Verdict& verdict) {
     return;
   }
   const std::size_t owner = *world_.owner % kGhost;
-  if (owner == kDds) {
+  if (is_dds(owner) || is_dds(client_)) {
     // 3.5 speaks of ranks in `allow`; what a DDS writer's is, is not said.
     if (!readings_.other()) {
-      verdict = {"take_over from a DDS writer", {6}};
+      verdict = {"take_over of or from a DDS writer", {6}};
       return;
     }
   } else if (owner != client_ && options_.ranks.at(client_) <= options_.ranks.at(owner)) {
@@ -244,6 +254,7 @@ void Judge::set_position(Verdict& verdict) {
     return;
   }
   claim();
+  world_.mode.reset();
   world_.other_mode = true;  // some drives take it in a mode of its own
   verdict = {"acts: set_position", {0}};
   // A raw run that its own request has begun.
@@ -255,19 +266,13 @@ void Judge::set_position(Verdict& verdict) {
   if (world_.accepted.contains(row::set_position_value)) verdict.position = world_.accepted[row::set_position_value];
 }
 
-// 3.1, the mailbox: "writing 80 returns at once". The drive's own object of a target is that target (a way in like any
-// other); what its counts come to is not judged here.
-void Judge::object(int function, Verdict& verdict) {
-  if (refuse_foreign(verdict)) return;
-  // What was told later than at once, and was not carried out, has claimed nothing.
-  if (options_.leases && (!seen_.troubled || readings_.other())) claim();
-  verdict = {"object request", {0, 4, 6}};
-  // 3.1, 43/13: "Refused ...: abort", an extended exception. It "is the same path".
-  constexpr int kExtended = 0xFF;
-  if (function == fc::general_reference) verdict.answers = {0, 6, 11, kExtended};
-  world_.accepted.erase(row::target_position);
-  for (ClientMemory& client : world_.clients) client.command.changed = client.command.unsure = true;
-  if (world_.motor != Motor::stands) world_.motor = Motor::unknown;
+// A row of what a program sets once, alone.
+Verdict Judge::parameter(std::uint16_t offset, std::int64_t value) {
+  Verdict verdict{"a parameter", {0}};
+  me().rows[offset] = value;
+  if (!options_.parameters.contains(offset)) return {"a row that the drive has not", {2}};  // 3.3 Outcomes
+  if (!refuse_foreign(verdict)) claim();
+  return verdict;
 }
 
 // 3.4, command 5: "clears, never enables: the axis ends disabled". Whether its cause is gone the drive alone knows.

@@ -29,15 +29,15 @@ void Contract::take_over(World& world, std::size_t client) const {
   if (world.owner != client) return;
   // Of a write that is refused nobody can tell whether it has taken it over.
   if (std::exchange(world.orphan, false))
-    world.lease_ends_by_ms = sight_.now_ms + options_.lease_ms;
+    world.lease_ends_by_ms = sight_.now_ms + options_.lease_of(client);
   else
-    renew(world);
+    renew(world, client);
 }
 
 // 3.5 Signs of life: "While an axis is disabled only requests that ask for something renew its lease": of those that
 // are refused, or that repeat, nobody can tell.
-void Contract::renew(World& world) const {
-  const std::int64_t ends_ms = sight_.now_ms + options_.lease_ms;
+void Contract::renew(World& world, std::size_t client) const {
+  const std::int64_t ends_ms = sight_.now_ms + options_.lease_of(client);
   if (world.enabled)
     world.lease_until(ends_ms);
   else
@@ -48,9 +48,16 @@ void Contract::renew(World& world) const {
 // something".
 void Contract::asked(std::size_t client) {
   // 3.5 Signs of life: "With "client": "address" only writes renew"; 3.5, "renew": "a write to this axis".
-  if (options_.by_address || options_.only_writes_renew) return;
+  if ((options_.by_address && !is_dds(client)) || options_.only_writes_renew) return;
   for (World& world : worlds_)
-    if (world.owner == client && !world.orphan) renew(world);
+    if (world.owner == client && !world.orphan) renew(world, client);
+}
+
+void Contract::beats(std::size_t client, std::int64_t lease_ms) {
+  options_.limits.at(client - kModbus) = lease_ms;
+  for (World& world : worlds_)
+    if (world.owner == client && !world.enabled) world.lease_ends_ms = std::min(world.lease_ends_ms, sight_.now_ms);
+  asked(client);
 }
 
 // 3.5: on_expiry "acts only if the axis is enabled"; 3.4: "quick_stop and a lease's action set" the latch.
@@ -64,6 +71,7 @@ void Contract::expire(World& world) const {
   if (!world.enabled || !options_.expiry_acts) return;
   world.motor = Motor::stands;
   world.jog = 0;
+  world.mode.reset();
   world.latched = true;
   world.enabled = false;
   world.off_asked_ms = sight_.now_ms;
@@ -93,6 +101,7 @@ void Contract::pass_time(std::int64_t now_ms) {
       const World before = world;
       world.motor = Motor::stands;
       world.jog = 0;
+      world.mode.reset();
       world.stale_speed = true;
       ended_by_nobody(world);
       changed(world, before);
@@ -111,20 +120,26 @@ void Contract::pass_time(std::int64_t now_ms) {
   keep_different();
 }
 
-void Contract::left(std::size_t client, bool silently) {
-  // SECURITY.md: with "lease": null a drive without a watchdog of its own is stopped when its client's connection ends.
-  if (!options_.leases && options_.by_gateway && (!silently || client == kDds)) {
-    const std::vector<World> now = worlds_;
-    for (const World& world : now) {
-      worlds_.push_back(world);
-      expire(worlds_.back());
-      // 3.4 Stops: "accepted in every state": one that is being disabled still turns, and is latched by it.
-      worlds_.back().latched = worlds_.back().latched || sight_.now_ms - world.off_asked_ms < options_.settles_ms;
-    }
+// SECURITY.md: with "lease": null a drive without a watchdog of its own is stopped when its client's connection ends.
+void Contract::may_have_stopped_for_good() {
+  if (options_.leases || !options_.by_gateway) return;
+  const std::vector<World> now = worlds_;
+  for (const World& world : now) {
+    worlds_.push_back(world);
+    expire(worlds_.back());
+    // 3.4 Stops: "accepted in every state": one that is being disabled still turns, and is latched by it.
+    // And a start may be on its way.
+    worlds_.back().latched =
+        worlds_.back().latched || !world.pending.empty() || sight_.now_ms - world.off_asked_ms < options_.settles_ms;
   }
+}
+
+void Contract::left(std::size_t client, bool silently) {
+  if (!silently || is_dds(client)) may_have_stopped_for_good();
+  if (is_dds(client)) options_.limits.at(client - kModbus) = kNever;
   for (World& world : worlds_) {
-    world.clients[client].half.reset();  // 3.1 Panels: "same connection"
-    if (options_.by_address && client != kDds) {
+    if (options_.by_address && !is_dds(client)) {
+      world.clients[client].half.reset();  // 3.1 Panels: "same connection"
       world.orphan = world.orphan || (world.owner == client && !silently);
       continue;  // 3.3 Edges: "until 60 s after its last connection"
     }
@@ -132,6 +147,10 @@ void Contract::left(std::size_t client, bool silently) {
     if (world.owner == client) world.orphan = true;
     // 3.4 Jog: a new connection has no button of an old one's.
     if (world.jog != 0 && world.jog_client == client) world.jog_client = kGhost + client;
+    if (is_dds(client)) {
+      world.pressed.at(client - kModbus) = 0;
+      continue;
+    }
     const std::optional<std::int64_t> id = world.clients[client].id;
     world.clients[client] = {};
     world.clients[client].id = id;  // 3.3 Edges: "kept 60 s after its last connection"
@@ -142,6 +161,7 @@ void Contract::trouble_begins() {
   trouble_ = true;
   for (auto& [number, asked] : asked_) asked.troubled = true;
   for (World& world : worlds_) {
+    world.mode.reset();
     world.broken = world.motor != Motor::stands ||
                    std::ranges::any_of(world.earlier, [](const Motion& m) { return m.kind != Motor::stands; });
     // 3.3 Edges: "a fault, a link loss": a level or a command held since asks for nothing; what counts as one is not
@@ -160,14 +180,22 @@ void Contract::trouble_ends() {
   std::vector<World> more;
   for (World& world : worlds_) {
     world.changed_ms = sight_.now_ms;
+    world.mode.reset();
     world.latch_unsure = true;  // whether what ended out of sight was enabled then the gateway has not seen
+    // Of an axis whose state is the gateway's own nobody knows what it has made of a loss.
+    world.adopted = options_.by_gateway && world.enabled;
+    // "Done" may have been said of a drive that had lost its power meanwhile, and nobody knew (3.4, command 1: "Already
+    // enabled: nothing is sent").
+    if (sight_.enabled == false && world.pending.empty() && world.enabled) {
+      world.enabled = false;
+      world.motor = Motor::stands;
+      world.jog = world.ladder = 0;
+    }
     // Whether a 6 or 7 of before the loss is a step out of the latch still (3.4) is not said.
     if (world.latched && world.ladder != 0) {
       more.push_back(world);
       more.back().ladder = 0;
     }
-    // Of an axis whose state is the gateway's own nobody knows what it has made of a loss.
-    world.adopted = options_.by_gateway && world.enabled;
     if (!options_.leases || !world.enabled || world.owner) continue;
     world.found = true;  // 3.5 Signs of life: "an adopted axis [is taken over] by any write but an all-zero block"
     if (gateway_is_new_ || world.lease_ends_ms == kNever) world.lease_until(sight_.now_ms + options_.lease_ms);
@@ -199,7 +227,8 @@ void Contract::drive_tripped() {
 // A gateway that has died commands nothing; a motor goes on until its drive misses the master.
 void Contract::gateway_died() {
   trouble_begins();
-  for (std::size_t client = 0; client < kClients; ++client) left(client, false);
+  may_have_stopped_for_good();
+  options_.limits.fill(kNever);
   // What it still owed dies with it.
   std::vector<World> owed;
   for (const World& world : worlds_) {
@@ -212,6 +241,7 @@ void Contract::gateway_died() {
   worlds_.insert(worlds_.end(), owed.begin(), owed.end());
   for (World& world : worlds_) {
     world.clients = {};
+    world.pressed = {};
     world.owner.reset();
     world.orphan = false;
     world.lease_until(kNever);

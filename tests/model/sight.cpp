@@ -115,7 +115,8 @@ bool Contract::shown(std::size_t client, const Told& told) {
     const bool lasts =
         !world.owner ||
         (world.lease_ends_ms == kNever ? told.lease_ms == 0 : told.lease_ms >= least && told.lease_ms <= most);
-    return (world.latched == told.latched || world.latch_unsure || world.faulted) && lasts &&
+    const bool in_mode = !told.mode || !world.mode || *world.mode == *told.mode;  // 3.1; 3.3: "mode_display is awaited"
+    return in_mode && (world.latched == told.latched || world.latch_unsure || world.faulted) && lasts &&
            (told.owner == expected || (former && expected == 1 && told.owner == 2));
   };
   std::vector<World> fitting;

@@ -21,6 +21,11 @@ bool in(const List& list, std::uint16_t offset) {
 
 bool is_wide(std::uint16_t offset) { return in(kWide, offset); }
 
+bool is_parameter(std::uint16_t offset) {
+  return offset == row::target_torque || offset == row::max_torque ||
+         (offset >= row::homing_speed_switch && offset <= row::max_velocity);
+}
+
 std::optional<std::uint16_t> half_row(const Write& write) {
   if (write.function != fc::write_register) return {};
   if (is_wide(write.first)) return write.first;
@@ -77,7 +82,7 @@ Rows rows_of(const Write& write) {
 std::string text(const Write& write) {
   std::string out = write.function == fc::sample ? "sample" : "FC" + std::to_string(write.function);
   for (const auto& [offset, value] : write.sample) out += " " + std::to_string(offset) + "=" + std::to_string(value);
-  if (write.function == fc::sample) return out;
+  if (write.function == fc::sample) return out + (write.stale ? " too old" : "");
   if (write.coils()) {
     for (std::size_t i = 0; i < write.words.size(); ++i)
       out += " coil" + std::to_string(write.first + i) + "=" + std::to_string(write.words[i]);

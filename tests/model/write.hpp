@@ -18,14 +18,15 @@ inline constexpr std::uint16_t controlword = 40, mode = 41, target_position = 42
                                target_torque = 46, max_torque = 47, profile_velocity = 48, profile_acceleration = 50,
                                profile_deceleration = 52, command = 54, command_id = 55, heartbeat = 56,
                                jog_velocity = 58, homing_method = 60, homing_speed_switch = 62, homing_speed_zero = 64,
-                               homing_acceleration = 66, quick_stop_deceleration = 70, max_velocity = 76,
-                               set_position_value = 78, object_request = 80;
+                               homing_acceleration = 66, homing_offset = 68, quick_stop_deceleration = 70,
+                               max_velocity = 76, set_position_value = 78, object_request = 80;
 }  // namespace row
 
 /// Of row 54.
 inline constexpr std::int64_t kEnable = 1, kDisable = 2, kQuickStop = 3, kHalt = 4, kMove = 6, kRelative = 7, kRun = 8,
-                              kTorque = 9, kHome = 10, kSetPosition = 11, kRelease = 13, kTakeOver = 14;
-inline constexpr std::int64_t kVelocityMode = 3;  ///< of row 41
+                              kTorque = 9, kHome = 10, kSetPosition = 11, kSave = 12, kRelease = 13, kTakeOver = 14,
+                              kJogForward = 31, kJogReverse = 32, kJogEnd = 33;  // the last three by DDS alone
+inline constexpr std::int64_t kPositionMode = 1, kVelocityMode = 3;              ///< of row 41
 /// Of positions, in 1/10000 turn: a count of the coarsest encoder, and rounding.
 inline constexpr std::int64_t kClose = 8;
 
@@ -46,10 +47,13 @@ struct Write {
   std::uint16_t first = 0;             ///< offset in the axis's block of registers or coils
   std::vector<std::uint16_t> words{};  ///< one for each register, or 0 and 1 for each coil
   Rows sample{};                       ///< of fc::sample: what its mask names, and the command
+  bool stale = false;                  ///< of fc::sample: its source timestamp is older than max_age_ms
   [[nodiscard]] bool coils() const { return function == fc::write_coil || function == fc::write_coils; }
 };
 
 [[nodiscard]] bool is_wide(std::uint16_t offset);
+/// Rows 46, 47 and 62 to 76: what a program sets once.
+[[nodiscard]] bool is_parameter(std::uint16_t offset);
 /// One half of a row of 32 bits, by function 6: that row's offset. No value: it is none.
 [[nodiscard]] std::optional<std::uint16_t> half_row(const Write& write);
 /// One row alone. Function 0: 6 where the row has 16 bits, else 16.

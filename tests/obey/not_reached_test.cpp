@@ -3,7 +3,7 @@
 // and what might still happen is withdrawn before it. Nothing that was told to have failed happens later.
 #include <gtest/gtest.h>
 
-#include "tests/obey/dds_writer.hpp"
+#include "tests/obey/dds_writers.hpp"
 #include "tests/obey/plant.hpp"
 
 namespace axisgate::test::obey {
@@ -65,7 +65,7 @@ TEST_P(NotReached, AnEnableThatIsPressedAgainIsToldAgain) {
 TEST_P(NotReached, ADdsWriterIsToldByTheSameNumber) {
   plant_.ready_but_disabled();
   lock(plant_.stage, GetParam(), true);
-  DdsWriter writer(plant_.stage, 1);
+  DdsWriters writer(plant_.stage, 1);
   const std::uint64_t request = writer.begin({.function = fc::sample, .sample = {{row::command, kEnable}}});
   ASSERT_TRUE(plant_.stage.run_until([&] { return writer.result_of(request).has_value(); }));
   EXPECT_EQ(*writer.result_of(request), kNotReached);

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "tests/obey/dds_writer.hpp"
+#include "tests/obey/dds_writers.hpp"
 #include "tests/obey/plant.hpp"
 
 namespace axisgate::test::obey {
@@ -173,7 +173,7 @@ TEST_P(RawVelocityEnded, ByAHaltWithATargetBesideItNeedsATargetAnewBeforeAWordRu
 }
 
 TEST_P(RawVelocityEnded, ByADdsHaltWithATargetBesideItNeedsATargetAnewBeforeAWordRunsIt) {
-  DdsWriter writer(plant_.stage, 1);
+  DdsWriters writer(plant_.stage, 1);
   ASSERT_NO_FATAL_FAILURE(run_and_halt([&] {
     const auto request =
         writer.begin({.function = fc::sample, .sample = {{row::command, kHalt}, {row::target_velocity, kOtherSpeed}}});
