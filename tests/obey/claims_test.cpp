@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "tests/obey/dds_writers.hpp"
 #include "tests/obey/plant.hpp"
 
 namespace axisgate::test::obey {
@@ -117,6 +118,30 @@ TEST_P(Claims, AreNotMadeByAStartWhileTheStopIsLatched) {
   ASSERT_EQ(b_.command(here_.command), kFailed);
   EXPECT_EQ(a_.word(shown::owner), kNobody);
   EXPECT_EQ(a_.command(kEnable), kOk);
+  EXPECT_EQ(a_.word(shown::owner), kMe);
+}
+
+// 3.5: "from its first accepted write"; a level that was refused goes on being written (3.4 Jog).
+TEST_P(Claims, AreNotMadeByADdsJogThatIsHeldAfterItsRefusal) {
+  constexpr std::uint8_t kNotNew = 10;
+  if (!has_speeds(GetParam())) return;
+  DdsWriters stranger(plant_.stage, 1);
+  const auto answer_to = [&](const Rows& sample) {
+    const std::uint64_t request = stranger.begin({.function = fc::sample, .sample = sample});
+    EXPECT_TRUE(plant_.stage.run_until([&] { return stranger.result_of(request).has_value(); }));
+    return stranger.result_of(request).value_or(0);
+  };
+  ASSERT_EQ(a_.row(here_.row, here_.value), kOk);
+  EXPECT_EQ(answer_to({{row::command, kJogForward}}), kNotOwner);
+  for (int i = 0; i < 5; ++i) {
+    plant_.run(200ms);
+    EXPECT_EQ(answer_to({{row::command, kJogForward}}), kNotNew);
+    EXPECT_EQ(a_.word(shown::owner), kMe);
+  }
+  EXPECT_EQ(answer_to({{row::target_velocity, kSpeed}, {row::command, 0}}), kNotOwner);
+  EXPECT_EQ(answer_to({{row::command, kRun}}), kNotOwner);
+  plant_.run(1s);
+  EXPECT_TRUE(plant_.stands());
   EXPECT_EQ(a_.word(shown::owner), kMe);
 }
 

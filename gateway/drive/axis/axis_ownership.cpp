@@ -118,6 +118,7 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
       break;
   }
   if (asks_nothing(batch)) {
+    if (holds_in_vain) batch.claims = false;  // what is refused claims nothing
     const BatchResult result = nothing_asked(batch);
     return holds_in_vain ? BatchResult{{Errc::not_new, 0}} : result;
   }
