@@ -121,17 +121,24 @@ TEST_P(Claims, AreNotMadeByAStartWhileTheStopIsLatched) {
   EXPECT_EQ(a_.word(shown::owner), kMe);
 }
 
+/// A DDS writer beside a_, which owns the axis.
+class StrangersJog : public Claims {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(a_.row(row::jog_velocity, kSpeed), kOk);
+    ASSERT_EQ(a_.word(shown::owner), kMe);
+  }
+  std::uint8_t answer_to(const Rows& sample) {
+    const std::uint64_t request = stranger_.begin({.function = fc::sample, .sample = sample});
+    EXPECT_TRUE(plant_.stage.run_until([&] { return stranger_.result_of(request).has_value(); }));
+    return stranger_.result_of(request).value_or(0);
+  }
+  DdsWriters stranger_{plant_.stage, 1};
+};
+
 // 3.5: "from its first accepted write"; a level that was refused goes on being written (3.4 Jog).
-TEST_P(Claims, AreNotMadeByADdsJogThatIsHeldAfterItsRefusal) {
+TEST_P(StrangersJog, ClaimsNothingWhenItIsHeldAfterItsRefusal) {
   constexpr std::uint8_t kNotNew = 10;
-  if (!has_speeds(GetParam())) return;
-  DdsWriters stranger(plant_.stage, 1);
-  const auto answer_to = [&](const Rows& sample) {
-    const std::uint64_t request = stranger.begin({.function = fc::sample, .sample = sample});
-    EXPECT_TRUE(plant_.stage.run_until([&] { return stranger.result_of(request).has_value(); }));
-    return stranger.result_of(request).value_or(0);
-  };
-  ASSERT_EQ(a_.row(here_.row, here_.value), kOk);
   EXPECT_EQ(answer_to({{row::command, kJogForward}}), kNotOwner);
   for (int i = 0; i < 5; ++i) {
     plant_.run(200ms);
@@ -142,6 +149,15 @@ TEST_P(Claims, AreNotMadeByADdsJogThatIsHeldAfterItsRefusal) {
   EXPECT_EQ(answer_to({{row::command, kRun}}), kNotOwner);
   plant_.run(1s);
   EXPECT_TRUE(plant_.stands());
+  EXPECT_EQ(a_.word(shown::owner), kMe);
+}
+
+TEST_P(StrangersJog, ClaimsNothingWithTheVelocityThatTheAxisHolds) {
+  EXPECT_EQ(answer_to({{row::jog_velocity, kSpeed}, {row::command, kJogForward}}), kNotOwner);
+  plant_.run(1s);
+  EXPECT_TRUE(plant_.stands());
+  EXPECT_EQ(a_.word(shown::owner), kMe);
+  EXPECT_EQ(answer_to({{row::jog_velocity, kSpeed}, {row::command, 0}}), kNotOwner);
   EXPECT_EQ(a_.word(shown::owner), kMe);
 }
 
@@ -212,6 +228,7 @@ TEST_P(WithoutLeases, SetpointsBesideACommandThatIsRefusedAreTakenOnlyIfTheyWoul
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Claims, testing::ValuesIn(kSubjects), named);
+INSTANTIATE_TEST_SUITE_P(Every, StrangersJog, testing::ValuesIn(subjects(has_speeds)), named);
 INSTANTIATE_TEST_SUITE_P(Every, WithoutLeases, testing::ValuesIn(kSubjects), named);
 
 }  // namespace

@@ -58,6 +58,10 @@ std::uint64_t DdsWriters::begin(const Write& sample, std::size_t writer) {
     record.mask |= dds::kHasTargetVelocity;
     record.target_velocity = of(row::target_velocity) * kVelocityUnit;
   }
+  if (has(row::jog_velocity)) {
+    record.mask |= dds::kHasJogVelocity;
+    record.jog_velocity = of(row::jog_velocity) * kVelocityUnit;
+  }
   tell(record);
   return last_;
 }

@@ -139,6 +139,8 @@ class Axis {
   // What comes before a write batch is carried out: who asks, and for what besides (axis_ownership.cpp).
   [[nodiscard]] Errc judge_owner(const WriteBatch& batch) const;
   void claim(const WriteBatch& batch);
+  [[nodiscard]] bool waits_for(const WriteBatch& batch) const;
+  void make_owner(const WriteBatch& batch);
   bool claims_late(Pending& pending);
   [[nodiscard]] BatchResult nothing_asked(const WriteBatch& batch);
   [[nodiscard]] bool may_run() const;

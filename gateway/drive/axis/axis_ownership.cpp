@@ -53,7 +53,14 @@ Errc Axis::judge_owner(const WriteBatch& batch) const {
 // What was accepted from a client makes it the owner; so does any write where the axis waits for this client.
 void Axis::claim(const WriteBatch& batch) {
   if (batch.jog_velocity) image_.jog_velocity = *batch.jog_velocity;
-  if (!batch.claims && !(batch.is_write && ownership_.waits_for(batch.life, batch.all_zero))) return;
+  if (batch.claims || waits_for(batch)) make_owner(batch);
+}
+
+bool Axis::waits_for(const WriteBatch& batch) const {
+  return batch.is_write && ownership_.waits_for(batch.life, batch.all_zero);
+}
+
+void Axis::make_owner(const WriteBatch& batch) {
   const auto before = ownership_.owner();
   const Ownership::Taken taken = ownership_.take(batch.life, core_.turn.now);
   if (taken == Ownership::Taken::nothing) return;
@@ -118,7 +125,6 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
       break;
   }
   if (asks_nothing(batch)) {
-    if (holds_in_vain) batch.claims = false;  // what is refused claims nothing
     const BatchResult result = nothing_asked(batch);
     return holds_in_vain ? BatchResult{{Errc::not_new, 0}} : result;
   }
@@ -133,9 +139,10 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
   return result;
 }
 
-// It may take over an axis that waits for its client all the same.
+// It claims nothing, for nobody has judged whether it may. It may take over an axis that waits for its client all the
+// same.
 BatchResult Axis::nothing_asked(const WriteBatch& batch) {
-  claim(batch);
+  if (waits_for(batch)) make_owner(batch);
   publish();
   return {};
 }

@@ -85,7 +85,7 @@ bool put_members(const CommandRecord& record, const AxisImage& axis, const DdsUn
     if (!value) return false;
     // A button that is held tells the same velocity again and again.
     const auto velocity = static_cast<std::uint32_t>(*value);
-    if (velocity != axis.jog_velocity) batch.jog_velocity = velocity;
+    if (!jogs(command_of(record)) || velocity != axis.jog_velocity) batch.jog_velocity = velocity;
   }
   return true;
 }
