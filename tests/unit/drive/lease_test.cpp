@@ -206,7 +206,9 @@ TEST(Lease, AnAxisFoundEnabledIsStoppedUnlessAClientWritesToIt) {
     EXPECT_TRUE(axis.event("found enabled, and nobody owns it"));
     axis.rig.mark();
     if (taken) {
-      EXPECT_EQ(axis.ask(axis.panel, WriteBatch{.is_write = true}), Errc::ok);
+      WriteBatch heartbeat;
+      heartbeat.is_write = true;
+      EXPECT_EQ(axis.ask(axis.panel, heartbeat), Errc::ok);
       axis.keep(axis.panel, 4s);
       EXPECT_TRUE(axis.rig.writes().empty());
       EXPECT_TRUE(axis.enabled());
