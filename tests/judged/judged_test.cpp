@@ -18,11 +18,7 @@
 namespace axisgate::test::judged {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::uint64_t kSeeds = 2;  // they take six times as long
-#else
 constexpr std::uint64_t kSeeds = 12;
-#endif
 constexpr std::size_t kMostTries = 400;  // of shrinking
 constexpr std::uint64_t kEnough = 10;
 
