@@ -147,6 +147,64 @@ TEST_F(Writers, AHeartbeatMakesItsLeasesShorterAndNeverLonger) {
   EXPECT_EQ(lease.until(), kStart + 2s);
 }
 
+TEST_F(Writers, AHeartbeatBeforeTheFirstCommandCountsForItsLease) {
+  const Guid who = guid(1);
+  static_cast<void>(clients.on_writer(writer_there(who), kStart));
+  clients.on_heartbeat(heartbeat(who, 1, kStart, 300), kStart);
+  EXPECT_EQ(clients.size(), 0U) << "it makes no client";
+  const auto life = clients.on_sample(who, 0, true, kStart + 1s)->life;
+  EXPECT_EQ(life->lease_limit, 300ms);
+  clients.on_heartbeat(heartbeat(who, 1, kStart + 2s), kStart + 2s);
+  EXPECT_EQ(life->heartbeat, kLongAgo) << "a library that repeats it";
+  EXPECT_EQ(life->lease_limit, 300ms);
+  clients.on_heartbeat(heartbeat(who, 2, kStart + 2s), kStart + 2s);
+  EXPECT_EQ(life->heartbeat, kStart + 2s);
+  EXPECT_EQ(life->lease_limit, std::nullopt) << "as it is configured";
+}
+
+TEST_F(Writers, AnOldOrForeignHeartbeatBeforeTheFirstCommandCountsForNothing) {
+  const Guid who = guid(1);
+  static_cast<void>(clients.on_writer(writer_there(who), kStart));
+  clients.on_heartbeat(heartbeat(who, 1, kStart, 300), kStart + 501ms);
+  HeartbeatRecord foreign = heartbeat(who, 2, kStart + 1s, 300);
+  foreign.writer = guid(2);
+  clients.on_heartbeat(foreign, kStart + 1s);
+  EXPECT_EQ(there(who)->lease_limit, std::nullopt);
+}
+
+TEST_F(Writers, AHeartbeatMayComeBeforeAnythingElseOfItsWriter) {
+  const Guid who = guid(1);
+  clients.on_heartbeat(heartbeat(who, 1, kStart, 300), kStart);
+  static_cast<void>(clients.on_writer(writer_there(who), kStart + 1s));
+  clients.on_time(kStart + 1h);
+  EXPECT_EQ(clients.on_sample(who, 0, true, kStart + 1h)->life->lease_limit, 300ms);
+  EXPECT_EQ(clients.deadline(), kNever);
+}
+
+TEST_F(Writers, AHeartbeatOfOneThatIsGoneOrNeverComesIsForgotten) {
+  const Guid who = guid(1);
+  static_cast<void>(clients.on_writer(writer_there(who), kStart));
+  clients.on_heartbeat(heartbeat(who, 1, kStart, 300), kStart);
+  static_cast<void>(clients.on_writer(writer_gone(who), kStart));
+  EXPECT_EQ(there(who)->lease_limit, std::nullopt);
+  clients.on_heartbeat(heartbeat(guid(2), 1, kStart, 300), kStart);
+  clients.on_heartbeat(heartbeat(guid(2), 2, kStart + 1s, 300), kStart + 1s);
+  EXPECT_EQ(clients.deadline(), kStart + 1s + kReturnsWithin);
+  clients.on_time(kStart + 1s + kReturnsWithin);
+  EXPECT_EQ(clients.on_sample(guid(2), 0, true, kStart + 10s)->life->lease_limit, std::nullopt);
+}
+
+TEST_F(Writers, ThatOnlyBeatAreBounded) {
+  const auto limit_of = [&](std::uint8_t n) { return clients.on_sample(guid(n), 0, true, kStart)->life->lease_limit; };
+  for (std::uint8_t n = 1; n <= kMaxBeatsBefore + 1; ++n)
+    clients.on_heartbeat(heartbeat(guid(n), 1, kStart, 300), kStart);
+  EXPECT_EQ(limit_of(kMaxBeatsBefore), 300ms);
+  EXPECT_EQ(limit_of(kMaxBeatsBefore + 1), std::nullopt);
+  static_cast<void>(clients.on_writer(writer_there(guid(1)), kStart));
+  clients.on_heartbeat(heartbeat(guid(200), 1, kStart, 300), kStart);
+  EXPECT_EQ(limit_of(200), 300ms) << "one that is told of is none of them any more";
+}
+
 TEST_F(Writers, ABeatOfNobodyMakesNobody) {
   clients.on_beats(beat(guid(9)), kStart);
   EXPECT_EQ(clients.size(), 0U);
@@ -229,6 +287,14 @@ TEST_F(Slots, OfOneThatOwnsNothingAndWasHeardLongestAgoGoesToALateOne) {
   ASSERT_NE(back, nullptr) << "it is there still, and asks again";
   EXPECT_EQ(back->life->name, client_name(guid(2), "192.168.1.7"));
   EXPECT_EQ(clients.find(guid(3)), nullptr);
+}
+
+TEST_F(Slots, ThatMakeWayKeepWhatTheirHeartbeatHasSaid) {
+  fill();
+  clients.on_heartbeat(heartbeat(guid(1), 1, kStart, 300), kStart);
+  ASSERT_NE(clients.on_sample(late, 3, true, kStart + 1s), nullptr);
+  ASSERT_EQ(clients.find(guid(1)), nullptr);
+  EXPECT_EQ(clients.on_sample(guid(1), std::nullopt, true, kStart + 2s)->life->lease_limit, 300ms);
 }
 
 TEST_F(Slots, OfOneThatHoldsAButtonOrWasTrustedWithoutALeaseAreKept) {
