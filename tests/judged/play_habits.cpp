@@ -144,6 +144,8 @@ void Play::follow_each_other(const Step& step) {
   constexpr std::array<std::uint8_t, 4> kSuccessors{kEnables, kFirstStart, kStops, kStops + 1};  // of kCommands
   enum Sign : std::uint8_t { none, liveliness, heartbeat, standing_heartbeat };
   const auto writer = static_cast<std::uint8_t>(step.client);
+  // Its program may have begun to beat before.
+  if (step.command / kStarts % 2 == 1) beat(writer, true);
   Step start = press(step, Deed::sample);
   send(kModbus + writer, writers_->write_of(start), step.at_once);
   for (std::int64_t gone = 0; gone <= kLengths.at(step.length) && gone < 2 * kLongestHabitMs && !over();
