@@ -123,7 +123,7 @@ void DdsClients::heard(ClientLife& life, Instant now) {
   if (!needed) life.grace = Duration{};
 }
 
-std::string DdsClients::on_writer(const WriterRecord& record, Instant now) {
+std::string DdsClients::on_writer(const WriterRecord& record) {
   std::string told;
   if (record.gone) {
     if (const auto found = clients_.find(record.writer); found != clients_.end()) forget(found);
@@ -136,7 +136,6 @@ std::string DdsClients::on_writer(const WriterRecord& record, Instant now) {
     if (client.life != nullptr) {
       client.life->strength = record.strength;
       client.life->name = name_of(record.writer);
-      heard(*client.life, now);
     }
     told = told_of_liveliness(record.liveliness);
     if (!told.empty())

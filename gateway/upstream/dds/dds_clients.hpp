@@ -56,7 +56,7 @@ class DdsClients {
       : identities_(identities), signs_(signs), image_(image), commands_(commands) {}
 
   /// A line for the log; mostly empty.
-  [[nodiscard]] std::string on_writer(const WriterRecord& record, Instant now);
+  [[nodiscard]] std::string on_writer(const WriterRecord& record);
   void on_beats(const BeatRecord& record, Instant now);
   void on_heartbeat(const HeartbeatRecord& record, Instant now);
   /// Who sends this sample: a client from now on, also where the record of it is still to come. nullptr: too many.
