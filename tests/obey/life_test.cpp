@@ -178,6 +178,29 @@ TEST_P(Life, OfAnotherAddressDoesNotEndByCommandFourteenWithoutRank) {
   EXPECT_NE(plant.velocity(), 0);
 }
 
+// 3.3 Not new: "so that no tool prints success for nothing": where a lease's halt has latched an axis that stays
+// enabled, a held enable was answered as if all were well.
+TEST_P(Life, ThatHasRunOutWithAHaltAsksForAZeroBeforeTheNextEnable) {
+  PlantOptions options = with_leases();
+  options.lease->on_expiry = LeaseAction::halt;
+  for (const bool by_coil : {true, false}) {
+    Plant plant(GetParam(), options);
+    plant.ready();
+    const auto enable = [&](bool on) {
+      return by_coil ? plant.a.coil(coil::enable, on) : plant.a.command(on ? kEnable : 0);
+    };
+    ASSERT_EQ(enable(false), kOk);
+    ASSERT_EQ(enable(true), kOk);
+    plant.run(4s);
+    ASSERT_EQ(plant.b.word(shown::axis_state), kStopLatched);
+    EXPECT_EQ(enable(true), kNotNow) << by_coil;
+    EXPECT_EQ(plant.a.result(), kNotNew);
+    EXPECT_EQ(enable(false), kOk);
+    EXPECT_EQ(enable(true), kOk);
+    EXPECT_EQ(plant.a.word(shown::axis_state), kStandstill);
+  }
+}
+
 // Design 4, signs of life: "the lease is the smaller of lease_ms and the configured one": also of a program that beats
 // before it commands, and dies right after its first command.
 TEST_P(Life, OfADdsWriterIsAsShortAsItsHeartbeatHasSaidBeforeItsFirstCommand) {
