@@ -243,6 +243,9 @@ void Play::act(const Step& step) {
     case Deed::sample:
       send(kModbus + step.client, writers_->write_of(step), step.at_once);
       break;
+    case Deed::once_more:
+      say_once_more(step);
+      break;
     case Deed::new_writer:
       replace(kModbus + step.client, step.on);
       break;

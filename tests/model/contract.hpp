@@ -89,6 +89,8 @@ struct Motion {
 };
 using Motor = Motion::Kind;
 
+enum class SeenBefore : std::uint8_t { no, yes, perhaps };
+
 struct Verdict {
   std::string says{};        ///< for people
   std::set<int> answers{0};  ///< exceptions that fit; 0: none
@@ -244,6 +246,15 @@ class Contract {
     std::size_t client = 0;
     bool troubled = false;
   };
+  /// What a DDS writer has asked for with a request_id of its own.
+  struct Said {
+    std::int64_t command = 0;
+    std::int64_t at_ms = 0;  ///< it was seen last
+  };
+  struct AllSaid {
+    std::vector<Said> all{};
+    std::size_t last = 0;  ///< of all: what was seen last
+  };
   static constexpr std::size_t kMaxWorlds = 400;
   static constexpr std::size_t kMostBranches = 4000;  // of one write
 
@@ -264,8 +275,11 @@ class Contract {
   [[nodiscard]] static World owed_alone(World stopped, const World& none);
   [[nodiscard]] Seen seen() const;
 
+  [[nodiscard]] SeenBefore seen_before(std::size_t client, const Write& write);
+
   ContractOptions options_;
   std::vector<World> worlds_;
+  std::array<AllSaid, kWriters> said_{};
   std::map<int, Asked> asked_;
   std::string predicted_;
   Sight sight_{};

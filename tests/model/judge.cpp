@@ -110,6 +110,8 @@ void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
   // 3.4 Owed stops lets a run go on that 3.4 has ended: whether a new speed acts on it is not said.
   if (offset == row::target_velocity && differs && world_.broken && world_.motor == Motor::runs && readings_.other())
     world_.motor = Motor::unknown;
+  // Whether a jog that runs goes on at another jog_velocity is not said.
+  if (offset == row::jog_velocity && differs && world_.jog != 0 && readings_.other()) world_.motor = Motor::unknown;
   if (offset == row::target_velocity) world_.stale_speed = false;
   if (differs && (offset == row::target_position || offset == row::target_velocity)) {
     me().command.changed = true;
@@ -362,15 +364,22 @@ Verdict Judge::sample(const Write& write) {
   Verdict verdict{"a sample", {0}};
   const std::int64_t number = write.sample.contains(row::command) ? write.sample.at(row::command) : 0;
   const bool jogs = number >= kJogForward;
-  // Design 4, age: what is too old "gets result 6 and is not carried out"; "Stops, jog_end and release are never
-  // refused for age".
-  const bool lets_go = is_stop(number) || number == kJogEnd || number == kRelease;
-  if (write.stale && !lets_go) return {"too old: never started", {6}};
+  // Design 4: "request ids seen in the last 10 s are answered as already seen, not run again".
+  if (seen_before_ == SeenBefore::yes || (seen_before_ == SeenBefore::perhaps && readings_.other()))
+    return {"seen before", {kAlreadySeen}};
+  // Design 4, age: what is too old "or as far ahead gets result 6 and is not carried out"; which gateway: "commands
+  // need an exact match"; "Stops, jog_end and release are never refused for age or name".
+  const bool flawed = write.flaw != Flaw::none;
+  if (write.flaw == Flaw::half && !lets_go(number)) return {"not surely for this gateway", {3}};
+  if (flawed && !lets_go(number)) return {"too old, or too far ahead: never started", {6}};
+  changes_mode_ = write.sample.contains(row::mode);
   const bool refused = is_start(number) && start_refused(number, verdict);
   const bool claims = !options_.leases || !takes_no_lease(number) || readings_.other();
   // 3.3 What asks: "Set-points beside a command that is refused are accepted only if they would be without it": whether
   // that speaks of samples is not said.
-  if (!write.stale && (!refused || readings_.other()))
+  // Whether commands 9 to 11 will be refused is not known here.
+  const bool will_be = number > kRun && number <= kSetPosition && readings_.other();
+  if (!flawed && ((!refused && !will_be) || readings_.other()))
     for (const auto& [offset, value] : write.sample)
       if (offset != row::command && options_.rows.contains(offset)) accept(offset, value, claims);
   verdict.acts = number != 0;
@@ -378,7 +387,7 @@ Verdict Judge::sample(const Write& write) {
     jog_sample(number, verdict);
   else if (number != 0 && !refused)
     command(number, me().command, verdict);
-  if (write.stale) verdict.answers.insert(6);  // of what stands beside it
+  if (flawed) verdict.answers.insert(6);  // of what stands beside it
   tell_foreign(verdict);
   me() = {};
   return verdict;

@@ -136,7 +136,10 @@ void Contract::may_have_stopped_for_good() {
 
 void Contract::left(std::size_t client, bool silently) {
   if (!silently || is_dds(client)) may_have_stopped_for_good();
-  if (is_dds(client)) options_.limits.at(client - kModbus) = kNever;
+  if (is_dds(client)) {
+    options_.limits.at(client - kModbus) = kNever;
+    said_.at(client - kModbus) = {};
+  }
   for (World& world : worlds_) {
     if (options_.by_address && !is_dds(client)) {
       world.clients[client].half.reset();  // 3.1 Panels: "same connection"
@@ -229,6 +232,7 @@ void Contract::gateway_died() {
   trouble_begins();
   may_have_stopped_for_good();
   options_.limits.fill(kNever);
+  said_ = {};
   // What it still owed dies with it.
   std::vector<World> owed;
   for (const World& world : worlds_) {
