@@ -40,13 +40,13 @@ std::string in_words(Command stop) { return stop == Command::quick_stop ? "quick
 // --- Who asks ------------------------------------------------------------------------------------------------------
 
 // Reads are free, and stops are open to every operator, without taking the lease. A button that is let go where nothing
-// runs asks for nothing.
+// runs asks for nothing. What claims is judged also if it asks for nothing: it would take the axis.
 Errc Axis::judge_owner(const WriteBatch& batch) const {
   if (reads_alone(batch)) return Errc::ok;
   if (holds_stop(batch) && !batch.claims) return Errc::ok;
   if (batch.command == Command::jog_end || batch.command == Command::end_run) return Errc::ok;
   if (batch.command == Command::take_over) return ownership_.may_take_over(batch.life);
-  if (asks_nothing(batch) && !batch.jog_again) return Errc::ok;
+  if (asks_nothing(batch) && !batch.jog_again && !batch.claims) return Errc::ok;
   return ownership_.judge(batch.life, batch.claims);
 }
 
