@@ -84,6 +84,7 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
   // A coil that is held although its jog has ended asks for nothing until it was 0.
   const bool holds_in_vain = batch.jog_again && !jog_.again(*batch.jog_again, batch.client, core_.turn.now);
   if (holds_in_vain) batch.jog_again.reset();
+  if (holds_in_vain && asks_nothing(batch)) batch.claims = false;  // what is refused claims nothing
   // While something may run, the end of a run is a stop, and so open to every operator.
   if (batch.command == Command::end_run && may_run()) batch.command = Command::halt;
   Errc refusal = judge_owner(batch);
@@ -118,7 +119,6 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
       break;
   }
   if (asks_nothing(batch)) {
-    if (holds_in_vain) batch.claims = false;  // what is refused claims nothing
     const BatchResult result = nothing_asked(batch);
     return holds_in_vain ? BatchResult{{Errc::not_new, 0}} : result;
   }
