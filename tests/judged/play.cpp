@@ -252,6 +252,9 @@ void Play::act(const Step& step) {
     case Deed::masters:
       follow_each_other(step);
       break;
+    case Deed::dds_dies:
+      kill_dds(step);
+      break;
     case Deed::dds_jog:
       jog_by_dds(step);
       break;

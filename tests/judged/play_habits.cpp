@@ -175,6 +175,21 @@ void Play::say_once_more(const Step& step) {
     send(kModbus + step.client, *write, step.at_once);
 }
 
+// Design 4: "a crash in the DDS library costs topics for a moment, never the drives".
+void Play::kill_dds(const Step& step) {
+  if (over() || !clients_.connected(kModbus)) return;
+  outcome_.story.push_back(stamp() + ": axisgate-dds dies");
+  contract_->dds_died();
+  for (const Open& open : open_)
+    if (is_dds(open.client)) never_answered(open);
+  std::erase_if(open_, [](const Open& open) { return is_dds(open.client); });
+  clients_.dds().process_dies();
+  pass(std::min(kLengths.at(step.length), 2 * kLongestHabitMs));
+  if (over()) return;
+  clients_.dds().process_returns();
+  outcome_.story.push_back(stamp() + ": it is back");
+}
+
 // Design 4: "jog with the same deadline". Let go, or forgotten; sometimes the other direction is pressed meanwhile.
 void Play::jog_by_dds(const Step& step) {
   constexpr std::int64_t kAgainMs = 200;

@@ -76,6 +76,7 @@ class Play {
   void follow_each_other(const Step& step);
   void jog_by_dds(const Step& step);
   void say_once_more(const Step& step);
+  void kill_dds(const Step& step);
   void beat_in_vain(std::size_t writer, bool too_old);
   void be_alive(std::size_t writer);
   void beat(std::size_t writer, bool counts_on);

@@ -51,6 +51,7 @@ enum class Deed : std::uint8_t {
   once_more,      ///< one of its last ones with the same request_id, perhaps after another gateway was asked
   new_writer,     ///< it is deleted, or its liveliness is lost, and another one begins
   masters,        ///< a DDS master is alive in one way or another, or is not, and another one comes
+  dds_dies,       ///< the process, and comes back
   dds_jog,        ///< a jog by samples, held and let go or forgotten
   release,        ///< command 13
   reconnect,      ///< the connection ends, a new one begins; perhaps of a PLC that was started anew, ids and all

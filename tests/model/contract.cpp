@@ -240,6 +240,13 @@ int Contract::send(std::size_t client, const Write& write) {
   }
   if (lost_count_) return number;
   worlds_ = std::move(worlds);
+  if (is_dds(client) && write.flaw == Flaw::none) {
+    // Whether a write ends a grace before it renews, or after, is not said.
+    for (World& world : worlds_)
+      if (options_.only_writes_renew && graced_.at(client - kModbus) && world.owner == client)
+        world.lease_ends_by_ms += kGraceMs;
+    heard(client);
+  }
   keep_different();
   predicted_.clear();
   for (const std::string& one : said) predicted_ += (predicted_.empty() ? "" : " | ") + one;
@@ -302,8 +309,9 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
       next.awaits = 0;
       next.changed_ms = sight_.now_ms;
     }
-    // Whether it is remembered is not said.
-    if (!expected || (!done && pending.verdict.any_answer))
+    // Whether it is remembered is not said. Of a posted write that a stop has met register 25 may tell of an older one.
+    const bool perhaps_dropped = done && dropped;
+    if (!expected || (!done && pending.verdict.any_answer) || perhaps_dropped)
       make_uncertain(next.clients[std::min(asked.client, kModbus)]);
     // 3.5, "renew": whether a request that waits for the drive renews when it comes or when it is answered is not said.
     if (asked.troubled && next.owner == asked.client && !next.orphan)

@@ -359,40 +359,6 @@ void Judge::object(int function, Verdict& verdict) {
   if (world_.motor != Motor::stands) world_.motor = Motor::unknown;
 }
 
-// Design 4: "Every request gets its one reply"; each sample is new, and what its mask names asks.
-Verdict Judge::sample(const Write& write) {
-  Verdict verdict{"a sample", {0}};
-  const std::int64_t number = write.sample.contains(row::command) ? write.sample.at(row::command) : 0;
-  const bool jogs = number >= kJogForward;
-  // Design 4: "request ids seen in the last 10 s are answered as already seen, not run again".
-  if (seen_before_ == SeenBefore::yes || (seen_before_ == SeenBefore::perhaps && readings_.other()))
-    return {"seen before", {kAlreadySeen}};
-  // Design 4, age: what is too old "or as far ahead gets result 6 and is not carried out"; which gateway: "commands
-  // need an exact match"; "Stops, jog_end and release are never refused for age or name".
-  const bool flawed = write.flaw != Flaw::none;
-  if (write.flaw == Flaw::half && !lets_go(number)) return {"not surely for this gateway", {3}};
-  if (flawed && !lets_go(number)) return {"too old, or too far ahead: never started", {6}};
-  changes_mode_ = write.sample.contains(row::mode);
-  const bool refused = is_start(number) && start_refused(number, verdict);
-  const bool claims = !options_.leases || !takes_no_lease(number) || readings_.other();
-  // 3.3 What asks: "Set-points beside a command that is refused are accepted only if they would be without it": whether
-  // that speaks of samples is not said.
-  // Whether commands 9 to 11 will be refused is not known here.
-  const bool will_be = number > kRun && number <= kSetPosition && readings_.other();
-  if (!flawed && ((!refused && !will_be) || readings_.other()))
-    for (const auto& [offset, value] : write.sample)
-      if (offset != row::command && options_.rows.contains(offset)) accept(offset, value, claims);
-  verdict.acts = number != 0;
-  if (jogs)
-    jog_sample(number, verdict);
-  else if (number != 0 && !refused)
-    command(number, me().command, verdict);
-  if (flawed) verdict.answers.insert(6);  // of what stands beside it
-  tell_foreign(verdict);
-  me() = {};
-  return verdict;
-}
-
 void Judge::tell_foreign(Verdict& verdict) const {
   if (!refused_foreign_ || !verdict.answers.contains(0)) return;
   // What a stop is answered with whose set-points are refused is not said.

@@ -115,6 +115,13 @@ void DdsWriters::replace(std::size_t writer, bool of_the_same_participant) {
   tell(writer_there(old.guid, old.strength));
 }
 
+void DdsWriters::process_dies() { session_.on_link_down(stage_.runtime().now()); }
+
+void DdsWriters::process_returns() {
+  session_.on_link_up(stage_.runtime().now());
+  for (const Writer& each : writers_) tell(writer_there(each.guid, each.strength));
+}
+
 void DdsWriters::assert_liveliness(std::size_t writer) { tell(dds::BeatRecord{{writers_.at(writer).guid}}); }
 
 void DdsWriters::beat(std::size_t writer, bool counts_on, std::uint32_t lease_ms) {

@@ -28,6 +28,9 @@ class DdsWriters {
   /// What this writer has asked for so many requests ago, 1 or more, to be said once more; flawed ones do not count.
   /// None: it has not asked, or has no reply to it yet.
   [[nodiscard]] std::optional<model::Write> said(std::size_t writer, std::size_t ago);
+  /// axisgate-dds dies: nothing is heard of anybody, replies are lost. It comes back, and finds the same writers.
+  void process_dies();
+  void process_returns();
   /// A sample for another gateway, whose name and key agree. Nobody answers it.
   void ask_another_gateway(const model::Write& sample, std::size_t writer);
   /// command_result of its reply; none yet, or never.
