@@ -50,7 +50,7 @@ void Contract::heard(std::size_t client) {
 }
 
 // Design 4: "when axisgate-dds dies its clients' leases are prolonged once by 3 s": from when they were heard last, and
-// what it finds when it is back was not heard of (B2).
+// what it finds when it is back was not heard of.
 void Contract::dds_died() {
   for (World& world : worlds_) {
     if (!world.owner || *world.owner >= kClients || !is_dds(*world.owner) || world.orphan) continue;
