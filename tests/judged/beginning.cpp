@@ -30,7 +30,7 @@ ContractOptions options_of(const obey::Plant& plant, const Program& program, std
   options.no_halt = obey::is_kinco(subject) && !obey::is_md(subject) && program.flavour != Flavour::speeds;
   options.by_gateway = !obey::is_cia402(subject);
   if (obey::has_positions(subject)) options.rows.insert(row::target_position);
-  if (obey::has_speeds(subject)) options.rows.insert(row::target_velocity);
+  if (obey::has_speeds(subject)) options.rows.insert({row::target_velocity, row::jog_velocity});
   options.rows.insert(row::mode);
   // It has no ramp of the client's, and comes back to where its stop was asked for.
   constexpr std::int64_t kComesBackMs = 5'000;

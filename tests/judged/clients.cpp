@@ -7,6 +7,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "tests/model/judge.hpp"
+
 namespace axisgate::test::judged {
 
 using namespace model;
@@ -38,9 +40,10 @@ Write in_floats(Write write) {
 }
 
 /// Exceptions that a result stands for (3.3 Outcomes, and the DDS results of their own from 16 on).
-const std::map<int, std::set<int>> kStandsFor{{0, {1, 2, 3}}, {2, {0}},  {3, {4}},        {4, {11}},   {5, {6}},
-                                              {6, {6, 10}},   {7, {6}},  {8, {4, 6, 11}}, {9, {4, 6}}, {10, {0, 6}},
-                                              {11, {4}},      {16, {2}}, {17, {3}},       {19, {6}}};
+const std::map<int, std::set<int>> kStandsFor{
+    {0, {1, 2, 3}}, {2, {0}},  {3, {4}},        {4, {11}},   {5, {6}},
+    {6, {6, 10}},   {7, {6}},  {8, {4, 6, 11}}, {9, {4, 6}}, {10, {0, 6}},
+    {11, {4}},      {16, {2}}, {17, {3}},       {19, {6}},   {21, {kAlreadySeen}}};
 }  // namespace
 
 void Clients::connect() {

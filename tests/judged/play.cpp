@@ -243,11 +243,17 @@ void Play::act(const Step& step) {
     case Deed::sample:
       send(kModbus + step.client, writers_->write_of(step), step.at_once);
       break;
+    case Deed::once_more:
+      say_once_more(step);
+      break;
     case Deed::new_writer:
       replace(kModbus + step.client, step.on);
       break;
     case Deed::masters:
       follow_each_other(step);
+      break;
+    case Deed::dds_dies:
+      kill_dds(step);
       break;
     case Deed::dds_jog:
       jog_by_dds(step);

@@ -142,14 +142,17 @@ void Play::press_out_of_sight(const Step& step) {
 void Play::follow_each_other(const Step& step) {
   constexpr std::int64_t kAgainMs = 200;
   constexpr std::array<std::uint8_t, 4> kSuccessors{kEnables, kFirstStart, kStops, kStops + 1};  // of kCommands
-  enum Sign : std::uint8_t { none, liveliness, heartbeat, standing_heartbeat };
+  enum Sign : std::uint8_t { none, liveliness, heartbeat, standing_heartbeat, vain_heartbeat };
   const auto writer = static_cast<std::uint8_t>(step.client);
+  // Its program may have begun to beat before.
+  if (step.command / kStarts % 2 == 1) beat(writer, true);
   Step start = press(step, Deed::sample);
   send(kModbus + writer, writers_->write_of(start), step.at_once);
   for (std::int64_t gone = 0; gone <= kLengths.at(step.length) && gone < 2 * kLongestHabitMs && !over();
        gone += kAgainMs) {
-    if (step.id % 4 == liveliness) be_alive(writer);
-    if (step.id % 4 >= heartbeat) beat(writer, step.id % 4 == heartbeat || gone == 0);
+    if (step.id == liveliness) be_alive(writer);
+    if (step.id == heartbeat || step.id == standing_heartbeat) beat(writer, step.id == heartbeat || gone == 0);
+    if (step.id == vain_heartbeat) beat_in_vain(writer, step.number % 2 == 0);
     pass(kAgainMs);
   }
   if (step.on) replace(kModbus + writer, step.number % 4 != 3);
@@ -160,6 +163,33 @@ void Play::follow_each_other(const Step& step) {
   send(kModbus + next.client, writers_->write_of(next), step.at_once);
 }
 
+// Design 4: "request ids seen in the last 10 s are answered as already seen, not run again": of whoever missed a reply.
+void Play::say_once_more(const Step& step) {
+  if (over() || !clients_.connected(kModbus + step.client)) return;
+  if (step.on) {  // which gateway: "commands need an exact match"
+    Step other = press(step, Deed::sample);
+    other.command = step.command;
+    clients_.dds().ask_another_gateway(writers_->write_of(other), step.client);
+  }
+  if (const auto write = clients_.dds().said(step.client, 1U + step.id % 3U))
+    send(kModbus + step.client, *write, step.at_once);
+}
+
+// Design 4: "a crash in the DDS library costs topics for a moment, never the drives".
+void Play::kill_dds(const Step& step) {
+  if (over() || !clients_.connected(kModbus)) return;
+  outcome_.story.push_back(stamp() + ": axisgate-dds dies");
+  contract_->dds_died();
+  for (const Open& open : open_)
+    if (is_dds(open.client)) never_answered(open);
+  std::erase_if(open_, [](const Open& open) { return is_dds(open.client); });
+  clients_.dds().process_dies();
+  pass(std::min(kLengths.at(step.length), 2 * kLongestHabitMs));
+  if (over()) return;
+  clients_.dds().process_returns();
+  outcome_.story.push_back(stamp() + ": it is back");
+}
+
 // Design 4: "jog with the same deadline". Let go, or forgotten; sometimes the other direction is pressed meanwhile.
 void Play::jog_by_dds(const Step& step) {
   constexpr std::int64_t kAgainMs = 200;
@@ -167,7 +197,10 @@ void Play::jog_by_dds(const Step& step) {
   if (!obey::has_speeds(program_.subject)) return;
   const std::size_t client = kModbus + step.client;
   const auto say = [&](std::int64_t command) {
-    send(client, {.function = fc::sample, .sample = {{row::command, command}}}, step.at_once);
+    Rows rows{{row::command, command}};
+    if (command != kJogEnd && step.speed < kSpeeds.size() && kSpeeds.at(step.speed) > 0)
+      rows[row::jog_velocity] = kSpeeds.at(step.speed);
+    send(client, {.function = fc::sample, .sample = rows}, step.at_once);
   };
   const std::int64_t way = step.number % 2 == 0 ? kJogForward : kJogReverse;
   if (step.number % 4 == 0) say(kJogEnd);

@@ -156,6 +156,12 @@ void Play::beat(std::size_t writer, bool counts_on) {
   clients_.dds().beat(writer, counts_on, lease_ms);
 }
 
+// Design 4, signs of life: "if the heartbeat's writer has the GUID prefix of client"; age: "stale samples and
+// heartbeats renew nothing".
+void Play::beat_in_vain(std::size_t writer, bool too_old) {
+  if (!over() && clients_.connected(kModbus + writer)) clients_.dds().beat_in_vain(writer, too_old);
+}
+
 // 3.2: what is shown as valid was true at its age.
 void Play::read(std::size_t client) {
   if (!clients_.connected(client)) return;

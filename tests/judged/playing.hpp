@@ -75,6 +75,9 @@ class Play {
   void press_out_of_sight(const Step& step);
   void follow_each_other(const Step& step);
   void jog_by_dds(const Step& step);
+  void say_once_more(const Step& step);
+  void kill_dds(const Step& step);
+  void beat_in_vain(std::size_t writer, bool too_old);
   void be_alive(std::size_t writer);
   void beat(std::size_t writer, bool counts_on);
   void look_up(std::size_t client);

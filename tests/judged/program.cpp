@@ -21,9 +21,9 @@ rc::Gen<Deed> deed(Weather weather) {
       {4, Deed::coil},      {3, Deed::start_coils}, {1, Deed::cross},         {3, Deed::again},
       {3, Deed::scan},      {3, Deed::button},      {3, Deed::read},          {1, Deed::release},
       {1, Deed::reconnect}, {1, Deed::vanish},      {1, Deed::object},        {1, Deed::look_up},
-      {3, Deed::halves},    {1, Deed::bystander},   {5, Deed::sample},        {3, Deed::masters},
-      {2, Deed::dds_jog},   {1, Deed::new_writer},  {4, Deed::tool},          {1, Deed::monitor},
-      {1, Deed::rival}};
+      {3, Deed::halves},    {1, Deed::bystander},   {5, Deed::sample},        {3, Deed::once_more},
+      {3, Deed::masters},   {2, Deed::dds_jog},     {1, Deed::new_writer},    {1, Deed::dds_dies},
+      {4, Deed::tool},      {1, Deed::monitor},     {1, Deed::rival}};
   if (weather == Weather::calm) return rc::gen::weightedElement<Deed>(calm);
   const auto rough = rc::gen::weightedElement<Deed>({{4, Deed::lost},
                                                      {4, Deed::cut},
@@ -51,13 +51,13 @@ rc::Gen<Step> step(Weather weather) {
       rc::gen::set(&Step::pause, below(kPauses.size())));
 }
 
-constexpr std::array<const char*, 42> kDeeds{
-    "wait",      "command",    "command by id", "order",     "image",     "zeros",       "target",
-    "parameter", "mode block", "word block",    "word",      "coil",      "start coils", "cross",
-    "again",     "scan",       "button",        "tool",      "monitor",   "insist",      "rival",
-    "read",      "object",     "look up",       "halves",    "bystander", "sample",      "new writer",
-    "masters",   "DDS jog",    "release",       "reconnect", "vanish",    "lost",        "cut",
-    "unplug",    "lose",       "late",          "twice",     "restart",   "trip",        "crash"};
+constexpr std::array<const char*, 44> kDeeds{
+    "wait",       "command",    "command by id", "order",     "image",       "zeros",   "target",   "parameter",
+    "mode block", "word block", "word",          "coil",      "start coils", "cross",   "again",    "scan",
+    "button",     "tool",       "monitor",       "insist",    "rival",       "read",    "object",   "look up",
+    "halves",     "bystander",  "sample",        "once more", "new writer",  "masters", "DDS dies", "DDS jog",
+    "release",    "reconnect",  "vanish",        "lost",      "cut",         "unplug",  "lose",     "late",
+    "twice",      "restart",    "trip",          "crash"};
 
 }  // namespace
 

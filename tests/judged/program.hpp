@@ -48,8 +48,10 @@ enum class Deed : std::uint8_t {
   halves,         ///< one target by two writes of function 6, sometimes with another write between
   bystander,      ///< a viewer writes
   sample,         ///< of a DDS writer
+  once_more,      ///< one of its last ones with the same request_id, perhaps after another gateway was asked
   new_writer,     ///< it is deleted, or its liveliness is lost, and another one begins
   masters,        ///< a DDS master is alive in one way or another, or is not, and another one comes
+  dds_dies,       ///< the process, and comes back
   dds_jog,        ///< a jog by samples, held and let go or forgotten
   release,        ///< command 13
   reconnect,      ///< the connection ends, a new one begins; perhaps of a PLC that was started anew, ids and all

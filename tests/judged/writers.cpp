@@ -6,8 +6,15 @@ namespace axisgate::test::judged {
 using namespace model;
 
 namespace {
-constexpr std::int64_t kMoveNow = 63;                                 // start, and change at once
-constexpr std::uint8_t kHomeCoil = 23, kReleases = 22, kTooOld = 21;  // of Step::number
+constexpr std::int64_t kMoveNow = 63;                   // start, and change at once
+constexpr std::uint8_t kHomeCoil = 23, kReleases = 22;  // of Step::number
+/// Of Step::number as well: the flaws of a sample, from the first one on.
+constexpr std::uint8_t kWithMode = 6;  // of Step::length
+constexpr std::uint8_t kFirstFlaw = 19, kAfterFlaws = 22;
+Flaw flaw_of(std::uint8_t number) {
+  return number >= kFirstFlaw && number < kAfterFlaws ? static_cast<Flaw>(number - kFirstFlaw + 1) : Flaw::none;
+}
+
 }  // namespace
 
 std::int64_t Writers::start_command(const Step& step) const {
@@ -104,15 +111,18 @@ Write Writers::write_of(const Step& step) {
       return one(row::controlword, next_word(step, writer), step.number % 4 == 3 ? fc::mask_write : 0);
     case Deed::sample: {
       Rows rows;
-      const std::int64_t command = start_command(step);
-      rows[row::command] = command > kRun && command != kHome && command != kTakeOver ? kHalt : command;
+      rows[row::command] = start_command(step);
       if (step.number == kReleases && leases_) rows[row::command] = kRelease;
       if (step.position < kPositions.size() && obey::has_positions(subject_))
         rows[row::target_position] = kPositions[step.position];
       if (step.speed < kSpeeds.size() && obey::has_speeds(subject_)) rows[row::target_velocity] = kSpeeds[step.speed];
+      if (step.length == kWithMode && flavour_ != Flavour::both)
+        rows[row::mode] = flavour_ == Flavour::moves ? kPositionMode : kVelocityMode;
+      if (rows[row::command] == kSetPosition)
+        rows[row::set_position_value] = kPositions[step.length % kPositions.size()];
       // A sample that asks for nothing is an error of its own.
       if (rows.size() == 1 && rows[row::command] == 0) rows[row::command] = kHalt;
-      return {.function = fc::sample, .sample = rows, .stale = step.number == kTooOld};
+      return {.function = fc::sample, .sample = rows, .flaw = flaw_of(step.number)};
     }
     case Deed::object: {
       constexpr std::uint16_t kLast = 85;

@@ -141,9 +141,35 @@ World Contract::owed_alone(World stopped, const World& none) {
   return stopped;
 }
 
+// Design 4: "request ids seen in the last 10 s"; 3.4 Stops: "One acts if the command or the id differs from what is
+// remembered": that is what its writer has asked of the axis last.
+SeenBefore Contract::seen_before(std::size_t client, const Write& write) {
+  constexpr std::int64_t kKeptMs = 10'000, kUnsureMs = 20;
+  if (!is_dds(client)) return SeenBefore::no;
+  AllSaid& said = said_.at(client - kModbus);
+  const std::int64_t command = write.sample.contains(row::command) ? write.sample.at(row::command) : 0;
+  if (write.flaw != Flaw::none) {
+    if (lets_go(command)) said.last = SIZE_MAX;
+    return SeenBefore::no;
+  }
+  if (write.repeats == 0) {
+    said.last = said.all.size();
+    said.all.push_back({command, sight_.now_ms});
+    return SeenBefore::no;
+  }
+  const std::size_t which = said.all.size() - write.repeats;
+  const std::int64_t age_ms = sight_.now_ms - std::exchange(said.all.at(which).at_ms, sight_.now_ms);
+  const bool newest = std::exchange(said.last, which) == which;
+  if ((is_stop(command) || command == kJogEnd) && !newest) return SeenBefore::no;
+  return age_ms < kKeptMs - kUnsureMs   ? SeenBefore::yes
+         : age_ms > kKeptMs + kUnsureMs ? SeenBefore::no
+                                        : SeenBefore::perhaps;
+}
+
 int Contract::send(std::size_t client, const Write& write) {
   const int number = ++requests_;
   if (lost_count_) return number;
+  const SeenBefore seen_before = this->seen_before(client, write);
   asked_[number] = {client, trouble_};
   std::vector<World> worlds;
   std::set<std::string> said;
@@ -155,8 +181,10 @@ int Contract::send(std::size_t client, const Write& write) {
     do {
       World next = world;
       const Seen seen = this->seen();
-      if (!write.stale) take_over(next, client);  // Design 4, age: "stale samples and heartbeats renew nothing"
+      // Design 4, age: "stale samples and heartbeats renew nothing"; nor does what may be for another gateway.
+      if (write.flaw == Flaw::none) take_over(next, client);
       Judge judge(options_, next, readings, seen, client);
+      judge.seen_before(seen_before);
       Pending pending;
       pending.verdict = judge.write(write);
       // 3.5, "renew": whether "a write to this axis" that is refused is one is not said.
@@ -212,6 +240,13 @@ int Contract::send(std::size_t client, const Write& write) {
   }
   if (lost_count_) return number;
   worlds_ = std::move(worlds);
+  if (is_dds(client) && write.flaw == Flaw::none) {
+    // Whether a write ends a grace before it renews, or after, is not said.
+    for (World& world : worlds_)
+      if (options_.only_writes_renew && graced_.at(client - kModbus) && world.owner == client)
+        world.lease_ends_by_ms += kGraceMs;
+    heard(client);
+  }
   keep_different();
   predicted_.clear();
   for (const std::string& one : said) predicted_ += (predicted_.empty() ? "" : " | ") + one;
@@ -274,8 +309,9 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
       next.awaits = 0;
       next.changed_ms = sight_.now_ms;
     }
-    // Whether it is remembered is not said.
-    if (!expected || (!done && pending.verdict.any_answer))
+    // Whether it is remembered is not said. Of a posted write that a stop has met register 25 may tell of an older one.
+    const bool perhaps_dropped = done && dropped;
+    if (!expected || (!done && pending.verdict.any_answer) || perhaps_dropped)
       make_uncertain(next.clients[std::min(asked.client, kModbus)]);
     // 3.5, "renew": whether a request that waits for the drive renews when it comes or when it is answered is not said.
     if (asked.troubled && next.owner == asked.client && !next.orphan)

@@ -24,6 +24,8 @@ namespace axisgate::test::model {
 inline constexpr std::size_t kModbus = 3, kWriters = 3, kClients = kModbus + kWriters;  ///< DDS writers come last
 [[nodiscard]] constexpr bool is_dds(std::size_t client) { return client >= kModbus; }
 inline constexpr std::size_t kGhost = 100;
+/// Design 4: "when axisgate-dds dies its clients' leases are prolonged once by 3 s".
+inline constexpr std::int64_t kGraceMs = 3'000;
 inline constexpr std::int64_t kNever = INT64_MAX / 4, kLongAgo = INT64_MIN / 4;
 
 /// What somebody beside the machine sees.
@@ -88,6 +90,8 @@ struct Motion {
   bool operator==(const Motion&) const = default;
 };
 using Motor = Motion::Kind;
+
+enum class SeenBefore : std::uint8_t { no, yes, perhaps };
 
 struct Verdict {
   std::string says{};        ///< for people
@@ -206,6 +210,8 @@ class Contract {
   void asked(std::size_t client);
   /// A changed counter of this DDS writer's heartbeat.
   void beats(std::size_t client, std::int64_t lease_ms);
+  /// axisgate-dds has died; it comes back with the same writers.
+  void dds_died();
   /// What registers 28, 34 (bit 7), 29 and 1 tell this client now. False: no reading of the contract has it.
   struct Told {
     int owner = 0;
@@ -244,6 +250,15 @@ class Contract {
     std::size_t client = 0;
     bool troubled = false;
   };
+  /// What a DDS writer has asked for with a request_id of its own.
+  struct Said {
+    std::int64_t command = 0;
+    std::int64_t at_ms = 0;  ///< it was seen last
+  };
+  struct AllSaid {
+    std::vector<Said> all{};
+    std::size_t last = 0;  ///< of all: what was seen last
+  };
   static constexpr std::size_t kMaxWorlds = 400;
   static constexpr std::size_t kMostBranches = 4000;  // of one write
 
@@ -259,13 +274,18 @@ class Contract {
   void keep_different();
   void take_over(World& world, std::size_t client) const;
   void renew(World& world, std::size_t client) const;
+  void heard(std::size_t client);
   void may_have_stopped_for_good();
   static void overtake(World& world, Pending& newest, bool rows);
   [[nodiscard]] static World owed_alone(World stopped, const World& none);
   [[nodiscard]] Seen seen() const;
 
+  [[nodiscard]] SeenBefore seen_before(std::size_t client, const Write& write);
+
   ContractOptions options_;
   std::vector<World> worlds_;
+  std::array<AllSaid, kWriters> said_{};
+  std::array<bool, kWriters> graced_{};  ///< its leases were prolonged, and it was not heard since
   std::map<int, Asked> asked_;
   std::string predicted_;
   Sight sight_{};

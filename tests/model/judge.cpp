@@ -110,6 +110,8 @@ void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
   // 3.4 Owed stops lets a run go on that 3.4 has ended: whether a new speed acts on it is not said.
   if (offset == row::target_velocity && differs && world_.broken && world_.motor == Motor::runs && readings_.other())
     world_.motor = Motor::unknown;
+  // Whether a jog that runs goes on at another jog_velocity is not said.
+  if (offset == row::jog_velocity && differs && world_.jog != 0 && readings_.other()) world_.motor = Motor::unknown;
   if (offset == row::target_velocity) world_.stale_speed = false;
   if (differs && (offset == row::target_position || offset == row::target_velocity)) {
     me().command.changed = true;
@@ -355,33 +357,6 @@ void Judge::object(int function, Verdict& verdict) {
   world_.mode.reset();
   for (ClientMemory& client : world_.clients) client.command.changed = client.command.unsure = true;
   if (world_.motor != Motor::stands) world_.motor = Motor::unknown;
-}
-
-// Design 4: "Every request gets its one reply"; each sample is new, and what its mask names asks.
-Verdict Judge::sample(const Write& write) {
-  Verdict verdict{"a sample", {0}};
-  const std::int64_t number = write.sample.contains(row::command) ? write.sample.at(row::command) : 0;
-  const bool jogs = number >= kJogForward;
-  // Design 4, age: what is too old "gets result 6 and is not carried out"; "Stops, jog_end and release are never
-  // refused for age".
-  const bool lets_go = is_stop(number) || number == kJogEnd || number == kRelease;
-  if (write.stale && !lets_go) return {"too old: never started", {6}};
-  const bool refused = is_start(number) && start_refused(number, verdict);
-  const bool claims = !options_.leases || !takes_no_lease(number) || readings_.other();
-  // 3.3 What asks: "Set-points beside a command that is refused are accepted only if they would be without it": whether
-  // that speaks of samples is not said.
-  if (!write.stale && (!refused || readings_.other()))
-    for (const auto& [offset, value] : write.sample)
-      if (offset != row::command && options_.rows.contains(offset)) accept(offset, value, claims);
-  verdict.acts = number != 0;
-  if (jogs)
-    jog_sample(number, verdict);
-  else if (number != 0 && !refused)
-    command(number, me().command, verdict);
-  if (write.stale) verdict.answers.insert(6);  // of what stands beside it
-  tell_foreign(verdict);
-  me() = {};
-  return verdict;
 }
 
 void Judge::tell_foreign(Verdict& verdict) const {

@@ -38,7 +38,12 @@ inline constexpr std::int64_t kUnderWayMs = 1000;
 /// 3.4: stops act "without taking the lease", release "gives the lease back": whether set-points beside one take it is
 /// not said.
 [[nodiscard]] constexpr bool takes_no_lease(std::int64_t command) { return is_stop(command) || command == kRelease; }
+/// Design 4, age: "Stops, jog_end and release are never refused for age or name."
+[[nodiscard]] constexpr bool lets_go(std::int64_t command) { return takes_no_lease(command) || command == kJogEnd; }
 [[nodiscard]] constexpr bool is_start(std::int64_t command) { return command >= kMove && command <= kHome; }
+
+/// Of the result of a DDS request that is not run again.
+inline constexpr int kAlreadySeen = 21;
 
 class Judge {
  public:
@@ -54,6 +59,8 @@ class Judge {
   [[nodiscard]] bool takes_over() const { return takes_over_; }
   /// What it is answered with is not said.
   [[nodiscard]] bool unclear() const { return unclear_; }
+  /// Of a sample: its request_id was.
+  void seen_before(SeenBefore seen) { seen_before_ = seen; }
 
  private:
   enum class Edge : std::uint8_t { absent, nothing, remembered, not_new, acts };
@@ -108,6 +115,7 @@ class Judge {
   bool stopped_ = false;
   bool takes_over_ = false;
   bool unclear_ = false;
+  SeenBefore seen_before_ = SeenBefore::no;
 };
 
 }  // namespace axisgate::test::model

@@ -68,37 +68,6 @@ void Judge::begin_jog(std::int64_t direction, Verdict& verdict) {
   verdict = {"jogs", {0}};
 }
 
-// Design 4: "jog with the same deadline". The IDL: "It is a button: once a jog has ended, jog_end comes before the next
-// one."
-void Judge::jog_sample(std::int64_t number, Verdict& verdict) {
-  std::int64_t& pressed = world_.pressed.at(client_ - kModbus);
-  const std::int64_t direction = number == kJogForward ? 1 : -1;
-  const bool mine = world_.jog != 0 && world_.jog_client == client_;
-  if (number == kJogEnd) {
-    pressed = 0;
-    stopped_ = true;
-    verdict = {"jog_end", {0}};
-    // Whether it ends a jog of another client, or another motion, is not said.
-    if (mine || (world_.motor != Motor::stands && readings_.other())) halted(false);
-    return;
-  }
-  if (pressed != direction) {
-    begin_jog(direction, verdict);
-    // Whether one that was refused must be let go first is not said.
-    const bool surely = verdict.answers == std::set{0} && !verdict.any_answer && !seen_.troubled;
-    pressed = surely || readings_.other() ? direction : 0;
-    return;
-  }
-  if (refuse_foreign(verdict)) return;
-  if (mine && world_.jog == direction) {
-    world_.jog_ends_ms = seen_.now_ms + options_.jog_timeout_ms;
-    claim();
-    return;
-  }
-  verdict = {"a jog that has ended: jog_end first", {0, 4, 6}};
-  if (readings_.other()) claim();  // whether it asks for anything is not said
-}
-
 // Whether it halts a motion that is no jog is not said.
 void Judge::jog_both(Verdict& verdict) {
   if (world_.jog != 0 || (world_.motor != Motor::stands && readings_.other())) halted(false);

@@ -38,19 +38,38 @@ void Contract::take_over(World& world, std::size_t client) const {
 // are refused, or that repeat, nobody can tell.
 void Contract::renew(World& world, std::size_t client) const {
   const std::int64_t ends_ms = sight_.now_ms + options_.lease_of(client);
-  if (world.enabled)
-    world.lease_until(ends_ms);
-  else
-    world.lease_ends_by_ms = ends_ms;
+  if (world.enabled) return world.lease_until(ends_ms);
+  world.lease_ends_by_ms = ends_ms;
+  // Whether a sign of life that does not renew ends what it was prolonged by is not said.
+  if (is_dds(client) && graced_.at(client - kModbus))
+    world.lease_ends_ms = std::min(world.lease_ends_ms, sight_.now_ms);
+}
+
+void Contract::heard(std::size_t client) {
+  if (is_dds(client)) graced_.at(client - kModbus) = false;
+}
+
+// Design 4: "when axisgate-dds dies its clients' leases are prolonged once by 3 s": from when they were heard last, and
+// what it finds when it is back was not heard of.
+void Contract::dds_died() {
+  for (World& world : worlds_) {
+    if (!world.owner || *world.owner >= kClients || !is_dds(*world.owner) || world.orphan) continue;
+    if (graced_.at(*world.owner - kModbus)) continue;
+    world.lease_ends_by_ms += kGraceMs;
+    // Where a sign of life need not renew, whether it ends this is not said.
+    if (world.enabled && !options_.only_writes_renew) world.lease_ends_ms += kGraceMs;
+  }
+  graced_.fill(true);
 }
 
 // 3.5: "renew": any request of the owner; 3.5 Signs of life: "While an axis is disabled only requests that ask for
 // something".
 void Contract::asked(std::size_t client) {
   // 3.5 Signs of life: "With "client": "address" only writes renew"; 3.5, "renew": "a write to this axis".
-  if ((options_.by_address && !is_dds(client)) || options_.only_writes_renew) return;
+  if ((options_.by_address && !is_dds(client)) || options_.only_writes_renew) return heard(client);
   for (World& world : worlds_)
     if (world.owner == client && !world.orphan) renew(world, client);
+  heard(client);
 }
 
 void Contract::beats(std::size_t client, std::int64_t lease_ms) {
@@ -136,7 +155,11 @@ void Contract::may_have_stopped_for_good() {
 
 void Contract::left(std::size_t client, bool silently) {
   if (!silently || is_dds(client)) may_have_stopped_for_good();
-  if (is_dds(client)) options_.limits.at(client - kModbus) = kNever;
+  if (is_dds(client)) {
+    options_.limits.at(client - kModbus) = kNever;
+    said_.at(client - kModbus) = {};
+    heard(client);
+  }
   for (World& world : worlds_) {
     if (options_.by_address && !is_dds(client)) {
       world.clients[client].half.reset();  // 3.1 Panels: "same connection"
@@ -229,6 +252,8 @@ void Contract::gateway_died() {
   trouble_begins();
   may_have_stopped_for_good();
   options_.limits.fill(kNever);
+  said_ = {};
+  graced_ = {};
   // What it still owed dies with it.
   std::vector<World> owed;
   for (const World& world : worlds_) {

@@ -82,7 +82,9 @@ Rows rows_of(const Write& write) {
 std::string text(const Write& write) {
   std::string out = write.function == fc::sample ? "sample" : "FC" + std::to_string(write.function);
   for (const auto& [offset, value] : write.sample) out += " " + std::to_string(offset) + "=" + std::to_string(value);
-  if (write.function == fc::sample) return out + (write.stale ? " too old" : "");
+  constexpr std::array kFlaws{"", " too old", " too far ahead", " for half of us"};
+  if (write.function == fc::sample)
+    return out + kFlaws.at(static_cast<std::size_t>(write.flaw)) + (write.repeats == 0 ? "" : " once more");
   if (write.coils()) {
     for (std::size_t i = 0; i < write.words.size(); ++i)
       out += " coil" + std::to_string(write.first + i) + "=" + std::to_string(write.words[i]);

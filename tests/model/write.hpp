@@ -42,12 +42,21 @@ inline constexpr int sample = 0,  // no function code: a DDS sample
                      general_reference = 43;  // 43/13, told as the mailbox's rows 80 to 85
 }  // namespace fc
 
+/// Design 4, age and which gateway: why a sample may not be carried out.
+enum class Flaw : std::uint8_t {
+  none,
+  old,    ///< its source timestamp is older than max_age_ms
+  ahead,  ///< or as far ahead
+  half,   ///< of gateway_key and name one alone is this gateway's
+};
+
 struct Write {
   int function = fc::write_registers;
   std::uint16_t first = 0;             ///< offset in the axis's block of registers or coils
   std::vector<std::uint16_t> words{};  ///< one for each register, or 0 and 1 for each coil
   Rows sample{};                       ///< of fc::sample: what its mask names, and the command
-  bool stale = false;                  ///< of fc::sample: its source timestamp is older than max_age_ms
+  Flaw flaw = Flaw::none;              ///< of fc::sample
+  std::size_t repeats = 0;             ///< of fc::sample: it has the request_id of so many before; 0: a new one
   [[nodiscard]] bool coils() const { return function == fc::write_coil || function == fc::write_coils; }
 };
 

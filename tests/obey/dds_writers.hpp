@@ -22,8 +22,17 @@ class DdsWriters {
   /// `participant`: of the first one's GUID, the others' follow. `strengths`: one for each writer; 0 of a SHARED one.
   DdsWriters(GatewayStage& stage, std::uint8_t participant, std::vector<std::int32_t> strengths = {0});
 
-  /// Sends a sample of axis 1 and returns its request_id at once.
+  /// Sends a sample of axis 1 and returns a number for its reply at once: its request_id, of one that repeats another
+  /// more than that.
   std::uint64_t begin(const model::Write& sample, std::size_t writer = 0);
+  /// What this writer has asked for so many requests ago, 1 or more, to be said once more; flawed ones do not count.
+  /// None: it has not asked, or has no reply to it yet.
+  [[nodiscard]] std::optional<model::Write> said(std::size_t writer, std::size_t ago);
+  /// axisgate-dds dies: nothing is heard of anybody, replies are lost. It comes back, and finds the same writers.
+  void process_dies();
+  void process_returns();
+  /// A sample for another gateway, whose name and key agree. Nobody answers it.
+  void ask_another_gateway(const model::Write& sample, std::size_t writer);
   /// command_result of its reply; none yet, or never.
   [[nodiscard]] std::optional<std::uint8_t> result_of(std::uint64_t request);
   /// The writer is deleted, or its liveliness is lost, and another one begins.
@@ -32,13 +41,17 @@ class DdsWriters {
   void assert_liveliness(std::size_t writer);
   /// A sample of heartbeat, with the counter of the one before or the next one.
   void beat(std::size_t writer, bool counts_on, std::uint32_t lease_ms);
+  /// One with the next counter that is too old, or of another participant.
+  void beat_in_vain(std::size_t writer, bool too_old);
 
  private:
   struct Writer {
     dds::Guid guid{};
     std::int32_t strength = 0;
     std::uint32_t counter = 0;
+    std::vector<std::pair<std::uint64_t, model::Write>> said{};  ///< with their request_ids
   };
+  [[nodiscard]] dds::CommandRecord record_of(const model::Write& sample, const Writer& by, std::uint64_t id);
   void tell(const dds::Record& record);
   void read();
   [[nodiscard]] dds::SteadyNs now_ns();
@@ -47,7 +60,8 @@ class DdsWriters {
   std::vector<Writer> writers_;
   dds::DdsSession session_;
   std::uint64_t last_ = 0;
-  std::map<std::uint64_t, std::uint8_t> results_;
+  std::map<std::uint64_t, std::vector<std::uint8_t>> results_;  ///< of a request_id
+  std::map<std::uint64_t, std::size_t> asked_;                  ///< how often
 };
 
 }  // namespace axisgate::test::obey

@@ -2,6 +2,7 @@
 // 3.5 Signs of life, and who takes over.
 #include <gtest/gtest.h>
 
+#include "tests/obey/dds_writers.hpp"
 #include "tests/obey/plant.hpp"
 
 namespace axisgate::test::obey {
@@ -175,6 +176,47 @@ TEST_P(Life, OfAnotherAddressDoesNotEndByCommandFourteenWithoutRank) {
   EXPECT_EQ(plant.b.command(kTakeOver), kNotNow);
   EXPECT_EQ(plant.b.word(shown::owner), kAnother);
   EXPECT_NE(plant.velocity(), 0);
+}
+
+// 3.3 Not new: "so that no tool prints success for nothing": where a lease's halt has latched an axis that stays
+// enabled, a held enable was answered as if all were well.
+TEST_P(Life, ThatHasRunOutWithAHaltAsksForAZeroBeforeTheNextEnable) {
+  PlantOptions options = with_leases();
+  options.lease->on_expiry = LeaseAction::halt;
+  for (const bool by_coil : {true, false}) {
+    Plant plant(GetParam(), options);
+    plant.ready();
+    const auto enable = [&](bool on) {
+      return by_coil ? plant.a.coil(coil::enable, on) : plant.a.command(on ? kEnable : 0);
+    };
+    ASSERT_EQ(enable(false), kOk);
+    ASSERT_EQ(enable(true), kOk);
+    plant.run(4s);
+    ASSERT_EQ(plant.b.word(shown::axis_state), kStopLatched);
+    EXPECT_EQ(enable(true), kNotNow) << by_coil;
+    EXPECT_EQ(plant.a.result(), kNotNew);
+    EXPECT_EQ(enable(false), kOk);
+    EXPECT_EQ(enable(true), kOk);
+    EXPECT_EQ(plant.a.word(shown::axis_state), kStandstill);
+  }
+}
+
+// Design 4, signs of life: "the lease is the smaller of lease_ms and the configured one": also of a program that beats
+// before it commands, and dies right after its first command.
+TEST_P(Life, OfADdsWriterIsAsShortAsItsHeartbeatHasSaidBeforeItsFirstCommand) {
+  Plant plant(GetParam(), with_leases());
+  plant.ready();
+  DdsWriters writer(plant.stage, 1);
+  writer.beat(0, true, 300);
+  plant.run(1s);
+  Rows sample = plant.endless_target();
+  sample[row::command] = plant.endless_command();
+  const std::uint64_t start = writer.begin({.function = fc::sample, .sample = sample});
+  ASSERT_TRUE(plant.stage.run_until([&] { return writer.result_of(start).has_value(); }, 1s));
+  ASSERT_EQ(writer.result_of(start), 2);
+  ASSERT_TRUE(plant.turns_within(1s));
+  EXPECT_TRUE(plant.stage.run_until([&] { return plant.b.word(shown::axis_state) == kStopLatched; }, 1s));
+  EXPECT_TRUE(plant.comes_to_stand());
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Life, testing::ValuesIn(kSubjects), named);

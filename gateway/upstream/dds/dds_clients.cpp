@@ -60,8 +60,29 @@ std::shared_ptr<ClientLife> DdsClients::new_life(const Guid& writer) {
   return life;
 }
 
+std::size_t DdsClients::beating_alone() const {
+  return static_cast<std::size_t>(
+      std::count_if(clients_.begin(), clients_.end(), [](const auto& each) { return each.second.beats_alone; }));
+}
+
+// Those that beat alone take nobody's.
 bool DdsClients::has_place(const Guid& writer) const {
-  return clients_.contains(writer) || clients_.size() < kMaxWritersKnown;
+  const auto found = clients_.find(writer);
+  const bool has_one = found != clients_.end() && !found->second.beats_alone;
+  return has_one || clients_.size() - beating_alone() < kMaxWritersKnown;
+}
+
+// A heartbeat is a topic of its own: it may be here before anything else of its writer is.
+DdsClient* DdsClients::beating(const Guid& writer, Instant now) {
+  const auto found = clients_.find(writer);
+  if (found == clients_.end() && beating_alone() >= kMaxBeatsBefore) return nullptr;
+  DdsClient& client = found == clients_.end() ? clients_[writer] : found->second;
+  client.beats_alone = client.beats_alone || found == clients_.end();
+  if (client.beats_alone) {
+    client.returns_by = now + kReturnsWithin;
+    look_at_deadlines();
+  }
+  return &client;
 }
 
 bool DdsClients::makes_way(const DdsClient& client) const {
@@ -81,7 +102,6 @@ bool DdsClients::make_room() {
   if (longest == nullptr) return false;
   end(*longest);
   longest->released.clear();
-  longest->counter.reset();
   longest->commands = false;
   return true;
 }
@@ -103,7 +123,7 @@ void DdsClients::heard(ClientLife& life, Instant now) {
   if (!needed) life.grace = Duration{};
 }
 
-std::string DdsClients::on_writer(const WriterRecord& record, Instant now) {
+std::string DdsClients::on_writer(const WriterRecord& record) {
   std::string told;
   if (record.gone) {
     if (const auto found = clients_.find(record.writer); found != clients_.end()) forget(found);
@@ -112,10 +132,10 @@ std::string DdsClients::on_writer(const WriterRecord& record, Instant now) {
     client.strength = record.strength;
     client.where = record.where;
     client.returns_by = kNever;
+    client.beats_alone = false;
     if (client.life != nullptr) {
       client.life->strength = record.strength;
       client.life->name = name_of(record.writer);
-      heard(*client.life, now);
     }
     told = told_of_liveliness(record.liveliness);
     if (!told.empty())
@@ -136,14 +156,19 @@ void DdsClients::on_beats(const BeatRecord& record, Instant now) {
   look_at_deadlines();
 }
 
-// What it says of the lease counts as long as its writer is there, also once it has fallen silent.
+// What it says of the lease counts as long as its writer is there, also once it has fallen silent, and also if it has
+// asked for nothing yet: a program that dies right after its first command is stopped as soon as it wished.
 void DdsClients::on_heartbeat(const HeartbeatRecord& record, Instant now) {
-  DdsClient* const client = find(record.client);
-  if (client == nullptr || !signs_.counts(record, client->counter, now)) return;
+  const auto known = clients_.find(record.client);
+  if (!signs_.counts(record, known == clients_.end() ? std::nullopt : known->second.counter, now)) return;
+  DdsClient* const client = beating(record.client, now);
+  if (client == nullptr) return;
   client->counter = record.counter;
+  client->lease_limit.reset();
+  if (record.lease_ms != 0) client->lease_limit = std::chrono::milliseconds(record.lease_ms);
+  if (client->life == nullptr) return;
   client->life->heartbeat = now;
-  client->life->lease_limit.reset();
-  if (record.lease_ms != 0) client->life->lease_limit = std::chrono::milliseconds(record.lease_ms);
+  client->life->lease_limit = client->lease_limit;
   heard(*client->life, now);
 }
 
@@ -156,7 +181,9 @@ DdsClient* DdsClients::on_sample(const Guid& writer, std::optional<std::int32_t>
     client->life = new_life(writer);
     client->life->name = name_of(writer);
     client->life->strength = client->strength;
+    client->life->lease_limit = client->lease_limit;
   }
+  client->beats_alone = false;
   if (strength) client->life->strength = strength;
   if (fresh) heard(*client->life, now);
   if (!is_told_of || client->returns_by != kNever) {

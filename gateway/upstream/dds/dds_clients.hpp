@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The DDS writers as clients of the gateway: one ClientLife each, by which leases are judged (design 3.5 and 4). A
-// writer is a client from its first sample for this gateway on. Promises that their number is bounded, and that none
-// makes way for a newcomer that owns an axis, holds a button or may have a motor running; that a writer whose end is
-// told or who does not come back is dead to its leases; that the silence of axisgate-dds itself is not taken for theirs
-// for as long as their grace. Never speaks to an axis, but to say that a client is gone.
+// writer is a client from its first sample for this gateway on, with the lease that its heartbeats before that have
+// asked for. Promises that the number of what is remembered is bounded, and that none makes way for a newcomer that
+// owns an axis, holds a button or may have a motor running; that a writer whose end is told or who does not come back
+// is dead to its leases; that the silence of axisgate-dds itself is not taken for theirs for as long as their grace.
+// Never speaks to an axis, but to say that a client is gone.
 #pragma once
 
 #include <map>
@@ -22,6 +23,8 @@ inline constexpr ClientId kFirstDdsClient = ClientId{1} << 63U;
 /// Writers that were not told of (or not again, after axisgate-dds was started anew) for so long are gone: their grace,
 /// and the time in which a new participant finds the others.
 inline constexpr Duration kReturnsWithin = std::chrono::seconds(8);
+/// Writers at a time that nobody has told of, and whose heartbeats are remembered for their first command.
+inline constexpr std::size_t kMaxBeatsBefore = 64;
 
 /// A jog command is a button that is pressed: the same one again is the button held, until command 33, or the other
 /// direction. So nothing that has ended the jog meanwhile is undone by a button that is still held (design 3.4).
@@ -41,7 +44,9 @@ struct DdsClient {
   bool commands = false;                   ///< it writes axis_command; else it may be one that asks for objects alone
   bool unleased = false;                   ///< it has commanded an axis that nobody owns: a motor may run by it
   Instant returns_by = kNever;             ///< kNever: it was told of since the link is up
+  bool beats_alone = false;                ///< nothing but its heartbeats is known of it
   std::optional<std::uint32_t> counter{};  ///< of its last heartbeat
+  std::optional<Duration> lease_limit{};   ///< of the same: it holds for a client that it becomes later, too
   bool told_of_liveliness = false;         ///< the log has its line
 };
 
@@ -51,7 +56,7 @@ class DdsClients {
       : identities_(identities), signs_(signs), image_(image), commands_(commands) {}
 
   /// A line for the log; mostly empty.
-  [[nodiscard]] std::string on_writer(const WriterRecord& record, Instant now);
+  [[nodiscard]] std::string on_writer(const WriterRecord& record);
   void on_beats(const BeatRecord& record, Instant now);
   void on_heartbeat(const HeartbeatRecord& record, Instant now);
   /// Who sends this sample: a client from now on, also where the record of it is still to come. nullptr: too many.
@@ -78,7 +83,9 @@ class DdsClients {
  private:
   using Clients = std::map<Guid, DdsClient>;
   [[nodiscard]] std::shared_ptr<ClientLife> new_life(const Guid& writer);
+  [[nodiscard]] std::size_t beating_alone() const;
   [[nodiscard]] bool has_place(const Guid& writer) const;
+  [[nodiscard]] DdsClient* beating(const Guid& writer, Instant now);
   [[nodiscard]] bool makes_way(const DdsClient& client) const;
   [[nodiscard]] bool make_room();
   void end(DdsClient& client);

@@ -133,7 +133,7 @@ void DdsSession::on_link_down(Instant) {
 void DdsSession::on_record(const Record& record, Instant now) {
   Impl& it = *impl_;
   if (const auto* const writer = std::get_if<WriterRecord>(&record)) {
-    const std::string line = it.clients.on_writer(*writer, now);
+    const std::string line = it.clients.on_writer(*writer);
     if (!line.empty() && it.told.line) it.told.line(line);
   }
   if (const auto* const heartbeat = std::get_if<HeartbeatRecord>(&record)) it.clients.on_heartbeat(*heartbeat, now);

@@ -34,7 +34,7 @@ struct Writers : testing::Test {
   }
   /// Told of, and it has asked for something.
   std::shared_ptr<ClientLife> there(const Guid& writer, std::int32_t strength = 0, Instant now = kStart) {
-    static_cast<void>(clients.on_writer(writer_there(writer, strength), now));
+    static_cast<void>(clients.on_writer(writer_there(writer, strength)));
     return clients.on_sample(writer, strength, true, now)->life;
   }
   void give(const std::shared_ptr<ClientLife>& life) {
@@ -88,13 +88,13 @@ TEST_F(Writers, OfALivelinessThatCountsForNothingAreToldSoOnce) {
     const Guid who = guid(static_cast<std::uint8_t>(kind));
     WriterRecord record = writer_there(who);
     record.liveliness = kind;
-    EXPECT_THAT(clients.on_writer(record, kStart), testing::HasSubstr("liveliness counts for nothing"));
-    EXPECT_EQ(clients.on_writer(record, kStart), "");
+    EXPECT_THAT(clients.on_writer(record), testing::HasSubstr("liveliness counts for nothing"));
+    EXPECT_EQ(clients.on_writer(record), "");
   }
   for (const auto kind : {LivelinessKind::endless, LivelinessKind::manual_by_topic}) {
     WriterRecord record = writer_there(guid(10 + static_cast<std::uint8_t>(kind)));
     record.liveliness = kind;
-    EXPECT_EQ(clients.on_writer(record, kStart), "");
+    EXPECT_EQ(clients.on_writer(record), "");
   }
 }
 
@@ -147,6 +147,64 @@ TEST_F(Writers, AHeartbeatMakesItsLeasesShorterAndNeverLonger) {
   EXPECT_EQ(lease.until(), kStart + 2s);
 }
 
+TEST_F(Writers, AHeartbeatBeforeTheFirstCommandCountsForItsLease) {
+  const Guid who = guid(1);
+  static_cast<void>(clients.on_writer(writer_there(who)));
+  clients.on_heartbeat(heartbeat(who, 1, kStart, 300), kStart);
+  EXPECT_EQ(clients.size(), 0U) << "it makes no client";
+  const auto life = clients.on_sample(who, 0, true, kStart + 1s)->life;
+  EXPECT_EQ(life->lease_limit, 300ms);
+  clients.on_heartbeat(heartbeat(who, 1, kStart + 2s), kStart + 2s);
+  EXPECT_EQ(life->heartbeat, kLongAgo) << "a library that repeats it";
+  EXPECT_EQ(life->lease_limit, 300ms);
+  clients.on_heartbeat(heartbeat(who, 2, kStart + 2s), kStart + 2s);
+  EXPECT_EQ(life->heartbeat, kStart + 2s);
+  EXPECT_EQ(life->lease_limit, std::nullopt) << "as it is configured";
+}
+
+TEST_F(Writers, AnOldOrForeignHeartbeatBeforeTheFirstCommandCountsForNothing) {
+  const Guid who = guid(1);
+  static_cast<void>(clients.on_writer(writer_there(who)));
+  clients.on_heartbeat(heartbeat(who, 1, kStart, 300), kStart + 501ms);
+  HeartbeatRecord foreign = heartbeat(who, 2, kStart + 1s, 300);
+  foreign.writer = guid(2);
+  clients.on_heartbeat(foreign, kStart + 1s);
+  EXPECT_EQ(there(who)->lease_limit, std::nullopt);
+}
+
+TEST_F(Writers, AHeartbeatMayComeBeforeAnythingElseOfItsWriter) {
+  const Guid who = guid(1);
+  clients.on_heartbeat(heartbeat(who, 1, kStart, 300), kStart);
+  static_cast<void>(clients.on_writer(writer_there(who)));
+  clients.on_time(kStart + 1h);
+  EXPECT_EQ(clients.on_sample(who, 0, true, kStart + 1h)->life->lease_limit, 300ms);
+  EXPECT_EQ(clients.deadline(), kNever);
+}
+
+TEST_F(Writers, AHeartbeatOfOneThatIsGoneOrNeverComesIsForgotten) {
+  const Guid who = guid(1);
+  static_cast<void>(clients.on_writer(writer_there(who)));
+  clients.on_heartbeat(heartbeat(who, 1, kStart, 300), kStart);
+  static_cast<void>(clients.on_writer(writer_gone(who)));
+  EXPECT_EQ(there(who)->lease_limit, std::nullopt);
+  clients.on_heartbeat(heartbeat(guid(2), 1, kStart, 300), kStart);
+  clients.on_heartbeat(heartbeat(guid(2), 2, kStart + 1s, 300), kStart + 1s);
+  EXPECT_EQ(clients.deadline(), kStart + 1s + kReturnsWithin);
+  clients.on_time(kStart + 1s + kReturnsWithin);
+  EXPECT_EQ(clients.on_sample(guid(2), 0, true, kStart + 10s)->life->lease_limit, std::nullopt);
+}
+
+TEST_F(Writers, ThatOnlyBeatAreBounded) {
+  const auto limit_of = [&](std::uint8_t n) { return clients.on_sample(guid(n), 0, true, kStart)->life->lease_limit; };
+  for (std::uint8_t n = 1; n <= kMaxBeatsBefore + 1; ++n)
+    clients.on_heartbeat(heartbeat(guid(n), 1, kStart, 300), kStart);
+  EXPECT_EQ(limit_of(kMaxBeatsBefore), 300ms);
+  EXPECT_EQ(limit_of(kMaxBeatsBefore + 1), std::nullopt);
+  static_cast<void>(clients.on_writer(writer_there(guid(1))));
+  clients.on_heartbeat(heartbeat(guid(200), 1, kStart, 300), kStart);
+  EXPECT_EQ(limit_of(200), 300ms) << "one that is told of is none of them any more";
+}
+
 TEST_F(Writers, ABeatOfNobodyMakesNobody) {
   clients.on_beats(beat(guid(9)), kStart);
   EXPECT_EQ(clients.size(), 0U);
@@ -154,10 +212,10 @@ TEST_F(Writers, ABeatOfNobodyMakesNobody) {
 
 TEST_F(Writers, OneThatIsGoneIsDeadToItsLeasesAndItsAxesAreTold) {
   const auto life = there(guid(1));
-  static_cast<void>(clients.on_writer(writer_gone(guid(1)), kStart + 1s));
+  static_cast<void>(clients.on_writer(writer_gone(guid(1))));
   EXPECT_FALSE(life->connected);
   EXPECT_THAT(port.gone, ElementsAre(life->id));
-  static_cast<void>(clients.on_writer(writer_gone(guid(1)), kStart + 1s));
+  static_cast<void>(clients.on_writer(writer_gone(guid(1))));
   EXPECT_EQ(port.gone.size(), 1U);
   EXPECT_NE(there(guid(1))->id, life->id) << "a dead client does not come back: another of its origin does";
 }
@@ -202,10 +260,9 @@ struct Slots : Writers {
 };
 
 TEST_F(Slots, AreNotForWritersThatAskForNothing) {
-  for (std::uint8_t i = 1; i <= kMaxWriters + 6; ++i)
-    static_cast<void>(clients.on_writer(writer_there(guid(i)), kStart));
+  for (std::uint8_t i = 1; i <= kMaxWriters + 6; ++i) static_cast<void>(clients.on_writer(writer_there(guid(i))));
   EXPECT_EQ(clients.size(), 0U);
-  static_cast<void>(clients.on_writer(writer_there(late, 7), kStart));
+  static_cast<void>(clients.on_writer(writer_there(late, 7)));
   const auto life = clients.on_sample(late, std::nullopt, true, kStart)->life;
   EXPECT_EQ(life->strength, 7) << "as it was told of";
   EXPECT_EQ(life->name, client_name(late, "192.168.1.7"));
@@ -231,6 +288,14 @@ TEST_F(Slots, OfOneThatOwnsNothingAndWasHeardLongestAgoGoesToALateOne) {
   EXPECT_EQ(clients.find(guid(3)), nullptr);
 }
 
+TEST_F(Slots, ThatMakeWayKeepWhatTheirHeartbeatHasSaid) {
+  fill();
+  clients.on_heartbeat(heartbeat(guid(1), 1, kStart, 300), kStart);
+  ASSERT_NE(clients.on_sample(late, 3, true, kStart + 1s), nullptr);
+  ASSERT_EQ(clients.find(guid(1)), nullptr);
+  EXPECT_EQ(clients.on_sample(guid(1), std::nullopt, true, kStart + 2s)->life->lease_limit, 300ms);
+}
+
 TEST_F(Slots, OfOneThatHoldsAButtonOrWasTrustedWithoutALeaseAreKept) {
   fill();
   clients.find(guid(1))->held[1] = {Command::jog_forward, 1, false};
@@ -246,7 +311,7 @@ TEST_F(Slots, AreRefusedWhereNoneCanBeTakenUntilOneIsGone) {
   for (std::uint8_t i = 1; i <= kMaxWriters; ++i) clients.find(guid(i))->unleased = true;
   EXPECT_EQ(clients.on_sample(late, 0, true, kStart), nullptr);
   EXPECT_EQ(clients.size(), kMaxWriters);
-  static_cast<void>(clients.on_writer(writer_gone(guid(3)), kStart));
+  static_cast<void>(clients.on_writer(writer_gone(guid(3))));
   EXPECT_NE(clients.on_sample(late, 0, true, kStart), nullptr);
 }
 
@@ -288,7 +353,7 @@ TEST_F(Grace, OfALeaseThatOnlyWritesRenewLastsUntilItsOwnerCouldWrite) {
 
 TEST_F(Grace, IsNotForOneThatIsKnownToBeDead) {
   own(LeaseRenewal::any);
-  static_cast<void>(clients.on_writer(writer_gone(guid(1)), kStart + 1s));
+  static_cast<void>(clients.on_writer(writer_gone(guid(1))));
   clients.on_link_down();
   EXPECT_EQ(lease.until(), kStart + 2s);
 }

@@ -101,6 +101,21 @@ TEST_P(Jogged, AButtonHeldInVainStartsNothingWhenTheAxisBecomesFree) {
   EXPECT_FALSE(rig.turns(axis));
 }
 
+// Design 4: "never from a Modbus client". Its jog_velocity was in effect already, so what stands beside it asks for
+// nothing: that took the axis, and the motor turned.
+TEST_P(Jogged, AtTheVelocityThatIsInEffectTakesNoAxisFromItsOwner) {
+  enable();
+  EXPECT_EQ(jog(kForward), kDone);
+  EXPECT_EQ(rig.ask(writer, kEnd, axis).result, kDone);
+  ASSERT_TRUE(stands());
+  EXPECT_EQ(rig.ask(writer, 13, axis).result, kDone);
+  const auto owner = rig.writer(2);
+  ASSERT_EQ(rig.ask(owner, 1, axis).result, kDone);
+  EXPECT_EQ(jog(kForward), kNotOwner);
+  EXPECT_FALSE(rig.turns(axis));
+  EXPECT_EQ(rig.run_at(owner, 1, axis).result, kDone);
+}
+
 TEST_P(Jogged, ABurstOfSamplesIsOneJog) {
   enable();
   std::vector<std::uint64_t> ids;

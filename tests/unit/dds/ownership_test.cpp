@@ -150,6 +150,23 @@ TEST_F(Owners, WhenTheProcessDiesItsClientsHaveThreeSecondsMoreExactlyOnce) {
   EXPECT_LE(rig.now() - died, 5100ms) << "the second death gave nothing";
 }
 
+// Design 4, signs of life: that a writer is found again is none; "prolonged once by 3 s".
+TEST_F(Owners, AProgramThatHangsIsStoppedHoweverOftenTheProcessDiesAndFindsItsWriter) {
+  const auto writer = rig.writer(1);
+  run_by(writer);
+  rig.fall_silent(writer);
+  const Instant died = rig.now();
+  for (int i = 0; i < 12 && !rig.axis().has(AxisInput::stop_latched); ++i) {
+    rig.link_down();
+    rig.run(250ms);
+    rig.link_up();
+    rig.give(writer_there(writer));
+    rig.run(250ms);
+  }
+  EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched));
+  EXPECT_LE(rig.now() - died, 5500ms) << "2 s of its lease, and 3 s";
+}
+
 TEST_F(Owners, ARestartOfTheProcessIsNotNoticedByAMotorWhoseWriterComesBack) {
   const auto writer = rig.writer(1);
   run_by(writer);

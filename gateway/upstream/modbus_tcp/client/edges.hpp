@@ -33,7 +33,7 @@ struct Writing {
   Duration rearm;             ///< listener option rearm_ms
   ClientId client = 0;
   const Endings* endings = nullptr;  ///< of the axis; none: nothing has ever ended
-  bool enabled = false;              ///< coil 0 reads 1
+  bool enabled = false;              ///< coil 0 reads 1, and no stop is latched: an enable has nothing to do
   bool runs_velocity = false;        ///< coil 7 reads 1
   bool needs_zero = false;           ///< stop-latched or faulted: coil 0 = 1 acts only after a 0
   /// RowMemory's count of changes of what the item goes by.

@@ -48,7 +48,7 @@ Writing writing_to(const AxisImage& axis, const Onlooker& onlooker, WriteForm fo
   writing.rearm = onlooker.settings.rearm;
   writing.client = onlooker.client.id;
   writing.endings = &axis.endings;
-  writing.enabled = (shown_level_coils(axis) & kEnabled) != 0;
+  writing.enabled = (shown_level_coils(axis) & kEnabled) != 0 && !axis.has(AxisInput::stop_latched);
   writing.runs_velocity = (shown_level_coils(axis) & kRunsVelocity) != 0;
   writing.needs_zero = axis.has(AxisInput::stop_latched) || axis.has(AxisInput::fault);
   return writing;
