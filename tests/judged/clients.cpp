@@ -60,8 +60,7 @@ std::optional<std::set<int>> Clients::answer_of(std::size_t client, std::uint64_
   const std::optional<std::uint8_t> result = dds_ ? dds_->result_of(request) : std::nullopt;
   if (!result) return {};
   const auto found = kStandsFor.find(*result);
-  if (found == kStandsFor.end() || *result == 0)
-    throw std::runtime_error("DDS result " + std::to_string(*result));
+  if (found == kStandsFor.end() || *result == 0) throw std::runtime_error("DDS result " + std::to_string(*result));
   return found->second;
 }
 

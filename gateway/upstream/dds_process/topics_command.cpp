@@ -14,8 +14,8 @@
 #include <optional>
 #include <string_view>
 
-#include "gateway/upstream/dds_process/participant.hpp"
-#include "gateway/upstream/dds_process/steady.hpp"
+#include "gateway/upstream/dds_process/participant/participant.hpp"
+#include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics_table.hpp"
 
 namespace axisgate::dds {
