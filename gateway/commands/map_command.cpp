@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "gateway/commands/faults_told.hpp"
+#include "gateway/commands/common/faults_told.hpp"
 #include "gateway/config/config_loader.hpp"
 #include "gateway/image/map_listing.hpp"
 

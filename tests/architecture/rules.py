@@ -57,7 +57,8 @@ ONE_PLACE = {
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
 DECIDING = ("gateway/core/", "gateway/image/", "gateway/model/", "gateway/profile/", "gateway/drive/", "gateway/config/", "gateway/check/",
-            "gateway/compose/", "gateway/commands/hand/", "gateway/commands/scan/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/",
+            "gateway/compose/", "gateway/commands/commission/commission_plan", "gateway/commands/hand/plan/", "gateway/commands/scan/plan/",
+            "gateway/commands/view/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/",
             "gateway/upstream/dds_link/", "gateway/upstream/dds_host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_",
             "adapters/canopen/", "adapters/keya/", "adapters/can/can_", "adapters/can/lawicel")
 SHELLS = ("gateway/upstream/modbus_tcp/server/",)

@@ -8,7 +8,7 @@
 #include <deque>
 #include <utility>
 
-#include "gateway/commands/hand/hand_plan.hpp"
+#include "gateway/commands/hand/plan/hand_plan.hpp"
 
 namespace axisgate::app {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The questions of a commissioning, and which yes counts: against a drive of three checks written down here.
-#include "gateway/commands/commission_plan.hpp"
+#include "gateway/commands/commission/commission_plan.hpp"
 
 #include <gmock/gmock.h>
 

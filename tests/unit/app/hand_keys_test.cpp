@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/commands/hand/hand_keys.hpp"
+#include "gateway/commands/hand/plan/hand_keys.hpp"
 
 #include <gmock/gmock.h>
 

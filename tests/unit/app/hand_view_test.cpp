@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/commands/hand/hand_view.hpp"
+#include "gateway/commands/view/hand_view.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scan against nodes written down here: who is found, in which order, what is read of them, and what fits.
-#include "gateway/commands/scan/scan_plan.hpp"
+#include "gateway/commands/scan/plan/scan_plan.hpp"
 
 #include <gmock/gmock.h>
 
 #include <map>
 #include <set>
 
-#include "gateway/commands/scan/scan_table.hpp"
+#include "gateway/commands/scan/plan/scan_table.hpp"
 #include "tests/stage/profile_once.hpp"
 
 namespace axisgate::app {

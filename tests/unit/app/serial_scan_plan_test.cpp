@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scan of a serial line against stations written down here: who is found, what is asked, and that it is reads
 // alone.
-#include "gateway/commands/scan/serial_scan_plan.hpp"
+#include "gateway/commands/scan/plan/serial_scan_plan.hpp"
 
 #include <gmock/gmock.h>
 

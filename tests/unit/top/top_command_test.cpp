@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `axisgate top` against a real server on loopback, in a thread of its own.
-#include "gateway/commands/top_command.hpp"
+#include "gateway/commands/top/top_command.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/commands/hand/top_table.hpp"
+#include "gateway/commands/view/top_table.hpp"
 
 #include <gmock/gmock.h>
 
 #include <array>
 
-#include "gateway/commands/top_screen.hpp"
+#include "gateway/commands/top/top_screen.hpp"
 #include "gateway/core/words.hpp"
 #include "gateway/image/process_image.hpp"
 
