@@ -14,7 +14,7 @@
 #include "adapters/asio/asio_runtime.hpp"
 #include "adapters/bus/bus.hpp"
 #include "adapters/can/can_device.hpp"
-#include "adapters/can/make_can_link.hpp"
+#include "adapters/can/link/make_can_link.hpp"
 #include "adapters/canopen/canopen_wire.hpp"
 #include "gateway/commands/common/profile_folders.hpp"
 #include "gateway/commands/scan/plan/scan_table.hpp"

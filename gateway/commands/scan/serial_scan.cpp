@@ -13,7 +13,7 @@
 
 #include "adapters/asio/asio_runtime.hpp"
 #include "adapters/kinco/kinco_wire.hpp"
-#include "adapters/modbus_rtu/libmodbus_link.hpp"
+#include "adapters/modbus_rtu/link/libmodbus_link.hpp"
 #include "adapters/modbus_rtu/rtu_wire.hpp"
 #include "adapters/serial/serial_link.hpp"
 #include "gateway/commands/common/profile_folders.hpp"

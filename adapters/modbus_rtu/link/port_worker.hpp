@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "adapters/modbus_rtu/libmodbus_port.hpp"
+#include "adapters/modbus_rtu/link/libmodbus_port.hpp"
 
 namespace axisgate::modbus_rtu {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adapters/modbus_rtu/port_worker.hpp"
+#include "adapters/modbus_rtu/link/port_worker.hpp"
 
 #include <poll.h>
 #include <pthread.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adapters/can/interface_watch.hpp"
+#include "adapters/can/link/interface_watch.hpp"
 
 #include <linux/netlink.h>
 #include <linux/rtnetlink.h>

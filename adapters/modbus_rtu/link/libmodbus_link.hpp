@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "adapters/bus/opening_failures.hpp"
-#include "adapters/modbus_rtu/port_worker.hpp"
+#include "adapters/modbus_rtu/link/port_worker.hpp"
 #include "adapters/serial/path_watch.hpp"
 #include "adapters/serial/reopen_plan.hpp"
 #include "gateway/core/log.hpp"

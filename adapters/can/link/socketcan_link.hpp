@@ -16,8 +16,8 @@
 #include "adapters/can/can_bus_off_plan.hpp"
 #include "adapters/can/can_filter_set.hpp"
 #include "adapters/can/can_send_queue.hpp"
-#include "adapters/can/interface_watch.hpp"
-#include "adapters/can/raw_socket.hpp"
+#include "adapters/can/link/interface_watch.hpp"
+#include "adapters/can/link/raw_socket.hpp"
 #include "adapters/serial/reopen_plan.hpp"
 #include "gateway/core/log.hpp"
 

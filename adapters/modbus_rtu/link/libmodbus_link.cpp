@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adapters/modbus_rtu/libmodbus_link.hpp"
+#include "adapters/modbus_rtu/link/libmodbus_link.hpp"
 
 #include <fmt/format.h>
 

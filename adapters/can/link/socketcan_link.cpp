@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adapters/can/socketcan_link.hpp"
+#include "adapters/can/link/socketcan_link.hpp"
 
 #include <fmt/format.h>
 

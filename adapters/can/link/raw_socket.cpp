@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adapters/can/raw_socket.hpp"
+#include "adapters/can/link/raw_socket.hpp"
 
 #include <fmt/format.h>
 #include <linux/can.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adapters/modbus_rtu/libmodbus_port.hpp"
+#include "adapters/modbus_rtu/link/libmodbus_port.hpp"
 
 #include <fmt/format.h>
 #include <modbus/modbus.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adapters/can/make_can_link.hpp"
+#include "adapters/can/link/make_can_link.hpp"
 
 #include <cassert>
 #include <utility>
 
 #include "adapters/can/can_device.hpp"
-#include "adapters/can/slcan_link.hpp"
-#include "adapters/can/socketcan_link.hpp"
+#include "adapters/can/link/slcan_link.hpp"
+#include "adapters/can/link/socketcan_link.hpp"
 #include "adapters/serial/serial_link.hpp"
 
 namespace axisgate::can {
