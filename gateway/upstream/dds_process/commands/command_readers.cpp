@@ -5,6 +5,7 @@
 
 #include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
+#include "gateway/upstream/dds_process/topics/reader_qos.hpp"
 #include "gateway/upstream/dds_process/topics/to_idl.hpp"
 
 namespace axisgate::dds {
@@ -23,20 +24,6 @@ fastdds::DataReaderQos object_qos() {
   return qos;
 }
 
-fastdds::DataReaderQos heartbeat_qos() {
-  fastdds::DataReaderQos qos;
-  qos.reliability().kind = fastdds::BEST_EFFORT_RELIABILITY_QOS;
-  qos.history().kind = fastdds::KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = 1;
-  qos.resource_limits().max_instances = kMostHeartbeats;
-  qos.resource_limits().max_samples_per_instance = 1;
-  qos.resource_limits().max_samples = kMostHeartbeats;
-  qos.resource_limits().allocated_samples = 0;
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
-  qos.data_sharing().off();
-  return qos;
-}
-
 }  // namespace
 
 CommandReaders::CommandReaders(Participant& participant, std::uint32_t domain, WriterWatch& watch, Wake& wake)
@@ -48,9 +35,9 @@ CommandReaders::CommandReaders(Participant& participant, std::uint32_t domain, W
       shared_(rtps_, CommandTopic::shared_command, intake_, watch, wake),
       objects_(participant.make_reader(kObjectTopicName, object_type(),
                                        participant.reader_qos_of("object_request", object_qos()), this)),
-      heartbeats_(participant.make_reader(kHeartbeatTopicName,
-                                          fastdds::TypeSupport(new GuardedType<HeartbeatPubSubType>()),
-                                          participant.reader_qos_of("heartbeat", heartbeat_qos()), this)) {}
+      heartbeats_(participant.make_reader(
+          kHeartbeatTopicName, fastdds::TypeSupport(new GuardedType<HeartbeatPubSubType>()),
+          participant.reader_qos_of("heartbeat", reader_qos(false, kMostHeartbeats, 1)), this)) {}
 
 CommandReaders::~CommandReaders() {
   participant_.end_reader(objects_);

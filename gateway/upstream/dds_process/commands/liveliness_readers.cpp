@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/commands/liveliness_readers.hpp"
-#include "gateway/upstream/dds_process/system/steady.hpp"
 
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <set>
 
+#include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
 
 namespace axisgate::dds {
@@ -17,8 +17,6 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 fastdds::DataReaderQos ear_qos(const LivelinessLease& lease) {
   fastdds::DataReaderQos qos = object_reader_qos(1);
-  qos.history().kind = fastdds::KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = 1;
   // Reliable: assertions come as heartbeats, which a best effort reader does not hear.
   qos.liveliness().kind = fastdds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
   qos.liveliness().lease_duration =

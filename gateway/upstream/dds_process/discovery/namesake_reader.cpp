@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
+#include "gateway/upstream/dds_process/topics/reader_qos.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -12,17 +13,7 @@ namespace {
 /// Axes of all gateways of our key, ours among them.
 constexpr std::int32_t kMostStatesHeard = 4096;
 
-fastdds::DataReaderQos namesake_qos() {
-  fastdds::DataReaderQos qos;
-  qos.reliability().kind = fastdds::BEST_EFFORT_RELIABILITY_QOS;
-  qos.resource_limits().max_instances = kMostStatesHeard;
-  qos.resource_limits().max_samples_per_instance = 1;
-  qos.resource_limits().max_samples = kMostStatesHeard;
-  qos.resource_limits().allocated_samples = 0;
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
-  qos.data_sharing().off();
-  return qos;
-}
+fastdds::DataReaderQos namesake_qos() { return reader_qos(false, kMostStatesHeard, 1); }
 
 }  // namespace
 

@@ -11,6 +11,7 @@
 #include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
 #include "gateway/upstream/dds_process/topics/guarded_type.hpp"
+#include "gateway/upstream/dds_process/topics/reader_qos.hpp"
 #include "gateway/upstream/dds_process/topics/writer_qos.hpp"
 
 namespace axisgate::dds {
@@ -40,20 +41,11 @@ fastdds::TypeSupport ros_type() {
   return fastdds::TypeSupport(new GuardedType<Type>());
 }
 
+/// A reader that asks for less than reliable is matched with every writer that a node may have made. Of a stream the
+/// next sample is better than the last one again.
 fastdds::DataReaderQos ros_reader_qos(bool reliable, std::int32_t depth) {
-  fastdds::DataReaderQos qos;
-  // A reader that asks for less than reliable is matched with every writer that a node may have made. Of a stream the
-  // next sample is better than the last one again.
-  qos.reliability().kind = reliable ? fastdds::RELIABLE_RELIABILITY_QOS : fastdds::BEST_EFFORT_RELIABILITY_QOS;
-  qos.durability().kind = fastdds::VOLATILE_DURABILITY_QOS;
-  qos.history().kind = fastdds::KEEP_LAST_HISTORY_QOS;
+  fastdds::DataReaderQos qos = reader_qos(reliable, 1, depth);
   qos.history().depth = depth;
-  qos.resource_limits().max_samples = depth;
-  qos.resource_limits().max_instances = 1;
-  qos.resource_limits().max_samples_per_instance = depth;
-  qos.resource_limits().allocated_samples = 0;
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
-  qos.data_sharing().off();
   return qos;
 }
 

@@ -7,11 +7,11 @@
 #include <axisgatePubSubTypes.h>
 
 #include <algorithm>
-#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
 #include "gateway/upstream/dds_link/guid.hpp"
 #include "gateway/upstream/dds_process/topics/guarded_type.hpp"
+#include "gateway/upstream/dds_process/topics/reader_qos.hpp"
 
 namespace axisgate::dds {
 
@@ -29,17 +29,7 @@ inline constexpr std::int32_t kMostInstances = 65536;
 
 /// Of object_request: reliable, volatile.
 [[nodiscard]] inline eprosima::fastdds::dds::DataReaderQos object_reader_qos(std::int32_t samples_per_instance) {
-  namespace fdds = eprosima::fastdds::dds;
-  fdds::DataReaderQos qos;
-  qos.reliability().kind = fdds::RELIABLE_RELIABILITY_QOS;
-  qos.durability().kind = fdds::VOLATILE_DURABILITY_QOS;
-  qos.resource_limits().max_instances = kMostInstances;
-  qos.resource_limits().max_samples_per_instance = samples_per_instance;
-  qos.resource_limits().max_samples = kMostInstances * samples_per_instance;
-  qos.resource_limits().allocated_samples = 0;
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
-  qos.data_sharing().off();
-  return qos;
+  return reader_qos(true, kMostInstances, samples_per_instance);
 }
 
 [[nodiscard]] inline Guid to_guid(const eprosima::fastrtps::rtps::GUID_t& guid) {
