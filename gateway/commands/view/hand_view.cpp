@@ -17,11 +17,6 @@ constexpr Byte kReadInputs = 0x02, kReadHolding = 0x03, kWriteCoil = 0x05, kWrit
                kWriteRegisters = 0x10, kException = 0x80;
 constexpr std::int64_t kPerRpm = 1000;
 
-std::uint32_t pair_at(std::span<const std::uint16_t> registers, std::size_t at, WordOrder order) {
-  const bool low_first = order == WordOrder::low_first;
-  return std::uint32_t{registers[at + (low_first ? 1 : 0)]} << 16 | registers[at + (low_first ? 0 : 1)];
-}
-
 std::optional<double> number_at(std::span<const std::uint16_t> registers, std::size_t at, const HandListener& listener,
                                 double unit) {
   const std::uint32_t bits = pair_at(registers, at, listener.order);

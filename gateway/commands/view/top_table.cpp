@@ -17,12 +17,6 @@
 namespace axisgate::app {
 namespace {
 
-std::uint32_t word32(std::uint16_t first, std::uint16_t second, WordOrder order) {
-  const std::uint32_t high = order == WordOrder::low_first ? second : first;
-  const std::uint32_t low = order == WordOrder::low_first ? first : second;
-  return high << 16 | low;
-}
-
 /// One axis's registers, read as the quantities they are.
 class AxisCells {
  public:
@@ -31,10 +25,7 @@ class AxisCells {
 
   /// Of a quantity, or of a row that is none.
   [[nodiscard]] std::uint16_t word(auto what) const { return registers_[axis_offset(what)]; }
-  [[nodiscard]] std::uint32_t pair(auto what) const {
-    const std::size_t at = axis_offset(what);
-    return word32(registers_[at], registers_[at + 1], order_);
-  }
+  [[nodiscard]] std::uint32_t pair(auto what) const { return pair_at(registers_, axis_offset(what), order_); }
   /// "-12.5", "-12.5?", "?", "-": see the header's promise. `decimals` places of the register's number.
   [[nodiscard]] std::string number(Quantity quantity, int decimals) const {
     if ((pair(Source::supported) & bit(quantity)) == 0) return "-";
@@ -185,9 +176,14 @@ std::vector<TopLine> more_of(const AxisTexts& t, std::size_t columns) {
 
 }  // namespace
 
+std::uint32_t pair_at(std::span<const std::uint16_t> registers, std::size_t at, WordOrder order) {
+  const bool low_first = order == WordOrder::low_first;
+  return std::uint32_t{registers[at + (low_first ? 1 : 0)]} << 16 | registers[at + (low_first ? 0 : 1)];
+}
+
 WordOrder word_order(std::span<const std::uint16_t, kGatewayRegisters> gateway) {
-  if (word32(gateway[10], gateway[11], WordOrder::high_first) == kWordOrderTest) return WordOrder::high_first;
-  if (word32(gateway[10], gateway[11], WordOrder::low_first) == kWordOrderTest) return WordOrder::low_first;
+  if (pair_at(gateway, 10, WordOrder::high_first) == kWordOrderTest) return WordOrder::high_first;
+  if (pair_at(gateway, 10, WordOrder::low_first) == kWordOrderTest) return WordOrder::low_first;
   return WordOrder::unknown;
 }
 
@@ -199,7 +195,7 @@ void mark_out_of_reach(AxisReading& axis) {
 
 std::vector<TopLine> table_lines(const TopReading& reading, std::size_t columns) {
   const WordOrder order = word_order(reading.gateway);
-  const std::uint32_t up = word32(reading.gateway[4], reading.gateway[5], order);
+  const std::uint32_t up = pair_at(reading.gateway, 4, order);
   const std::uint16_t alarms = reading.gateway[6];
   const std::string first =
       fmt::format("axisgate {}  {}  axes online {} of {}  up {}:{:02}:{:02}  role {}  {} {}", reading.server,

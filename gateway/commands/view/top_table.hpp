@@ -35,6 +35,8 @@ struct TopReading {
 };
 
 enum class WordOrder : std::uint8_t { high_first, low_first, unknown };
+/// The number of 32 bits in two registers.
+[[nodiscard]] std::uint32_t pair_at(std::span<const std::uint16_t> registers, std::size_t at, WordOrder order);
 /// From the test value in registers 10 and 11, whatever the listener is set to.
 [[nodiscard]] WordOrder word_order(std::span<const std::uint16_t, kGatewayRegisters> gateway);
 
