@@ -61,10 +61,10 @@ void HandPlan::write_command(Command command) {
   write({.what = HandWrite::What::command, .command = command, .id = id_});
 }
 
-void HandPlan::write_button(Button button, bool on) {
-  write({.what = HandWrite::What::coil, .coil = button == Button::reverse ? kJogReverse : kJogForward, .on = on},
-        false);
-  ++buttons_waiting_;
+void HandPlan::write_button(const std::optional<JogButton::Write>& button) {
+  if (!button) return;
+  const bool reverse = button->which == JogButton::Which::reverse;
+  write({.what = HandWrite::What::coil, .coil = reverse ? kJogReverse : kJogForward, .on = button->on}, false);
 }
 
 /// What is written now asks for something: from here on signs of life are due.
@@ -157,9 +157,7 @@ void HandPlan::after_enable(Instant now) {
     return go(Step::target);
   }
   if (arguments_.task == HandTask::jog) {
-    // A button acts on 1 once it was 0.
-    write({.what = HandWrite::What::coil, .coil = kJogForward}, false);
-    ++buttons_waiting_;
+    write_button(button_.up(JogButton::Which::forward));
     write({.what = HandWrite::What::coil, .coil = kJogReverse});
     return go(Step::released);
   }
@@ -168,13 +166,11 @@ void HandPlan::after_enable(Instant now) {
 
 void HandPlan::button_answered(ModbusException exception, Instant now) {
   watched_from_ = now;
-  buttons_waiting_ = std::max(0, buttons_waiting_ - 1);
-  if (exception == ModbusException::none || ending() || button_ == Button::none) return;
-  if (exception == ModbusException::server_device_busy && view_ && !view_->anothers()) {
-    // The gateway has ended this jog, or its axis is not ready for one: the next press is another one.
-    return let_go();
-  }
-  let_go();
+  button_.on_answer();
+  if (exception == ModbusException::none || ending() || button_.held() == JogButton::Which::none) return;
+  write_button(button_.let_go());
+  // The gateway has ended this jog, or its axis is not ready for one: the next press is another one.
+  if (exception == ModbusException::server_device_busy && view_ && !view_->anothers()) return;
   exception_ = exception;
   refused_what_ = "jog";
   go(Step::refused);
@@ -185,11 +181,8 @@ void HandPlan::button_answered(ModbusException exception, Instant now) {
 void HandPlan::on_view(const HandView& view, std::uint32_t answered, Instant now) {
   if (over()) return;
   view_ = view;
-  note_position(now);
-  if (view.mine() && view.lease_remaining_ms != 0) {
-    has_lease_ = true;
-    lease_ms_ = std::max(lease_ms_, view.lease_remaining_ms);
-  }
+  stand_watch_.look(view.turns, now);
+  if (view.mine() && view.lease_remaining_ms != 0) lease_ms_ = std::max(lease_ms_.value_or(0), view.lease_remaining_ms);
   const bool steps_wait = std::any_of(waiting_.begin(), waiting_.end(),
                                       [](const Waiting& w) { return w.write.what != HandWrite::What::heartbeat; });
   if (answered != answered_ || steps_wait) return;  // it may be older than what was answered
@@ -200,7 +193,8 @@ void HandPlan::on_view(const HandView& view, std::uint32_t answered, Instant now
       if (view.has(AxisInput::enabled)) return after_enable(now);
       return watch(now);
     case Step::working:
-      if (arguments_.task == HandTask::jog && button_ == Button::none && stands(now) && now >= watched_from_ + kStill)
+      if (arguments_.task == HandTask::jog && button_.held() == JogButton::Which::none && stands(now) &&
+          now >= watched_from_ + kStill)
         may_move_ = false;
       return watch(now);
     case Step::refused:
@@ -261,7 +255,7 @@ void HandPlan::watch(Instant now) {
     torque_is_ours_ = false;  // its new owner decides
     return finish(1, fmt::format("{} was taken over by {}", name, owner_text(view)), now);
   }
-  if (has_lease_ && !view.mine())
+  if (lease_ms_ && !view.mine())
     return finish(1, fmt::format("the lease of {} ran out: the gateway has stopped it", name), now);
   if (view.has(AxisInput::stop_latched) || !view.has(AxisInput::enabled))
     return finish(1, fmt::format("{} was stopped by another client, its lease or its drive", name), now);
@@ -283,18 +277,8 @@ void HandPlan::watch(Instant now) {
                   now);
 }
 
-/// A drive's speed may be a filter's time old: a motor that has just begun to turn is told to stand. Its position is
-/// not. A motor that is held on its place trembles by less than this.
-void HandPlan::note_position(Instant now) {
-  constexpr double kTremble = 0.01;  // turns
-  if (!view_->turns) return;
-  const double away = *view_->turns - still_at_.value_or(*view_->turns);
-  if (away > kTremble || away < -kTremble) turned_at_ = now;
-  if (!still_at_ || turned_at_ == now) still_at_ = view_->turns;
-}
-
 bool HandPlan::stands(Instant now) const {
-  return view_ && view_->in_sight() && !view_->has(AxisInput::moving) && now - turned_at_ >= kStill;
+  return view_ && view_->in_sight() && !view_->has(AxisInput::moving) && stand_watch_.still_for(now) >= kStill;
 }
 
 // Keys.
@@ -303,50 +287,30 @@ void HandPlan::on_keys(const std::vector<HandKey>& keys, Instant now) {
   for (const HandKey key : keys) {
     if (step_ != Step::working || arguments_.task != HandTask::jog) return;
     if (key == HandKey::quit) return finish(0, fmt::format("{} is let go", axis_text()), now);
-    if (key == HandKey::other) {
-      let_go();
-      continue;
-    }
-    if (now < keys_count_from_) continue;
-    const Button wanted = key == HandKey::forward ? Button::forward : Button::reverse;
-    if (button_ != Button::none && button_ != wanted) {
-      let_go();  // the next repeat of this key presses the other one
-      continue;
-    }
-    // One press at a time is on its way: what waited in a slow network would be pressed late.
-    if (buttons_waiting_ == 0) {
+    const auto button = button_.on_key(key, now);
+    if (button && button->on) {
       claim(now);
-      write_button(wanted, true);
-      button_ = wanted;
       may_move_ = true;
     }
-    if (button_ == wanted) last_key_ = now;
+    write_button(button);
   }
 }
 
-void HandPlan::let_go() {
-  if (button_ == Button::none) return;
-  write_button(button_, false);
-  button_ = Button::none;
-}
-
 void HandPlan::on_stall(Instant now) {
-  let_go();
-  keys_count_from_ = now + kKeyLapse;
+  write_button(button_.let_go());
+  button_.ignore_keys_until(now + kKeyLapse);
 }
 
 // Time.
 
 Instant HandPlan::due() const {
   if (over()) return kNever;
-  Instant out = std::min(stand_by_, beat_waits_ ? kNever : next_beat_);
-  if (button_ != Button::none) out = std::min(out, last_key_ + kKeyLapse);
-  return out;
+  return std::min({stand_by_, beat_waits_ ? kNever : next_beat_, button_.due()});
 }
 
 void HandPlan::on_time(Instant now) {
   if (over()) return;
-  if (button_ != Button::none && now >= last_key_ + kKeyLapse) let_go();
+  write_button(button_.on_time(now));
   if (now >= next_beat_ && !beat_waits_ && step_ != Step::release) {
     write({.what = HandWrite::What::heartbeat, .id = ++beat_}, false);
     beat_waits_ = true;

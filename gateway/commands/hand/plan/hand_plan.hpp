@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "gateway/commands/hand/plan/hand_keys.hpp"
+#include "gateway/commands/hand/plan/jog_button.hpp"
+#include "gateway/commands/hand/plan/stand_watch.hpp"
 #include "gateway/commands/view/hand_view.hpp"
 #include "gateway/core/clock.hpp"
 
@@ -32,8 +34,7 @@ struct HandArguments {
 
 class HandPlan {
  public:
-  /// A button is held only while its key repeats at least so often.
-  static constexpr Duration kKeyLapse = std::chrono::milliseconds(300);
+  static constexpr Duration kKeyLapse = JogButton::kKeyLapse;
   /// A sign of life, for every way in which a lease is renewed. It presses no button.
   static constexpr Duration kHeartbeat = std::chrono::milliseconds(200);
   /// A motor that still turns by then is told as such, and its torque is not taken away.
@@ -94,14 +95,12 @@ class HandPlan {
     release,
     over,
   };
-  enum class Button : std::uint8_t { none, forward, reverse };
 
   void go(Step step) { step_ = step; }
   void claim(Instant now);
   void write(const HandWrite& write, bool of_step = true);
   void write_command(Command command);
-  void write_button(Button button, bool on);
-  void let_go();
+  void write_button(const std::optional<JogButton::Write>& button);
   void step_done(Instant now);
   void button_answered(ModbusException exception, Instant now);
   void after_speed(Instant now);
@@ -109,7 +108,6 @@ class HandPlan {
   void first_look(Instant now);
   void watch(Instant now);
   void stood(Instant now);
-  void note_position(Instant now);
   /// Stops what may move, takes torque and lease back, and ends.
   void finish(int code, std::string words, Instant now);
   void after_stop();
@@ -136,19 +134,14 @@ class HandPlan {
   bool owned_before_ = false;  ///< by another connection of this host, where those are one client
   bool torque_is_ours_ = false;
   bool may_move_ = false;  ///< something was written that moves, and no look has shown it standing since
-  bool has_lease_ = false;
   bool reached_ = false;
-  std::uint16_t lease_ms_ = 0;
+  std::optional<std::uint16_t> lease_ms_;  ///< the most that was seen left of it
   ModbusException exception_ = ModbusException::none;
   std::string refused_what_;
-  Button button_ = Button::none;
-  int buttons_waiting_ = 0;
-  Instant last_key_ = kLongAgo;
-  Instant keys_count_from_ = kLongAgo;  ///< older ones may have been typed while nobody looked
+  JogButton button_;
   Instant next_beat_ = kNever;
   Instant stand_by_ = kNever;
-  std::optional<double> still_at_;  ///< turns
-  Instant turned_at_ = kLongAgo;
+  StandWatch stand_watch_;
   Instant watched_from_ = kLongAgo;  ///< when its stop or its button was answered, or its target reached
   int code_ = 0;
   std::string words_;

@@ -31,8 +31,8 @@ void HandPlan::lost(std::string_view why) {
   if (over()) return;
   code_ = 1;
   words_ = fmt::format("the gateway is out of reach ({})", why);
-  if (claimed_ && has_lease_)
-    words_ += fmt::format("; it stops {} when its lease runs out, within {} ms", axis_text(), lease_ms_);
+  if (claimed_ && lease_ms_)
+    words_ += fmt::format("; it stops {} when its lease runs out, within {} ms", axis_text(), *lease_ms_);
   else if (claimed_)
     words_ += fmt::format("; {} has no lease: a move goes on to its target, and only a stop ends it", axis_text());
   else if (arguments_.task == HandTask::stop && outbox_.empty())
@@ -61,7 +61,7 @@ void HandPlan::fail(std::string_view why, Instant now) {
 void HandPlan::finish(int code, std::string words, Instant now) {
   code_ = code;
   words_ = std::move(words);
-  let_go();
+  write_button(button_.let_go());
   // What was asked for before is none of the end's steps.
   for (Waiting& waiting : waiting_) waiting.of_step = false;
   stand_by_ = now + kStandLimit;

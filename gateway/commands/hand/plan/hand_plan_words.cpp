@@ -40,9 +40,9 @@ std::string HandPlan::doing() const {
     case HandTask::stop:
       return "";
   }
-  return button_ == Button::none      ? "hold an arrow key; q ends"
-         : button_ == Button::forward ? "jogs forward"
-                                      : "jogs in reverse";
+  return button_.held() == JogButton::Which::none      ? "hold an arrow key; q ends"
+         : button_.held() == JogButton::Which::forward ? "jogs forward"
+                                                       : "jogs in reverse";
 }
 
 }  // namespace axisgate::app
