@@ -7,7 +7,7 @@
 
 #include "gateway/commands/common/faults_told.hpp"
 #include "gateway/config/config_loader.hpp"
-#include "gateway/image/map_listing.hpp"
+#include "gateway/image/listing/map_listing.hpp"
 
 namespace axisgate::app {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "gateway/image/map_listing.hpp"
+#include "gateway/image/listing/map_listing.hpp"
 
 namespace axisgate {
 namespace {

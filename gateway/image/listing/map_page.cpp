@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/image/map_page.hpp"
+#include "gateway/image/listing/map_page.hpp"
 
 #include "gateway/image/commands_page.hpp"
 #include "gateway/image/register_map.hpp"

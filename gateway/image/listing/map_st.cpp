@@ -2,7 +2,7 @@
 // The listing as a PLC's source: IEC 61131-3 structured text, constants of all addresses and declarations at %M.
 #include <cctype>
 
-#include "gateway/image/map_listing.hpp"
+#include "gateway/image/listing/map_listing.hpp"
 
 namespace axisgate {
 namespace {
