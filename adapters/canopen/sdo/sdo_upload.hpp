@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "adapters/canopen/sdo_step.hpp"
+#include "adapters/canopen/sdo/sdo_step.hpp"
 
 namespace axisgate::canopen {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adapters/canopen/sdo_upload.hpp"
+#include "adapters/canopen/sdo/sdo_upload.hpp"
 
 #include <algorithm>
 #include <cassert>

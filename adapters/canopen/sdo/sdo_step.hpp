@@ -7,7 +7,7 @@
 #include <boost/container/static_vector.hpp>
 #include <optional>
 
-#include "adapters/canopen/sdo_codec.hpp"
+#include "adapters/canopen/sdo/sdo_codec.hpp"
 
 namespace axisgate::canopen {
 

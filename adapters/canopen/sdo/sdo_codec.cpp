@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adapters/canopen/sdo_codec.hpp"
+#include "adapters/canopen/sdo/sdo_codec.hpp"
 
 #include <algorithm>
 #include <boost/crc.hpp>
