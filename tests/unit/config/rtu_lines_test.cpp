@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "gateway/check/check.hpp"
-#include "tests/unit/app/one_bus.hpp"
+#include "tests/unit/config/one_bus.hpp"
 
 namespace axisgate::app {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every step of the commands that move an axis by hand, done and failing, against an axis written down here.
-#include "tests/unit/app/by_hand.hpp"
+#include "tests/unit/commands/by_hand.hpp"
 
 namespace axisgate::app {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The buttons of `axisgate jog`: what presses them, what lets them go, and nothing else.
-#include "tests/unit/app/by_hand.hpp"
+#include "tests/unit/commands/by_hand.hpp"
 
 namespace axisgate::app {
 namespace {
