@@ -7,7 +7,7 @@
 #include "adapters/canopen/cob_id.hpp"
 #include "adapters/canopen/emergency.hpp"
 #include "adapters/canopen/nmt.hpp"
-#include "adapters/canopen/sdo_codec.hpp"
+#include "adapters/canopen/sdo/sdo_codec.hpp"
 
 namespace axisgate::canopen {
 

@@ -10,8 +10,8 @@
 #include <variant>
 
 #include "adapters/canopen/cob_id.hpp"
-#include "adapters/canopen/sdo_download.hpp"
-#include "adapters/canopen/sdo_upload.hpp"
+#include "adapters/canopen/sdo/sdo_download.hpp"
+#include "adapters/canopen/sdo/sdo_upload.hpp"
 
 namespace axisgate::canopen {
 

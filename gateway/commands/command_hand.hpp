@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
-#include "gateway/commands/hand_command.hpp"
+#include "gateway/commands/hand/hand_command.hpp"
 
 namespace axisgate::app {
 

@@ -8,9 +8,6 @@
 
 namespace axisgate::app {
 
-/// The exit code where an option or its value is wrong.
-inline constexpr int kWrongCommandLine = 2;
-
 /// What a command line asks for.
 struct CommandLine {
   int exit_code = 0;         ///< where nothing is to be run: help was asked for and printed, or what is wrong was

@@ -6,7 +6,7 @@
 
 #include <cstdio>
 
-#include "gateway/commands/profile_folders.hpp"
+#include "gateway/commands/common/profile_folders.hpp"
 #include "gateway/core/nearest.hpp"
 #include "gateway/core/words.hpp"
 #include "gateway/image/register_map.hpp"

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "gateway/commands/faults_told.hpp"
+#include "gateway/commands/common/faults_told.hpp"
 #include "gateway/config/config_loader.hpp"
-#include "gateway/image/map_listing.hpp"
+#include "gateway/image/listing/map_listing.hpp"
 
 namespace axisgate::app {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/process/device_wires.hpp"
 
-#include "adapters/can/make_can_link.hpp"
+#include "adapters/can/link/make_can_link.hpp"
 #include "adapters/canopen/canopen_wire.hpp"
 #include "adapters/keya/keya_can_wire.hpp"
 #include "adapters/keya/keya_serial_wire.hpp"
 #include "adapters/kinco/kinco_wire.hpp"
-#include "adapters/modbus_rtu/libmodbus_link.hpp"
+#include "adapters/modbus_rtu/link/libmodbus_link.hpp"
 #include "adapters/modbus_rtu/rtu_wire.hpp"
 #include "adapters/serial/serial_link.hpp"
 #include "gateway/compose/can_wires.hpp"

@@ -47,8 +47,8 @@ LAYERS = [
 
 # Headers that only one place may know.
 ONE_PLACE = {
-    r"<modbus(/modbus)?\.h>": ("adapters/modbus_rtu/",),
-    r"<linux/can": ("adapters/can/", "tests/axisgate_sim/", "tests/unit/can/", "tests/vcan/", "tests/bench/"),
+    r"<modbus(/modbus)?\.h>": ("adapters/modbus_rtu/link/",),
+    r"<linux/can": ("adapters/can/link/", "tests/axisgate_sim/", "tests/unit/can/", "tests/vcan/", "tests/bench/"),
     r"<fastdds|<fastrtps|PubSubTypes": ("gateway/upstream/dds_process/", "deploy/examples/", "tests/dds_peers/"),
     r"<termios\.h>|<sys/inotify\.h>|<linux/serial\.h>": ("adapters/serial/", "adapters/asio/key_mode"),
     r"<valijson/": ("gateway/profile/json/json_schema.cpp",),
@@ -57,10 +57,11 @@ ONE_PLACE = {
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
 DECIDING = ("gateway/core/", "gateway/image/", "gateway/model/", "gateway/profile/", "gateway/drive/", "gateway/config/", "gateway/check/",
-            "gateway/compose/", "gateway/commands/hand/", "gateway/commands/scan/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/",
-            "gateway/upstream/dds_link/", "gateway/upstream/dds_host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/rtu_",
-            "adapters/canopen/", "adapters/keya/", "adapters/can/can_", "adapters/can/lawicel")
-SHELLS = ("gateway/upstream/modbus_tcp/server/",)
+            "gateway/compose/", "gateway/commands/commission/commission_plan", "gateway/commands/hand/plan/", "gateway/commands/scan/plan/",
+            "gateway/commands/view/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/",
+            "gateway/upstream/dds_host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/", "adapters/canopen/",
+            "adapters/keya/", "adapters/can/")
+SHELLS = ("gateway/upstream/modbus_tcp/server/", "adapters/modbus_rtu/link/", "adapters/can/link/")
 IMPURE = re.compile(r'#include <(boost/asio|boost/beast|sys/socket|sys/epoll|poll\.h|thread|mutex|condition_variable|atomic|random)'
                     r'|(steady|system|high_resolution)_clock::now|std::chrono::\w*clock::now|\bsleep_for\b|\brand\(')
 
@@ -126,6 +127,9 @@ def circle(graph):
 def arrows(root):
     made, needed = libraries(root)
     graph = {folder: {other for other in made if other != folder and made[other] & needed[folder]} for folder in made}
+    for folder, names in sorted(made.items()):
+        if len(names) > 1:
+            yield f"{folder}/CMakeLists.txt:1: one folder is one library, and here are {', '.join(sorted(names))}"
     found = circle(graph)
     if found:
         yield f"{found[0]}/CMakeLists.txt:1: a circle of libraries: {' -> '.join(found)}"

@@ -54,6 +54,10 @@ class Rules(unittest.TestCase):
         self.library("gateway/drive/b", "axisgate_b", "axisgate_a")
         self.assert_breach("arrows", "gateway/drive/a/CMakeLists.txt:1")
 
+    def test_a_second_library_in_one_folder_is_found(self):
+        self.write("adapters/can/CMakeLists.txt", "axisgate_library(axisgate_can SOURCES a.cpp)\naxisgate_library(axisgate_can_link SOURCES b.cpp)\n")
+        self.assert_breach("arrows", "adapters/can/CMakeLists.txt:1")
+
     def test_one_adapter_must_not_know_another(self):
         self.write("adapters/kinco/a.cpp", '#include "adapters/serial/port.hpp"\n')
         self.assert_breach("arrows", "adapters/kinco/a.cpp:1")
@@ -73,6 +77,7 @@ class Rules(unittest.TestCase):
     def test_io_in_a_deciding_file_is_found_and_a_shell_is_let_pass(self):
         self.write("adapters/bus/arbiter.cpp", "int x;\n#include <boost/asio/post.hpp>\n")
         self.write("gateway/upstream/modbus_tcp/server/server.cpp", "#include <boost/asio/post.hpp>\n")
+        self.write("adapters/can/link/raw_socket.cpp", "#include <sys/socket.h>\n")
         self.assert_breach("deciding", "adapters/bus/arbiter.cpp:2")
 
     def test_a_clock_in_a_deciding_file_is_found(self):

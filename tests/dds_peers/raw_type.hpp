@@ -18,7 +18,7 @@ struct RawSample {
   std::vector<std::uint8_t> payload;
 };
 
-class RawType final : public eprosima::fastdds::dds::TopicDataType {
+class RawType : public eprosima::fastdds::dds::TopicDataType {
  public:
   static constexpr std::uint32_t kMaxPayload = 64 * 1024;
   using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;

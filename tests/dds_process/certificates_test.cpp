@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whose writers have the role of a certificate, and where axisgate-dds does not believe that anybody proves it.
-#include "gateway/upstream/dds_process/certificates.hpp"
+#include "gateway/upstream/dds_process/participant/certificates.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "gateway/upstream/dds_process/start_error.hpp"
+#include "gateway/upstream/dds_process/system/start_error.hpp"
 
 namespace axisgate::dds {
 namespace {

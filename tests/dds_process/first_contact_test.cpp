@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "gateway/upstream/dds_process/held_replies.hpp"
+#include "gateway/upstream/dds_process/publish/held_replies.hpp"
 #include "tests/dds_process/child.hpp"
 #include "tests/dds_process/peer.hpp"
 

@@ -67,6 +67,16 @@ struct TypeOf<std_msgs::msg::dds_::Empty_> {
   using Type = std_msgs::msg::dds_::Empty_PubSubType;
 };
 
+/// Bytes in place of a state.
+class RawStates : public dds_peers::RawType {
+ public:
+  RawStates() : RawType(AxisStatePubSubType().getName(), true) {}
+};
+template <>
+struct TypeOf<dds_peers::RawSample> {
+  using Type = RawStates;
+};
+
 template <typename Sample>
 class FastReader : public Reader<Sample> {
  public:
@@ -210,6 +220,7 @@ std::unique_ptr<Writer<Sample>> Peer::writer(const std::string& topic, const Wri
     qos.ownership().kind = fastdds::EXCLUSIVE_OWNERSHIP_QOS;
     qos.ownership_strength().value = settings.strength;
   }
+  if (settings.transient_local) qos.durability().kind = fastdds::TRANSIENT_LOCAL_DURABILITY_QOS;
   qos.history().kind = fastdds::KEEP_ALL_HISTORY_QOS;
   qos.reliable_writer_qos().times.heartbeatPeriod =
       settings.heartbeats ? Duration_t(0, 20'000'000) : eprosima::fastrtps::c_TimeInfinite;
@@ -238,6 +249,7 @@ template std::unique_ptr<Reader<sensor_msgs::msg::dds_::JointState_>> Peer::read
 template std::unique_ptr<Writer<AxisCommand>> Peer::writer(const std::string&, const WriterSettings&);
 template std::unique_ptr<Writer<Heartbeat>> Peer::writer(const std::string&, const WriterSettings&);
 template std::unique_ptr<Writer<std_msgs::msg::dds_::Empty_>> Peer::writer(const std::string&, const WriterSettings&);
+template std::unique_ptr<Writer<dds_peers::RawSample>> Peer::writer(const std::string&, const WriterSettings&);
 template std::unique_ptr<Writer<ObjectRequest>> Peer::writer(const std::string&, const WriterSettings&);
 
 AxisCommand command(std::uint16_t axis, std::uint64_t request_id) {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "tests/dds_peers/raw_type.hpp"
 #include "tests/dds_process/child.hpp"
 
 namespace axisgate::dds::test {
@@ -31,6 +32,7 @@ struct WriterSettings {
   /// Off for a writer that is deleted while much of it is unacknowledged: Fast DDS 2.9.1 can run for ever in a
   /// heartbeat then (StatefulWriter::add_gaps_for_holes_in_history_). Samples carry heartbeats of their own.
   bool heartbeats = true;
+  bool transient_local = false;
 };
 
 template <typename Sample>

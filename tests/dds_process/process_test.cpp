@@ -175,6 +175,20 @@ TEST(Topics, PrintsJsonForPrograms) {
   EXPECT_THAT(text, HasSubstr(R"({"gateway_key":0,"gateway":"","axis":12,"name":"turntable",)"));
 }
 
+TEST(Topics, LetBytesPassThatAreNoState) {
+  Child child;
+  child.send(StateRecord{.axis = 12, .name = "turntable", .position = 1.5});
+  Peer peer;
+  const auto odd =
+      peer.writer<dds_peers::RawSample>("axisgate/axis_state", {.exclusive = false, .transient_local = true});
+  for (const std::vector<std::uint8_t>& bytes :
+       {std::vector<std::uint8_t>(64, 0xFF), {0, 1, 0, 0, 1}, {0, 3, 0, 0, 1, 0, 0, 0}, {0}})
+    ASSERT_TRUE(odd->write({bytes}));
+  const auto [code, text] = topics_once();
+  EXPECT_EQ(code, 0) << text;
+  EXPECT_THAT(text, HasSubstr("turntable"));
+}
+
 TEST(Topics, SaysWhereToLookIfNoAxisIsThere) {
   const auto [code, text] = Child::run({"topics", "--once", "--domain", std::to_string(test_domain())});
   EXPECT_EQ(code, 1);

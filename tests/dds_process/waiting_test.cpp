@@ -2,9 +2,9 @@
 // What waits in axisgate-dds for its turn: commands, what is known of writers, and other gateways of our name.
 #include <gmock/gmock.h>
 
-#include "gateway/upstream/dds_process/command_intake.hpp"
-#include "gateway/upstream/dds_process/namesake_watch.hpp"
-#include "gateway/upstream/dds_process/writer_watch.hpp"
+#include "gateway/upstream/dds_process/commands/command_intake.hpp"
+#include "gateway/upstream/dds_process/discovery/namesake_watch.hpp"
+#include "gateway/upstream/dds_process/discovery/writer_watch.hpp"
 
 namespace axisgate::dds::test {
 namespace {

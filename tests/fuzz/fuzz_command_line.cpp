@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "gateway/commands/command_line.hpp"
+#include "gateway/commands/common/exit_codes.hpp"
 #include "tests/fuzz/input.hpp"
 #include "tests/fuzz/targets.hpp"
 

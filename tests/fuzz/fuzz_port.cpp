@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "adapters/modbus_rtu/libmodbus_port.hpp"
+#include "adapters/modbus_rtu/link/libmodbus_port.hpp"
 #include "tests/fuzz/input.hpp"
 #include "tests/fuzz/targets.hpp"
 

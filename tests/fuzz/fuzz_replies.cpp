@@ -2,9 +2,9 @@
 // What people's tools make of the answers that they get: the scans, the tables of `top`, the line of `move` and `jog`;
 // and what a CAN controller tells of errors.
 #include "adapters/can/can_error.hpp"
-#include "gateway/commands/hand/hand_view.hpp"
-#include "gateway/commands/scan/scan_table.hpp"
-#include "gateway/commands/scan/serial_scan_plan.hpp"
+#include "gateway/commands/scan/plan/scan_table.hpp"
+#include "gateway/commands/scan/plan/serial_scan_plan.hpp"
+#include "gateway/commands/view/hand_view.hpp"
 #include "gateway/profile/read/profile_loader.hpp"
 #include "tests/fuzz/input.hpp"
 #include "tests/fuzz/targets.hpp"

@@ -20,7 +20,7 @@
 #include <memory>
 
 #include "adapters/asio/asio_runtime.hpp"
-#include "adapters/can/socketcan_link.hpp"
+#include "adapters/can/link/socketcan_link.hpp"
 #include "tests/unit/can/can_diary.hpp"
 
 namespace axisgate::test {

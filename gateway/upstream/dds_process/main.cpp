@@ -6,7 +6,7 @@
 #include "gateway/upstream/dds_link/exit_codes.hpp"
 #include "gateway/upstream/dds_process/options.hpp"
 #include "gateway/upstream/dds_process/serve_command.hpp"
-#include "gateway/upstream/dds_process/start_error.hpp"
+#include "gateway/upstream/dds_process/system/start_error.hpp"
 #include "gateway/upstream/dds_process/topics_command.hpp"
 
 namespace {

@@ -14,8 +14,10 @@
 #include <optional>
 #include <string_view>
 
-#include "gateway/upstream/dds_process/participant.hpp"
-#include "gateway/upstream/dds_process/steady.hpp"
+#include "gateway/upstream/dds_process/participant/participant.hpp"
+#include "gateway/upstream/dds_process/system/steady.hpp"
+#include "gateway/upstream/dds_process/topics/command_topics.hpp"
+#include "gateway/upstream/dds_process/topics/guarded_type.hpp"
 #include "gateway/upstream/dds_process/topics_table.hpp"
 
 namespace axisgate::dds {
@@ -92,10 +94,10 @@ class Topics {
   explicit Topics(const TopicsOptions& options)
       : options_(options),
         participant_(options.participant, nullptr),
-        reader_(participant_.make_reader("axisgate/axis_state", fastdds::TypeSupport(new AxisStatePubSubType()),
+        reader_(participant_.make_reader(kStateTopicName, fastdds::TypeSupport(new GuardedType<AxisStatePubSubType>()),
                                          last_states(kMostAxes, 1), nullptr)),
-        gateways_reader_(participant_.make_reader("axisgate/gateway_state",
-                                                  fastdds::TypeSupport(new GatewayStatePubSubType()),
+        gateways_reader_(participant_.make_reader(kGatewayTopicName,
+                                                  fastdds::TypeSupport(new GuardedType<GatewayStatePubSubType>()),
                                                   last_states(kMostGateways, kStatesOfAName), nullptr)) {}
 
   int run() {

@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "axisgatePubSubTypes.h"
-#include "gateway/upstream/dds_process/participant.hpp"
+#include "gateway/upstream/dds_process/participant/participant.hpp"
 #include "tests/bench/dds/changing_image.hpp"
 #include "tests/bench/dds/other_self.hpp"
 #include "tests/bench/dds/subscriber.hpp"

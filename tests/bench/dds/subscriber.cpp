@@ -15,7 +15,7 @@
 #include <stdexcept>
 
 #include "axisgatePubSubTypes.h"
-#include "gateway/upstream/dds_process/participant.hpp"
+#include "gateway/upstream/dds_process/participant/participant.hpp"
 
 namespace axisgate::bench {
 namespace {

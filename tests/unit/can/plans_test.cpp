@@ -11,7 +11,7 @@
 #include "adapters/can/can_error.hpp"
 #include "adapters/can/can_filter_set.hpp"
 #include "adapters/can/can_send_queue.hpp"
-#include "adapters/can/raw_socket.hpp"
+#include "adapters/can/link/raw_socket.hpp"
 
 namespace axisgate::can {
 namespace {

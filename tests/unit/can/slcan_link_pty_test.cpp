@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "adapters/asio/asio_runtime.hpp"
-#include "adapters/can/make_can_link.hpp"
+#include "adapters/can/link/make_can_link.hpp"
 #include "tests/unit/can/can_diary.hpp"
 #include "tests/unit/can/lawicel_adapter.hpp"
 #include "tests/unit/serial/serial_link_stage.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "adapters/can/slcan_link.hpp"
+#include "adapters/can/link/slcan_link.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

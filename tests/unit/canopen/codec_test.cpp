@@ -3,7 +3,7 @@
 #include "adapters/canopen/canopen_text.hpp"
 #include "adapters/canopen/cob_id.hpp"
 #include "adapters/canopen/process_data.hpp"
-#include "adapters/canopen/sdo_codec.hpp"
+#include "adapters/canopen/sdo/sdo_codec.hpp"
 #include "gateway/core/random.hpp"
 #include "tests/unit/canopen/canopen_frames.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/image/map_listing.hpp"
+#include "gateway/image/listing/map_listing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "gateway/image/map_page.hpp"
+#include "gateway/image/listing/map_page.hpp"
 #include "tests/places.hpp"
 
 namespace axisgate {

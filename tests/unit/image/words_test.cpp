@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "gateway/core/error.hpp"
-#include "gateway/image/map_page.hpp"
+#include "gateway/image/listing/map_page.hpp"
 #include "gateway/image/process_image.hpp"
 #include "tests/places.hpp"
 

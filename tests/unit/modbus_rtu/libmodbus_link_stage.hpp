@@ -9,7 +9,7 @@
 
 #include <functional>
 
-#include "adapters/modbus_rtu/libmodbus_link.hpp"
+#include "adapters/modbus_rtu/link/libmodbus_link.hpp"
 #include "tests/unit/modbus_rtu/rtu_frames.hpp"
 #include "tests/unit/serial/pty.hpp"
 #include "tests/unit/support/manual_runtime.hpp"

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/commands/commission/commission_command.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <cstdio>
+
+#include "adapters/asio/asio_runtime.hpp"
+#include "adapters/asio/line_input.hpp"
+#include "gateway/commands/commission/commission_plan.hpp"
+#include "gateway/commands/common/faults_told.hpp"
+#include "gateway/compose/gateway.hpp"
+#include "gateway/config/config_loader.hpp"
+#include "gateway/process/device_wires.hpp"
+#include "gateway/process/stderr_log.hpp"
+
+namespace axisgate::app {
+namespace {
+
+// A drive that has not come up by then is not there, or not on this line.
+constexpr Duration kOnlineLimit = std::chrono::seconds(15);
+constexpr Duration kWriteLimit = std::chrono::seconds(5);
+
+struct Place {
+  std::size_t bus = 0;
+  std::size_t drive = 0;
+  bus::AxisSlot slot = 0;
+};
+
+std::optional<Place> find_axis(const Models& models, AxisNumber number) {
+  for (std::size_t b = 0; b < models.size(); ++b)
+    for (std::size_t d = 0; d < models[b].size(); ++d)
+      for (std::size_t a = 0; a < models[b][d].axes.size(); ++a)
+        if (models[b][d].axes[a].number == number) return Place{b, d, static_cast<bus::AxisSlot>(a)};
+  return std::nullopt;
+}
+
+/// The bus of one axis, running, with nobody else on it.
+class Workbench {
+ public:
+  Workbench(const Config& config, const Models& models, std::size_t bus)
+      : log_(stderr_log(LogLevel::warning)), runtime_(io_) {
+    Config alone;
+    alone.file = config.file;
+    alone.buses = {config.buses[bus]};
+    gateway_ = std::make_unique<Gateway>(alone, Models{models[bus]}, runtime_, log_, device_wires(io_, runtime_, log_));
+    gateway_->start();
+  }
+  [[nodiscard]] Gateway& gateway() { return *gateway_; }
+  [[nodiscard]] bool run_until(const std::function<bool()>& done, Duration limit) {
+    const Instant end = runtime_.now() + limit;
+    while (!done()) {
+      if (runtime_.now() >= end) return false;
+      io_.run_one_for(std::chrono::milliseconds(100));
+    }
+    return true;
+  }
+  /// What the person says, however long it takes: polls and heartbeats go on.
+  [[nodiscard]] std::optional<std::string> next_line() {
+    std::optional<std::string> line;
+    bool said = false;
+    person_.next([&](std::optional<std::string> typed) {
+      line = std::move(typed);
+      said = true;
+    });
+    while (!said) io_.run_one_for(std::chrono::milliseconds(100));
+    return line;
+  }
+  [[nodiscard]] BatchResult ask(AxisNumber axis, const ObjectRequest& request) {
+    WriteBatch batch;
+    batch.role = Role::engineer;
+    batch.object = request;
+    batch.start_by = batch.answer_by = runtime_.now() + kWriteLimit;
+    const auto result = std::make_shared<std::optional<BatchResult>>();  // it may come after we gave up
+    if (auto at_once = gateway_->submit(axis, batch, [result](const BatchResult& r) { *result = r; })) return *at_once;
+    if (!run_until([&] { return result->has_value(); }, kWriteLimit + kWriteLimit)) return {{Errc::timed_out, 0}, 0, 0};
+    return **result;
+  }
+
+ private:
+  boost::asio::io_context io_{1};
+  Log log_;
+  AsioRuntime runtime_;
+  LineInput person_{io_, STDIN_FILENO};
+  std::unique_ptr<Gateway> gateway_;
+};
+
+/// What the loop does while the person is asked, and what a yes leads to.
+class Commissioning {
+ public:
+  Commissioning(Workbench& bench, const drive::DriveModel& model, bus::AxisSlot slot, const CommissionOptions& options)
+      : bench_(bench), model_(model), axis_(model.axes[slot].number), yes_(options.yes) {}
+
+  /// Asks about one finding, and carries it out after a yes.
+  void ask(const drive::Check& check, std::string_view place) {
+    const Numbers shown = read(check);
+    const auto bad = is_bad(model_, check, shown);
+    if (bad == false) return fmt::print("\n{} {}: ok by now\n", place, check.name);
+    if (!bad) return leave(fmt::format("{} {}: it cannot be read, and is not asked about", place, check.name));
+    fmt::print("\n{} {}", place, question(model_, check, shown));
+    if (!says_yes()) return leave("not written");
+    const std::string changed = objection(model_, check, shown, read(check));
+    // Whether a motor has torque is looked at last, next to the write.
+    const std::string forbidden = objection(axes_now());
+    if (!forbidden.empty() || !changed.empty())
+      return leave("not written: " + (forbidden.empty() ? changed : forbidden));
+    carry_out(check);
+  }
+  [[nodiscard]] bool input_ended() const { return input_ended_; }
+  [[nodiscard]] bool all_done() const { return !left_; }
+  [[nodiscard]] bool wrote() const { return wrote_; }
+  /// Read anew: the image of a value that comes by itself may be older than the answer.
+  [[nodiscard]] std::vector<AxisShown> axes_now() {
+    std::vector<AxisShown> out;
+    for (const drive::AxisModel& axis : model_.axes) {
+      const bool told = std::all_of(axis.state_sources.begin(), axis.state_sources.end(),
+                                    [&](drive::ObjectId id) { return model_.object(id).emulated || read(id); });
+      const AxisImage& image = *bench_.gateway().image().find(axis.number);
+      out.push_back({axis.number, image.link_state, told, image.has(AxisInput::enabled)});
+    }
+    return out;
+  }
+
+ private:
+  void leave(const std::string& why) {
+    left_ = true;
+    fmt::print("  {}\n", why);
+  }
+  [[nodiscard]] bool says_yes() {
+    fmt::print("Write this to axis {}? Only \"yes\" does, anything else leaves it as it is: ", axis_);
+    if (yes_) fmt::print("yes (--yes)\n");
+    std::fflush(stdout);
+    if (yes_) return true;
+    const std::optional<std::string> line = bench_.next_line();
+    input_ended_ = !line;
+    if (!line || ::isatty(STDIN_FILENO) == 0) fmt::print("{}\n", line.value_or("no answer"));
+    return line && means_yes(*line);
+  }
+  [[nodiscard]] Numbers read(const drive::Check& check) {
+    Numbers out;
+    for (const drive::ObjectId id : objects_of(model_, check))
+      if (const auto number = read(id)) out[id] = *number;
+    return out;
+  }
+  [[nodiscard]] std::optional<std::int64_t> read(drive::ObjectId id) {
+    const drive::ObjectDef& object = model_.object(id);
+    const BatchResult result = bench_.ask(axis_, {false, object.address.index, object.address.sub, object.size, 0});
+    if (result.outcome.code != Errc::ok) return std::nullopt;
+    return object.number(result.object_data);
+  }
+  void carry_out(const drive::Check& check) {
+    for (const drive::ObjectWrite& write : check.remedy) {
+      const drive::ObjectDef& object = model_.object(write.object);
+      wrote_ = true;
+      const BatchResult result = bench_.ask(axis_, {true, object.address.index, object.address.sub, object.size,
+                                                    static_cast<std::uint32_t>(static_cast<std::uint64_t>(write.raw))});
+      const bool ok = result.outcome.code == Errc::ok;
+      fmt::print("  {}: {}\n", text(model_, write),
+                 ok ? "written" : fmt::format("{}, detail {:#x}", text(result.outcome.code), result.outcome.detail));
+      left_ = left_ || !ok;
+      if (!ok) break;
+    }
+    static_cast<void>(bench_.run_until([&] { return is_online(); }, kOnlineLimit));
+    const ReadBack after = read_back(model_, check, read(check));
+    fmt::print("{}", after.text);
+    left_ = left_ || !after.cured;
+  }
+  /// A drive that stores may be unresponsive for a moment.
+  [[nodiscard]] bool is_online() { return bench_.gateway().image().find(axis_)->link_state == LinkState::online; }
+
+  Workbench& bench_;
+  const drive::DriveModel& model_;
+  AxisNumber axis_;
+  bool yes_;
+  bool input_ended_ = false;
+  bool left_ = false;   ///< something bad was left as it is
+  bool wrote_ = false;  ///< at least tried to
+};
+
+int commission(const LoadedConfig& loaded, const Place& place, const CommissionOptions& options) {
+  const drive::DriveModel& model = loaded.models[place.bus][place.drive];
+  const BusConfig& bus = loaded.config.buses[place.bus];
+  fmt::print("axis {} \"{}\": {}, node {} on {} ({})\n", options.axis, model.axes[place.slot].name, model.title,
+             model.node, bus.name, bus.device);
+  Workbench bench(loaded.config, loaded.models, place.bus);
+  fmt::print("waiting for the drive ...\n");
+  std::fflush(stdout);
+  const AxisImage& image = *bench.gateway().image().find(options.axis);
+  if (!bench.run_until([&] { return image.link_state == LinkState::online; }, kOnlineLimit)) {
+    fmt::print(stderr,
+               "axis {} does not come online ({}): is {} the right device, the gateway stopped, the drive on?\n",
+               options.axis, text(image.link_state), bus.device);
+    return 1;
+  }
+  const std::vector<Finding> found = findings(model, bench.gateway().drive_of(options.axis)->store(), place.slot);
+  for (const Finding& finding : found) fmt::print("  {}\n", text(model, finding));
+  const std::vector<const drive::Check*> questions = to_ask(found);
+  if (questions.empty()) {
+    fmt::print("nothing to remedy\n");
+    return 0;
+  }
+  Commissioning work(bench, model, place.slot, options);
+  if (const std::string why = objection(work.axes_now()); !why.empty()) {
+    fmt::print(stderr, "{}\n", why);
+    return 1;
+  }
+  for (std::size_t i = 0; i < questions.size() && !work.input_ended(); ++i)
+    work.ask(*questions[i], fmt::format("question {} of {}:", i + 1, questions.size()));
+  if (!work.wrote()) fmt::print("nothing was written\n");
+  return work.all_done() ? 0 : 1;
+}
+
+/// Started without a standard input: the bus must not get its number, or frames would be taken for answers.
+bool keep_stdin_taken() { return ::fcntl(STDIN_FILENO, F_GETFD) >= 0 || ::open("/dev/null", O_RDONLY) == STDIN_FILENO; }
+
+}  // namespace
+
+int run(const CommissionOptions& options) {
+  if (!keep_stdin_taken()) {
+    fmt::print(stderr, "there is no standard input, and /dev/null cannot be opened in its place\n");
+    return 1;
+  }
+  const LoadResult result = load_config(options.config, options.profile_folders);
+  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
+  const auto& loaded = std::get<LoadedConfig>(result);
+  const auto place = find_axis(loaded.models, options.axis);
+  if (!place) {
+    fmt::print(stderr, "{}: no axis {} in it\n", options.config, options.axis);
+    return 1;
+  }
+  return commission(loaded, *place, options);
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/commands/common/profile_folders.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include "gateway/profile/read/profile_loader.hpp"
+
+namespace axisgate::app {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> profile_folders(const std::string& given) {
+  std::vector<std::string> folders;
+  if (!given.empty()) folders.push_back(given);
+
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const auto add = [&](const fs::path& folder) {
+    if (fs::is_directory(folder, error)) folders.push_back(folder.string());
+  };
+  const fs::path bin = program.parent_path();
+  add(bin.parent_path() / "share/axisgate/schemas/drives");
+  // SOURCE/build/PRESET/bin/axisgate
+  add(bin.parent_path().parent_path().parent_path() / "schemas/drives");
+  add("/usr/share/axisgate/schemas/drives");
+  return folders;
+}
+
+std::vector<drive::Profile> profiles_in(const std::vector<std::string>& folders) {
+  std::vector<drive::Profile> out;
+  std::set<std::string> names;
+  for (const std::string& folder : folders) {
+    std::set<fs::path> files;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (entry.path().extension() == ".json") files.insert(entry.path());
+    if (error) fmt::print(stderr, "{}: {}\n", folder, error.message());
+    for (const fs::path& file : files) {
+      if (!names.insert(file.stem().string()).second) continue;
+      const drive::LoadedProfile loaded = drive::load_profile(file.string(), folders);
+      if (loaded.base_only) continue;
+      if (!loaded.faults.empty()) fmt::print(stderr, "left out: {}\n", text(loaded.faults.front()));
+      if (loaded.faults.empty()) out.push_back(loaded.profile);
+    }
+  }
+  return out;
+}
+
+}  // namespace axisgate::app

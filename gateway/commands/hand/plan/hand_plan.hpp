@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `axisgate enable`, `move`, `jog` and `stop` write, and when: looks at an axis, answers, keys and instants in,
+// writes out. Pure. Promises that nothing but a key presses a jog button, that 300 ms without a key let it go, and that
+// however it ends on purpose the axis is stopped first, and has no torque where it had none before. Never enables an
+// axis unasked, and never writes to one that somebody else owns, but for stops.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gateway/commands/hand/plan/hand_keys.hpp"
+#include "gateway/commands/hand/plan/jog_button.hpp"
+#include "gateway/commands/hand/plan/stand_watch.hpp"
+#include "gateway/commands/view/hand_view.hpp"
+#include "gateway/core/clock.hpp"
+
+namespace axisgate::app {
+
+enum class HandTask : std::uint8_t { enable, move, jog, stop };
+[[nodiscard]] std::string_view text(HandTask task);
+
+/// What a person asks for on the command line.
+struct HandArguments {
+  HandTask task = HandTask::stop;
+  AxisNumber axis = 1;
+  Rational turns{};  ///< move: to this position, or by so much
+  bool relative = false;
+  std::optional<Rational> rpm;  ///< move: profile_velocity; jog: jog_velocity; none: as it is
+  bool enable = false;          ///< move, jog: enables the axis before, and disables it after
+};
+
+class HandPlan {
+ public:
+  static constexpr Duration kKeyLapse = JogButton::kKeyLapse;
+  /// A sign of life, for every way in which a lease is renewed. It presses no button.
+  static constexpr Duration kHeartbeat = std::chrono::milliseconds(200);
+  /// A motor that still turns by then is told as such, and its torque is not taken away.
+  static constexpr Duration kStandLimit = std::chrono::seconds(20);
+  /// A motor stands when it has not moved for so long: longer than the filters of a drive's speed.
+  static constexpr Duration kStill = std::chrono::milliseconds(300);
+
+  HandPlan(const HandArguments& arguments, Instant now);
+
+  /// What is written next, in this order; each is answered once, in the same order.
+  [[nodiscard]] std::vector<HandWrite> take();
+  /// Of the oldest write not answered yet.
+  void on_answer(ModbusException exception, Instant now);
+  /// `answered`: what answered() was when the look was asked for.
+  void on_view(const HandView& view, std::uint32_t answered, Instant now);
+  void on_keys(const std::vector<HandKey>& keys, Instant now);
+  /// The process could not look at its keys for longer than kKeyLapse: nobody knows what was held. A terminal may still
+  /// deliver what was typed meanwhile, so no key presses a button for another kKeyLapse.
+  void on_stall(Instant now);
+  void on_time(Instant now);
+  [[nodiscard]] Instant due() const;
+
+  /// Somebody ends it: a signal, a terminal that is gone. Told again, it says nothing new.
+  void end(std::string_view why, Instant now);
+  /// Whoever asks twice is in a hurry: the axis is not waited for.
+  void end_at_once();
+  /// The gateway is out of reach: nothing can be written any more.
+  void lost(std::string_view why);
+  /// The newest write was not sent: its number does not fit the register.
+  void refuse_number(Instant now);
+  /// It cannot begin, or go on.
+  void fail(std::string_view why, Instant now);
+
+  [[nodiscard]] bool over() const { return step_ == Step::over; }
+  [[nodiscard]] int exit_code() const { return code_; }
+  /// What there is to say at the end.
+  [[nodiscard]] const std::string& words() const { return words_; }
+  /// What it does now, for the line that is shown.
+  [[nodiscard]] std::string doing() const;
+  [[nodiscard]] std::uint32_t answered() const { return answered_; }
+  [[nodiscard]] const std::optional<HandView>& view() const { return view_; }
+
+ private:
+  enum class Step : std::uint8_t {
+    look,
+    begin,  ///< command 0: the id is remembered
+    speed,
+    enable,
+    enabled,   ///< awaits a look that shows it
+    released,  ///< jog: both buttons are told to be up, one after the other
+    target,
+    start,
+    working,  ///< holds, moves, jogs
+    refused,  ///< awaits a look that tells why
+    stop,
+    standing,  ///< awaits a look that shows it
+    disable,
+    release,
+    over,
+  };
+
+  void go(Step step) { step_ = step; }
+  void claim(Instant now);
+  void write(const HandWrite& write, bool of_step = true);
+  void write_command(Command command);
+  void write_button(const std::optional<JogButton::Write>& button);
+  void step_done(Instant now);
+  void button_answered(ModbusException exception, Instant now);
+  void after_speed(Instant now);
+  void after_enable(Instant now);
+  void first_look(Instant now);
+  void watch(Instant now);
+  void stood(Instant now);
+  /// Stops what may move, takes torque and lease back, and ends.
+  void finish(int code, std::string words, Instant now);
+  void after_stop();
+  void after_disable();
+  [[nodiscard]] bool stands(Instant now) const;
+  [[nodiscard]] bool ending() const { return step_ >= Step::stop; }
+  [[nodiscard]] std::string why_refused() const;
+  [[nodiscard]] std::string axis_text() const;
+
+  HandArguments arguments_;
+  Step step_ = Step::look;
+  std::deque<HandWrite> outbox_;
+  struct Waiting {
+    HandWrite write;
+    bool of_step = false;
+  };
+  std::deque<Waiting> waiting_;  ///< written, not answered
+  std::uint32_t answered_ = 0;   ///< writes, heartbeats left out
+  std::optional<HandView> view_;
+  std::uint16_t id_ = 0;
+  std::uint16_t beat_ = 0;
+  bool beat_waits_ = false;
+  bool claimed_ = false;       ///< something was written that asks
+  bool owned_before_ = false;  ///< by another connection of this host, where those are one client
+  bool torque_is_ours_ = false;
+  bool may_move_ = false;  ///< something was written that moves, and no look has shown it standing since
+  bool reached_ = false;
+  std::optional<std::uint16_t> lease_ms_;  ///< the most that was seen left of it
+  ModbusException exception_ = ModbusException::none;
+  std::string refused_what_;
+  JogButton button_;
+  Instant next_beat_ = kNever;
+  Instant stand_by_ = kNever;
+  StandWatch stand_watch_;
+  Instant watched_from_ = kLongAgo;  ///< when its stop or its button was answered, or its target reached
+  int code_ = 0;
+  std::string words_;
+};
+
+}  // namespace axisgate::app

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a command that moves an axis by hand ends: stopped, without torque where it had none, given back.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gateway/commands/hand/plan/hand_plan.hpp"
+
+namespace axisgate::app {
+
+// The end.
+
+void HandPlan::end(std::string_view why, Instant now) {
+  if (ending()) return;
+  const bool held = arguments_.task == HandTask::enable && step_ == Step::working && stands(now);
+  const std::string_view what = !claimed_         ? " was asked for nothing"
+                                : !held           ? " is stopped"
+                                : torque_is_ours_ ? " is disabled"
+                                                  : " is given back, enabled as it was found";
+  finish(held ? 0 : 1, fmt::format("{}: {}{}", why, axis_text(), what), now);
+}
+
+void HandPlan::end_at_once() {
+  if (over()) return;
+  words_ += (words_.empty() ? "" : "; ") + std::string("ended at once, without waiting for the axis");
+  code_ = 1;
+  go(Step::over);
+}
+
+void HandPlan::lost(std::string_view why) {
+  if (over()) return;
+  code_ = 1;
+  words_ = fmt::format("the gateway is out of reach ({})", why);
+  if (claimed_ && lease_ms_)
+    words_ += fmt::format("; it stops {} when its lease runs out, within {} ms", axis_text(), *lease_ms_);
+  else if (claimed_)
+    words_ += fmt::format("; {} has no lease: a move goes on to its target, and only a stop ends it", axis_text());
+  else if (arguments_.task == HandTask::stop && outbox_.empty())
+    words_ += fmt::format("; whether {} was stopped is not known", axis_text());
+  step_ = Step::over;
+}
+
+void HandPlan::refuse_number(Instant now) {
+  waiting_.pop_back();
+  fail(fmt::format("{} does not fit its register, in the units of {}",
+                   step_ == Step::speed ? fmt::format("{} rpm", arguments_.rpm->to_double())
+                                        : fmt::format("{} turns", arguments_.turns.to_double()),
+                   axis_text()),
+       now);
+}
+
+void HandPlan::fail(std::string_view why, Instant now) {
+  if (!ending()) return finish(1, std::string(why), now);
+  // A stop has nothing left to do where its axis cannot be seen; any other end has its own limit of time.
+  if (arguments_.task != HandTask::stop || over()) return;
+  code_ = 1;
+  if (words_.empty()) words_ = why;
+  go(Step::over);
+}
+
+void HandPlan::finish(int code, std::string words, Instant now) {
+  code_ = code;
+  words_ = std::move(words);
+  write_button(button_.let_go());
+  // What was asked for before is none of the end's steps.
+  for (Waiting& waiting : waiting_) waiting.of_step = false;
+  stand_by_ = now + kStandLimit;
+  // An enabled axis that turns is stopped whoever made it turn; one that another client owns as well.
+  const bool enabled_and_turns = claimed_ && !stands(now);
+  if (!may_move_ && !enabled_and_turns) return after_stop();
+  write({.what = HandWrite::What::stop, .command = Command::quick_stop});
+  go(Step::stop);
+}
+
+void HandPlan::stood(Instant now) {
+  if (view_->in_sight() && (!stands(now) || now < watched_from_ + kStill)) return;
+  may_move_ = false;
+  if (arguments_.task == HandTask::stop) {
+    stand_by_ = kNever;
+    const bool known = view_->in_sight();
+    code_ = std::max(code_, known ? 0 : 1);
+    if (words_.empty())
+      words_ = known ? "stopped: " + hand_line(arguments_.axis, *view_, "")
+                     : fmt::format("{} is out of reach: what it does is not known", axis_text());
+    return go(Step::over);
+  }
+  if (code_ == 0) words_ += ": " + hand_line(arguments_.axis, *view_, "");
+  after_stop();
+}
+
+void HandPlan::after_stop() {
+  stand_by_ = kNever;
+  if (!torque_is_ours_) return after_disable();
+  torque_is_ours_ = false;
+  write({.what = HandWrite::What::stop, .command = Command::disable});
+  go(Step::disable);
+}
+
+void HandPlan::after_disable() {
+  stand_by_ = kNever;
+  if (!claimed_ || owned_before_ || arguments_.task == HandTask::stop || (view_ && view_->anothers()))
+    return go(Step::over);
+  write_command(Command::release);
+  go(Step::release);
+}
+
+}  // namespace axisgate::app

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a command that moves an axis by hand says: what it does now, and why it was refused.
+#include <fmt/format.h>
+
+#include "gateway/commands/hand/plan/hand_plan.hpp"
+#include "gateway/core/words.hpp"
+
+namespace axisgate::app {
+
+std::string HandPlan::why_refused() const {
+  const auto result = static_cast<std::uint32_t>(view_->result);
+  std::string out = fmt::format("{}: {} was refused with {}", axis_text(), refused_what_, exception_text(exception_));
+  if (exception_ == ModbusException::illegal_function)
+    return out + ": the gateway gives this computer another role than operator (key \"allow\")";
+  if (exception_ == ModbusException::illegal_data_address)
+    return out + ": this drive does not have it (axisgate map shows what it has)";
+  if (exception_ == ModbusException::illegal_data_value)
+    return out + ": beyond the limits of the axis, its profile or its drive";
+  if (view_->result == CommandResult::none) return out;
+  const Word* word = find_word(WordKind::result, result);
+  out += fmt::format(", result {}", result);
+  if (word != nullptr) out += fmt::format(" {}: {}", word->name, word->meaning);
+  return out;
+}
+
+std::string HandPlan::axis_text() const { return fmt::format("axis {}", arguments_.axis); }
+
+std::string HandPlan::doing() const {
+  if (step_ == Step::stop || (step_ == Step::standing && !reached_)) return "quick stop";
+  if (step_ == Step::disable) return "disabling";
+  if (step_ < Step::working) return "";
+  if (step_ != Step::working) return "";
+  switch (arguments_.task) {
+    case HandTask::enable:
+      return "held; Ctrl-C disables it";
+    case HandTask::move:
+      return fmt::format("{} {} turns; Ctrl-C stops", arguments_.relative ? "by" : "to", arguments_.turns.to_double());
+    case HandTask::jog:
+      break;
+    case HandTask::stop:
+      return "";
+  }
+  return button_.held() == JogButton::Which::none      ? "hold an arrow key; q ends"
+         : button_.held() == JogButton::Which::forward ? "jogs forward"
+                                                       : "jogs in reverse";
+}
+
+}  // namespace axisgate::app

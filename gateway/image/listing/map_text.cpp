@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "gateway/image/listing/map_listing.hpp"
+
+namespace axisgate {
+namespace {
+
+constexpr std::array<std::string_view, 10> kColumns{"table", "address", "count", "axis",   "bus",
+                                                    "name",  "type",    "unit",  "access", "supported"};
+using Cells = std::array<std::string, kColumns.size()>;
+
+Cells cells_of(const MapEntry& entry) {
+  return {std::string(entry.table),    std::to_string(entry.address),
+          std::to_string(entry.count), entry.axis ? std::to_string(*entry.axis) : "",
+          entry.bus.value_or(""),      entry.name,
+          std::string(entry.type),     entry.unit,
+          std::string(entry.access),   entry.supported ? "true" : "false"};
+}
+
+/// One entry a line: readable for people, and lines can be compared between two versions of a configuration.
+std::string json_text(const ListedMap& map, const std::vector<MapEntry>& entries) {
+  std::string out = "{\"map_version\": " + std::to_string(kMapVersion) + ", \"word_order\": \"" +
+                    (map.low_word_first ? "low-first" : "high-first") +
+                    (map.float_numbers ? "\", \"numbers\": \"float" : "") + "\", \"entries\": [";
+  const char* separator = "\n  ";
+  for (const MapEntry& entry : entries) {
+    nlohmann::ordered_json line;
+    line["table"] = entry.table;
+    line["address"] = entry.address;
+    line["count"] = entry.count;
+    line["axis"] = entry.axis ? nlohmann::ordered_json(*entry.axis) : nlohmann::ordered_json();
+    line["bus"] = entry.bus ? nlohmann::ordered_json(*entry.bus) : nlohmann::ordered_json();
+    line["name"] = entry.name;
+    line["type"] = entry.type;
+    line["unit"] = entry.unit;
+    line["access"] = entry.access;
+    line["supported"] = entry.supported;
+    out += separator + line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    separator = ",\n  ";
+  }
+  return out + "\n]}\n";
+}
+
+std::string csv_cell(const std::string& cell) {
+  if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
+  std::string quoted = "\"";
+  for (const char each : cell) quoted += each == '"' ? std::string("\"\"") : std::string(1, each);
+  return quoted + "\"";
+}
+
+std::string csv_line(const Cells& cells) {
+  std::string line;
+  for (const std::string& cell : cells) line += (line.empty() ? "" : ",") + csv_cell(cell);
+  return line + "\n";
+}
+
+std::string markdown_line(const Cells& cells) {
+  std::string line = "|";
+  for (const std::string& cell : cells) {
+    line += ' ';
+    for (const char each : cell) line += each == '|' ? std::string("\\|") : std::string(1, each);
+    line += " |";
+  }
+  return line + "\n";
+}
+
+Cells heading() {
+  Cells cells;
+  std::copy(kColumns.begin(), kColumns.end(), cells.begin());
+  return cells;
+}
+
+std::string table_line(const Cells& cells, const std::array<std::size_t, kColumns.size()>& widths) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string gap(widths[i] - cells[i].size(), ' ');
+    const bool number = i >= 1 && i <= 3;
+    line += (number ? gap + cells[i] : cells[i] + gap) + "  ";
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
+std::string aligned(const std::vector<MapEntry>& entries) {
+  std::array<std::size_t, kColumns.size()> widths{};
+  const auto widen = [&widths](const Cells& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], cells[i].size());
+  };
+  widen(heading());
+  for (const MapEntry& entry : entries) widen(cells_of(entry));
+  std::string out = table_line(heading(), widths);
+  for (const MapEntry& entry : entries) out += table_line(cells_of(entry), widths);
+  return out;
+}
+
+std::string titles(const ListedMap& map) {
+  std::string out = "map version " + std::to_string(kMapVersion) + ", 32-bit values " +
+                    (map.low_word_first ? "low" : "high") + " word first, addresses count from 0" +
+                    (map.float_numbers ? ", f32: IEEE 754" : "") + "\n";
+  for (const ListedAxis& axis : map.axes) {
+    out +=
+        "axis " + std::to_string(axis.number) + ": " + axis.name + (axis.bus.empty() ? "" : ", on " + axis.bus) + "\n";
+  }
+  return out + "\n";
+}
+
+}  // namespace
+
+std::optional<MapFormat> map_format_named(std::string_view name) {
+  if (name == "json") return MapFormat::json;
+  if (name == "csv") return MapFormat::csv;
+  if (name == "md") return MapFormat::markdown;
+  if (name == "table") return MapFormat::table;
+  if (name == "st") return MapFormat::structured_text;
+  return std::nullopt;
+}
+
+std::string map_text(const ListedMap& map, MapFormat format) {
+  const std::vector<MapEntry> entries = map_entries(map);
+  switch (format) {
+    case MapFormat::json:
+      return json_text(map, entries);
+    case MapFormat::table:
+      return titles(map) + aligned(entries);
+    case MapFormat::structured_text:
+      return map_st(map, entries);
+    case MapFormat::csv: {
+      std::string out = csv_line(heading());
+      for (const MapEntry& entry : entries) out += csv_line(cells_of(entry));
+      return out;
+    }
+    case MapFormat::markdown: {
+      std::string out = markdown_line(heading()) + "|---|---:|---:|---:|---|---|---|---|---|---|\n";
+      for (const MapEntry& entry : entries) out += markdown_line(cells_of(entry));
+      return out;
+    }
+  }
+  return {};
+}
+
+}  // namespace axisgate

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The DataWriter of a topic of replies, and the replies that wait for the readers of new clients (held_replies.hpp).
+// Promises what those promise, and to wake whoever is to call write_held() when such a reader was found. Never waits.
+#pragma once
+
+#include <string>
+
+#include "gateway/upstream/dds_process/participant/participant.hpp"
+#include "gateway/upstream/dds_process/publish/held_replies.hpp"
+#include "gateway/upstream/dds_process/system/wake.hpp"
+#include "gateway/upstream/dds_process/topics/to_idl.hpp"
+
+namespace axisgate::dds {
+
+class ReplyWriter : private fastdds::DataWriterListener {
+ public:
+  ReplyWriter(Participant& participant, const std::string& name, const fastdds::TypeSupport& type,
+              const fastdds::DataWriterQos& qos, const GatewayId& gateway, Wake& wake);
+  ~ReplyWriter() override;
+  ReplyWriter(const ReplyWriter&) = delete;
+  ReplyWriter& operator=(const ReplyWriter&) = delete;
+
+  /// A ReplyRecord or an ObjectReplyRecord, as the topic has them.
+  template <typename Reply>
+  void write(const Reply& reply, SteadyNs now) {
+    if (!held_.hold(reply, reply.writer, now)) write_now(reply);
+  }
+  /// Those that wait no longer.
+  void write_held(SteadyNs now);
+  [[nodiscard]] SteadyNs due() const { return held_.due(); }
+
+ private:
+  void on_publication_matched(fastdds::DataWriter* writer, const fastdds::PublicationMatchedStatus& info) override;
+  template <typename Reply>
+  void write_now(const Reply& reply) {
+    // What cannot be sent is in the history, or is overtaken by the next sample: there is nobody to tell.
+    auto sample = to_idl(reply, gateway_);
+    writer_.write(&sample);
+  }
+
+  const GatewayId& gateway_;
+  Wake& wake_;
+  HeldReplies held_;
+  fastdds::DataWriter& writer_;
+};
+
+}  // namespace axisgate::dds

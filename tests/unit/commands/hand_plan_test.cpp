@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every step of the commands that move an axis by hand, done and failing, against an axis written down here.
+#include "tests/unit/commands/by_hand.hpp"
+
+namespace axisgate::app {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST_F(ByHand, AMoveEnablesStartsWaitsAndGivesBack) {
+  moving();
+  view_.turns = 2.5;
+  view_.motion = MotionState::completed;
+  look();
+  EXPECT_THAT(written(), IsEmpty()) << "no stop is needed at the target";
+  stand();
+  given_back(44);
+  EXPECT_EQ(plan_->exit_code(), 0);
+  EXPECT_THAT(plan_->words(), HasSubstr("reached: axis 4  2.5000 turns"));
+}
+
+TEST_F(ByHand, AMoveOfTheIdBeforeIsNotItsOwn) {
+  moving();
+  view_.motion_id = 17;
+  view_.motion = MotionState::completed;
+  look();
+  pass(std::chrono::seconds(2));
+  look();
+  EXPECT_THAT(written(), IsEmpty());
+}
+
+TEST_F(ByHand, ALookFromBeforeAnAnswerCountsForNothing) {
+  moving();
+  view_.motion = MotionState::completed;
+  plan_->on_view(view_, plan_->answered() - 1, now_);
+  EXPECT_THAT(written(), IsEmpty());
+  pass(HandPlan::kStill);
+  EXPECT_EQ(plan_->doing(), "to 2.5 turns; Ctrl-C stops");
+}
+
+TEST_F(ByHand, AnEnabledAxisIsLeftEnabled) {
+  begin(HandTask::move, false);
+  set(AxisInput::enabled);
+  look();
+  EXPECT_THAT(written(), ElementsAre(command(Command::none, 41)));
+  answer();
+  EXPECT_THAT(written(), ElementsAre(HandWrite{.what = What::target_position, .number = Rational(5, 2)}));
+  answer();
+  EXPECT_THAT(written(), ElementsAre(command(Command::move_absolute, 42)));
+  answer();
+  view_.motion_id = 42;
+  view_.motion = MotionState::completed;
+  look();
+  stand();
+  EXPECT_THAT(written(), ElementsAre(command(Command::release, 43)));
+  answer();
+  EXPECT_EQ(plan_->exit_code(), 0);
+}
+
+TEST_F(ByHand, NothingIsWrittenToAnAxisThatIsNotReadyForIt) {
+  const auto refused = [&](const char* words) {
+    look();
+    EXPECT_TRUE(plan_->over());
+    EXPECT_EQ(plan_->exit_code(), 1);
+    EXPECT_THAT(plan_->words(), HasSubstr(words));
+    EXPECT_THAT(plan_->take(), IsEmpty());
+    EXPECT_EQ(plan_->due(), kNever);
+  };
+  begin(HandTask::move, false);
+  refused("axis 4 is disabled: --enable enables it for this move");
+  begin(HandTask::jog, false);
+  set(AxisInput::enabled), set(AxisInput::stop_latched);
+  refused("stopped and latched: --enable");
+  begin(HandTask::enable);
+  view_.owner = 2, view_.owner_address = 0x0A000007;
+  refused("owned by 10.0.0.7");
+  begin(HandTask::enable);
+  view_.link = LinkState::offline;
+  refused("out of reach (link offline): nothing was sent");
+  begin(HandTask::enable);
+  set(AxisInput::fault), view_.error_code = 0x3130;
+  refused("error_code 0x3130: axisgate explain 0x3130");
+}
+
+TEST_F(ByHand, EachStepThatIsRefusedSaysWhichAndWhy) {
+  begin(HandTask::move);
+  arguments_.rpm = Rational(60);
+  plan_.emplace(arguments_, now_);
+  look();
+  EXPECT_THAT(written(), ElementsAre(command(Command::none, 41)));
+  answer();
+  EXPECT_THAT(written(), ElementsAre(HandWrite{.what = What::profile_velocity, .number = Rational(60)}));
+  answer(Exception::illegal_data_value);
+  look();
+  EXPECT_THAT(plan_->words(), HasSubstr("profile_velocity was refused with exception 0x03"));
+  EXPECT_THAT(plan_->words(), HasSubstr("beyond the limits"));
+  EXPECT_THAT(written(), ElementsAre(command(Command::release, 42))) << "nothing was enabled, nothing moved";
+
+  arguments_.rpm.reset();
+  begin(HandTask::enable);
+  look();
+  static_cast<void>(written());
+  answer();
+  static_cast<void>(written());
+  answer(Exception::server_device_failure);
+  view_.result = CommandResult::state_unsuitable;
+  look();
+  EXPECT_THAT(plan_->words(), HasSubstr("enable was refused with exception 0x04"));
+  EXPECT_THAT(plan_->words(), HasSubstr("result 9"));
+  given_back(43);
+}
+
+TEST_F(ByHand, AStartThatIsRefusedBeforeItBeganStopsNothing) {
+  begin(HandTask::move);
+  enabled();
+  static_cast<void>(written());
+  answer();
+  static_cast<void>(written());
+  answer(Exception::server_device_busy);
+  look();
+  given_back(44);
+}
+
+TEST_F(ByHand, AStartOfWhichNobodyKnowsWhetherItBeganIsStopped) {
+  begin(HandTask::move);
+  enabled();
+  static_cast<void>(written());
+  answer();
+  static_cast<void>(written());
+  answer(Exception::gateway_target_failed);
+  look();
+  stopped_and_given_back(44);
+}
+
+TEST_F(ByHand, HoweverAMoveEndsTheAxisIsStoppedBeforeItsTorqueGoes) {
+  moving();
+  plan_->end("Ctrl-C", now_);
+  stopped_and_given_back(44);
+  EXPECT_EQ(plan_->words(), "Ctrl-C: axis 4 is stopped");
+  moving();
+  view_.motion = MotionState::aborted;
+  look();
+  stopped_and_given_back(44);
+  moving();
+  set(AxisInput::fault);
+  look();
+  stopped_and_given_back(44);
+  moving();
+  set(AxisInput::stop_latched);
+  look();
+  EXPECT_THAT(plan_->words(), HasSubstr("was stopped by another client, its lease or its drive"));
+  stopped_and_given_back(44);
+}
+
+TEST_F(ByHand, AMotorThatHasJustBegunToTurnIsNotTakenForOneThatStands) {
+  moving();
+  set(AxisInput::moving, false);  // a drive's speed is old
+  plan_->end("Ctrl-C", now_);
+  EXPECT_THAT(written(), ElementsAre(stop(Command::quick_stop)));
+  answer();
+  for (int i = 0; i < 20; ++i) {
+    *view_.turns += 0.05;
+    pass(50 * kMs);
+    look();
+    EXPECT_THAT(written(), IsEmpty()) << i;
+  }
+  stand();
+  given_back(44);
+}
+
+TEST_F(ByHand, AMotorThatNeverStandsKeepsItsTorqueAndIsTold) {
+  moving();
+  plan_->end("Ctrl-C", now_);
+  static_cast<void>(written());
+  answer();
+  pass(HandPlan::kStandLimit + 20 * kMs);
+  EXPECT_THAT(written(), ElementsAre(command(Command::release, 44)));
+  EXPECT_THAT(plan_->words(), HasSubstr("was not seen to stand within 20 s"));
+}
+
+TEST_F(ByHand, AnEndWhileAnAnswerIsWaitedForIsNotTakenForward) {
+  begin(HandTask::move);
+  enabled();
+  static_cast<void>(written());
+  answer();
+  EXPECT_THAT(written(), ElementsAre(command(Command::move_absolute, 43)));
+  plan_->end("Ctrl-C", now_);
+  EXPECT_THAT(written(), ElementsAre(stop(Command::quick_stop)));
+  answer(Exception::server_device_busy);  // the start's
+  stand();
+  EXPECT_THAT(written(), IsEmpty()) << "the stop was not answered yet";
+  answer();
+  stand();
+  given_back(44);
+}
+
+TEST_F(ByHand, ANewOwnerKeepsTheTorqueAndIsSentAStopAlone) {
+  moving();
+  view_.owner = 2;
+  look();
+  EXPECT_THAT(written(), ElementsAre(stop(Command::quick_stop)));
+  answer();
+  stand();
+  EXPECT_TRUE(plan_->over());
+  EXPECT_THAT(plan_->words(), HasSubstr("was taken over by another client"));
+}
+
+TEST_F(ByHand, AStopThatIsRefusedIsToldLoudly) {
+  begin(HandTask::stop);
+  EXPECT_THAT(written(), ElementsAre(stop(Command::quick_stop)));
+  answer(Exception::gateway_path_unavailable);
+  view_.link = LinkState::offline;
+  look();
+  EXPECT_TRUE(plan_->over());
+  EXPECT_EQ(plan_->exit_code(), 1);
+  EXPECT_THAT(plan_->words(),
+              HasSubstr("it is owed, and carried out as soon as the drive is back; stop it by its wired stop"));
+}
+
+TEST_F(ByHand, AStopAsksNobodyAndWaitsUntilTheMotorStands) {
+  begin(HandTask::stop);
+  view_.owner = 2;
+  set(AxisInput::moving);
+  EXPECT_THAT(written(), ElementsAre(stop(Command::quick_stop))) << "before any look";
+  answer();
+  look();
+  EXPECT_FALSE(plan_->over());
+  stand();
+  EXPECT_TRUE(plan_->over());
+  EXPECT_EQ(plan_->exit_code(), 0);
+  EXPECT_EQ(beats_, 0) << "it owns nothing";
+}
+
+TEST_F(ByHand, EnableHoldsWithSignsOfLifeAndGivesBackWithoutAStop) {
+  begin(HandTask::enable);
+  enabled();
+  for (int i = 0; i < 10; ++i) {
+    pass(HandPlan::kHeartbeat);
+    EXPECT_THAT(written(), IsEmpty());
+    look();
+  }
+  EXPECT_GE(beats_, 9);
+  plan_->end("Ctrl-C", now_);
+  given_back(43);
+  EXPECT_EQ(plan_->exit_code(), 0);
+  EXPECT_EQ(plan_->words(), "Ctrl-C: axis 4 is disabled");
+}
+
+TEST_F(ByHand, ASecondEndDoesNotWait) {
+  moving();
+  plan_->end("Ctrl-C", now_);
+  plan_->end("the terminal is gone", now_);
+  EXPECT_THAT(written(), ElementsAre(stop(Command::quick_stop))) << "told again, it is nothing new";
+  plan_->end_at_once();
+  EXPECT_TRUE(plan_->over());
+  EXPECT_EQ(plan_->exit_code(), 1);
+}
+
+TEST_F(ByHand, ALostNetworkIsToldWithWhatStopsTheAxisThen) {
+  moving();
+  plan_->lost("no answer in time");
+  EXPECT_TRUE(plan_->over());
+  EXPECT_THAT(plan_->words(), HasSubstr("it stops axis 4 when its lease runs out, within 2000 ms"));
+  begin(HandTask::move);
+  look();
+  static_cast<void>(written());
+  answer();
+  plan_->lost("no answer in time");
+  EXPECT_THAT(plan_->words(), HasSubstr("axis 4 has no lease"));
+}
+
+TEST_F(ByHand, ANumberThatDoesNotFitMovesNothing) {
+  begin(HandTask::move);
+  enabled();
+  static_cast<void>(written());
+  plan_->refuse_number(now_);
+  given_back(43);
+  EXPECT_THAT(plan_->words(), HasSubstr("2.5 turns does not fit its register"));
+}
+
+}  // namespace
+}  // namespace axisgate::app

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/commands/view/hand_view.hpp"
+
+#include <gmock/gmock.h>
+
+namespace axisgate::app {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+using What = HandWrite::What;
+
+std::vector<std::uint16_t> registers() {
+  std::vector<std::uint16_t> out(kHandRegisters);
+  out[2] = 0xFFFF, out[3] = 0x3CB0;  // -50000
+  out[5] = 60000;
+  out[18] = 2;
+  out[23] = 0b1100;
+  out[31] = 1;
+  out[91] = 10000, out[93] = 1;
+  return out;
+}
+
+TEST(HandView, ShowsTurnsAndRpmInTheUnitsOfTheAxis) {
+  const HandView view = hand_view(registers(), 0b101, {});
+  EXPECT_EQ(view.turns, -5.0);
+  EXPECT_EQ(view.rpm, 60.0);
+  EXPECT_TRUE(view.has(AxisInput::enabled));
+  EXPECT_EQ(hand_line(3, view, "to 2 turns"), "axis 3  -5.0000 turns  60.0 rpm  standstill  to 2 turns");
+}
+
+TEST(HandView, AValueThatIsNotGoodNowIsMarked) {
+  auto old = registers();
+  old[23] = 0, old[18] = 4;
+  EXPECT_EQ(hand_line(3, hand_view(old, 0, {}), ""), "axis 3  -5.0000 turns?  60.0 rpm?  standstill, link offline");
+  old[2] = 0x8000, old[3] = 0;
+  EXPECT_THAT(hand_line(3, hand_view(old, 0, {}), ""), HasSubstr("axis 3  ? turns  60.0 rpm?"));
+}
+
+TEST(HandView, WritesPositionsInTheUnitsAndTheWordOrderOfTheListener) {
+  const HandWrite target{.what = What::target_position, .number = Rational(5, 2)};
+  EXPECT_THAT(hand_request(target, 3, {}, Rational(10000)).value(),
+              ElementsAre(0x10, 1, 0x56, 0, 2, 4, 0, 0, 0x61, 0xA8));
+  EXPECT_THAT(hand_request(target, 3, {WordOrder::low_first, false}, Rational(10000)).value(),
+              ElementsAre(0x10, 1, 0x56, 0, 2, 4, 0x61, 0xA8, 0, 0));
+  EXPECT_THAT(hand_request(target, 3, {WordOrder::high_first, true}, Rational(10000)).value(),
+              ElementsAre(0x10, 1, 0x56, 0, 2, 4, 0x40, 0x20, 0, 0))
+      << "2.5 as IEEE 754";
+}
+
+TEST(HandView, RoundsOnceHalfAwayFromZero) {
+  const auto value = [](Rational turns, Rational units) {
+    const auto pdu = hand_request({.what = What::target_position, .number = turns}, 0, {}, units).value();
+    return static_cast<std::int32_t>(std::uint32_t{load_be16(pdu, 6)} << 16 | load_be16(pdu, 8));
+  };
+  EXPECT_EQ(value(Rational(1, 2), Rational(3)), 2);
+  EXPECT_EQ(value(Rational(-1, 2), Rational(3)), -2);
+  EXPECT_EQ(value(Rational(1, 3), Rational(65536, 3)), 7282);
+}
+
+TEST(HandView, ANumberThatItsRegisterCannotHoldIsNoRequest) {
+  EXPECT_FALSE(hand_request({.what = What::target_position, .number = Rational(300000)}, 1, {}, Rational(10000)));
+  EXPECT_FALSE(
+      hand_request({.what = What::target_position, .number = Rational(999999999)}, 1, {}, Rational(4294967295)));
+  EXPECT_FALSE(hand_request({.what = What::jog_velocity, .number = Rational(5000000)}, 1, {}, Rational(1)));
+  EXPECT_FALSE(hand_request({.what = What::target_position, .number = Rational(-2147483648LL)}, 1, {}, Rational(1)))
+      << "the end of the type is no number";
+}
+
+TEST(HandView, AStopIsOneRegisterAloneAndACommandOneWithItsId) {
+  EXPECT_THAT(hand_request({.what = What::stop, .command = Command::quick_stop}, 2, {}, Rational(1)).value(),
+              ElementsAre(0x06, 0, 254, 0, 3));
+  EXPECT_THAT(hand_request({.what = What::command, .command = Command::enable, .id = 7}, 2, {}, Rational(1)).value(),
+              ElementsAre(0x10, 0, 254, 0, 2, 4, 0, 1, 0, 7));
+  EXPECT_THAT(hand_request({.what = What::coil, .coil = 9, .on = true}, 2, {}, Rational(1)).value(),
+              ElementsAre(0x05, 0, 209, 0xFF, 0));
+}
+
+TEST(HandView, AnAnswerOfAnotherShapeIsNone) {
+  const std::vector<Byte> exception{0x83, 0x0B}, two{0x03, 4, 0, 1, 0, 2}, inputs{0x02, 2, 0x05, 0x10};
+  EXPECT_EQ(exception_in(exception), ModbusException::gateway_target_failed);
+  EXPECT_EQ(exception_in(two), ModbusException::none);
+  EXPECT_THAT(registers_in(two, 2).value(), ElementsAre(1, 2));
+  EXPECT_FALSE(registers_in(two, 3));
+  EXPECT_FALSE(registers_in(exception, 2));
+  EXPECT_EQ(inputs_in(inputs, 13), 0x1005);
+  EXPECT_FALSE(inputs_in(two, 13));
+  EXPECT_EQ(identification_in(Bytes()), "");
+}
+
+}  // namespace
+}  // namespace axisgate::app
