@@ -63,7 +63,8 @@ bool command_exists(Command command, const AxisImage& axis) {
 }
 
 /// Puts what the mask names into the write batch; false: a register could not hold it.
-bool put_members(const CommandRecord& record, const AxisImage& axis, const DdsUnits& units, WriteBatch& batch) {
+bool put_members(const CommandRecord& record, const AxisImage& axis, const DdsUnits& units, bool held,
+                 WriteBatch& batch) {
   if (has(record, kHasMode)) batch.mode = record.mode;
   for (const Member& member : kMembers) {
     if (!has(record, member.has)) continue;
@@ -85,7 +86,7 @@ bool put_members(const CommandRecord& record, const AxisImage& axis, const DdsUn
     if (!value) return false;
     // A button that is held tells the same velocity again and again.
     const auto velocity = static_cast<std::uint32_t>(*value);
-    if (!jogs(command_of(record)) || velocity != axis.jog_velocity) batch.jog_velocity = velocity;
+    if (!held || velocity != axis.jog_velocity) batch.jog_velocity = velocity;
   }
   return true;
 }
@@ -96,12 +97,13 @@ struct Beside {
   Errc wrong = Errc::ok;
 };
 
-Beside read_members(const CommandRecord& record, const WriteBatch& from, const AxisImage& axis, const DdsUnits& units) {
+Beside read_members(const CommandRecord& record, const WriteBatch& from, const AxisImage& axis, const DdsUnits& units,
+                    bool held) {
   Beside out{from};
   const bool unclear = jogs(command_of(record)) && has(record, kOtherMotion);
   if (!members_exist(record, axis))
     out.wrong = Errc::not_supported;
-  else if ((record.mask & ~kHasAny) != 0 || unclear || !put_members(record, axis, units, out.batch))
+  else if ((record.mask & ~kHasAny) != 0 || unclear || !put_members(record, axis, units, held, out.batch))
     out.wrong = Errc::bad_value;
   return out;
 }
@@ -154,7 +156,7 @@ PlannedCommand plan_command(const CommandRecord& record, const WriteBatch& from,
   WriteBatch asks = from;
   asks.beats = true;
   asks.command_id = static_cast<std::uint16_t>(record.request_id & 0xFFFFU);
-  Beside beside = read_members(record, asks, *axis, units);
+  Beside beside = read_members(record, asks, *axis, units, held);
   if (beside.wrong != Errc::ok) {
     if (!stops(record)) return beside.wrong;
     return CommandPlan{{alone(asks, command, false)}, beside.wrong};
