@@ -295,7 +295,8 @@ void Judge::answer_not_new(std::int64_t number, const Item& item, Verdict& verdi
     return;
   }
   if (!is_start(number) && number != 1) {
-    if (!is_stop(number) && (item.ended || item.spoilt)) verdict.answers = {0, 6};
+    // What was only remembered, and has nothing to do: whether that is "so already" is not said.
+    if (!is_stop(number) && (item.ended || item.spoilt || !item.acted)) verdict.answers = {0, 6};
     return;
   }
   if (item.refused) {

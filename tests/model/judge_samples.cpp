@@ -24,9 +24,15 @@ Verdict Judge::sample(const Write& write) {
   // that speaks of samples is not said.
   // Whether commands 9 to 11 will be refused is not known here.
   const bool will_be = number > kRun && number <= kSetPosition && readings_.other();
+  // A button that is held tells the same velocity again and again: whether that asks for it is not said.
+  const auto told_again = [&](std::uint16_t offset, std::int64_t value) {
+    const bool held = jogs && world_.pressed.at(client_ - kModbus) != 0;
+    return held && world_.accepted.contains(offset) && world_.accepted[offset] == value;
+  };
   if (!flawed && ((!refused && !will_be) || readings_.other()))
     for (const auto& [offset, value] : write.sample)
-      if (offset != row::command && options_.rows.contains(offset)) accept(offset, value, claims);
+      if (offset != row::command && options_.rows.contains(offset))
+        accept(offset, value, claims && (!told_again(offset, value) || readings_.other()));
   verdict.acts = number != 0;
   if (jogs)
     jog_sample(number, verdict);
