@@ -109,9 +109,10 @@ struct WriteBatch {
   /// A write of any kind, for an axis that waits for its client: an orphan lease of its own hand is taken over by it,
   /// whatever it asks. A write batch that asks for nothing is submitted for this, and for its sign of life, alone.
   bool is_write = false;
-  bool all_zero = false;  ///< a block of nothing but zeros: it takes over no adopted axis
-  bool renews = true;     ///< false: it was written too long ago to be a sign of life
-  bool beats = false;     ///< register 56 was written with another value than before
+  bool all_zero = false;    ///< a block of nothing but zeros: it takes over no adopted axis
+  bool zero_speed = false;  ///< registers 40 to 54, all 0: its owner's run, on or asked for, goes on with target 0
+  bool renews = true;       ///< false: it was written too long ago to be a sign of life
+  bool beats = false;       ///< register 56 was written with another value than before
   /// In register order; quantities but mode and controlword, each at most once.
   boost::container::static_vector<Setpoint, kQuantityCount> setpoints;
   std::optional<std::int16_t> mode;

@@ -67,6 +67,13 @@ Nemesis draw_nemesis(obey::Subject subject, std::uint64_t seed) {
       out.strikes.at(static_cast<std::size_t>(how)) = kRates.at(random.below(kRates.size()));
   }
   out.late_by = std::chrono::milliseconds(kLateMs.at(random.below(kLateMs.size())));
+  // Late and twice: a reply to a read says nothing of where it was read. Drawn by itself, so that the rest is as
+  // before.
+  simulated::Random pair(seed * kApart + static_cast<std::uint64_t>(subject));
+  if (tongue_of(subject) == Tongue::rtu && pair.chance(0.3)) {
+    for (const Strike how : {Strike::late_reply, Strike::double_reply})
+      out.strikes.at(static_cast<std::size_t>(how)) = kRates.at(pair.below(kRates.size()));
+  }
   switch (random.below(kKinds)) {
     case 0:
       out.soup = 0.05;

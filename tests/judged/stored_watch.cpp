@@ -269,7 +269,7 @@ void StoredWatch::check_axis(Watched& watched, const drive::AxisModel& axis) {
     if (canopen && sample.at < watched.started_at) violated(what + " is valid and of before its restart");
     if (binding.poll == drive::PollClass::once) continue;
     if (now - sample.at > stale_after(watched, axis, binding) + std::chrono::milliseconds(2))
-      violated(what + " is stale but valid");
+      violated(what + " is valid and " + std::to_string((now - sample.at) / std::chrono::milliseconds(1)) + " ms old");
   }
 }
 

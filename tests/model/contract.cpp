@@ -187,9 +187,16 @@ int Contract::send(std::size_t client, const Write& write) {
       judge.seen_before(seen_before);
       Pending pending;
       pending.verdict = judge.write(write);
-      // 3.5, "renew": whether "a write to this axis" that is refused is one is not said.
-      if (options_.only_writes_renew && next.owner == world.owner && !pending.verdict.answers.contains(0))
+      // 3.5, "renew": whether "a write to this axis" that is refused is one is not said; nor whether half of a row is.
+      const bool done = pending.verdict.answers.contains(0) && !next.clients[std::min(client, kModbus)].half;
+      if (options_.only_writes_renew && next.owner == world.owner && !done)
         next.lease_ends_ms = std::min(next.lease_ends_ms, world.lease_ends_ms);
+      // Of one that is refused nobody can tell whether it has taken an orphan lease over.
+      if (next.retaken && next.owner == world.owner && !pending.verdict.answers.contains(0) && readings.other()) {
+        next.orphan = true;
+        next.lease_ends_ms = world.lease_ends_ms;
+        next.lease_ends_by_ms = world.lease_ends_by_ms;
+      }
       pending.verdict.stop = judge.stopped();
       pending.verdict.takes_over = judge.takes_over();
       pending.verdict.any_answer = pending.verdict.any_answer || judge.unclear();

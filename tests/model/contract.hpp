@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <boost/container/flat_map.hpp>
-#include <boost/container/flat_set.hpp>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -75,8 +74,9 @@ struct ClientMemory {
   std::array<Item, 10> coils{};
   std::optional<std::int64_t> id{};  ///< the last one that was not 0; belongs to the address
   Rows rows{};                       ///< as written last, whatever became of it
-  /// Of these it was refused; whether that counts is not said.
-  boost::container::flat_set<std::uint16_t> refused_rows{};
+  /// Of these it was refused, and whether that counts is not said: what was written before, none: nothing.
+  boost::container::flat_map<std::uint16_t, std::optional<std::int64_t>> refused_rows{};
+  void write(std::uint16_t offset, std::int64_t value, bool refused);
   bool rows_unsure = false;  ///< or otherwise
   std::optional<Half> half{};
   bool operator==(const ClientMemory&) const = default;

@@ -99,10 +99,8 @@ bool Judge::refuse_foreign(Verdict& verdict) {
 void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
   if (foreign()) {
     refused_foreign_ = true;
-    me().refused_rows.insert(offset);
     return;
   }
-  me().refused_rows.erase(offset);
   if (claims) claim();
   const auto old = world_.accepted.find(offset);
   const bool differs = old == world_.accepted.end() || old->second != value;
@@ -130,6 +128,15 @@ void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
   if (could_run && speed && world_.motor == Motor::stands && readings_.other()) world_.motor = Motor::runs;
 }
 
+void ClientMemory::write(std::uint16_t offset, std::int64_t value, bool refused) {
+  const auto last = rows.find(offset);
+  if (refused)
+    refused_rows.try_emplace(offset, last == rows.end() ? std::nullopt : std::optional(last->second));
+  else
+    refused_rows.erase(offset);
+  rows[offset] = value;
+}
+
 // 3.3 What asks.
 void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlword, bool refused, bool was_empty) {
   const int carried = (command != Edge::absent ? 1 : 0) + (controlword != Edge::absent ? 1 : 0);
@@ -143,13 +150,17 @@ void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlw
   const auto was_refused = [this](const auto& r) { return me().refused_rows.contains(r.first); };
   const bool otherwise = (me().rows_unsure || std::ranges::any_of(rows, was_refused)) && readings_.other();
   const bool acts = (command == Edge::acts && !refused) || controlword == Edge::acts;
+  const bool owned = world_.owner == client_;
   for (const auto& [offset, value] : rows) {
     if (offset == row::controlword || offset == row::command || offset == row::command_id) continue;
     const auto last = me().rows.find(offset);
     bool differs = last == me().rows.end() || last->second != value;
-    me().rows[offset] = value;
-    if (me().rows_unsure || me().refused_rows.contains(offset)) differs = otherwise;
+    const auto refused_row = me().refused_rows.find(offset);
+    if (otherwise && refused_row != me().refused_rows.end()) differs = refused_row->second != value;
+    if (me().rows_unsure) differs = otherwise;
+    const auto wrote = [&, offset = offset, value = value](bool in_vain) { me().write(offset, value, in_vain); };
     if (!options_.rows.contains(offset)) {
+      wrote(false);
       // Not judged here; but what asks claims.
       if (options_.leases && !only_remembers && (differs || acts) && !foreign() && readings_.other()) claim();
       continue;
@@ -159,8 +170,11 @@ void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlw
     bool asks = single || differs || acts;
     // "or if this client owns the axis and the value last accepted differs"; not with "lease": null. A lease may have
     // run out while the axis was disabled (3.5 Signs of life).
-    if (!asks && options_.leases && world_.owner == client_ && other_value) asks = world_.enabled || !readings_.other();
+    // Whether the row before it, that has claimed the axis, makes it the owner is not said.
+    const bool owns = world_.owner == client_ && (owned || readings_.other());
+    if (!asks && options_.leases && other_value && owns) asks = world_.enabled || !readings_.other();
     if (only_remembers) asks = false;
+    wrote(asks && foreign());
     if (asks) accept(offset, value, claims);
   }
 }
@@ -270,8 +284,8 @@ Verdict Judge::registers(const Write& write) {
   const bool single = write.function != fc::read_write && rows.size() == 1;  // 3.3 Edges: "A single write is ..."
   for (const std::uint16_t offset : kZeroLeaves) {
     if (!rows.contains(offset) || rows[offset] != 0) continue;
-    if (single) return {"refused: 0 alone", {3}};                      // 3.3 Zeros
-    if (me().rows.contains(offset)) me().refused_rows.insert(offset);  // "last write", or "leave as it is"
+    if (single) return {"refused: 0 alone", {3}};                 // 3.3 Zeros
+    if (me().rows.contains(offset)) me().write(offset, 0, true);  // "last write", or "leave as it is"
     rows.erase(offset);
   }
   Verdict verdict;
@@ -293,6 +307,11 @@ Verdict Judge::registers(const Write& write) {
   if (command == Edge::acts && is_start(number) && word != Edge::acts) refused = start_refused(number, verdict);
   // Whether what stands beside a take_over is its new or its old owner's is not said.
   const bool takes_over = command == Edge::acts && number == kTakeOver;
+  if (takes_over && rows.size() > 1 && options_.leases && readings_.other()) {
+    me().command.refused = true;
+    for (const auto& [offset, value] : rows) me().write(offset, value, true);
+    return refused_whole();
+  }
   if (takes_over) this->command(number, me().command, verdict);
   unclear_ = takes_over && rows.size() > 1;
   // Whether commands 9 to 11 will be refused is not known here.

@@ -100,6 +100,9 @@ class Judge {
   bool reset_fault(Verdict& verdict);
   [[nodiscard]] bool may_have_no_halt() const;
   void take_over(Verdict& verdict);
+  /// 3.3 What asks: "Set-points beside a command that is refused are accepted only if they would be without it": then
+  /// they may be, or not.
+  [[nodiscard]] static Verdict refused_whole() { return {"take_over is refused, and what stands beside it", {6}}; }
   void set_position(Verdict& verdict);
   void object(int function, Verdict& verdict);
   [[nodiscard]] bool forbidden(const Write& write) const;

@@ -17,6 +17,7 @@ Verdict Judge::sample(const Write& write) {
   const bool flawed = write.flaw != Flaw::none;
   if (write.flaw == Flaw::half && !lets_go(number)) return {"not surely for this gateway", {3}};
   if (flawed && !lets_go(number)) return {"too old, or too far ahead: never started", {6}};
+  if (number == kTakeOver && options_.leases && write.sample.size() > 1 && readings_.other()) return refused_whole();
   changes_mode_ = write.sample.contains(row::mode);
   const bool refused = is_start(number) && start_refused(number, verdict);
   const bool claims = !options_.leases || !takes_no_lease(number) || readings_.other();

@@ -95,7 +95,8 @@ bool Contract::motion_fits(World& world, const Sight& sight) const {
       if (motion.value == 0) return stands;
       return std::abs(sight.velocity - motion.value) <= std::max(std::abs(motion.value) / kSpeedShare, kSlowest);
     default:
-      return stands;
+      // 3.4, command 4: "target = actual is set": it still comes back, the way it did before.
+      return stands || (way_ == way(sight) && leads_there({Motor::moves, world.stopped_at}, sight));
   }
 }
 

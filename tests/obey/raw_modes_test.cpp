@@ -44,6 +44,20 @@ TEST_P(RawVelocity, RunsAtTheVelocityAndStandsAtZero) {
   EXPECT_TRUE(plant_.reaches(kOtherSpeed)) << plant_.velocity();
 }
 
+TEST_P(RawVelocity, IsEndedByCoil7ThatIsLetGoBeforeItHasBegun) {
+  ASSERT_EQ(plant_.a.row(row::mode, kVelocityMode), kOk);
+  const auto coil_7 = [&](std::uint16_t on) { return plant_.b.write(coil_block(coil::run_velocity - 1, {0, on})); };
+  ASSERT_EQ(coil_7(1), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, 6), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, 7), kOk);
+  ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+  plant_.a.begin(one(row::controlword, 15));
+  EXPECT_EQ(coil_7(0), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+  plant_.run(1s);
+  EXPECT_EQ(plant_.velocity(), 0);
+}
+
 TEST_P(RawVelocity, EnabledWithTargetZeroStartsWithTheNextVelocity) {
   ASSERT_EQ(plant_.a.row(row::mode, kVelocityMode), kOk);
   ASSERT_EQ(plant_.a.row(row::target_velocity, 0), kOk);

@@ -53,6 +53,21 @@ class Targets : public testing::TestWithParam<Subject> {
   Client& b_ = plant_.b;
 };
 
+TEST_P(Targets, BesideTheNewerOfTwoStopsIsTheOneThatCounts) {
+  const auto stop = [](std::int64_t target, std::int64_t command) {
+    return block(row::target_position, row::command, {{row::target_position, target}, {row::command, command}});
+  };
+  ASSERT_EQ(a_.row(row::mode, 1), kOk);
+  ASSERT_EQ(a_.command(0), kOk);
+  ASSERT_EQ(b_.command(0), kOk);
+  a_.begin(stop(kFar, kQuickStop));
+  b_.begin(stop(kNear, kHalt));
+  plant_.run(1s);
+  press(a_, kEnable);
+  press(a_, kMove);
+  ends_at(kNear);
+}
+
 TEST_P(Targets, WrittenAndTakenBackWhileItMovesIsNotMovedTo) {
   move_to(a_, kFar);
   block_with(a_, kNear);

@@ -140,6 +140,25 @@ TEST_P(ZeroSpeed, OfTheOwnersWholeBlockActsWhileARunIsOn) {
   EXPECT_TRUE(enabled());
 }
 
+TEST_P(ZeroSpeed, OfTheOwnersWholeBlockActsOnARunThatStillWaits) {
+  ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+  plant_.a.begin(one(row::command, kRun));
+  EXPECT_EQ(plant_.a.write(kZeros), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand(1500ms)) << plant_.velocity();
+  plant_.run(1s);
+  EXPECT_EQ(plant_.velocity(), 0);
+  EXPECT_TRUE(enabled());
+}
+
+TEST_P(ZeroSpeed, OfAWholeBlockOfItsOwnerThatHasConnectedAnewActs) {
+  run();
+  plant_.a.disconnect();
+  plant_.a.connect();
+  EXPECT_EQ(plant_.a.write(kZeros), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand(1500ms)) << plant_.velocity();
+  EXPECT_TRUE(enabled());
+}
+
 TEST_P(ZeroSpeed, OfAnotherClientsWholeBlockDoesNot) {
   run();
   EXPECT_EQ(plant_.b.write(kZeros), kOk);

@@ -11,6 +11,9 @@
 namespace axisgate::drive {
 namespace {
 
+// So soon what waits for an older stop looks again.
+constexpr Duration kStopsFirst = std::chrono::milliseconds(20);
+
 bool begins_anything(const WriteBatch& batch) { return asks_to_enable(batch) || needs_ready(batch.command); }
 
 }  // namespace
@@ -246,11 +249,11 @@ std::optional<bus::Exchange> Axis::on_grant(bus::JobId id) {
     return std::nullopt;
   }
   if (!pending->command_sequence->is_stop() && waits_for_stop(*pending)) {
-    constexpr Duration kStopsFirst = std::chrono::milliseconds(20);
     host_.job_waits(id, core_.turn.now + kStopsFirst);
     return std::nullopt;
   }
   if (!claims_late(*pending)) return std::nullopt;
+  hold_rest(*pending);
   const auto move = pending->command_sequence->granted();
   note_commanded(*pending);
   if (move.kind == CommandSequence::Move::Kind::exchange) return move.exchange;
@@ -278,12 +281,22 @@ bool Axis::insists(bus::JobId id) const {
 // A stop ramps down, and still shows enabled: what would enable or start comes when it is over. What came later than a
 // stop's own set-points comes after them (3.3, the order of one axis).
 bool Axis::waits_for_stop(const Pending& pending) const {
-  if (stopping() && begins_anything(pending.command_sequence->batch())) return true;
+  return (stopping() && begins_anything(pending.command_sequence->batch())) || is_behind_rest_of_stop(pending);
+}
+
+bool Axis::is_behind_rest_of_stop(const Pending& pending) const {
   for (const Pending& older : pending_) {
     if (&older == &pending) return false;
     if (older.command_sequence->is_stop() && !stops_alone(older.command_sequence->batch())) return true;
   }
   return false;
+}
+
+// The newer stop goes first; of what stands beside the two the older set-points are not the last ones accepted.
+void Axis::hold_rest(const Pending& pending) {
+  CommandSequence& sequence = *pending.command_sequence;
+  if (!sequence.is_stop() || stops_alone(sequence.batch())) return;
+  sequence.hold_rest(is_behind_rest_of_stop(pending) ? core_.turn.now + kStopsFirst : kLongAgo);
 }
 
 bool Axis::stopping() const {
@@ -322,6 +335,7 @@ void Axis::on_result(bus::JobId id, const bus::ExchangeResult& result, Instant s
 }
 
 void Axis::carry_on(Pending& pending) {
+  hold_rest(pending);
   const auto move = pending.command_sequence->advance();
   if (move.kind == CommandSequence::Move::Kind::finished) {
     complete(pending.id, pending.command_sequence->result());

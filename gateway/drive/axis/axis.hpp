@@ -171,6 +171,8 @@ class Axis {
   void note_jog(const Pending& pending, Errc code);
   [[nodiscard]] bool runs_unwatched() const;
   [[nodiscard]] bool waits_for_stop(const Pending& pending) const;
+  [[nodiscard]] bool is_behind_rest_of_stop(const Pending& pending) const;
+  void hold_rest(const Pending& pending);
   void end_jog();
   void halt_jog(std::string why);
   [[nodiscard]] bool stop_comes_first(const WriteBatch& batch) const;
@@ -201,6 +203,9 @@ class Axis {
   [[nodiscard]] Pending* find(bus::JobId id);
   [[nodiscard]] const Pending* find(bus::JobId id) const { return const_cast<Axis*>(this)->find(id); }
   [[nodiscard]] bool motion_pending() const;
+  /// A run waits for the wire or is under way.
+  [[nodiscard]] bool run_is_asked() const;
+  void add_zero_speed(WriteBatch& batch) const;
 
   AxisHost& host_;
   AxisImage& image_;

@@ -86,6 +86,7 @@ bool Axis::claims_late(Pending& pending) {
 std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback on_result) {
   end_expired_lease();
   WriteBatch batch = asked;
+  if (batch.zero_speed) add_zero_speed(batch);
   // Bits 0..3 = 6 or 7 are a stop of the owner's in a block of registers as well.
   if (batch.controlword && ownership_.is_owner(batch.client)) batch.single_controlword = true;
   // A coil that is held although its jog has ended asks for nothing until it was 0.
@@ -150,13 +151,30 @@ BatchResult Axis::nothing_asked(const WriteBatch& batch) {
 // Out of sight, or found running, nobody knows whether it is a run of ours that goes on: a stop too many is the smaller
 // harm.
 bool Axis::may_run() const {
-  const bool waits = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
-    return p.command_sequence->batch().command == Command::run_velocity;
-  });
-  if (waits || core_.motion.running() == MotionKind::velocity || core_.motion.runs_raw()) return true;
+  if (run_is_asked() || core_.motion.running() == MotionKind::velocity || core_.motion.runs_raw()) return true;
   const AxisFacts facts = core_.facts();
   const bool continuous = facts.mode == 0 || is_continuous(facts);  // 0: it is not known
   return core_.reachable() ? facts.enabled() && facts.moving && continuous : may_be_enabled();
+}
+
+// By a command, or by a word that enables in a mode that runs.
+bool Axis::run_is_asked() const {
+  return std::any_of(pending_.begin(), pending_.end(), [this](const Pending& p) {
+    const WriteBatch& batch = p.command_sequence->batch();
+    if (starts_motion(batch.command))
+      return batch.command == Command::run_velocity || batch.command == Command::run_torque;
+    return batch.controlword && request_of(*batch.controlword) == Request402::enable_operation &&
+           core_.is_continuous(batch.mode.value_or(core_.mode_in_force()));
+  });
+}
+
+// Design 3.3 Zeros: "the owner's target_velocity or target_torque 0 acts while a run is on". One that still waits for
+// the wire will be; and whose connection has ended and come back is the owner by this very write.
+void Axis::add_zero_speed(WriteBatch& batch) const {
+  const bool owns = ownership_.rules().on && (ownership_.is_owner(batch.client) || waits_for(batch));
+  if (!owns || (!run_is_asked() && image_.axis_state != AxisState::continuous_motion)) return;
+  for (const Quantity target : {Quantity::target_velocity, Quantity::target_torque})
+    if (image_.takes(target)) batch.setpoints.push_back({target, 0});
 }
 
 // A gateway that died has told nobody that a button was held. What runs since before may be its jog: whoever lets a

@@ -84,6 +84,12 @@ bool held_back(const AxisCore& core, Quantity quantity) {
   return core.fault.words_ahead() && tells_cause(quantity);
 }
 
+/// Of what is shown: what is held back is as old as it is.
+Instant as_of(const AxisCore& core, const AxisImage& image, const Binding& binding) {
+  const bool held = image.reachable() && held_back(core, binding.quantity);
+  return held ? image[binding.quantity].at : confirmed_at(core, binding);
+}
+
 /// The words of the fault before are no value of this one.
 bool of_fault_before(const AxisCore& core, const Binding& binding) {
   const auto old = [&](const BitField& field) {
@@ -179,12 +185,12 @@ void show_state(const AxisCore& core, AxisImage& image) {
     image.supported =
         refused(core, binding) ? image.supported & ~mask : image.supported | (core.model.supported & mask);
     const bool held = image.reachable() && held_back(core, binding.quantity);
-    const Instant at = held ? sample.at : confirmed_at(core, binding);
+    const Instant at = as_of(core, image, binding);
     const auto value = at == kLongAgo ? std::nullopt : shown_value(core, facts, binding);
     const Range fits = range_of(row(binding.quantity).type);
     const bool good = held ? sample.received && sample.valid : value && fits.holds(*value);
     if (held) {
-      // As it was, and as old as it is.
+      // As it was.
     } else if (good) {
       sample.value = *value;
       sample.received = true;
@@ -210,11 +216,11 @@ void show_state(const AxisCore& core, AxisImage& image) {
                                                  (core.motion.running() == MotionKind::velocity ? 1 << 7 : 0));
 }
 
-Instant stale_deadline(const AxisCore& core) {
+Instant stale_deadline(const AxisCore& core, const AxisImage& image) {
   Instant next = kNever;
   for (const Binding& binding : core.model.bindings) {
     const Duration limit = stale_after(core, binding);
-    const Instant at = confirmed_at(core, binding);
+    const Instant at = as_of(core, image, binding);
     if (limit == Duration::max() || at == kLongAgo || core.turn.now - at > limit) continue;
     next = std::min(next, at + limit + Duration{1});
   }

@@ -148,6 +148,7 @@ bool CommandSequence::within_nvm_budget(const bus::Exchange& exchange) {
 
 CommandSequence::Move CommandSequence::advance() {
   while (!finished()) {
+    if (phase_ == Phase::setpoints && core_.turn.now < rest_held_) return {Move::Kind::wait, {}, rest_held_};
     if (phase_ == Phase::settle_stop || phase_ == Phase::settle) {
       if (const auto move = advance_settle()) return *move;
       if (phase_ == Phase::settle_stop) stop_attempt_.state_was_read();

@@ -64,6 +64,9 @@ class CommandSequence {
   [[nodiscard]] bool stop_is_over() const {
     return stop_ && !stop_attempt_.handed_over() && phase_ > Phase::settle_stop;
   }
+  /// What stands beside the stop waits until then at least, kLongAgo: for nothing. That of an older stop comes first
+  /// (design 3.3, the order of one axis).
+  void hold_rest(Instant until) { rest_held_ = until; }
   /// A state read after the stop's last sending has confirmed it.
   [[nodiscard]] bool stop_confirmed() const { return stop_attempt_.confirmed(); }
   /// The rest of the write batch was queued anew, without the stop's precedence.
@@ -120,6 +123,7 @@ class CommandSequence {
   BatchResult result_;
   bool stop_;
   bool by_mailbox_;
+  Instant rest_held_ = kLongAgo;
   std::uint64_t stops_before_;  ///< stops accepted by then: what a later one overtakes starts and enables nothing
   Phase phase_;
   StopAttempt stop_attempt_{};

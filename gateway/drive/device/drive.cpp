@@ -314,7 +314,7 @@ void Drive::bring_up_to_date() {
   Instant next = std::min(duplicated ? presence_.duplicate_until() : kNever, bring_up_.start().deadline(turn_.now));
   for (auto& axis : axes_) {
     axis->publish();
-    next = std::min({next, axis->next_deadline(), stale_deadline(axis->core())});
+    next = std::min({next, axis->next_deadline(), stale_deadline(axis->core(), axis->image())});
     if (axis->has_due()) next = turn_.now;
   }
   schedule_causes();

@@ -62,22 +62,14 @@ TEST_F(Writes, an_owners_block_asks_for_what_is_no_longer_the_value_accepted_las
   EXPECT_EQ(desk.asked(), "nothing") << "nobody else's does";
 }
 
-TEST_F(Writes, zeros_of_the_owner_end_a_run) {
+TEST_F(Writes, zeros_ask_for_nothing_but_to_end_a_run_of_the_owner) {
   const std::string zeros(34 * 2, '0');  // registers 40 to 56
   EXPECT_TRUE(is_done(plc.write_block(140, zeros)));
-  EXPECT_TRUE(last().all_zero && !last().claims);
+  EXPECT_TRUE(last().all_zero && last().zero_speed && !last().claims);
   EXPECT_TRUE(is_done(plc.write_block(140, "00 0F" + zeros.substr(4))));
-  EXPECT_FALSE(last().all_zero);
+  EXPECT_FALSE(last().all_zero || last().zero_speed);
   EXPECT_TRUE(is_done(plc.write_block(140, zeros)));
   EXPECT_TRUE(last().all_zero && !last().claims) << "a stop by the controlword";
-  desk.axis(1).axis_state = AxisState::continuous_motion;
-  static_cast<void>(desk.asked());
-  EXPECT_TRUE(is_done(plc.write_block(140, zeros)));
-  EXPECT_EQ(desk.asked(), "nothing") << "nobody owns the axis";
-  desk.axis(1).lease = {.owner = plc.life(), .running = true, .renewed = desk.runtime.now()};
-  static_cast<void>(desk.asked());
-  EXPECT_TRUE(is_done(plc.write_block(140, zeros)));
-  EXPECT_EQ(desk.asked(), "target_velocity=0 target_torque=0");
 }
 
 TEST_F(Writes, the_log_says_once_that_what_is_not_new_needs_a_0_first) {

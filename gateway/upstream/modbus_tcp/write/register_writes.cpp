@@ -77,7 +77,7 @@ class BatchMaker {
   [[nodiscard]] Made make() {
     // A viewer comes this far with the mailbox alone, which it may ask to read.
     batch_.is_write = onlooker_.role >= Role::operator_;
-    batch_.all_zero = found_.zeros;
+    batch_.all_zero = batch_.zero_speed = found_.zeros;
     // Judged before anything is remembered.
     const bool only_remembered = found_.block && first_block();
     // A command goes by its targets, and what acts in the request lets its set-points ask: so in this order.
@@ -158,10 +158,6 @@ class BatchMaker {
       batch_.single_controlword = false;
     }
     if (found_.of(Source::command_id) != nullptr) own_.command_id = 0;
-    const AxisImage& axis = *found_.axis;
-    const bool runs = axis.axis_state == AxisState::continuous_motion && axis.lease.owned_by(client_.id);
-    for (const Quantity target : {Quantity::target_velocity, Quantity::target_torque})
-      if (runs && axis.takes(target)) batch_.setpoints.push_back({target, 0});
   }
 
   void put_heartbeat() {
