@@ -170,7 +170,7 @@ int Contract::send(std::size_t client, const Write& write) {
   const int number = ++requests_;
   if (lost_count_) return number;
   const SeenBefore seen_before = this->seen_before(client, write);
-  asked_[number] = {client, trouble_};
+  asked_[number] = {client, trouble_, sight_.now_ms};
   std::vector<World> worlds;
   std::set<std::string> said;
   add_expired();
@@ -297,6 +297,9 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
     const bool expected = pending.verdict.any_answer || any(pending.verdict.answers);
     const bool dropped = exceptions.contains(6) && pending.overtaken;
     const bool lost = asked.troubled && any(kTrouble);
+    // 3.3 Outcomes: "not started within start_deadline_ms (500)": others may have kept the drive that long.
+    constexpr std::int64_t kStartMs = 480;
+    const bool late = exceptions.contains(6) && sight_.now_ms - asked.at_ms >= kStartMs;
     // 3.3: "dropped by a stop": of a stop itself only what stands beside it. "Outcome unknown", 0x0B: both. Nothing was
     // sent, 0x0A: a stop is owed all the same (3.4 Owed stops).
     const bool not_done = pending.void_ || pending.alone;
@@ -304,7 +307,7 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
     // 3.3 Not reached: what a drive has acknowledged and does not show is answered 0x04, and "before the answer the
     // gateway withdraws what might still happen ...; unconfirmed: an owed stop".
     const bool withdrawn = asked.troubled && pending.verdict.starts && !pending.void_ && exceptions.contains(4);
-    const bool fits = withdrawn || (expected && (!pending.void_ || unclear)) ||
+    const bool fits = withdrawn || (expected && (!pending.void_ || unclear)) || (late && not_done) ||
                       (dropped && (not_done || pending.more || !pending.verdict.stop)) ||
                       (lost && (not_done || exceptions.contains(11) || pending.verdict.stop));
     if (!fits) continue;

@@ -249,6 +249,7 @@ class Contract {
   struct Asked {
     std::size_t client = 0;
     bool troubled = false;
+    std::int64_t at_ms = 0;
   };
   /// What a DDS writer has asked for with a request_id of its own.
   struct Said {

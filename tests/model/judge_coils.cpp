@@ -31,7 +31,9 @@ void Judge::jog(std::int64_t direction, std::int64_t value, Edge edge, bool sing
   const bool mine = world_.jog == direction && world_.jog_client == client_;
   if (value == 0) {
     // "A single write of 0 always acts (...; 8, 9 end a jog)": anybody's.
-    if (edge == Edge::acts && (mine || (single && world_.jog == direction))) halted(false);
+    const bool its_own = mine || (single && world_.jog == direction);
+    // Whether the coil of the other way ends it too is not said.
+    if (edge == Edge::acts && (its_own || (single && world_.jog != 0 && readings_.other()))) halted(false);
     return;
   }
   const Item& other = me().coils.at(direction > 0 ? coil::jog_reverse : coil::jog_forward);

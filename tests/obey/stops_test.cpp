@@ -123,6 +123,17 @@ TEST_P(Stops, AlwaysInASingleWrite) {
   }
 }
 
+// What was asked for last is what register 25 tells of, whichever ends first.
+TEST_P(Stops, ThatEndAfterALaterCommandWasRefusedLeaveItsResult) {
+  constexpr std::int64_t kNoState = 9;
+  ASSERT_EQ(plant_.set_endless(a_), kOk);
+  a_.begin(block(row::controlword, row::command_id,
+                 {{row::controlword, 6}, {row::command, kQuickStop}, {row::command_id, 1}}));
+  EXPECT_EQ(a_.command(plant_.endless_command()), kFailed);
+  plant_.run(300ms);
+  EXPECT_EQ(a_.result(), kNoState);
+}
+
 TEST_P(Stops, AreDoneWhenTheMotorWasSeenToObey) {
   start_with_ids();
   EXPECT_EQ(a_.command(kQuickStop, 3), kOk);

@@ -306,6 +306,20 @@ TEST_P(Homing, MethodInABlockWithTheNumberThatTheDriveHoldsCountsAsWritten) {
   EXPECT_EQ(plant.a.command(kHome), kOk) << "method " << held;
 }
 
+// iD286pro: "homing from a motion is not described", and it is refused.
+TEST(HomingOfTheStepper, ThatIsRefusedLeavesTheRunAsItWas) {
+  Plant plant(Subject::id286pro);
+  plant.ready();
+  constexpr std::int64_t kHomeSwitch = 19;
+  ASSERT_EQ(plant.a.row(row::homing_method, kHomeSwitch), kOk);
+  ASSERT_EQ(plant.a.row(row::target_velocity, kSpeed), kOk);
+  ASSERT_EQ(plant.a.command(kRun), kOk);
+  ASSERT_TRUE(plant.reaches(kSpeed));
+  EXPECT_EQ(plant.a.command(kHome), kNotNow);
+  EXPECT_EQ(plant.a.row(row::target_velocity, kOtherSpeed), kOk);
+  EXPECT_TRUE(plant.reaches(kOtherSpeed)) << plant.velocity();
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, Targets, testing::ValuesIn(subjects(has_positions)), named);
 INSTANTIATE_TEST_SUITE_P(Every, Ramps, testing::ValuesIn(subjects([](Subject s) { return !is_keya(s); })), named);
 INSTANTIATE_TEST_SUITE_P(Every, DriveObject,

@@ -337,6 +337,19 @@ bool accepts_nothing(const AxisCore& core, const WriteBatch& batch) {
   return plan_preparation(core, batch.command).refused();
 }
 
+namespace {
+
+// What the command requires before anything else.
+void add_requirements(const AxisCore& core, Command command, Plan& plan) {
+  const Steps* const steps = steps_of(core, command);
+  if (steps == nullptr) return;
+  const auto end =
+      std::find_if(steps->begin(), steps->end(), [](const Step& s) { return s.verb != Step::Verb::require; });
+  add_steps(core, Steps(steps->begin(), end), plan);
+}
+
+}  // namespace
+
 Plan plan_preparation(const AxisCore& core, Command command) {
   const bool is_motion = needs_ready(command);
   if (is_motion && !core.motion.may_start(core.facts())) return Plan::refuse(Errc::state_unsuitable);
@@ -345,8 +358,10 @@ Plan plan_preparation(const AxisCore& core, Command command) {
   // Torque without a speed limit runs away: what was invalidated since is read back before it counts as cached.
   const Binding* limit = core.model.binding(Quantity::max_velocity);
   if (command == Command::run_torque && !core.store[limit->object].cached) plan.add(Action::read(limit->object));
-  if (is_motion) add_end_of_halt(core, plan);
   const auto mode = mode_needed(core, command);
+  // Refused, it must leave what runs as it was, its mode too.
+  if (mode && *mode != core.mode_in_force()) add_requirements(core, command, plan);
+  if (is_motion) add_end_of_halt(core, plan);
   if (!mode) return plan;
   if (core.is_continuous(*mode) && core.mode_in_force() != *mode) add_running_targets(core, false, plan);
   static_cast<void>(append(plan, plan_mode(core, *mode)));

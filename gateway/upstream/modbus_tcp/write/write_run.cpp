@@ -67,6 +67,7 @@ void WriteRun::abandon() {
 }
 
 std::optional<Outcome> WriteRun::carry_on() {
+  if (const ClientAxis* const axis = own(); axis != nullptr && next_ == 0) submission_ = axis->submission;
   while (next_ < plan_.batches.size()) {
     const WriteBatch& batch = plan_.batches[next_++];
     const std::optional<Shown> pending = shown_pending();
@@ -153,14 +154,15 @@ void WriteRun::forget() {
   if (const std::shared_ptr<Client> client = client_.lock()) restore(plan_.before, *client, plan_.axis);
 }
 
-/// Its id and its motion stay what they were: nothing new was seen, and nothing has moved.
+/// Its id and its motion stay what they were: nothing new was seen, and nothing has moved. What its client has asked
+/// for since stands.
 void WriteRun::tell_not_new() {
   ClientAxis* const axis = own();
-  if (axis == nullptr) return;
+  if (axis == nullptr || axis->submission != submission_) return;
   axis->used = true;
   axis->result.result = CommandResult::not_new;
   axis->result.detail = 0;
-  ++axis->submission;
+  submission_ = ++axis->submission;
 }
 
 std::uint64_t WriteRun::begin(std::uint16_t command_id) {
@@ -169,7 +171,7 @@ std::uint64_t WriteRun::begin(std::uint16_t command_id) {
   axis->used = true;
   axis->told_not_new = false;
   axis->result = {CommandResult::pending, 0, command_id};
-  return ++axis->submission;
+  return submission_ = ++axis->submission;
 }
 
 void WriteRun::note_presses(ClientAxis& axis, const BatchResult& result) const {

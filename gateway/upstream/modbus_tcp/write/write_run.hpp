@@ -60,6 +60,7 @@ class WriteRun : public std::enable_shared_from_this<WriteRun> {
   const Log& log_;
   Instant asked_at_;
   std::size_t next_ = 0;
+  std::uint64_t submission_ = 0;  ///< its client's newest as it has left it
   bool abandoned_ = false;
   OnDone on_done_;
 };
