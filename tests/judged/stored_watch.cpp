@@ -113,7 +113,9 @@ void StoredWatch::on_frame(const CableFrame& frame) {
     const std::uint8_t node = watched.drive->model().node;
     if ((frame.can->id & kNodeBits) != node) continue;
     watched.heard_at = plant_.stage.runtime().now();
-    if (booted(Tongue::canopen, frame) == node) watched.started_at = plant_.stage.runtime().now();
+    // One of the node's babble is as good as any, and too many frames are not looked at.
+    if (booted(Tongue::canopen, frame) == node && !plant_.still_strikes(obey::Strike::babble))
+      watched.started_at = plant_.stage.runtime().now();
     for (std::size_t tpdo = 0; tpdo < watched.maps.size(); ++tpdo)
       if (frame.can->id == cob::first_tpdo + tpdo * cob::next_pdo + node) take_process_data(d, tpdo, *frame.can);
   }

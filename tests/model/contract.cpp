@@ -192,10 +192,9 @@ int Contract::send(std::size_t client, const Write& write) {
       if (options_.only_writes_renew && next.owner == world.owner && !done)
         next.lease_ends_ms = std::min(next.lease_ends_ms, world.lease_ends_ms);
       // Of one that is refused nobody can tell whether it has taken an orphan lease over.
-      if (next.retaken && next.owner == world.owner && !pending.verdict.answers.contains(0) && readings.other()) {
-        next.orphan = true;
+      if (next.retaken && next.owner == world.owner && !pending.verdict.answers.contains(0)) {
+        next.retake_unsure = true;
         next.lease_ends_ms = world.lease_ends_ms;
-        next.lease_ends_by_ms = world.lease_ends_by_ms;
       }
       pending.verdict.stop = judge.stopped();
       pending.verdict.takes_over = judge.takes_over();

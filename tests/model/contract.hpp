@@ -122,6 +122,7 @@ struct World {
   std::optional<std::size_t> owner{};      ///< kGhost and more: a connection that is silent for ever
   bool orphan = false;                     ///< its connection has ended
   bool retaken = false;                    ///< it was, before the last request
+  bool retake_unsure = false;              ///< whether that request has taken it over nobody can tell
   std::int64_t lease_ends_ms = kNever;     ///< at the earliest; with an owner, or open to all; kNever: nothing runs out
   std::int64_t lease_ends_by_ms = kNever;  ///< at the latest: of some requests nobody can tell whether they renew it
   bool lease_unsure = false;               ///< it may have run out by now
@@ -165,7 +166,7 @@ struct World {
   [[nodiscard]] bool arrived(const Seen& seen) const;
   void lease_until(std::int64_t ends_ms) {
     lease_ends_ms = lease_ends_by_ms = ends_ms;
-    lease_unsure = false;
+    lease_unsure = retake_unsure = false;
   }
 };
 

@@ -151,6 +151,7 @@ void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlw
   const bool otherwise = (me().rows_unsure || std::ranges::any_of(rows, was_refused)) && readings_.other();
   const bool acts = (command == Edge::acts && !refused) || controlword == Edge::acts;
   const bool owned = world_.owner == client_;
+  std::optional<bool> owns_since;
   for (const auto& [offset, value] : rows) {
     if (offset == row::controlword || offset == row::command || offset == row::command_id) continue;
     const auto last = me().rows.find(offset);
@@ -171,8 +172,10 @@ void Judge::setpoints(const Rows& rows, bool single, Edge command, Edge controlw
     // "or if this client owns the axis and the value last accepted differs"; not with "lease": null. A lease may have
     // run out while the axis was disabled (3.5 Signs of life).
     // Whether the row before it, that has claimed the axis, makes it the owner is not said.
-    const bool owns = world_.owner == client_ && (owned || readings_.other());
-    if (!asks && options_.leases && other_value && owns) asks = world_.enabled || !readings_.other();
+    if (!asks && options_.leases && other_value && world_.owner == client_) {
+      if (!owned && !owns_since) owns_since = readings_.other();
+      asks = (owned || *owns_since) && (world_.enabled || !readings_.other());
+    }
     if (only_remembers) asks = false;
     wrote(asks && foreign());
     if (asks) accept(offset, value, claims);

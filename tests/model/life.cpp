@@ -38,7 +38,7 @@ void Contract::take_over(World& world, std::size_t client) const {
 // are refused, or that repeat, nobody can tell.
 void Contract::renew(World& world, std::size_t client) const {
   const std::int64_t ends_ms = sight_.now_ms + options_.lease_of(client);
-  if (world.enabled) return world.lease_until(ends_ms);
+  if (world.enabled && !world.retake_unsure) return world.lease_until(ends_ms);
   world.lease_ends_by_ms = ends_ms;
   // Whether a sign of life that does not renew ends what it was prolonged by is not said.
   if (is_dds(client) && graced_.at(client - kModbus))

@@ -106,7 +106,8 @@ bool Contract::shown(std::size_t client, const Told& told) {
   const auto unsure = [](const World& world) { return world.lease_unsure || !world.pending.empty(); };
   if (lost_count_ || trouble_ || std::ranges::any_of(worlds_, unsure)) return true;
   const auto fits = [&](const World& world) {
-    const bool former = world.orphan && !options_.by_address;  // a connection that has ended is another client
+    const bool former =
+        (world.orphan || world.retake_unsure) && !options_.by_address;  // a connection that has ended is another client
     const int expected = !world.owner ? 0 : *world.owner == client ? 1 : 2;
     // 3.5: "until ... its lease runs out".
     constexpr std::int64_t kUnsureMs = 60;

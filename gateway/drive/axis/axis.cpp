@@ -9,14 +9,6 @@
 #include "gateway/drive/plan/planner.hpp"
 
 namespace axisgate::drive {
-namespace {
-
-// So soon what waits for an older stop looks again.
-constexpr Duration kStopsFirst = std::chrono::milliseconds(20);
-
-bool begins_anything(const WriteBatch& batch) { return asks_to_enable(batch) || needs_ready(batch.command); }
-
-}  // namespace
 
 Axis::Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, const Turn& turn, AxisImage& image,
            AxisHost& host)
@@ -275,49 +267,6 @@ bool Axis::insists(bus::JobId id) const {
   return std::any_of(pending_.begin(), pending_.end(), [&](const Pending& p) {
     return p.command_sequence->is_stop() &&
            (p.id == id ? p.command_sequence->would_repeat() : !p.command_sequence->begun());
-  });
-}
-
-// A stop ramps down, and still shows enabled: what would enable or start comes when it is over. What came later than a
-// stop's own set-points comes after them (3.3, the order of one axis).
-bool Axis::waits_for_stop(const Pending& pending) const {
-  return (stopping() && begins_anything(pending.command_sequence->batch())) || is_behind_rest_of_stop(pending);
-}
-
-bool Axis::is_behind_rest_of_stop(const Pending& pending) const {
-  for (const Pending& older : pending_) {
-    if (&older == &pending) return false;
-    if (older.command_sequence->is_stop() && !stops_alone(older.command_sequence->batch())) return true;
-  }
-  return false;
-}
-
-// The newer stop goes first; of what stands beside the two the older set-points are not the last ones accepted.
-void Axis::hold_rest(const Pending& pending) {
-  CommandSequence& sequence = *pending.command_sequence;
-  if (!sequence.is_stop() || stops_alone(sequence.batch())) return;
-  sequence.hold_rest(is_behind_rest_of_stop(pending) ? core_.turn.now + kStopsFirst : kLongAgo);
-}
-
-bool Axis::stopping() const {
-  return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
-    return p.command_sequence->is_stop() && !p.command_sequence->stop_is_over();
-  });
-}
-
-bool Axis::enable_is_asked(bool begun) const {
-  return std::any_of(pending_.begin(), pending_.end(), [begun](const Pending& p) {
-    const bool counts = p.command_sequence->begun() || !begun;
-    return counts && !p.command_sequence->is_stop() && asks_to_enable(p.command_sequence->batch());
-  });
-}
-
-bool Axis::disable_waits() const {
-  return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
-    const WriteBatch& batch = p.command_sequence->batch();
-    const bool by_word = batch.controlword && request_of(*batch.controlword) != Request402::quick_stop;
-    return p.command_sequence->is_stop() && !p.command_sequence->begun() &&
-           (by_word || batch.command == Command::disable);
   });
 }
 

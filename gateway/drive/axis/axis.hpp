@@ -22,6 +22,8 @@ namespace axisgate::drive {
 
 /// Clients that may wait for one and the same read or stop.
 inline constexpr std::size_t kMaxJoined = 64;
+/// So soon what waits for an older stop looks again.
+inline constexpr Duration kStopsFirst = std::chrono::milliseconds(20);
 
 class Axis {
  public:

@@ -148,35 +148,6 @@ BatchResult Axis::nothing_asked(const WriteBatch& batch) {
   return {};
 }
 
-// Out of sight, or found running, nobody knows whether it is a run of ours that goes on: a stop too many is the smaller
-// harm.
-bool Axis::may_run() const {
-  if (run_is_asked() || core_.motion.running() == MotionKind::velocity || core_.motion.runs_raw()) return true;
-  const AxisFacts facts = core_.facts();
-  const bool continuous = facts.mode == 0 || is_continuous(facts);  // 0: it is not known
-  return core_.reachable() ? facts.enabled() && facts.moving && continuous : may_be_enabled();
-}
-
-// By a command, or by a word that enables in a mode that runs.
-bool Axis::run_is_asked() const {
-  return std::any_of(pending_.begin(), pending_.end(), [this](const Pending& p) {
-    const WriteBatch& batch = p.command_sequence->batch();
-    if (starts_motion(batch.command))
-      return batch.command == Command::run_velocity || batch.command == Command::run_torque;
-    return batch.controlword && request_of(*batch.controlword) == Request402::enable_operation &&
-           core_.is_continuous(batch.mode.value_or(core_.mode_in_force()));
-  });
-}
-
-// Design 3.3 Zeros: "the owner's target_velocity or target_torque 0 acts while a run is on". One that still waits for
-// the wire will be; and whose connection has ended and come back is the owner by this very write.
-void Axis::add_zero_speed(WriteBatch& batch) const {
-  const bool owns = ownership_.rules().on && (ownership_.is_owner(batch.client) || waits_for(batch));
-  if (!owns || (!run_is_asked() && image_.axis_state != AxisState::continuous_motion)) return;
-  for (const Quantity target : {Quantity::target_velocity, Quantity::target_torque})
-    if (image_.takes(target)) batch.setpoints.push_back({target, 0});
-}
-
 // A gateway that died has told nobody that a button was held. What runs since before may be its jog: whoever lets a
 // button go then means it. The iD286pro does not tell in which mode it runs, nor does a Keya on CANopen.
 bool Axis::may_be_jog() const {
