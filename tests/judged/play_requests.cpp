@@ -26,7 +26,8 @@ bool may_move(const Write& write) {
 }  // namespace
 
 void Play::send(std::size_t client, Write write, bool at_once) {
-  // What comes behind four others (2: "requests pipelined") is not read before, and what others say meanwhile is.
+  // A connection has so many requests under way at most (docs/faults.md): what comes behind them is not read before,
+  // and what others say meanwhile is.
   constexpr std::ptrdiff_t kPipelined = 4;
   while (!over() && std::ranges::count(open_, client, &Open::client) >= kPipelined) pass(kStepMs);
   if (over() || !clients_.connected(client)) return;

@@ -298,7 +298,7 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
     const bool lost = asked.troubled && any(kTrouble);
     // 3.3 Outcomes: "not started within start_deadline_ms (500)": others may have kept the drive that long.
     constexpr std::int64_t kStartMs = 480;
-    const bool late = exceptions.contains(6) && sight_.now_ms - asked.at_ms >= kStartMs;
+    const bool late = exceptions.contains(6) && sight_.now_ms - asked.at_ms >= kStartMs && !pending.verdict.stop;
     // 3.3: "dropped by a stop": of a stop itself only what stands beside it. "Outcome unknown", 0x0B: both. Nothing was
     // sent, 0x0A: a stop is owed all the same (3.4 Owed stops).
     const bool not_done = pending.void_ || pending.alone;

@@ -12,6 +12,15 @@ constexpr Duration kHomingShows = std::chrono::seconds(2);
 constexpr std::int16_t kModePosition = 1, kModeVelocity = 3, kModeTorque = 4, kModeHoming = 6;
 constexpr std::uint16_t kEnabledBits = 0x000F;
 
+// What the command requires before anything else.
+void add_requirements(const AxisCore& core, Command command, Plan& plan) {
+  const Steps* const steps = steps_of(core, command);
+  if (steps == nullptr) return;
+  const auto end =
+      std::find_if(steps->begin(), steps->end(), [](const Step& s) { return s.verb != Step::Verb::require; });
+  add_steps(core, Steps(steps->begin(), end), plan);
+}
+
 // homing_method must have been written or configured since bring-up and be in the profile's list.
 std::optional<std::int64_t> homing_method(const AxisCore& core) {
   const auto& list = core.model.homing_methods;
@@ -336,19 +345,6 @@ bool accepts_nothing(const AxisCore& core, const WriteBatch& batch) {
   if (!batch.setpoints.empty() && !(with_command && refused_by_state(core, batch.command))) return false;
   return plan_preparation(core, batch.command).refused();
 }
-
-namespace {
-
-// What the command requires before anything else.
-void add_requirements(const AxisCore& core, Command command, Plan& plan) {
-  const Steps* const steps = steps_of(core, command);
-  if (steps == nullptr) return;
-  const auto end =
-      std::find_if(steps->begin(), steps->end(), [](const Step& s) { return s.verb != Step::Verb::require; });
-  add_steps(core, Steps(steps->begin(), end), plan);
-}
-
-}  // namespace
 
 Plan plan_preparation(const AxisCore& core, Command command) {
   const bool is_motion = needs_ready(command);
