@@ -100,6 +100,25 @@ INSTANTIATE_TEST_SUITE_P(ASingleOneBeyond, RtuLateReply,
                                           testing::Values(700, 900)),
                          case_name);
 
+// A drive that says each reply twice as well: what was late may come once more behind the read that asked after it.
+class RtuLateReplySaidTwice : public testing::TestWithParam<Case> {};
+
+TEST_P(RtuLateReplySaidTwice, ShowsNoWrongValueAndComesBack) {
+  const auto [kind, late, by] = GetParam();
+  RtuRig rig(kind);
+  rig.faults().set_rate(DriveFault::duplicate, 1);
+  make_late(rig, late, by);
+  EXPECT_TRUE(comes_back(rig));
+  rig.run(1s);
+  EXPECT_THAT(rig.wrongs(), IsEmpty());
+  EXPECT_GT(rig.looked_at(), 50U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, RtuLateReplySaidTwice,
+                         testing::Combine(testing::ValuesIn(kRtuKinds), kAllPatterns,
+                                          testing::Values(210, 300, 500, 700, 900)),
+                         case_name);
+
 // Far beyond: several of them queue up in the drive, and come after the timeout and the silence together. They are
 // counted out: whatever the drive owes, for however long, is taken for the answer to nothing else.
 class RtuVeryLateReply : public testing::TestWithParam<Case> {};
