@@ -30,7 +30,7 @@ RtuWire::RtuWire(std::string name, std::vector<RtuNode> nodes, LineSpeed speed, 
       watch_(runtime, {.reopen = [this](std::string_view why) { link_->reopen(why); }, .drop = [this] { abandon(); }}),
       link_(std::move(link)) {
   assert(!nodes_.empty() && link_ != nullptr);
-  given_up_.fill(kLongAgo);
+  for (const RtuNode& node : nodes_) heard_[node.node];
 }
 
 RtuWire::~RtuWire() = default;
@@ -58,11 +58,11 @@ void RtuWire::send(const bus::Exchange& exchange) {
 void RtuWire::abandon() {
   if (outstanding_) link_->withdraw(outstanding_->number);
   give_up();
-  last_answer_.clear();  // what comes early from now on may be the answer to this one
 }
 
 void RtuWire::give_up() {
-  if (outstanding_ && !outstanding_->broadcast) given_up_[outstanding_->exchange.node] = runtime_.now();
+  // What comes early from now on may be the answer to this one, and the same as what was heard last all the same.
+  if (outstanding_ && !outstanding_->broadcast) heard_[outstanding_->exchange.node] = {{}, runtime_.now()};
   outstanding_.reset();
 }
 
@@ -82,7 +82,7 @@ void RtuWire::broadcast_over() {
 
 void RtuWire::on_link_up() {
   give_up();
-  last_answer_.clear();
+  for (auto& [unit, heard] : heard_) heard.last.clear();
   timed_ = true;
   watch_.on_link_up();
 }
@@ -99,14 +99,15 @@ void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
     const auto* result = std::get_if<bus::ExchangeResult>(&judgement);
     const bool mine = result != nullptr && newest == outstanding_->number;
     const bool too_soon = mine && timed_ && early(frame);
-    const bool said_again = too_soon && !last_answer_.empty() && std::ranges::equal(frame, last_answer_);
+    Heard& heard = heard_[outstanding_->exchange.node];
+    const bool said_again = too_soon && std::ranges::equal(frame, heard.last);
     if (mine && !said_again) {
       if (decode_) log_frame("<-", frame, describe_reply(frame));
       watch_.on_answer();
-      last_answer_.assign(frame.begin(), frame.end());
+      heard.last.assign(frame.begin(), frame.end());
       // Of a drive that may owe an answer it says nothing about the line, and is nothing to compare the next one with.
       if (too_soon && may_owe(outstanding_->exchange.node)) {
-        last_answer_.clear();
+        heard.last.clear();
       } else if (too_soon) {
         timed_ = false;
       }
@@ -115,7 +116,9 @@ void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
     }
     remark = mine ? "said twice" : result != nullptr ? "late" : text(std::get<NotMine>(judgement));
   }
-  ++(well_formed(frame) && knows(frame[0]) ? statistics_.late_replies : statistics_.bad_frames);
+  const bool late = well_formed(frame) && knows(frame[0]);
+  ++(late ? statistics_.late_replies : statistics_.bad_frames);
+  if (late) heard_[frame[0]] = {Frame(frame.begin(), frame.end()), runtime_.now()};
   if (decode_) log_frame("<-", frame, fmt::format("{}  ({})", describe_reply(frame), remark));
 }
 
@@ -144,7 +147,7 @@ bool RtuWire::is_broadcast(std::uint8_t unit) const {
 
 bool RtuWire::may_owe(std::uint8_t unit) const {
   constexpr int kTimesAsLate = 4;
-  return runtime_.now() < given_up_[unit] + kTimesAsLate * node_of(unit).worst_reply;
+  return runtime_.now() < heard_.at(unit).unsure_since + kTimesAsLate * node_of(unit).worst_reply;
 }
 
 /// Of a broadcast: a drive that obeys it. They are of one type, or nothing sensible could be said to all of them.

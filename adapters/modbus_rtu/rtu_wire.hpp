@@ -6,7 +6,7 @@
 // and never judges a value.
 #pragma once
 
-#include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,6 +44,12 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
     std::size_t request_bytes = 0;  ///< with the CRC
   };
 
+  /// From one unit.
+  struct Heard {
+    Frame last;                       ///< an answer, or one that nobody waited for; none since a request was given up
+    Instant unsure_since = kLongAgo;  ///< a request was given up, or a frame came that nobody waited for
+  };
+
   void on_link_up() override;
   void on_link_down(std::string_view why) override;
   void on_frame(ExchangeNumber newest, Bytes frame) override;
@@ -52,7 +58,7 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   void give_up();
   void end(const bus::ExchangeResult& result);
   [[nodiscard]] bool early(Bytes frame) const;
-  /// The answer to a request given up may still come: four times as late as the drive's worst reply.
+  /// The answer to a request given up may still come, or be said again: four times as late as the drive's worst reply.
   [[nodiscard]] bool may_owe(std::uint8_t unit) const;
   void broadcast_over();
   [[nodiscard]] bool is_broadcast(std::uint8_t unit) const;
@@ -68,9 +74,8 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   bus::WireEvents* events_ = nullptr;
   ExchangeNumber last_number_ = 0;
   std::optional<Outstanding> outstanding_;
-  Frame last_answer_;  ///< none where anything was given up since, or it may have been a late one
   bool timed_ = true;  ///< nothing has come sooner than the line could carry it, but what may have been a late answer
-  std::array<Instant, 256> given_up_{};  ///< by unit: the last time
+  std::map<std::uint8_t, Heard> heard_;  ///< by unit, of the nodes and what they obey
   bool decode_ = false;
   mutable bus::Statistics statistics_;
   // Last, so that they go first: none may call into a wire that is half gone.

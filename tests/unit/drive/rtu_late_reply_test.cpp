@@ -116,7 +116,8 @@ TEST_P(RtuLateReplySaidTwice, ShowsNoWrongValueAndComesBack) {
 
 INSTANTIATE_TEST_SUITE_P(Every, RtuLateReplySaidTwice,
                          testing::Combine(testing::ValuesIn(kRtuKinds), kAllPatterns,
-                                          testing::Values(210, 300, 500, 700, 900)),
+                                          testing::Values(210, 300, 500, 700, 900, 1000, 1100, 1300, 1500, 1750, 2000,
+                                                          2550, 3500)),
                          case_name);
 
 // Far beyond: several of them queue up in the drive, and come after the timeout and the silence together. They are

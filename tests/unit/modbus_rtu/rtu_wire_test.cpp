@@ -58,6 +58,7 @@ TEST_F(RtuWireTest, a_request_given_up_shall_not_leave_and_what_was_heard_before
   link->bring(before, kStatus);
   EXPECT_THAT(replies, IsEmpty()) << "all of it fits, but for its time";
   EXPECT_EQ(late(), 1u);
+  runtime.advance_by(12ms);
   link->bring(kStatus);
   EXPECT_THAT(replies, ElementsAre(kStatusValue));
 }
@@ -113,6 +114,25 @@ TEST_F(RtuWireTest, an_early_answer_that_may_be_owed_from_before_does_not_end_th
   link->bring(kStatus);
   EXPECT_THAT(replies, SizeIs(2));
   EXPECT_EQ(late(), 1u);
+}
+
+// Between the two, a neighbour has answered.
+TEST_F(RtuWireTest, an_answer_that_nobody_waited_for_is_not_the_answer_to_the_next_request_when_it_is_said_again) {
+  const std::string owed = "01 03 04 E2 6E 00 00";
+  wire->send(read_of(0x3700, 4, 3));
+  runtime.advance_by(5ms);
+  link->bring(owed);
+  EXPECT_EQ(late(), 1u);
+  runtime.advance_by(12ms);
+  link->bring("03 03 04 00 00 00 00");
+  wire->send(read_of(0x3700, 4, 1));
+  runtime.advance_by(1ms);
+  link->bring(owed);
+  EXPECT_THAT(replies, SizeIs(1)) << "the request has not even reached the drive";
+  EXPECT_EQ(late(), 2u);
+  runtime.advance_by(16ms);
+  link->bring("01 03 04 E3 00 00 00");
+  EXPECT_THAT(replies, SizeIs(2));
 }
 
 TEST_F(RtuWireTest, a_drive_that_may_take_long_may_owe_an_answer_for_as_much_longer) {
