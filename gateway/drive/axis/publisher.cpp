@@ -79,15 +79,15 @@ bool is_of_another_mode(const AxisCore& core, const AxisFacts& facts, const Bind
 bool tells_cause(Quantity quantity) { return quantity == Quantity::error_code || quantity == Quantity::vendor_error; }
 
 /// Design 3.2 Causes of faults: what tells of a fault appears in one step. Until then it stays as it was shown.
-bool held_back(const AxisCore& core, Quantity quantity) {
+bool held_back(const AxisCore& core, const AxisImage& image, Quantity quantity) {
+  if (!image.reachable()) return false;
   if (core.fault.withheld()) return tells_cause(quantity) || quantity == Quantity::statusword;
   return core.fault.words_ahead() && tells_cause(quantity);
 }
 
 /// Of what is shown: what is held back is as old as it is.
 Instant as_of(const AxisCore& core, const AxisImage& image, const Binding& binding) {
-  const bool held = image.reachable() && held_back(core, binding.quantity);
-  return held ? image[binding.quantity].at : confirmed_at(core, binding);
+  return held_back(core, image, binding.quantity) ? image[binding.quantity].at : confirmed_at(core, binding);
 }
 
 /// The words of the fault before are no value of this one.
@@ -184,7 +184,7 @@ void show_state(const AxisCore& core, AxisImage& image) {
     const std::uint32_t mask = bit(binding.quantity);
     image.supported =
         refused(core, binding) ? image.supported & ~mask : image.supported | (core.model.supported & mask);
-    const bool held = image.reachable() && held_back(core, binding.quantity);
+    const bool held = held_back(core, image, binding.quantity);
     const Instant at = as_of(core, image, binding);
     const auto value = at == kLongAgo ? std::nullopt : shown_value(core, facts, binding);
     const Range fits = range_of(row(binding.quantity).type);

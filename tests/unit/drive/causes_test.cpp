@@ -74,6 +74,21 @@ TEST_F(NamedBy, TheSameWordReadAfterTheFaultNamesIt) {
   EXPECT_EQ(shown(Quantity::error_code), 0x3210);
 }
 
+// Nobody is heard any more: what is shown is looked at again when something of it turns stale, and not before.
+TEST_F(NamedBy, WhatIsHeldBackTurnsStaleByItsOwnAgeNotByThatOfTheWordBehindIt) {
+  read(kStatusword, kEnabledWord);
+  const Instant read_at = turn_.now;
+  pass(200ms);
+  read(kStatusword, kFaultWord);
+  ASSERT_FALSE(image_.has(AxisInput::fault)) << "not before its cause";
+  ASSERT_TRUE(image_[Quantity::statusword].valid);
+  const Instant due = drive::stale_deadline(core_, image_);
+  EXPECT_LE(due, read_at + drive::kStaleAtLeast + 1ms);
+  pass(due - turn_.now);
+  EXPECT_FALSE(image_[Quantity::statusword].valid);
+  EXPECT_FALSE(image_[Quantity::error_code].valid);
+}
+
 GatewayStage::Line two_on_a_line() {
   GatewayStage::Line line = line_of(KincoType::md, 1);
   const GatewayStage::Line second = line_of(KincoType::md, 2);
