@@ -39,8 +39,12 @@ struct ClientLife {
   std::optional<std::int32_t> strength{};
   /// Its leases are no longer than this, whatever their rules say: it has asked for a shorter one.
   std::optional<Duration> lease_limit{};
-  /// What its leases last longer: nobody can hear it at present, and that is not its fault.
-  Duration grace{};
+  /// Nobody can hear it from `since` on, and that is not its fault: its signs of life of until then count for longer.
+  struct Grace {
+    Duration length{};
+    Instant since = kLongAgo;
+  };
+  Grace grace{};
 };
 
 /// The same program, as far as anybody can tell: a connection that goes on where another one of it has ended.
@@ -77,7 +81,8 @@ struct Lease {
   /// When it runs out as things stand; kNever where nothing does.
   [[nodiscard]] Instant until() const {
     if (!running) return kNever;
-    return last_sign() + timeout() + (owner ? owner->grace : Duration{});
+    const Instant sign = last_sign();
+    return sign + timeout() + (owner && sign <= owner->grace.since ? owner->grace.length : Duration{});
   }
   [[nodiscard]] Duration timeout() const {
     return owner && owner->lease_limit ? std::min(rules.timeout, *owner->lease_limit) : rules.timeout;

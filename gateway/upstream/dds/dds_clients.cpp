@@ -112,17 +112,6 @@ std::shared_ptr<ClientLife> DdsClients::stranger(const Guid& writer, Instant now
   return life;
 }
 
-// A grace ends where it is needed no longer. A lease that only a write renews may be kept by nothing else until its
-// owner, who is back, has had the time to write.
-void DdsClients::heard(ClientLife& life, Instant now) {
-  life.last_request = now;
-  if (life.grace == Duration{}) return;
-  const bool needed = std::any_of(image_.axes().begin(), image_.axes().end(), [&](const auto& axis) {
-    return axis->lease.owned_by(life.id) && axis->lease.until() - life.grace <= now;
-  });
-  if (!needed) life.grace = Duration{};
-}
-
 std::string DdsClients::on_writer(const WriterRecord& record) {
   std::string told;
   if (record.gone) {
@@ -149,8 +138,7 @@ void DdsClients::on_beats(const BeatRecord& record, Instant now) {
   for (const Guid& writer : record.writers) {
     DdsClient* const client = find(writer);
     if (client == nullptr) continue;
-    heard(*client->life, now);
-    client->life->heartbeat = now;
+    client->life->last_request = client->life->heartbeat = now;
     client->returns_by = kNever;
   }
   look_at_deadlines();
@@ -167,9 +155,8 @@ void DdsClients::on_heartbeat(const HeartbeatRecord& record, Instant now) {
   client->lease_limit.reset();
   if (record.lease_ms != 0) client->lease_limit = std::chrono::milliseconds(record.lease_ms);
   if (client->life == nullptr) return;
-  client->life->heartbeat = now;
+  client->life->last_request = client->life->heartbeat = now;
   client->life->lease_limit = client->lease_limit;
-  heard(*client->life, now);
 }
 
 DdsClient* DdsClients::on_sample(const Guid& writer, std::optional<std::int32_t> strength, bool fresh, Instant now) {
@@ -185,7 +172,7 @@ DdsClient* DdsClients::on_sample(const Guid& writer, std::optional<std::int32_t>
   }
   client->beats_alone = false;
   if (strength) client->life->strength = strength;
-  if (fresh) heard(*client->life, now);
+  if (fresh) client->life->last_request = now;
   if (!is_told_of || client->returns_by != kNever) {
     client->returns_by = now + kReturnsWithin;
     look_at_deadlines();
@@ -207,10 +194,10 @@ void DdsClients::on_link_up(Instant now) {
 }
 
 // Once: it is a time added to when a client was last heard, so a second loss of the link before that adds nothing.
-void DdsClients::on_link_down() {
+void DdsClients::on_link_down(Instant now) {
   link_up_ = false;
   for (auto& [guid, client] : clients_)
-    if (client.life != nullptr) client.life->grace = kGrace;
+    if (client.life != nullptr) client.life->grace = {kGrace, now};
   look_at_deadlines();
 }
 
@@ -218,7 +205,7 @@ void DdsClients::end(DdsClient& client) {
   const std::shared_ptr<ClientLife> life = std::exchange(client.life, nullptr);
   if (life == nullptr) return;
   life->connected = false;
-  life->grace = Duration{};
+  life->grace = {};
   commands_.client_gone(life->id);
 }
 

@@ -73,7 +73,7 @@ class DdsClients {
   [[nodiscard]] std::shared_ptr<ClientLife> asks_for_objects(const ClientLife& owner, const ClientLife& other) const;
 
   void on_link_up(Instant now);
-  void on_link_down();
+  void on_link_down(Instant now);
   /// Forgets those that did not come back.
   void on_time(Instant now);
   [[nodiscard]] Instant deadline() const { return deadline_; }
@@ -89,7 +89,6 @@ class DdsClients {
   [[nodiscard]] bool makes_way(const DdsClient& client) const;
   [[nodiscard]] bool make_room();
   void end(DdsClient& client);
-  void heard(ClientLife& life, Instant now);
   Clients::iterator forget(Clients::iterator client);
   void look_at_deadlines();
 

@@ -122,12 +122,12 @@ void DdsSession::on_link_up(Instant now) {
   it.gateway_due = now;
 }
 
-void DdsSession::on_link_down(Instant) {
+void DdsSession::on_link_down(Instant now) {
   Impl& it = *impl_;
   it.link_up = false;
   it.replies.close();
-  it.clients.on_link_down();
-  it.ros.on_link_down();
+  it.clients.on_link_down(now);
+  it.ros.on_link_down(now);
 }
 
 void DdsSession::on_record(const Record& record, Instant now) {

@@ -133,11 +133,10 @@ void RosRequests::heard(Joint& joint, Instant now) {
   joint.newest = now;
   joint.life->last_request = now;
   joint.life->heartbeat = now;
-  joint.life->grace = Duration{};
 }
 
-void RosRequests::on_link_down() {
-  for (auto& [axis, joint] : joints_) joint.life->grace = kGrace;
+void RosRequests::on_link_down(Instant now) {
+  for (auto& [axis, joint] : joints_) joint.life->grace = {kGrace, now};
 }
 
 void RosRequests::complain(const std::string& line, Instant now) {

@@ -39,7 +39,7 @@ class RosRequests {
   void on_joint_commands(const JointCommandsRecord& record, Instant now);
   void on_action(const RosActionRecord& record, Instant now);
   /// Nobody can hear these clients for as long as axisgate-dds is away: their leases get their grace.
-  void on_link_down();
+  void on_link_down(Instant now);
 
  private:
   struct Joint {

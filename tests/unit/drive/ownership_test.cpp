@@ -226,11 +226,11 @@ TEST_F(Owned, StrengthIsNothingToAModbusClient) {
 
 TEST_F(Owned, GraceMakesALeaseLongerByItselfAndNotEachTime) {
   Ownership o = owned(rules, kStart);
-  plc->grace = 3s;
+  plc->grace = {3s, kStart + 1s};
   EXPECT_EQ(o.until(), kStart + 5s);
   EXPECT_FALSE(o.take_expired(kStart + 4999ms));
   EXPECT_TRUE(o.live(kStart + 4999ms));
-  plc->grace = 3s;
+  plc->grace = {3s, kStart + 4s};
   EXPECT_EQ(o.until(), kStart + 5s);
   const auto expired = o.take_expired(kStart + 5s);
   ASSERT_TRUE(expired);
@@ -239,20 +239,19 @@ TEST_F(Owned, GraceMakesALeaseLongerByItselfAndNotEachTime) {
   EXPECT_EQ(o.until(), kStart + 8s) << "another client's lease has none of it";
 }
 
-TEST_F(Owned, GraceOfAnyRenewalIsAddedToWhatRenewsIt) {
+TEST_F(Owned, GraceOfAnyRenewalIsAddedToWhatRenewedItBeforeAndToNothingLater) {
   for (const LeaseRenewal renew : {LeaseRenewal::any, LeaseRenewal::write, LeaseRenewal::heartbeat}) {
     lease = {};
     plc->heartbeat = kLongAgo;
     rules.renew = renew;
     Ownership o = owned(rules, kStart);
-    plc->grace = 3s;
+    plc->grace = {3s, kStart};
     EXPECT_EQ(o.until(), kStart + 5s);
-    plc->last_request = plc->heartbeat = kStart + 1s;
-    o.wrote(plc, true, true, kStart + 1s);
+    plc->last_request = plc->heartbeat = kStart + 4s;
+    o.wrote(plc, true, true, kStart + 4s);
     EXPECT_EQ(o.until(), kStart + 6s);
-    plc->grace = {};
-    plc->heartbeat = kLongAgo;
-    EXPECT_EQ(o.until(), kStart + 3s);
+    plc->grace.since = kStart + 4s;
+    EXPECT_EQ(o.until(), kStart + 9s);
   }
 }
 
