@@ -81,6 +81,34 @@ TEST_P(Crossing, AStartBetweenTwoHaltsEndsWithTheSecond) {
     }
 }
 
+// What stands beside a stop and still waits is dropped by the next one, as anything else that waits is.
+TEST_P(CrossingWithDisable, AnEnableBesideADisablingControlwordEndsWithTheNextStop) {
+  for (const std::int64_t word : {7, 6})
+    for (const Write& stop :
+         {one(row::command, kDisable), one(row::controlword, 0), block(row::controlword, row::heartbeat, {})})
+      for (const Duration apart : kApart) {
+        SCOPED_TRACE(text(stop) + ", " + std::to_string(word) + ", " + std::to_string(apart / 1ms) + " ms");
+        plant_.emplace(GetParam(), with_leases());
+        plant_->ready();
+        sent_.clear();
+        Client& owner = plant_->a;
+        Rows rows = plant_->profile_rows();
+        rows[row::controlword] = 15;
+        rows[row::command] = 0;
+        ASSERT_EQ(owner.rows(row::controlword, row::command, rows), kOk);
+        ASSERT_EQ(owner.command(kEnable), kOk);
+        ASSERT_EQ(owner.command(kQuickStop), kOk);
+        rows[row::controlword] = word;  // its owner's: a stop in a block as well
+        rows[row::command] = kEnable;
+        send(owner, block(row::controlword, row::command, rows));
+        plant_->run(apart);
+        send(owner, stop);
+        all_answered();
+        plant_->run(1s);
+        EXPECT_FALSE(*plant_->motor().enabled) << answers();
+      }
+}
+
 // A disabling controlword beside an enable: the order of one request is the controlword, then the command.
 TEST_P(CrossingWithDisable, AnEnableBehindADisablingControlwordIsDoneOrNotAnswered) {
   for (const std::int64_t word : {7, 6}) {

@@ -294,6 +294,9 @@ void Axis::carry_on(Pending& pending) {
   if (move.kind == CommandSequence::Move::Kind::wait) host_.job_waits(pending.id, move.until);
   if (!pending.command_sequence->stop_is_over()) return;
   note_stop(pending, false);
+  // What commands waited behind this stop, and a later one drops it, as it drops whatever commands and waits.
+  if (pending.stopped_by && asks_to_begin(pending.command_sequence->batch()))
+    return on_job_ended(pending.id, Errc::dropped_by_stop);
   // The stop is done; the rest of its write batch goes on where it stands, and has no precedence any more.
   bus::BusJob rest = job_for(core_, pending.command_sequence->batch(), false);
   rest.axis = slot_;

@@ -7,16 +7,10 @@
 #include "gateway/drive/plan/admission.hpp"
 
 namespace axisgate::drive {
-namespace {
-
-bool begins_anything(const WriteBatch& batch) { return asks_to_enable(batch) || needs_ready(batch.command); }
-
-}  // namespace
-
 // A stop ramps down, and still shows enabled: what would enable or start comes when it is over. What came later than a
 // stop's own set-points comes after them (3.3, the order of one axis).
 bool Axis::waits_for_stop(const Pending& pending) const {
-  return (stopping() && begins_anything(pending.command_sequence->batch())) || is_behind_rest_of_stop(pending);
+  return (stopping() && asks_to_begin(pending.command_sequence->batch())) || is_behind_rest_of_stop(pending);
 }
 
 bool Axis::is_behind_rest_of_stop(const Pending& pending) const {

@@ -212,6 +212,8 @@ bool asks_to_enable(const WriteBatch& batch) {
   return batch.command == Command::enable || (batch.controlword && enables(*batch.controlword));
 }
 
+bool asks_to_begin(const WriteBatch& batch) { return asks_to_enable(batch) || needs_ready(batch.command); }
+
 WriteBatch stop_alone(const WriteBatch& batch) {
   WriteBatch out = batch;
   out.setpoints.clear();

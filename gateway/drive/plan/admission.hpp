@@ -28,6 +28,8 @@ namespace axisgate::drive {
 [[nodiscard]] bool stops_at_most(const WriteBatch& batch);
 /// The write batch asks for operation_enabled, by command or controlword.
 [[nodiscard]] bool asks_to_enable(const WriteBatch& batch);
+/// That, or for what an axis must be enabled for.
+[[nodiscard]] bool asks_to_begin(const WriteBatch& batch);
 /// What is left of a write batch that holds a stop when everything else is taken out of it.
 [[nodiscard]] WriteBatch stop_alone(const WriteBatch& batch);
 /// The stop latches the axis: quick_stop, by command, controlword, or because this drive has no other halt.
