@@ -109,6 +109,28 @@ TEST_P(CrossingWithDisable, AnEnableBesideADisablingControlwordEndsWithTheNextSt
       }
 }
 
+// The enable is by the gateway's word, although a stop stands beside it: it holds, and what starts is accepted.
+TEST_P(CrossingWithDisable, AnEnableBesideAStoppingControlwordHolds) {
+  for (const std::int64_t word : {0, 6, 7}) {
+    SCOPED_TRACE(word);
+    plant_.emplace(GetParam(), with_leases());
+    plant_->ready();
+    Client& owner = plant_->a;
+    ASSERT_EQ(owner.row(row::controlword, 15), kOk);
+    ASSERT_EQ(plant_->set_endless(owner), kOk);
+    ASSERT_EQ(owner.write(block(row::controlword, row::command, {{row::controlword, 15}})), kOk);
+    const std::int64_t mode = has_speeds(GetParam()) ? kVelocityMode : 1;
+    const Write both =
+        block(row::controlword, row::command, {{row::controlword, word}, {row::mode, mode}, {row::command, kEnable}});
+    ASSERT_EQ(owner.write(both), kOk);
+    plant_->run(1500ms);  // longer than any drive waits for its master
+    EXPECT_TRUE(*plant_->motor().enabled);
+    EXPECT_EQ(plant_->set_endless(owner), kOk);
+    EXPECT_EQ(owner.command(plant_->endless_command()), kOk);
+    EXPECT_TRUE(plant_->turns_within(1s));
+  }
+}
+
 // A disabling controlword beside an enable: the order of one request is the controlword, then the command.
 TEST_P(CrossingWithDisable, AnEnableBehindADisablingControlwordIsDoneOrNotAnswered) {
   for (const std::int64_t word : {7, 6}) {

@@ -185,7 +185,7 @@ CommandSequence::Move CommandSequence::advance() {
       // A stop never opens the gate: another one may have closed it since this halt was planned.
       const AxisFacts facts = core_.facts();
       const bool stays_open = facts.enabled() && facts.commanded;
-      if (!is_enabling_word(core_, emulated.object, emulated.number) || !is_stop() || stays_open)
+      if (phase_ != Phase::stop || !is_enabling_word(core_, emulated.object, emulated.number) || stays_open)
         core_.make(emulated.object, emulated.number);
       acted_ = acted_ || in_command();
       result_.command_sent = result_.command_sent || in_command();
