@@ -318,9 +318,10 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
       next.awaits = 0;
       next.changed_ms = sight_.now_ms;
     }
-    // Whether it is remembered is not said. Of a posted write that a stop has met register 25 may tell of an older one.
-    const bool perhaps_dropped = done && dropped;
-    if (!expected || (!done && pending.verdict.any_answer) || perhaps_dropped)
+    // Whether it is remembered is not said. Of a posted write that a stop or a loss has met register 25 may tell of an
+    // older one.
+    const bool perhaps_done = done && (dropped || lost);
+    if (!expected || (!done && pending.verdict.any_answer) || perhaps_done)
       make_uncertain(next.clients[std::min(asked.client, kModbus)]);
     // 3.5, "renew": whether a request that waits for the drive renews when it comes or when it is answered is not said.
     if (asked.troubled && next.owner == asked.client && !next.orphan)

@@ -109,6 +109,26 @@ TEST_P(CrossingWithDisable, AnEnableBesideADisablingControlwordEndsWithTheNextSt
       }
 }
 
+// The disable did not arrive, the enable behind it was never sent: what is owed when the wire is back is the disable.
+TEST_P(CrossingWithDisable, AnEnableThatWasNeverSentLeavesTheStopBeforeItOwed) {
+  for (const std::int64_t stop : {kDisable, kQuickStop}) {
+    SCOPED_TRACE(stop);
+    ready();
+    sent_.clear();
+    ASSERT_EQ(plant_->a.command(kEnable), kOk);
+    plant_->cut_wire();
+    send(plant_->b, one(row::command, stop));
+    plant_->run(20ms);
+    send(plant_->a, one(row::command, 0));
+    send(plant_->a, one(row::command, kEnable));
+    all_answered();
+    plant_->mend_wire();
+    ASSERT_TRUE(plant_->stage.run_until([&] { return plant_->stage.axis(1).link_state == LinkState::online; }));
+    plant_->run(1s);
+    EXPECT_FALSE(*plant_->motor().enabled) << answers();
+  }
+}
+
 // The enable is by the gateway's word, although a stop stands beside it: it holds, and what starts is accepted.
 TEST_P(CrossingWithDisable, AnEnableBesideAStoppingControlwordHolds) {
   for (const std::int64_t word : {0, 6, 7}) {

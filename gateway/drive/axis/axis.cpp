@@ -226,7 +226,6 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<BatchResult>& refus
   }
   if (!pending.by_mailbox) image_.latest = {CommandResult::pending, 0, batch.command_id};
   if (pending.starts_motion) core_.motion.mask_target_reached();
-  if (!stop) note_accepted(batch);
   pending_.push_back(std::move(pending));
   publish();
 }
@@ -248,6 +247,7 @@ std::optional<bus::Exchange> Axis::on_grant(bus::JobId id) {
   hold_rest(*pending);
   const auto move = pending->command_sequence->granted();
   note_commanded(*pending);
+  note_begun(*pending, false);
   if (move.kind == CommandSequence::Move::Kind::exchange) return move.exchange;
   if (move.kind == CommandSequence::Move::Kind::wait) {
     host_.job_waits(id, move.until);
@@ -331,6 +331,7 @@ void Axis::complete(bus::JobId id, const BatchResult& result) {
   pending_.erase(found);
   host_.job_done(id);
   note_commanded(pending);
+  note_begun(pending, result.outcome.code == Errc::ok);
   note_stop(pending, true);
   note_jog(pending, result.outcome.code);
   if (!motion_pending()) core_.motion.unmask_target_reached();

@@ -168,7 +168,8 @@ class Axis {
   void lose_sight();
   void send_owed(StopKind stop);
   void note_stop(const Pending& pending, bool ended);
-  void note_accepted(const WriteBatch& batch);
+  void note_begun(const Pending& pending, bool done);
+  [[nodiscard]] bool ends_what_is_owed() const;
   void tell_end(OwedStop::End end);
   void note_jog(const Pending& pending, Errc code);
   [[nodiscard]] bool runs_unwatched() const;

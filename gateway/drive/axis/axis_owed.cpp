@@ -84,7 +84,7 @@ void Axis::observe_owed() {
   owed_.link_back(core_.turn.now);
   const auto state = state_of(static_cast<std::uint16_t>(status.number));
   take_back_enable(state);
-  if (!owed_.owed() || stopping()) return;
+  if (!owed_.owed() || stopping() || ends_what_is_owed()) return;
   tell_end(owed_.state_read(state, status.exchange));
   if (const auto stop = owed_.due(core_.turn.now)) send_owed(*stop);
 }
@@ -153,12 +153,24 @@ void Axis::note_stop(const Pending& pending, bool ended) {
     tell_end(owed_.attempted(*kind, command_sequence.stop_confirmed(), core_.store.exchange(), core_.turn.now));
 }
 
-void Axis::note_accepted(const WriteBatch& batch) {
-  if (asks_to_enable(batch)) {
+// A later enable or start ends what is owed as soon as anything of it is carried out, or is so already. One that is
+// dropped before, since the link was lost perhaps, has changed nothing: the stop is owed still.
+void Axis::note_begun(const Pending& pending, bool done) {
+  const CommandSequence& command_sequence = *pending.command_sequence;
+  if (command_sequence.is_stop() || pending.stopped_by || (!done && !command_sequence.commanded())) return;
+  if (asks_to_enable(command_sequence.batch())) {
     late_enable_.wanted();
-    tell_end(owed_.enable_accepted());
+    tell_end(owed_.enabled_later());
   }
-  if (starts_motion(batch.command)) tell_end(owed_.start_accepted());
+  if (starts_motion(command_sequence.batch().command)) tell_end(owed_.started_later());
+}
+
+// It still waits, and a stop that is sent again would drop it.
+bool Axis::ends_what_is_owed() const {
+  return std::any_of(pending_.begin(), pending_.end(), [this](const Pending& p) {
+    const WriteBatch& batch = p.command_sequence->batch();
+    return !p.command_sequence->is_stop() && (asks_to_enable(batch) || (owed_.halts() && starts_motion(batch.command)));
+  });
 }
 
 // --- Jog

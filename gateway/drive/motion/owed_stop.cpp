@@ -46,9 +46,9 @@ OwedStop::End OwedStop::state_read(State402 state, std::uint64_t exchange) {
   return discharge(End::disabled);
 }
 
-OwedStop::End OwedStop::enable_accepted() { return stop_ && !gates() ? discharge(End::enabled) : End::none; }
+OwedStop::End OwedStop::enabled_later() { return stop_ && !gates() ? discharge(End::enabled) : End::none; }
 
-OwedStop::End OwedStop::start_accepted() { return stop_ == StopKind::halt ? enable_accepted() : End::none; }
+OwedStop::End OwedStop::started_later() { return halts() ? enabled_later() : End::none; }
 
 void OwedStop::link_lost(Instant heard, std::uint64_t exchange) {
   if (!away_) heard_ = heard;

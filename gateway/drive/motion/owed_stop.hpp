@@ -41,9 +41,10 @@ class OwedStop {
   End attempted(StopKind stop, bool shown, std::uint64_t exchange, Instant now);
   /// What the drive shows, by this exchange.
   End state_read(State402 state, std::uint64_t exchange);
-  /// Accepted after the stop: what was asked last is what happens. A start takes back a halt alone.
-  End enable_accepted();
-  End start_accepted();
+  /// What was accepted after the stop is carried out: what was asked last is what happens. A start takes back a halt
+  /// alone.
+  End enabled_later();
+  End started_later();
 
   /// The drive is not there any more. `heard`: when it was heard last.
   void link_lost(Instant heard, std::uint64_t exchange);
@@ -53,6 +54,7 @@ class OwedStop {
   void restarted() { uncertain_ = uncertain_ || stop_.has_value(); }
 
   [[nodiscard]] bool owed() const { return stop_.has_value(); }
+  [[nodiscard]] bool halts() const { return stop_ == StopKind::halt; }
   /// Until the axis is seen to be stopped nothing but stops and reads passes: the drive was lost since.
   [[nodiscard]] bool gates() const { return owed() && by_loss_; }
   /// It is to be told that nothing but stops and reads passes: once for each stop that is owed.

@@ -99,20 +99,20 @@ TEST(OwedStop, AWeakerOneThatWasShownDischargesNoStrongerOne) {
 TEST(OwedStop, ALaterEnableTakesItBackUnlessTheDriveWasLostSince) {
   OwedStop owed;
   owed.accepted(StopKind::quick_stop, 1);
-  EXPECT_EQ(owed.enable_accepted(), End::enabled);
+  EXPECT_EQ(owed.enabled_later(), End::enabled);
   owed.accepted(StopKind::quick_stop, 1);
   owed.link_lost(kStart, 1);
   owed.link_back(kStart + 1s);
-  EXPECT_EQ(owed.enable_accepted(), End::none);
+  EXPECT_EQ(owed.enabled_later(), End::none);
   EXPECT_TRUE(owed.owed());
 }
 
 TEST(OwedStop, ALaterStartTakesBackAHaltAlone) {
   OwedStop owed;
   owed.accepted(StopKind::halt, 1);
-  EXPECT_EQ(owed.start_accepted(), End::enabled);
+  EXPECT_EQ(owed.started_later(), End::enabled);
   owed.accepted(StopKind::disable, 1);
-  EXPECT_EQ(owed.start_accepted(), End::none);
+  EXPECT_EQ(owed.started_later(), End::none);
 }
 
 TEST(OwedStop, GatesFromALossUntilItIsDischarged) {
@@ -196,7 +196,7 @@ TEST(OwedStop, KeepsItsPromisesThroughEveryShortSequence) {
           end = owed.state_read(switch_on_disabled, exchange);
           break;
         case 8:
-          end = owed.enable_accepted();
+          end = owed.enabled_later();
           EXPECT_TRUE(!gated || end == End::none) << story << ": an enable passed the gate";
           break;
         case 9:
@@ -213,7 +213,7 @@ TEST(OwedStop, KeepsItsPromisesThroughEveryShortSequence) {
           owed.restarted();
           break;
         default:
-          end = owed.start_accepted();
+          end = owed.started_later();
           break;
       }
       if (end != End::none) owes = lost_since = read_since = false;
