@@ -229,6 +229,7 @@ void Play::act(const Step& step) {
         constexpr std::uint16_t kDeviceName = 0x1008;  // in several exchanges
         contract_->asked(step.client);
         clients_.modbus(step.client).ask_for_object(kDeviceName, 0);
+        told_.at(step.client).reset();
       }
       break;
     case Deed::look_up:

@@ -66,7 +66,10 @@ void Play::collect() {
         line += "  [posted, and nobody can tell]";
         return never_answered(open), true;
       }
-      watches_->cable.answered(open.request);
+      if (open.under_way)
+        watches_->cable.unanswered(open.request);
+      else
+        watches_->cable.answered(open.request);
       line += answer->contains(0) ? "  [ok]" : "  [exception";
       if (!answer->contains(0)) {
         for (const int each : *answer) line += " " + std::to_string(each);
@@ -112,8 +115,8 @@ std::optional<std::set<int>> Play::answer_to(Open& open) {
   open.pending = open.pending || became->pending;
   if (became->pending) return {};
   // What asks for nothing leaves what was told before, or is told of another client's.
-  const bool may_be_older = !open.pending || !contract_->surely_acts(open.request);
-  if (!became->stands_for.empty() && may_be_older) became->stands_for.insert(0);
+  open.under_way = !open.pending || !contract_->surely_acts(open.request);
+  if (!became->stands_for.empty() && open.under_way) became->stands_for.insert(0);
   return became->stands_for;
 }
 
@@ -201,6 +204,7 @@ void Play::look_up(std::size_t client) {
   const bool well = !contract_->in_trouble();
   contract_->asked(client);
   const obey::RequestNumber number = modbus.ask_for_object(place.index, place.sub);
+  told_.at(client).reset();  // a refusal of it shows in register 25 as well
   const std::int64_t asked_ms = now_ms();
   while (!over() && modbus.connected() && !modbus.answer_of(number)) {
     pass(kStepMs);

@@ -45,11 +45,12 @@ class Play {
     std::int64_t sent_ms = 0;
     std::size_t line = 0;
     bool of_object = false;
-    bool moves = false;    ///< it may begin a move
-    bool repeats = false;  ///< perhaps: "in a block, repeating ... leaves result and detail alone" (3.3 Not new)
-    bool posted = false;   ///< the answer comes after the checks, register 25 tells the rest
-    bool checked = false;  ///< that answer is there
-    bool pending = false;  ///< register 25 has said so
+    bool moves = false;      ///< it may begin a move
+    bool repeats = false;    ///< perhaps: "in a block, repeating ... leaves result and detail alone" (3.3 Not new)
+    bool posted = false;     ///< the answer comes after the checks, register 25 tells the rest
+    bool checked = false;    ///< that answer is there
+    bool pending = false;    ///< register 25 has said so
+    bool under_way = false;  ///< perhaps: register 25 may have told of an older one
     std::optional<obey::RequestNumber> asked_for_result{};
   };
 

@@ -373,6 +373,7 @@ bool Contract::surely_acts(int request) const {
 void Contract::unanswered(int request) {
   if (lost_count_) return;
   asked_.erase(request);
+  unanswered_ms_ = sight_.now_ms;
   for (World& world : worlds_) {
     world.pending.erase(request);
     if (world.awaits != request) continue;

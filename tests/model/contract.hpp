@@ -298,6 +298,7 @@ class Contract {
   int requests_ = 0;
   bool trouble_ = false;
   bool gateway_is_new_ = false;
+  std::int64_t unanswered_ms_ = kLongAgo;  ///< the last request that will never be answered
   bool lost_count_ = false;
 };
 

@@ -238,6 +238,7 @@ void Contract::drive_restarted() {
     world.jog = 0;
     world.enabled = world.faulted = false;
     world.ladder = 0;
+    world.other_mode = true;  // which one it begins with is its own affair
     changed(world, before);
   }
 }

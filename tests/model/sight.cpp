@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "tests/model/contract.hpp"
+#include "tests/model/judge.hpp"
 
 namespace axisgate::test::model {
 namespace {
@@ -104,7 +105,9 @@ bool Contract::motion_fits(World& world, const Sight& sight) const {
 // lease ends".
 bool Contract::shown(std::size_t client, const Told& told) {
   const auto unsure = [](const World& world) { return world.lease_unsure || !world.pending.empty(); };
-  if (lost_count_ || trouble_ || std::ranges::any_of(worlds_, unsure)) return true;
+  // What nobody was told the end of.
+  const bool under_way = sight_.now_ms - unanswered_ms_ < kUnderWayMs;
+  if (lost_count_ || trouble_ || under_way || std::ranges::any_of(worlds_, unsure)) return true;
   const auto fits = [&](const World& world) {
     const bool former =
         (world.orphan || world.retake_unsure) && !options_.by_address;  // a connection that has ended is another client
