@@ -31,8 +31,9 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
     // A stop that has not shown yet keeps it waiting, and then it has not started in time.
     verdict = {"refused: not enabled, faulted or latched", {4, 6}};
     // 3.5: "from its first accepted write": what is refused claims nothing. A fault that the gateway has not heard of
-    // yet, or what it could not see, may make the drive refuse what was accepted.
-    const bool unseen = world_.faulted || seen_.troubled;
+    // yet, a stop on its way, or what it could not see, may make the drive refuse what was accepted.
+    const bool unseen = world_.faulted || seen_.troubled ||
+                        std::ranges::any_of(world_.pending, [](const auto& each) { return each.second.verdict.stop; });
     if (world_.faulted && seen_.troubled) verdict.answers.insert(0);  // the drive has acknowledged it all the same
     if (unseen && world_.owner != client_ && options_.leases && readings_.other()) claim();
     return true;
