@@ -38,6 +38,7 @@ class FoundSpeeds : public Found {};
 class FoundPositions : public Found {};
 class FoundWithDisable : public Found {};
 class FoundRawVelocity : public Found {};
+class FoundTurning : public Found {};  // a drive that goes on without its master
 
 // The button's time ended the run of the same client, and the run had the jog's speed.
 TEST_P(FoundSpeeds, ARunAfterAJogNeedsNoButtonAndHasItsOwnSpeed) {
@@ -320,6 +321,29 @@ INSTANTIATE_TEST_SUITE_P(Every, Found, testing::ValuesIn(kSubjects), named);
 INSTANTIATE_TEST_SUITE_P(Every, FoundSpeeds, testing::ValuesIn(subjects(has_speeds)), named);
 INSTANTIATE_TEST_SUITE_P(Every, FoundWithDisable,
                          testing::ValuesIn(subjects([](Subject s) { return s != Subject::id286pro; })), named);
+// Nobody tells a new gateway that an iD286pro runs, and does not move: both were answered as done, and it ran on.
+TEST_P(FoundTurning, ByANewGatewayIsStoppedByCoil7AndByATargetVelocityOf0) {
+  for (const Write& stop : {one_coil(coil::run_velocity, false), one(row::target_velocity, 0)}) {
+    SCOPED_TRACE(text(stop));
+    ready();
+    ASSERT_EQ(plant_->set_endless(plant_->a), kOk);
+    ASSERT_EQ(plant_->a.command(kRun), kOk);
+    ASSERT_TRUE(plant_->turns_within(1s));
+    plant_->crash_gateway();
+    plant_->run(100ms);
+    plant_->start_gateway();
+    ASSERT_TRUE(plant_->stage.run_until([&] { return plant_->stage.axis(1).link_state == LinkState::online; }));
+    plant_->run(300ms);
+    ASSERT_NE(plant_->velocity(), 0);
+    const auto client = plant_->connection_from(77);
+    EXPECT_EQ(client->write(stop), kOk);
+    EXPECT_TRUE(plant_->comes_to_stand()) << plant_->velocity();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, FoundTurning,
+                         testing::ValuesIn(subjects([](Subject s) { return has_speeds(s) && !minds_silence(s); })),
+                         named);
 INSTANTIATE_TEST_SUITE_P(Every, FoundRawVelocity,
                          testing::ValuesIn(subjects([](Subject s) { return is_cia402(s) && has_speeds(s); })), named);
 

@@ -336,7 +336,8 @@ Errc Axis::begin_jog(WriteBatch& batch) {
   const auto speed = static_cast<std::int64_t>(image_.jog_velocity);
   const std::int64_t signed_speed = direction == Command::jog_forward ? speed : -speed;
   if (speed == 0 || !velocity->limits.holds(signed_speed)) return Errc::bad_value;
-  if (jog_must_stop(direction, 0)) return Errc::state_unsuitable;
+  // At its full speed: what is pressed close to the limit must end before it as well.
+  if (jog_must_stop(direction, signed_speed)) return Errc::state_unsuitable;
   // The speed is the button's: refused with it, and no target that a later start could use.
   batch.setpoints.push_back({.quantity = Quantity::target_velocity, .value = signed_speed, .with_command = true});
   batch.command = Command::run_velocity;

@@ -18,7 +18,7 @@ struct AxisFacts {
   bool reachable = false;  ///< link_state online or suspect
   State402 state = State402::not_ready_to_switch_on;
   int mode = 0;                    ///< mode in force, unified number
-  bool own_velocity_mode = false;  ///< and it is one of the drive's own that follows a target velocity
+  bool own_velocity_mode = false;  ///< and it is, or may be, one of the drive's own that follows a target velocity
   /// The controlword in effect has the bits of operation enabled: without them the axis is on its way out of it,
   /// however long its ramp takes, and only shows it still.
   bool commanded = true;

@@ -91,6 +91,9 @@ AxisFacts AxisCore::facts() const {
   } else if (const auto velocity = value(Quantity::velocity_actual)) {
     facts.moving = std::llabs(*velocity) > model.standstill_velocity;
   }
+  // Found turning in a mode that nobody can tell, it may follow a velocity: it is stopped and led as if it did.
+  const bool tells_no_mode = is_virtual() && model.virtual_axis->gate_only;
+  facts.own_velocity_mode = facts.own_velocity_mode || (tells_no_mode && facts.moving && motion.found_at_start());
   if (const ObjectId id = motion_object(); id != kNoObject && !store[id].emulated) facts.moving_at = store[id].sent_at;
   facts.follows = follows(facts);
   return facts;

@@ -82,6 +82,28 @@ TEST(JogOnAnAxis, AnotherClientsStopEndsItForGood) {
   EXPECT_FALSE(axis.rig.turns());
 }
 
+// From 600 rpm it takes 30 turns to stop.
+TEST(JogOnAnAxis, IsRefusedWhereItCouldNotEndBeforeTheLimit) {
+  RigOptions options = leased();
+  options.axis.position_limits = Range{-30'000, 30'000};
+  options.axis.homing_method = 35;
+  JoggedAxis axis(options);
+  EXPECT_EQ(axis.command(axis.plc, Command::home), Errc::ok);
+  ASSERT_TRUE(axis.rig.stage.run_until([&] {
+    axis.plc->last_request = axis.rig.stage.runtime().now();
+    return axis.rig.axis().has(AxisInput::homed);
+  }));
+  WriteBatch slow = setpoints({{Quantity::profile_deceleration, 1'000}});
+  slow.jog_velocity = 600'000;
+  EXPECT_EQ(axis.ask(axis.plc, slow), Errc::ok);
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::state_unsuitable);
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_reverse), Errc::state_unsuitable);
+  EXPECT_FALSE(axis.rig.turns());
+  slow.jog_velocity = 60'000;
+  EXPECT_EQ(axis.ask(axis.plc, slow), Errc::ok);
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+}
+
 TEST(JogOnAnAxis, EndsAtThePositionLimitOfAHomedAxis) {
   for (const bool of_the_drive : {false, true}) {
     RigOptions options = leased();
