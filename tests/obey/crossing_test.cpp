@@ -174,6 +174,18 @@ TEST_P(CrossingWithDisable, AnEnableBehindADisablingControlwordIsDoneOrNotAnswer
   }
 }
 
+// JD's sheet knows of no halt bit: the word was answered as done, and the motor ran on.
+TEST_P(CrossingLadder, TheHaltBitHaltsWhateverTheDriveKnowsOfIt) {
+  ready();
+  Client& a = plant_->a;
+  ASSERT_EQ(plant_->set_endless(a), kOk);
+  ASSERT_EQ(a.command(plant_->endless_command()), kOk);
+  ASSERT_TRUE(plant_->turns_within(1s));
+  EXPECT_EQ(a.row(row::controlword, 0x010F), kOk);
+  EXPECT_TRUE(plant_->comes_to_stand()) << plant_->velocity();
+  EXPECT_NE(a.word(shown::motion_state), 1) << "it is over";
+}
+
 // The enable took a drive that the word had enabled for disabled, and its ladder dropped the torque.
 TEST_P(CrossingLadder, AnEnableBehindAnEnablingControlwordDropsNoTorque) {
   ready();

@@ -132,6 +132,10 @@ BatchResult Axis::refuse(const WriteBatch& batch, Errc code) {
 
 std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal, BatchCallback on_result) {
   auto [batch, code] = as_quantities(core_, asked);
+  if (asks_for_missing_halt(batch)) {
+    batch.controlword.reset();
+    batch.command = Command::halt;
+  }
   const bool stop = holds_stop(batch);
   // Beside a stop, a controlword that disables is part of it, in a block too: it is not lost.
   if (stop && batch.controlword && is_stop(*batch.controlword, true)) batch.single_controlword = true;

@@ -84,6 +84,7 @@ class Axis {
   [[nodiscard]] bool enable_is_asked(bool begun = false) const;
   /// A disable waits for the wire.
   [[nodiscard]] bool disable_waits() const;
+  [[nodiscard]] bool asks_for_missing_halt(const WriteBatch& batch) const;
 
   /// The bus job's next exchange; none: it waits or has just ended.
   [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::JobId id);

@@ -5,6 +5,7 @@
 
 #include "gateway/drive/axis/axis.hpp"
 #include "gateway/drive/plan/admission.hpp"
+#include "gateway/drive/plan/planner.hpp"
 
 namespace axisgate::drive {
 // A stop ramps down, and still shows enabled: what would enable or start comes when it is over. What came later than a
@@ -39,6 +40,14 @@ bool Axis::enable_is_asked(bool begun) const {
     const bool counts = p.command_sequence->begun() || !begun;
     return counts && !p.command_sequence->is_stop() && asks_to_enable(p.command_sequence->batch());
   });
+}
+
+// Bit 8 of a drive whose profile knows of no halt bit would be answered as done, and the motor would run on: what its
+// profile halts by is carried out in its place.
+bool Axis::asks_for_missing_halt(const WriteBatch& batch) const {
+  if (!batch.controlword || batch.command != Command::none || !enables(*batch.controlword)) return false;
+  const bool rises = (*batch.controlword & ~core_.controlword() & controlword::kHalt) != 0;
+  return rises && core_.facts().enabled() && !halts_by_word(core_);
 }
 
 bool Axis::disable_waits() const {

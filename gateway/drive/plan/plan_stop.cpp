@@ -134,6 +134,11 @@ bool halt_is_quick_stop(const AxisCore& core) {
   return halt_def->quick_stop_otherwise || halt_def->steps.empty();
 }
 
+bool halts_by_word(const AxisCore& core) {
+  return core.is_virtual() ||
+         (!halt_is_quick_stop(core) && hold_an_enabling_word(core, *steps_of(core, Command::halt)));
+}
+
 void add_end_of_halt(const AxisCore& core, Plan& plan) {
   const std::uint16_t word = core.controlword();
   if ((word & controlword::kHalt) == 0) return;

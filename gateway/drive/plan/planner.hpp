@@ -57,6 +57,8 @@ inline constexpr Duration kStopLimit = std::chrono::seconds(5);
 [[nodiscard]] Condition torque_off(const AxisCore& core);
 /// Halt on this drive in the mode in force is carried out by quick_stop.
 [[nodiscard]] bool halt_is_quick_stop(const AxisCore& core);
+/// In the mode in force the axis halts by bit 8 of the controlword: its profile's halt is that bit, or it is virtual.
+[[nodiscard]] bool halts_by_word(const AxisCore& core);
 /// What must be written before a halt may end, and the controlword without bit 8.
 void add_end_of_halt(const AxisCore& core, Plan& plan);
 
