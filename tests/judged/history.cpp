@@ -10,13 +10,15 @@ using namespace model;
 bool History::was_at(std::int64_t position, std::int64_t age_ms) const {
   std::int64_t least = position, most = position;
   bool any = false;
-  for (const Sight& sight : seen_) {
-    if (sight.now_ms < seen_.back().now_ms - age_ms - kReadingMs) continue;
+  // The last one before as well: nobody may have looked since.
+  const std::int64_t from_ms = seen_.back().now_ms - age_ms - kReadingMs;
+  const auto inside = std::ranges::find_if(seen_, [&](const Sight& sight) { return sight.now_ms >= from_ms; });
+  for (const Sight& sight : std::ranges::subrange(inside == seen_.begin() ? inside : std::prev(inside), seen_.end())) {
     least = any ? std::min(least, sight.position) : sight.position;
     most = any ? std::max(most, sight.position) : sight.position;
     any = true;
   }
-  if (seen_.front().now_ms > seen_.back().now_ms - age_ms - kReadingMs) return true;
+  if (seen_.front().now_ms > from_ms) return true;
   return !any || (position >= least - kClose && position <= most + kClose);
 }
 
