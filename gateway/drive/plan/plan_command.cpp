@@ -188,6 +188,7 @@ Plan plan_move(const AxisCore& core, Command command) {
   // A drive that follows its target would take even a distance for one.
   if (core.facts().enabled() && (core.controlword() & core.model.cia402.follow_bits) != 0)
     plan.add(Action::write(core.model.controlword, core.controlword() & kEnabledBits));
+  add_limits_of_move(core, plan);
   Plan steps;
   if (!add_command_steps(core, command, steps)) return steps;
   bool written = false;
@@ -276,6 +277,17 @@ bool add_command_steps(const AxisCore& core, Command command, Plan& plan) {
   }
   add_steps(core, *steps, plan);
   return true;
+}
+
+void add_limits_of_move(const AxisCore& core, Plan& plan) {
+  for (const Quantity each :
+       {Quantity::profile_velocity, Quantity::profile_acceleration, Quantity::profile_deceleration}) {
+    const Binding* binding = core.model.binding(each);
+    const auto held = core.value(each);
+    if (binding == nullptr || !held || binding->limits.holds(*held) || !core.model.takes(each)) continue;
+    const Range& limits = binding->limits;
+    static_cast<void>(add_write(core, each, {std::clamp(*held, limits.min, limits.max)}, plan));
+  }
 }
 
 Errc judge_move(const AxisCore& core, bool relative) {

@@ -19,6 +19,7 @@ Plan plan_raw_move(const AxisCore& core, std::uint16_t word) {
   if (relative && !core.motion.at_rest(core.facts())) return Plan::refuse(Errc::busy);  // never added
   if (const Errc code = judge_move(core, relative); code != Errc::ok) return Plan::refuse(code);
   Plan plan;
+  add_limits_of_move(core, plan);
   const auto target = core.motion.wanted(Quantity::target_position);
   if (target && !add_write(core, Quantity::target_position, *target, plan)) return Plan::refuse(Errc::bad_value);
   return plan;

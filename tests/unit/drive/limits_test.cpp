@@ -53,6 +53,34 @@ TEST(Limits, OfATargetThatTheDriveHoldsFromElsewhereHoldToo) {
   EXPECT_FALSE(rig.turns());
 }
 
+// A fresh drive holds its maker's speed; nobody has written it, so nobody was refused.
+TEST(Limits, OfAVelocityThatTheDriveHoldsFromElsewhereHoldToo) {
+  constexpr std::int64_t kLimit = 30'000;
+  for (const bool raw : {false, true}) {
+    SCOPED_TRACE(raw);
+    RigOptions options;
+    options.axis.velocity_limit = kLimit;
+    Rig rig(KincoType::jd, options);
+    rig.bring_to(enabled);
+    rig.stage.run(1s);
+    ASSERT_GT(rig.axis()[Quantity::profile_velocity].value, kLimit);
+    ASSERT_EQ(rig.ask(setpoints({{Quantity::target_position, 500'000}})).outcome.code, Errc::ok);
+    if (raw) {
+      ASSERT_EQ(rig.write(Quantity::mode, 1).outcome.code, Errc::ok);
+      ASSERT_EQ(rig.ask(with_controlword(0x000F)).outcome.code, Errc::ok);
+      ASSERT_EQ(rig.ask(with_controlword(0x003F)).outcome.code, Errc::ok);
+    } else {
+      ASSERT_EQ(rig.command(Command::move_absolute).outcome.code, Errc::ok);
+    }
+    std::int64_t fastest = 0;
+    for (int i = 0; i < 200; ++i, rig.stage.run(10ms))
+      fastest = std::max(fastest, rig.axis()[Quantity::velocity_actual].value);
+    EXPECT_GT(fastest, 0);
+    EXPECT_LE(fastest, kLimit + kLimit / 20);
+    EXPECT_EQ(rig.axis()[Quantity::profile_velocity].value, kLimit);
+  }
+}
+
 TEST(Limits, ThePairIsCheckedTogetherAndNeverStandsTheWrongWayRound) {
   Rig rig(KincoType::md);
   rig.bring_to(disabled);
