@@ -79,5 +79,19 @@ TEST(Roles, a_block_skips_a_row_that_the_drive_has_without_asking_the_role) {
   EXPECT_EQ(panel.write_block(170, words(100)), "90 01") << "a row alone is no block";
 }
 
+TEST(Roles, a_block_leaves_a_row_that_its_client_has_not_changed_to_whoever_may_write_it) {
+  Desk desk;
+  Line panel(desk, Role::operator_, kPanel);
+  desk.port.cached = {{1, Quantity::quick_stop_deceleration, 100}};
+  EXPECT_TRUE(is_done(panel.write_block(168, words(7) + words(100))));
+  desk.port.cached.clear();  // an engineer has written another one
+  desk.port.owner = desk.port.submitted.back().batch.client;
+  desk.port.accepted[{1, Quantity::quick_stop_deceleration}] = 200;
+  static_cast<void>(desk.asked());
+  EXPECT_TRUE(is_done(panel.write_block(168, words(8) + words(100))));
+  EXPECT_EQ(desk.asked(), "homing_offset=8");
+  EXPECT_EQ(panel.write_block(168, words(8) + words(101)), "90 01") << "now it asks";
+}
+
 }  // namespace
 }  // namespace axisgate::modbus_tcp::test

@@ -34,6 +34,15 @@ TEST_F(Writes, read_only_rows_are_no_address) {
     EXPECT_EQ(plc.write(static_cast<std::uint16_t>(address), 0), "86 02") << address;
 }
 
+TEST_F(Writes, that_reach_beyond_an_axis_stop_each_axis_that_they_ask_to_stop) {
+  const auto zeros = [](std::size_t registers) { return std::string(registers * 4, '0'); };
+  EXPECT_EQ(plc.write_block(50, zeros(104) + "00 03"), "90 02") << "from the gateway's block into axis 1";
+  EXPECT_EQ(desk.asked(), "quick_stop");
+  EXPECT_EQ(plc.write_block(154, "00 04" + zeros(99) + "00 02"), "90 02") << "from axis 1 into axis 2";
+  EXPECT_EQ(last().answer_by, desk.runtime.now() + 900ms);
+  EXPECT_EQ(desk.asked(), "halt, axis 2: disable");
+}
+
 TEST_F(Writes, a_batch_carries_who_asks_and_until_when) {
   Line panel(desk, Role::operator_, kPanel);
   for (const char* pdu : {"06 00 92 00 01", "2B 0D 00 00 01 60 41 00 00 00 00 00"}) {

@@ -24,6 +24,10 @@ class RowMemory {
     if (differs) ++changes_.at(offset - kFirst);
     return differs;
   }
+  /// It was the last that was written there.
+  [[nodiscard]] bool holds(std::uint16_t offset, std::int64_t value) const {
+    return last_.at(offset - kFirst) == value;
+  }
   /// Counts the changes of what this command goes by: two equal numbers mean that nothing of it was changed between.
   [[nodiscard]] std::uint64_t targets_of(Command command) const;
   /// The same of a controlword that starts or lets run: all targets together.

@@ -149,6 +149,7 @@ void Pipeline::start(Entry& entry, Instant now) {
   Planned planned = plan_write(entry.request, *entry.view, onlooker(now), *client_);
   if (const Refused* const refused = std::get_if<Refused>(&planned)) {
     tell_refused(entry, *refused, now);
+    carry_out(refused->stops, now);
     return finish(entry, {refused->code, 0});
   }
   entry.run = std::make_shared<WriteRun>(context_.commands, client_, std::get<WritePlan>(std::move(planned)), now,
@@ -179,6 +180,16 @@ void Pipeline::tell_refused(const Entry& entry, const Refused& refused, Instant 
   own.used = true;
   own.result = {};
   ++own.submission;
+}
+
+/// Nobody is told: the answer is of what was refused. What does not come through is owed (design 3.4 Owed stops).
+void Pipeline::carry_out(const std::vector<AxisStop>& stops, Instant now) {
+  for (const AxisStop& stop : stops) {
+    WriteBatch batch = stop.batch;
+    batch.start_by = now + context_.settings.start_deadline;
+    batch.answer_by = now + context_.settings.reply_deadline;
+    static_cast<void>(context_.commands.submit(stop.axis, batch, [](const BatchResult&) {}));
+  }
 }
 
 /// "writes": "posted" changes nothing here: the reply is the only place that tells how it ended.

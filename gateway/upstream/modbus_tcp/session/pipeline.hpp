@@ -75,6 +75,7 @@ class Pipeline {
   [[nodiscard]] bool must_wait(std::size_t position) const;
   void drop_waiting_before(std::size_t stop);
   void start(Entry& entry, Instant now);
+  void carry_out(const std::vector<AxisStop>& stops, Instant now);
   void start_object(Entry& entry, Instant now);
   void finish(Entry& entry, const Outcome& outcome);
   void finish_object(Entry& entry, const BatchResult& result);

@@ -87,6 +87,53 @@ Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, Wr
   return asked;
 }
 
+/// What the coils of one axis ask to stop where the request is refused for one of them; remembered as what was carried
+/// out. `i`: the first of them.
+void add_stops(const Request& request, std::uint16_t i, const UnitView::BitPlace& place, const Onlooker& onlooker,
+               Client& client, std::vector<AxisStop>& stops) {
+  const AxisImage& axis = *place.axis;
+  const Writing writing = writing_to(axis, onlooker, WriteForm::block);
+  EdgeMemory edges = memory_of(client, axis.number).edges;
+  Acting acting;
+  JogWrite jog;
+  for (std::uint16_t at = place.offset; i < request.write_count && at < kCoils; ++i, ++at) {
+    const CoilRow& coil = coil_rows()[at];
+    const bool value = request.written_coil(i);
+    if (at == kJogForward) jog.forward = value;
+    if (at == kJogReverse) jog.reverse = value;
+    if (at == kJogForward || at == kJogReverse || !supports(axis, coil)) continue;
+    EdgeMemory after = edges;
+    const Command asked = after.coil(coil, value, writing).command;
+    if (!asks_to_stop(asked)) continue;
+    edges = after;
+    acting.push_back(asked);
+  }
+  EdgeMemory after = edges;
+  if (after.jog(jog, writing).ends) {
+    edges = after;
+    acting.push_back(Command::jog_end);
+  }
+  for (const Command command : kOrder) {
+    if (!has(acting, command)) continue;
+    WriteBatch& batch = stops.emplace_back(axis.number, client.new_batch(onlooker.role)).batch;
+    batch.is_write = true;
+    batch.command = command;
+    client.at(axis.number).edges = edges;
+  }
+}
+
+std::vector<AxisStop> stops_in(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
+  std::vector<AxisStop> stops;
+  if (request.write_count == 1 || onlooker.role < Role::operator_) return stops;
+  for (std::uint16_t i = 0; i < request.write_count; ++i) {
+    const auto place = view.place_bit(static_cast<std::uint32_t>(request.write_address) + i, onlooker.image);
+    if (!place) continue;
+    add_stops(request, i, *place, onlooker, client, stops);
+    i = static_cast<std::uint16_t>(i + kAxisBlock - 1U - place->offset);
+  }
+  return stops;
+}
+
 /// One write batch for each command that acts. A request in which nothing does is one all the same: by it its client
 /// owns the axis, is told that another does, or renews its lease.
 void add_batches(const Asked& asked, const WriteBatch& empty, WritePlan& plan) {
@@ -117,10 +164,11 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
   const auto first = view.place_bit(request.write_address, onlooker.image);
   const bool single = request.write_count == 1;
   const auto refuse = [&](Errc code, std::size_t coil) {
-    return Refused{code, single ? std::nullopt : std::optional(static_cast<std::uint16_t>(coil))};
+    return Refused{code, single ? std::nullopt : std::optional(static_cast<std::uint16_t>(coil)),
+                   stops_in(request, view, onlooker, client)};
   };
   if (onlooker.role < Role::operator_) return refuse(Errc::role_forbidden, first ? first->offset : 0U);
-  if (!first) return Refused{Errc::not_supported};
+  if (!first) return Refused{Errc::not_supported, std::nullopt, stops_in(request, view, onlooker, client)};
   const AxisImage& axis = *first->axis;
   for (std::uint16_t i = 0; i < request.write_count; ++i) {
     const auto offset = static_cast<std::uint16_t>(first->offset + i);

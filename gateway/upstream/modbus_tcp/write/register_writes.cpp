@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <boost/container/static_vector.hpp>
+#include <utility>
 
 #include "gateway/upstream/modbus_tcp/write/claims.hpp"
 #include "gateway/upstream/modbus_tcp/write/row_writes.hpp"
@@ -95,12 +96,6 @@ class BatchMaker {
   }
 
  private:
-  /// Rows 41 to 79 that are values; not controlword, command, its id and the heartbeat, which have rules of their own.
-  [[nodiscard]] static bool is_remembered(const RegisterRow& row) {
-    return row.source == Source::jog_velocity || row.source == Source::set_position_value ||
-           (row.source == Source::quantity && row.quantity != Quantity::controlword);
-  }
-
   [[nodiscard]] const RowWrite* controlword_row() const {
     for (const RowWrite& each : found_.rows)
       if (is_quantity(*each.row, Quantity::controlword)) return &each;
@@ -187,8 +182,8 @@ class BatchMaker {
     for (const RowWrite& each : found_.rows) {
       if (!is_remembered(*each.row)) continue;
       const bool changed = changed_[remembered++];
-      // What the drive holds and this role may not write is nobody's question.
-      if (each.ignored || (each.cached && onlooker_.role < each.row->may_write)) continue;
+      // What the drive holds, or its client has not changed, and this role may not write is nobody's question.
+      if (each.ignored || onlooker_.role < each.row->may_write) continue;
       const Asks how = asks(each, changed);
       if (how == Asks::no) continue;
       anew_ = anew_ || changed;
@@ -232,6 +227,57 @@ WriteBatch object_batch(const Mailbox& box, const Client& client, Role role) {
   return batch;
 }
 
+/// The stop that a refused block asks of this axis, by the rules of edges; remembered as what was carried out.
+std::optional<WriteBatch> stop_of(const RowWrites& found, const AxisImage& axis, const Onlooker& onlooker,
+                                  Client& client) {
+  std::optional<std::uint16_t> word, command;
+  std::uint16_t id = 0;
+  for (const RowWrite& each : found.rows) {
+    if (each.axis != &axis || each.ignored || !takes(axis, *each.row)) continue;
+    const auto value = static_cast<std::uint16_t>(each.value);
+    if (is_quantity(*each.row, Quantity::controlword)) word = value;
+    if (each.row->source == Source::command) command = value;
+    if (each.row->source == Source::command_id) id = value;
+  }
+  const WriteMemory before = memory_of(client, axis.number);
+  const Writing writing = writing_to(axis, onlooker, WriteForm::block);
+  EdgeMemory edges = before.edges;
+  WriteBatch batch = client.new_batch(onlooker.role);
+  batch.is_write = true;
+  if (command && *command <= kLastCommand) {
+    const Command asked{static_cast<std::uint8_t>(*command)};
+    CommandIds ids = before.ids.value_or(CommandIds{});
+    const auto verdict = [&] {
+      return id != 0 ? edges.command_with_id(asked, id, ids, writing) : edges.command(asked, writing);
+    };
+    if (is_stop(asked) && axis.supports(asked) && verdict() == Verdict::acts) {
+      batch.command = asked;
+      batch.command_id = id;
+      if (id != 0) client.host->ids[axis.number] = ids;
+      client.at(axis.number).edges = edges;
+    }
+  }
+  // Of its owner, and beside another stop, a word that only disables is one as well.
+  const bool disables = batch.command != Command::none || axis.lease.owned_by(client.id);
+  if (word && is_stop(*word, disables) && edges.controlword(*word, writing) == Verdict::acts) {
+    batch.controlword = word;
+    client.at(axis.number).edges = edges;
+  }
+  return asks_nothing(batch) ? std::nullopt : std::optional(batch);
+}
+
+/// What is refused for a row of it stops all the same what it asks to stop.
+std::vector<AxisStop> stops_in(const RowWrites& found, const Onlooker& onlooker, Client& client) {
+  std::vector<AxisStop> stops;
+  if (!found.several || onlooker.role < Role::operator_) return stops;
+  const AxisImage* last = nullptr;
+  for (const RowWrite& each : found.rows) {
+    if (each.axis == nullptr || each.axis == std::exchange(last, each.axis)) continue;
+    if (const auto stop = stop_of(found, *each.axis, onlooker, client)) stops.push_back({each.axis->number, *stop});
+  }
+  return stops;
+}
+
 /// Gateway register 8. Changed, it is a sign of life for every axis, and takes over what an ended connection of the
 /// same program has left.
 std::vector<AxisNumber> beat(Client& client, std::uint16_t value, const Onlooker& onlooker) {
@@ -256,8 +302,9 @@ Errc check_row(const Request& request, const UnitView& view, const Onlooker& onl
 
 Planned plan_register_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
   const RowWrites found = resolve_rows(request, view, onlooker);
-  const auto refuse = [&found](const WrongRow& wrong) {
-    return Refused{wrong.code, found.several && is_wrong(wrong.code) ? std::optional(wrong.row) : std::nullopt};
+  const auto refuse = [&](const WrongRow& wrong) {
+    return Refused{wrong.code, found.several && is_wrong(wrong.code) ? std::optional(wrong.row) : std::nullopt,
+                   stops_in(found, onlooker, client)};
   };
   if (const WrongRow wrong = check_rows(found, onlooker.role); wrong.code != Errc::ok) return refuse(wrong);
 

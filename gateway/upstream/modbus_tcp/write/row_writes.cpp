@@ -34,8 +34,8 @@ std::int64_t number_of_float(const RegisterRow& row, std::uint32_t bits, const A
 
 RowWrite row_write(const RegisterRow& row, std::uint32_t bits, const AxisImage* axis,
                    const ListenerSettings& settings) {
-  if (!settings.float_numbers || axis == nullptr || !is_float_row(row)) return {&row, number_of(bits, row.type)};
-  return {&row, number_of_float(row, bits, *axis), bits};
+  if (!settings.float_numbers || axis == nullptr || !is_float_row(row)) return {&row, axis, number_of(bits, row.type)};
+  return {&row, axis, number_of_float(row, bits, *axis), bits};
 }
 
 /// A block never reaches into the next one: the last offsets of a block take no write, so `outside` is set before.
@@ -95,6 +95,12 @@ bool is_cached(const RowWrite& write, const AxisImage& axis, const Onlooker& onl
   return float_bits(row, shown, axis.units_per_rev) == *write.as_float && holds(row, shown, axis, onlooker);
 }
 
+/// "What asks for nothing is answered normally": so is what this client has not changed since it was allowed to.
+bool is_held(const RowWrite& write, const AxisImage& axis, const Onlooker& onlooker) {
+  const ClientAxis* const own = onlooker.client.find(axis.number);
+  return own != nullptr && is_remembered(*write.row) && own->rows.holds(write.row->offset, write.value);
+}
+
 bool is_all_zero(const Request& request, const UnitView& view, const Onlooker& onlooker) {
   constexpr std::uint16_t kFirst = 40, kLast = 54;
   const auto place = view.place_register(request.write_address, onlooker.image);
@@ -116,7 +122,7 @@ WrongRow check_role(const RowWrites& found, Role role) {
   const bool viewer = role < Role::operator_;
   for (const RowWrite& each : found.rows) {
     if (viewer && found.outside && found.outside_at < each.row->offset) break;
-    if (role < needed_role(each) && (!each.skipped() || (viewer && found.zeros)))
+    if (role < needed_role(each) && (viewer ? !each.skipped() || found.zeros : !each.skipped() && !each.held))
       return {Errc::role_forbidden, each.row->offset};
   }
   if (viewer && found.outside) return {Errc::role_forbidden, found.outside_at};
@@ -170,6 +176,11 @@ bool touches_several(const Request& request, const UnitView& view, const Process
 
 }  // namespace
 
+bool is_remembered(const RegisterRow& row) {
+  return row.source == Source::jog_velocity || row.source == Source::set_position_value ||
+         (row.source == Source::quantity && row.quantity != Quantity::controlword);
+}
+
 const RowWrite* RowWrites::of(Source source) const {
   for (const RowWrite& each : rows)
     if (each.row->source == source) return &each;
@@ -187,6 +198,7 @@ RowWrites resolve_rows(const Request& request, const UnitView& view, const Onloo
     for (RowWrite& each : writes.rows) {
       each.ignored = writes.zeros || is_ignored(each, *writes.axis, onlooker);
       each.cached = !each.ignored && is_cached(each, *writes.axis, onlooker);
+      each.held = is_held(each, *writes.axis, onlooker);
     }
   }
   return writes;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A register write resolved into rows of the map, and the checks of it: role, then addresses, then values (design 3.3).
-// Promises that a long value is written whole or not at all, and that rows the drive already holds ask no role.
+// Promises that a long value is written whole or not at all, and that rows the drive already holds, or
+// its client has not changed, ask no role.
 // Never changes anything: what passed is carried out by plan_register_write().
 #pragma once
 
@@ -14,10 +15,12 @@ namespace axisgate::modbus_tcp {
 
 struct RowWrite {
   const RegisterRow* row;
+  const AxisImage* axis;                    ///< nullptr: of the gateway block
   std::int64_t value;                       ///< in register units
   std::optional<std::uint32_t> as_float{};  ///< where it was written as IEEE 754: its bits
   bool ignored = false;  ///< in a block: this drive does not have it, or its 0 means "leave as it is"
   bool cached = false;   ///< in a block: the drive holds it already, so no role and no range is asked
+  bool held = false;     ///< in a block: its client wrote the same there last, so no role is asked
   [[nodiscard]] bool skipped() const { return ignored || cached; }
 };
 
@@ -34,6 +37,9 @@ struct RowWrites {
   bool several = false;  ///< more than one row is touched, whole or not: what is refused is a block write
   [[nodiscard]] const RowWrite* of(Source source) const;
 };
+
+/// Rows 41 to 79 that are values; not controlword, command, its id and the heartbeat, which have rules of their own.
+[[nodiscard]] bool is_remembered(const RegisterRow& row);
 
 [[nodiscard]] RowWrites resolve_rows(const Request& request, const UnitView& view, const Onlooker& onlooker);
 /// Role, then addresses, then values: what is wrong first, and the first row of which it is. Axis limits are the

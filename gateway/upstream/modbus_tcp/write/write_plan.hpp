@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plan of one write request: what is to be asked of the axis, after role, addresses and values were checked in that
 // order (design 3.3, 3.3 Roles). Promises that a refused request has changed nothing, not even the memory of
-// edges. Never asks anything of an axis itself: WriteRun carries the plan out.
+// edges, but for the stops in it. Never asks anything of an axis itself: WriteRun carries the plan out.
 #pragma once
 
 #include <optional>
@@ -46,10 +46,18 @@ struct WritePlan {
   WriteMemory before{};  ///< of the client, before this request
 };
 
+struct AxisStop {
+  AxisNumber axis = 0;
+  WriteBatch batch;
+};
+
 /// role_forbidden, not_supported, bad_value and, for a second mailbox request, busy.
 struct Refused {
   Errc code;
   std::optional<std::uint16_t> row{};  ///< of a block write, and not of busy: the first row or coil refused
+  /// What stops in it, of whoever may stop: carried out alone, and remembered as written. A block reaches into several
+  /// axes only where it is refused.
+  std::vector<AxisStop> stops{};
 };
 
 /// `client` is the one that writes: what is its own is stored there.
