@@ -162,6 +162,46 @@ TEST_F(Life, ReadsOfAClientThatIsAnAddressAreNoSignOfLife) {
   EXPECT_EQ(life->last_request, desk.runtime.now());
 }
 
+TEST_F(Life, OfAnAddressIsToldByWritesThatAreAcceptedFromWhoMayCommand) {
+  desk.settings.client_is_address = true;
+  Line pump(desk, Role::engineer, kPanel);
+  Line viewer(desk, Role::viewer, kPanel);
+  EXPECT_TRUE(is_done(pump.write(156, 1)));
+  const auto life = last().life;
+  const auto lives = [&](Line& line, const char* pdu) {
+    desk.runtime.advance_by(1s);
+    static_cast<void>(line.ask(pdu));
+    return life->last_request == desk.runtime.now();
+  };
+  EXPECT_FALSE(lives(pump, "06 00 B5 60 64")) << "the object of a read to come";
+  EXPECT_FALSE(last().renews || last().is_write);
+  EXPECT_FALSE(lives(pump, "10 00 B4 00 04 08 00 01 60 64 00 00 00 04")) << "a read by the mailbox";
+  EXPECT_FALSE(lives(pump, "2B 0D 00 00 01 60 64 00 00 00 00 00")) << "and by 43/13";
+  EXPECT_FALSE(lives(pump, "06 00 9A 00 63")) << "no command";
+  EXPECT_FALSE(lives(pump, "06 FF FF 00 01")) << "no register";
+  EXPECT_FALSE(lives(pump, "2B 0D 01 00 63 60 64 00 00 00 00 02 01 02")) << "no such axis";
+  desk.port.at_once = {{{Errc::not_owner}}};
+  EXPECT_FALSE(lives(pump, "06 00 92 00 01"));
+  EXPECT_FALSE(lives(viewer, "06 00 08 00 01"));
+  EXPECT_FALSE(lives(viewer, "06 00 92 00 01"));
+  EXPECT_TRUE(lives(pump, "06 00 92 00 01"));
+  EXPECT_TRUE(lives(pump, "0F 00 64 00 08 01 00"));
+  EXPECT_TRUE(lives(pump, "06 00 08 00 01"));
+  EXPECT_TRUE(lives(pump, "2B 0D 01 00 01 60 64 00 00 00 00 02 01 02"));
+}
+
+TEST_F(Life, AViewersGatewayHeartbeatIsNobodys) {
+  desk.settings.client_is_address = true;
+  Line pump(desk, Role::operator_, kPanel);
+  Line viewer(desk, Role::viewer, kPanel);
+  EXPECT_TRUE(is_done(viewer.write(8, 7)));
+  const auto life = pump.life();
+  EXPECT_EQ(life->heartbeat, kLongAgo);
+  EXPECT_EQ(viewer.read(8), word(7));
+  EXPECT_TRUE(is_done(pump.write(8, 7)));
+  EXPECT_EQ(life->heartbeat, desk.runtime.now()) << "whatever a viewer wrote before";
+}
+
 TEST_F(Life, AChangedGatewayHeartbeatTakesOverTheOrphansOfItsOwnHand) {
   EXPECT_TRUE(is_done(plc.write(156, 1)));
   desk.axis(1).lease = {.owner = last().life, .running = true, .renewed = desk.runtime.now()};

@@ -83,13 +83,14 @@ struct Client {
   ClientId id = 0;
   Address address{};
   std::shared_ptr<Host> host;
-  std::shared_ptr<ClientLife> life;          ///< never null; outlives the client where it owns an axis
-  std::size_t connections = 0;               ///< more than one only where "client" is "address"
-  std::map<AxisNumber, ClientAxis> axes;     ///< those it has written to
-  std::optional<std::uint16_t> heartbeat{};  ///< gateway register 8; none written yet: the first one is a change
-  ObjectBuffers objects;                     ///< function 43/13
-  std::uint64_t writes = 0;                  ///< counts its write requests, refused ones too
-  std::optional<RefusedWrite> refused{};     ///< in the log last
+  std::shared_ptr<ClientLife> life;       ///< never null; outlives the client where it owns an axis
+  std::size_t connections = 0;            ///< more than one only where "client" is "address"
+  std::map<AxisNumber, ClientAxis> axes;  ///< those it has written to
+  std::uint16_t heartbeat = 0;            ///< gateway register 8
+  std::optional<std::uint16_t> beat{};    ///< the same as who may command wrote it; none yet: the first is a change
+  ObjectBuffers objects;                  ///< function 43/13
+  std::uint64_t writes = 0;               ///< counts its write requests, refused ones too
+  std::optional<RefusedWrite> refused{};  ///< in the log last
   Instant refused_told = kLongAgo;
 
   /// A write batch of this client that asks for nothing yet. `role`: of the connection that it asks by.

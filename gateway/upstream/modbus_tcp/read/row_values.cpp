@@ -140,7 +140,7 @@ std::uint32_t gateway_value(const RegisterRow& row, const Onlooker& onlooker) {
     case Source::role:
       return static_cast<std::uint32_t>(onlooker.role);
     case Source::gateway_heartbeat:
-      return onlooker.client.heartbeat.value_or(0);
+      return onlooker.client.heartbeat;
     case Source::word_order_test:
       return kWordOrderTest;
     default:

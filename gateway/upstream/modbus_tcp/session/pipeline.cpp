@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/modbus_tcp/session/pipeline.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <string>
 #include <utility>
@@ -46,9 +47,8 @@ void Pipeline::accept(const Frame& frame, Instant now) {
   const auto view = UnitView::of(frame.unit, context_.settings, context_.image);
   std::variant<Request, ModbusException> decoded = decode_request(frame.pdu);
   Request* const request = std::get_if<Request>(&decoded);
-  // A client that is an address has programs that only look: their reads are no sign of the one that commands.
   const bool writes = request != nullptr && (request->writes() || (request->reference && request->reference->write));
-  if (writes || !context_.settings.client_is_address) client_->life->last_request = now;
+  if (!context_.settings.client_is_address) client_->life->last_request = now;
   on_deadline(now);
   // The common case, and the only one that must be quick: a read with nothing before it.
   if (entries_.empty() && view && request != nullptr && !is_carried_out(*request)) {
@@ -56,6 +56,7 @@ void Pipeline::accept(const Frame& frame, Instant now) {
   }
   Entry& entry = entries_.emplace_back();
   entry.number = ++last_number_;
+  entry.arrived = now;
   entry.transaction = frame.transaction;
   entry.unit = frame.unit;
   entry.view = view;
@@ -152,6 +153,7 @@ void Pipeline::start(Entry& entry, Instant now) {
     carry_out(refused->stops, now);
     return finish(entry, {refused->code, 0});
   }
+  const bool reads_alone = std::get<WritePlan>(planned).reads_alone;
   entry.run = std::make_shared<WriteRun>(context_.commands, client_, std::get<WritePlan>(std::move(planned)), now,
                                          context_.settings, context_.log);
   entry.stage = Stage::running;
@@ -159,11 +161,19 @@ void Pipeline::start(Entry& entry, Instant now) {
   WriteRun::OnDone on_done;
   if (!posted) on_done = [this, number = entry.number](const Outcome& outcome) { on_result_(number, outcome); };
   const std::optional<Outcome> at_once = entry.run->start(std::move(on_done));
+  if (!reads_alone && (!at_once || at_once->code == Errc::ok)) note_accepted_write(entry);
   if (posted) {
     finish(entry, at_once && found_by_checks(at_once->code) ? *at_once : Outcome{});
   } else if (at_once) {
     finish(entry, *at_once);
   }
+}
+
+/// A client that is an address has programs that only look, or may write nothing: what they ask, and what is refused
+/// them, is no sign of the one that commands.
+void Pipeline::note_accepted_write(const Entry& entry) {
+  Instant& last = client_->life->last_request;
+  if (role_ >= Role::operator_) last = std::max(last, entry.arrived);
 }
 
 /// The outcome table's "command_result 0": no older result may be taken for this write's.
@@ -202,7 +212,11 @@ void Pipeline::start_object(Entry& entry, Instant now) {
   }
   entry.object_axis = plan.axis;
   entry.stage = Stage::at_turn;
-  if (!plan.batch) return;
+  const bool writes = entry.request.reference->write;
+  if (!plan.batch) {
+    if (writes) note_accepted_write(entry);
+    return;
+  }
   entry.object_run = std::make_shared<ObjectRun>(client_, plan.axis);
   entry.stage = Stage::running;
   const auto at_once =
@@ -211,6 +225,7 @@ void Pipeline::start_object(Entry& entry, Instant now) {
           if (each.number == number) finish_object(each, result);
         on_result_(number, result.outcome);
       });
+  if (writes && (!at_once || at_once->outcome.code == Errc::ok)) note_accepted_write(entry);
   if (at_once) finish_object(entry, *at_once);
 }
 

@@ -50,6 +50,7 @@ class Pipeline {
   };
   struct Entry {
     std::uint64_t number = 0;
+    Instant arrived;
     std::uint16_t transaction = 0;
     std::uint8_t unit = 0;
     Stage stage = Stage::answered;
@@ -75,6 +76,7 @@ class Pipeline {
   [[nodiscard]] bool must_wait(std::size_t position) const;
   void drop_waiting_before(std::size_t stop);
   void start(Entry& entry, Instant now);
+  void note_accepted_write(const Entry& entry);
   void carry_out(const std::vector<AxisStop>& stops, Instant now);
   void start_object(Entry& entry, Instant now);
   void finish(Entry& entry, const Outcome& outcome);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <boost/container/static_vector.hpp>
 #include <utility>
 
@@ -56,6 +57,14 @@ MailboxWrite write_mailbox(const RowWrites& found, const Mailbox& before) {
   return write;
 }
 
+/// Only what a monitor writes too, to read an object: no sign of life of a program that commands.
+bool reads_alone(const RowWrites& found) {
+  const RowWrite* const request = found.of(Source::object_request);
+  const bool others = std::ranges::any_of(
+      found.rows, [](const RowWrite& each) { return each.row->offset < axis_offset(Source::object_request); });
+  return !others && (request == nullptr || request->value != 2);
+}
+
 /// One register write on its way to a write batch: the client's memory is brought up to date, and what asks is put into
 /// it.
 class BatchMaker {
@@ -77,7 +86,8 @@ class BatchMaker {
   };
   [[nodiscard]] Made make() {
     // A viewer comes this far with the mailbox alone, which it may ask to read.
-    batch_.is_write = onlooker_.role >= Role::operator_;
+    batch_.renews = !reads_alone(found_);
+    batch_.is_write = onlooker_.role >= Role::operator_ && batch_.renews;
     batch_.all_zero = batch_.zero_speed = found_.zeros;
     // Judged before anything is remembered.
     const bool only_remembered = found_.block && first_block();
@@ -278,14 +288,14 @@ std::vector<AxisStop> stops_in(const RowWrites& found, const Onlooker& onlooker,
   return stops;
 }
 
-/// Gateway register 8. Changed, it is a sign of life for every axis, and takes over what an ended connection of the
-/// same program has left.
+/// Gateway register 8. Changed by who may command, it is a sign of life for every axis, and takes over what an ended
+/// connection of the same program has left.
 std::vector<AxisNumber> beat(Client& client, std::uint16_t value, const Onlooker& onlooker) {
   std::vector<AxisNumber> orphans;
-  if (client.heartbeat == value) return orphans;
   client.heartbeat = value;
+  if (onlooker.role < Role::operator_ || client.beat == value) return orphans;
+  client.beat = value;
   client.life->heartbeat = onlooker.now;
-  if (onlooker.role < Role::operator_) return orphans;
   for (const auto& axis : onlooker.image.axes()) {
     const auto& owner = axis->lease.owner;
     if (owner && !owner->connected && owner->id != client.id && same_hand(*owner, *client.life))
@@ -328,6 +338,7 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
     own.mailbox.detail = 0;
     plan.object = object_batch(box.mailbox, client, onlooker.role);
   }
+  plan.reads_alone = reads_alone(found);
   plan.not_new = made.not_new;
   plan.repeats = made.repeats;
   plan.single = !found.block;
