@@ -179,7 +179,7 @@ void Pipeline::note_accepted_write(const Entry& entry) {
 /// The outcome table's "command_result 0": no older result may be taken for this write's.
 void Pipeline::tell_refused(const Entry& entry, const Refused& refused, Instant now) {
   const AxisNumber axis = axis_of_write(entry.request, *entry.view, context_.image);
-  if (axis == 0 || !refused.row)
+  if ((axis == 0 || !refused.row) && refused.code != Errc::link_lost)
     log_refused_write(block_write(entry.request, axis), {refused.code}, *client_, now, context_.log);
   if (axis == 0) return;
   ClientAxis& own = client_->at(axis);

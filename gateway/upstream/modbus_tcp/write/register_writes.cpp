@@ -3,6 +3,7 @@
 #include <boost/container/static_vector.hpp>
 #include <utility>
 
+#include "gateway/upstream/modbus_tcp/read/reads.hpp"
 #include "gateway/upstream/modbus_tcp/write/claims.hpp"
 #include "gateway/upstream/modbus_tcp/write/row_writes.hpp"
 #include "gateway/upstream/modbus_tcp/write/write_plan.hpp"
@@ -276,6 +277,14 @@ std::optional<WriteBatch> stop_of(const RowWrites& found, const AxisImage& axis,
   return asks_nothing(batch) ? std::nullopt : std::optional(batch);
 }
 
+/// Of function 23, what it reads, which is judged before anything is written (V1.1b3 6.17).
+Errc check_read(const Request& request, const UnitView& view, const Onlooker& onlooker) {
+  if (!request.reads()) return Errc::ok;
+  const Pdu answer = answer_read(request, view, onlooker);
+  if (answer[0] == static_cast<Byte>(request.function)) return Errc::ok;
+  return ModbusException{answer[1]} == ModbusException::illegal_data_address ? Errc::not_supported : Errc::link_lost;
+}
+
 /// What is refused for a row of it stops all the same what it asks to stop.
 std::vector<AxisStop> stops_in(const RowWrites& found, const Onlooker& onlooker, Client& client) {
   std::vector<AxisStop> stops;
@@ -317,6 +326,8 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
                    stops_in(found, onlooker, client)};
   };
   if (const WrongRow wrong = check_rows(found, onlooker.role); wrong.code != Errc::ok) return refuse(wrong);
+  if (const Errc wrong = check_read(request, view, onlooker); wrong != Errc::ok)
+    return Refused{wrong, std::nullopt, stops_in(found, onlooker, client)};
 
   WritePlan plan;
   if (found.axis == nullptr) {

@@ -52,7 +52,8 @@ struct AxisStop {
   WriteBatch batch;
 };
 
-/// role_forbidden, not_supported, bad_value and, for a second mailbox request, busy.
+/// role_forbidden, not_supported, bad_value; for a second mailbox request busy; where function 23 reads what does not
+/// answer (listener option "offline_reads") link_lost.
 struct Refused {
   Errc code;
   std::optional<std::uint16_t> row{};  ///< of a block write, and not of busy: the first row or coil refused
