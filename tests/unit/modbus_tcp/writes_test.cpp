@@ -57,6 +57,25 @@ TEST_F(Writes, a_batch_carries_who_asks_and_until_when) {
   }
 }
 
+TEST_F(Writes, what_waits_behind_a_mask_has_its_deadlines_from_its_arrival_and_ends_with_anybodys_stop) {
+  desk.port.slow = true;
+  plc.send("06 00 8C 00 0F");
+  plc.send("16 00 8C FF EF 00 10");
+  plc.send("06 00 9A 00 06");
+  const Instant arrived = desk.runtime.now();
+  desk.runtime.advance_by(400ms);
+  desk.port.finish();
+  EXPECT_EQ(last().start_by, arrived + 500ms);
+  EXPECT_EQ(last().answer_by, arrived + 900ms);
+  const ClientId plcs = last().client;
+  EXPECT_EQ(desk.asked(), "controlword=F alone, controlword=10 alone, move_absolute");
+  plc.send("16 00 8C FF EF 00 00");
+  desk.axis(1).endings.stopped(plcs);
+  desk.port.finish();
+  desk.port.finish();
+  EXPECT_EQ(desk.asked(), "-");
+}
+
 TEST_F(Writes, an_owners_block_asks_for_what_is_no_longer_the_value_accepted_last) {
   EXPECT_TRUE(is_done(plc.write_block(141, "00 01 00 00 00 07")));
   desk.port.owner = last().client;

@@ -96,8 +96,6 @@ ReferencePlan plan_reference(const Request& request, const UnitView& view, const
   WriteBatch& batch = plan.batch.emplace(client.new_batch(onlooker.role));
   batch.claims = batch.is_write = reference.write;
   batch.object = std::move(object);
-  batch.start_by = onlooker.now + onlooker.settings.start_deadline;
-  batch.answer_by = onlooker.now + onlooker.settings.reply_deadline;
   return plan;
 }
 
@@ -110,12 +108,6 @@ Pdu answer_reference(const Request& request, AxisNumber axis, const std::optiona
   // Whatever came of it, what was read before may no longer be so.
   client.objects.forget(key);
   return result->outcome.code == Errc::ok ? reference_reply(reference, {}, false) : failure(*result);
-}
-
-AxisNumber axis_of_object_write(const Request& request, const UnitView& view, const ProcessImage& image) {
-  if (!request.reference || !request.reference->write) return 0;
-  const AxisImage* axis = view.axis_of_node(request.reference->node, image);
-  return axis == nullptr ? AxisNumber{0} : axis->number;
 }
 
 }  // namespace axisgate::modbus_tcp

@@ -28,7 +28,4 @@ struct ReferencePlan {
 [[nodiscard]] Pdu answer_reference(const Request& request, AxisNumber axis, const std::optional<BatchResult>& result,
                                    Client& client, Instant now);
 
-/// The axis that a write by 43/13 is for; 0 where it is no such write, or there is no such axis.
-[[nodiscard]] AxisNumber axis_of_object_write(const Request& request, const UnitView& view, const ProcessImage& image);
-
 }  // namespace axisgate::modbus_tcp

@@ -67,6 +67,8 @@ void Pipeline::accept(const Frame& frame, Instant now) {
   } else {
     entry.stage = is_carried_out(*request) ? Stage::waiting : Stage::at_turn;
     entry.request = *request;
+    entry.axis = axis_of(*request, *view);
+    if (const AxisImage* const axis = context_.image.find(entry.axis)) entry.endings = axis->endings.now();
   }
   const bool is_write = writes || (request == nullptr && is_write_function(frame.pdu[0]));
   if (context_.settings.staged_halves && is_write) stage_half(entry, now);
@@ -97,6 +99,12 @@ void Pipeline::stage_half(Entry& entry, Instant now) {
   note_whole_row(client_->at(half->axis));
 }
 
+AxisNumber Pipeline::axis_of(const Request& request, const UnitView& view) const {
+  if (!request.reference) return axis_of_write(request, view, context_.image);
+  const AxisImage* const axis = view.axis_of_node(request.reference->node, context_.image);
+  return axis == nullptr ? AxisNumber{0} : axis->number;
+}
+
 void Pipeline::on_deadline(Instant now) {
   if (half_.until() <= now) drop_half("the other half did not come within a second");
 }
@@ -105,44 +113,63 @@ void Pipeline::drop_half(const char* why) {
   if (const auto half = half_.take()) tell_dropped_half(half->axis, half->row, why, *client_, context_.log);
 }
 
-/// FC 22 masks the value at the moment it is carried out, so what this connection has under way must have ended first.
+/// FC 22 masks the value at the moment it is carried out, so what this connection writes to the same axis must have
+/// ended first. What follows such a write to that axis keeps its place.
 bool Pipeline::must_wait(std::size_t position) const {
-  if (entries_[position].request.function != Function::mask_write_register) return false;
-  for (std::size_t i = 0; i < position; ++i)
-    if (entries_[i].is_running_write()) return true;
+  const Entry& entry = entries_[position];
+  const bool masks = entry.request.function == Function::mask_write_register;
+  for (std::size_t i = 0; i < position; ++i) {
+    const Entry& before = entries_[i];
+    if ((before.stage == Stage::waiting || (masks && before.is_running_write())) && before.axis == entry.axis)
+      return true;
+  }
   return false;
 }
 
-/// On arrival, all that can be; behind a request that has to wait only stops, so that writes keep their order.
+/// On arrival, all that can be; what has to wait is passed by stops alone.
 void Pipeline::start_ready(Instant now) {
-  bool held_back = false;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Entry& entry = entries_[i];
     if (entry.stage != Stage::waiting) continue;
-    const bool stop = asks_for_a_stop(entry.request, *entry.view, context_.image);
-    if (!stop && (held_back || must_wait(i))) {
-      held_back = true;
+    if (must_wait(i)) {
+      entry.waited = true;
+      if (!asks_for_a_stop(entry.request, *entry.view, onlooker(now))) continue;
+      drop_waiting_before(i);
+    } else if (const Errc why = entry.waited ? too_late(entry, now) : Errc::ok; why != Errc::ok) {
+      drop(entry, why);
       continue;
     }
-    if (stop && held_back) drop_waiting_before(i);
     start(entry, now);
   }
 }
 
 /// What the client asked for before it asked to stop must not be carried out after the stop.
 void Pipeline::drop_waiting_before(std::size_t stop) {
-  const AxisNumber axis = written_axis(entries_[stop]);
   for (std::size_t i = 0; i < stop; ++i) {
     Entry& entry = entries_[i];
-    if (entry.stage == Stage::waiting && written_axis(entry) == axis) {
-      finish(entry, {Errc::dropped_by_stop, 0});
-    }
+    if (entry.stage == Stage::waiting && entry.writes() && entry.axis == entries_[stop].axis)
+      drop(entry, Errc::dropped_by_stop);
   }
 }
 
-AxisNumber Pipeline::written_axis(const Entry& entry) const {
-  return entry.request.reference ? axis_of_object_write(entry.request, *entry.view, context_.image)
-                                 : axis_of_write(entry.request, *entry.view, context_.image);
+/// Why what had to wait is not begun any more: it came too long ago, or its axis was stopped since, by whomever. A
+/// fault and a loss have stopped it as well.
+Errc Pipeline::too_late(const Entry& entry, Instant now) const {
+  constexpr ClientId kAnybody = ~ClientId{0};
+  const AxisImage* const axis = context_.image.find(entry.axis);
+  if (entry.writes() && axis != nullptr && axis->endings.interrupted(entry.endings, kAnybody))
+    return Errc::dropped_by_stop;
+  return now - entry.arrived >= context_.settings.start_deadline ? Errc::never_started : Errc::ok;
+}
+
+void Pipeline::drop(Entry& entry, Errc why) {
+  if (entry.request.writes() && entry.axis != 0) {
+    ClientAxis& own = client_->at(entry.axis);
+    own.used = true;
+    own.result = {command_result(why), 0, 0};
+    ++own.submission;
+  }
+  finish(entry, {why, 0});
 }
 
 void Pipeline::start(Entry& entry, Instant now) {
@@ -150,12 +177,12 @@ void Pipeline::start(Entry& entry, Instant now) {
   Planned planned = plan_write(entry.request, *entry.view, onlooker(now), *client_);
   if (const Refused* const refused = std::get_if<Refused>(&planned)) {
     tell_refused(entry, *refused, now);
-    carry_out(refused->stops, now);
+    carry_out(refused->stops, entry.arrived);
     return finish(entry, {refused->code, 0});
   }
   const bool reads_alone = std::get<WritePlan>(planned).reads_alone;
-  entry.run = std::make_shared<WriteRun>(context_.commands, client_, std::get<WritePlan>(std::move(planned)), now,
-                                         context_.settings, context_.log);
+  entry.run = std::make_shared<WriteRun>(context_.commands, client_, std::get<WritePlan>(std::move(planned)),
+                                         entry.arrived, context_.settings, context_.log);
   entry.stage = Stage::running;
   const bool posted = context_.settings.posted_writes;
   WriteRun::OnDone on_done;
@@ -178,7 +205,7 @@ void Pipeline::note_accepted_write(const Entry& entry) {
 
 /// The outcome table's "command_result 0": no older result may be taken for this write's.
 void Pipeline::tell_refused(const Entry& entry, const Refused& refused, Instant now) {
-  const AxisNumber axis = axis_of_write(entry.request, *entry.view, context_.image);
+  const AxisNumber axis = entry.axis;
   if ((axis == 0 || !refused.row) && refused.code != Errc::link_lost)
     log_refused_write(block_write(entry.request, axis), {refused.code}, *client_, now, context_.log);
   if (axis == 0) return;
@@ -193,18 +220,18 @@ void Pipeline::tell_refused(const Entry& entry, const Refused& refused, Instant 
 }
 
 /// Nobody is told: the answer is of what was refused. What does not come through is owed (design 3.4 Owed stops).
-void Pipeline::carry_out(const std::vector<AxisStop>& stops, Instant now) {
+void Pipeline::carry_out(const std::vector<AxisStop>& stops, Instant arrived) {
   for (const AxisStop& stop : stops) {
     WriteBatch batch = stop.batch;
-    batch.start_by = now + context_.settings.start_deadline;
-    batch.answer_by = now + context_.settings.reply_deadline;
+    batch.start_by = arrived + context_.settings.start_deadline;
+    batch.answer_by = arrived + context_.settings.reply_deadline;
     static_cast<void>(context_.commands.submit(stop.axis, batch, [](const BatchResult&) {}));
   }
 }
 
 /// "writes": "posted" changes nothing here: the reply is the only place that tells how it ended.
 void Pipeline::start_object(Entry& entry, Instant now) {
-  const ReferencePlan plan = plan_reference(entry.request, *entry.view, onlooker(now), *client_);
+  ReferencePlan plan = plan_reference(entry.request, *entry.view, onlooker(now), *client_);
   if (plan.refused != Errc::ok) {
     const GeneralReference& reference = *entry.request.reference;
     if (reference.write) log_refused_object(reference, {plan.refused}, *client_, now, context_.log);
@@ -217,6 +244,8 @@ void Pipeline::start_object(Entry& entry, Instant now) {
     if (writes) note_accepted_write(entry);
     return;
   }
+  plan.batch->start_by = entry.arrived + context_.settings.start_deadline;
+  plan.batch->answer_by = entry.arrived + context_.settings.reply_deadline;
   entry.object_run = std::make_shared<ObjectRun>(client_, plan.axis);
   entry.stage = Stage::running;
   const auto at_once =
@@ -269,7 +298,7 @@ void Pipeline::log_exception(const Pdu& reply) const {
 
 /// Once, until something of this client's acts again: a tool in a loop must not fill the log.
 void Pipeline::log_not_new(const Entry& entry) {
-  const AxisNumber axis = axis_of_write(entry.request, *entry.view, context_.image);
+  const AxisNumber axis = entry.axis;
   if (axis == 0) return;
   ClientAxis& own = client_->at(axis);
   if (own.told_not_new) return;

@@ -51,6 +51,9 @@ class Pipeline {
   struct Entry {
     std::uint64_t number = 0;
     Instant arrived;
+    AxisNumber axis = 0;         ///< that it is carried out on; 0: none
+    Endings::Point endings = 0;  ///< of that axis, when it arrived
+    bool waited = false;
     std::uint16_t transaction = 0;
     std::uint8_t unit = 0;
     Stage stage = Stage::answered;
@@ -64,10 +67,9 @@ class Pipeline {
     AxisNumber object_axis = 0;
     std::optional<BatchResult> object_result;
 
+    [[nodiscard]] bool writes() const { return request.writes() || (request.reference && request.reference->write); }
     /// What has to have ended before a value is masked.
-    [[nodiscard]] bool is_running_write() const {
-      return stage == Stage::running && !(request.reference && !request.reference->write);
-    }
+    [[nodiscard]] bool is_running_write() const { return stage == Stage::running && writes(); }
   };
 
   void stage_half(Entry& entry, Instant now);
@@ -75,9 +77,11 @@ class Pipeline {
   void start_ready(Instant now);
   [[nodiscard]] bool must_wait(std::size_t position) const;
   void drop_waiting_before(std::size_t stop);
+  [[nodiscard]] Errc too_late(const Entry& entry, Instant now) const;
+  void drop(Entry& entry, Errc why);
   void start(Entry& entry, Instant now);
   void note_accepted_write(const Entry& entry);
-  void carry_out(const std::vector<AxisStop>& stops, Instant now);
+  void carry_out(const std::vector<AxisStop>& stops, Instant arrived);
   void start_object(Entry& entry, Instant now);
   void finish(Entry& entry, const Outcome& outcome);
   void finish_object(Entry& entry, const BatchResult& result);
@@ -87,7 +91,7 @@ class Pipeline {
   void tell_refused(const Entry& entry, const Refused& refused, Instant now);
   void refuse(Entry& entry, ModbusException exception);
   void flush(Instant now);
-  [[nodiscard]] AxisNumber written_axis(const Entry& entry) const;
+  [[nodiscard]] AxisNumber axis_of(const Request& request, const UnitView& view) const;
   [[nodiscard]] Pdu answer(const Entry& entry, Instant now) const;
   [[nodiscard]] Pdu answer(const Request& request, const UnitView& view, Instant now) const;
   [[nodiscard]] Onlooker onlooker(Instant now) const;

@@ -87,13 +87,13 @@ Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, Wr
   return asked;
 }
 
-/// What the coils of one axis ask to stop where the request is refused for one of them; remembered as what was carried
-/// out. `i`: the first of them.
+/// What the coils of one axis ask to stop. `i`: the first of them.
 void add_stops(const Request& request, std::uint16_t i, const UnitView::BitPlace& place, const Onlooker& onlooker,
-               Client& client, std::vector<AxisStop>& stops) {
+               std::vector<AxisStop>& stops) {
   const AxisImage& axis = *place.axis;
   const Writing writing = writing_to(axis, onlooker, WriteForm::block);
-  EdgeMemory edges = memory_of(client, axis.number).edges;
+  WriteMemory memory = memory_of(onlooker.client, axis.number);
+  EdgeMemory& edges = memory.edges;
   Acting acting;
   JogWrite jog;
   for (std::uint16_t at = place.offset; i < request.write_count && at < kCoils; ++i, ++at) {
@@ -115,23 +115,10 @@ void add_stops(const Request& request, std::uint16_t i, const UnitView::BitPlace
   }
   for (const Command command : kOrder) {
     if (!has(acting, command)) continue;
-    WriteBatch& batch = stops.emplace_back(axis.number, client.new_batch(onlooker.role)).batch;
+    WriteBatch& batch = stops.emplace_back(axis.number, onlooker.client.new_batch(onlooker.role), memory).batch;
     batch.is_write = true;
     batch.command = command;
-    client.at(axis.number).edges = edges;
   }
-}
-
-std::vector<AxisStop> stops_in(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
-  std::vector<AxisStop> stops;
-  if (request.write_count == 1 || onlooker.role < Role::operator_) return stops;
-  for (std::uint16_t i = 0; i < request.write_count; ++i) {
-    const auto place = view.place_bit(static_cast<std::uint32_t>(request.write_address) + i, onlooker.image);
-    if (!place) continue;
-    add_stops(request, i, *place, onlooker, client, stops);
-    i = static_cast<std::uint16_t>(i + kAxisBlock - 1U - place->offset);
-  }
-  return stops;
 }
 
 /// One write batch for each command that acts. A request in which nothing does is one all the same: by it its client
@@ -160,15 +147,27 @@ bool is_all_zero(const Request& request) {
 
 }  // namespace
 
+std::vector<AxisStop> stops_in_coils(const Request& request, const UnitView& view, const Onlooker& onlooker) {
+  std::vector<AxisStop> stops;
+  if (request.write_count == 1 || onlooker.role < Role::operator_) return stops;
+  for (std::uint16_t i = 0; i < request.write_count; ++i) {
+    const auto place = view.place_bit(static_cast<std::uint32_t>(request.write_address) + i, onlooker.image);
+    if (!place) continue;
+    add_stops(request, i, *place, onlooker, stops);
+    i = static_cast<std::uint16_t>(i + kAxisBlock - 1U - place->offset);
+  }
+  return stops;
+}
+
 Planned plan_coil_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
   const auto first = view.place_bit(request.write_address, onlooker.image);
   const bool single = request.write_count == 1;
   const auto refuse = [&](Errc code, std::size_t coil) {
     return Refused{code, single ? std::nullopt : std::optional(static_cast<std::uint16_t>(coil)),
-                   stops_in(request, view, onlooker, client)};
+                   stops_in_coils(request, view, onlooker)};
   };
   if (onlooker.role < Role::operator_) return refuse(Errc::role_forbidden, first ? first->offset : 0U);
-  if (!first) return Refused{Errc::not_supported, std::nullopt, stops_in(request, view, onlooker, client)};
+  if (!first) return Refused{Errc::not_supported, std::nullopt, stops_in_coils(request, view, onlooker)};
   const AxisImage& axis = *first->axis;
   for (std::uint16_t i = 0; i < request.write_count; ++i) {
     const auto offset = static_cast<std::uint16_t>(first->offset + i);

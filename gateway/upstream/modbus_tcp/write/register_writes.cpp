@@ -238,9 +238,8 @@ WriteBatch object_batch(const Mailbox& box, const Client& client, Role role) {
   return batch;
 }
 
-/// The stop that a refused block asks of this axis, by the rules of edges; remembered as what was carried out.
-std::optional<WriteBatch> stop_of(const RowWrites& found, const AxisImage& axis, const Onlooker& onlooker,
-                                  Client& client) {
+/// The stop that a block asks of this axis, by the rules of edges.
+std::optional<AxisStop> stop_of(const RowWrites& found, const AxisImage& axis, const Onlooker& onlooker) {
   std::optional<std::uint16_t> word, command;
   std::uint16_t id = 0;
   for (const RowWrite& each : found.rows) {
@@ -250,31 +249,41 @@ std::optional<WriteBatch> stop_of(const RowWrites& found, const AxisImage& axis,
     if (each.row->source == Source::command) command = value;
     if (each.row->source == Source::command_id) id = value;
   }
-  const WriteMemory before = memory_of(client, axis.number);
+  AxisStop stop{axis.number, onlooker.client.new_batch(onlooker.role), memory_of(onlooker.client, axis.number)};
+  stop.batch.is_write = true;
   const Writing writing = writing_to(axis, onlooker, WriteForm::block);
-  EdgeMemory edges = before.edges;
-  WriteBatch batch = client.new_batch(onlooker.role);
-  batch.is_write = true;
+  EdgeMemory edges = stop.after.edges;
   if (command && *command <= kLastCommand) {
     const Command asked{static_cast<std::uint8_t>(*command)};
-    CommandIds ids = before.ids.value_or(CommandIds{});
+    CommandIds ids = stop.after.ids.value_or(CommandIds{});
     const auto verdict = [&] {
       return id != 0 ? edges.command_with_id(asked, id, ids, writing) : edges.command(asked, writing);
     };
     if (is_stop(asked) && axis.supports(asked) && verdict() == Verdict::acts) {
-      batch.command = asked;
-      batch.command_id = id;
-      if (id != 0) client.host->ids[axis.number] = ids;
-      client.at(axis.number).edges = edges;
+      stop.batch.command = asked;
+      stop.batch.command_id = id;
+      if (id != 0) stop.after.ids = ids;
+      stop.after.edges = edges;
     }
   }
   // Of its owner, and beside another stop, a word that only disables is one as well.
-  const bool disables = batch.command != Command::none || axis.lease.owned_by(client.id);
+  const bool disables = stop.batch.command != Command::none || axis.lease.owned_by(onlooker.client.id);
   if (word && is_stop(*word, disables) && edges.controlword(*word, writing) == Verdict::acts) {
-    batch.controlword = word;
-    client.at(axis.number).edges = edges;
+    stop.batch.controlword = word;
+    stop.after.edges = edges;
   }
-  return asks_nothing(batch) ? std::nullopt : std::optional(batch);
+  return asks_nothing(stop.batch) ? std::nullopt : std::optional(stop);
+}
+
+std::vector<AxisStop> stops_in(const RowWrites& found, const Onlooker& onlooker) {
+  std::vector<AxisStop> stops;
+  if (!found.several || onlooker.role < Role::operator_) return stops;
+  const AxisImage* last = nullptr;
+  for (const RowWrite& each : found.rows) {
+    if (each.axis == nullptr || each.axis == std::exchange(last, each.axis)) continue;
+    if (const auto stop = stop_of(found, *each.axis, onlooker)) stops.push_back(*stop);
+  }
+  return stops;
 }
 
 /// Of function 23, what it reads, which is judged before anything is written (V1.1b3 6.17).
@@ -283,18 +292,6 @@ Errc check_read(const Request& request, const UnitView& view, const Onlooker& on
   const Pdu answer = answer_read(request, view, onlooker);
   if (answer[0] == static_cast<Byte>(request.function)) return Errc::ok;
   return ModbusException{answer[1]} == ModbusException::illegal_data_address ? Errc::not_supported : Errc::link_lost;
-}
-
-/// What is refused for a row of it stops all the same what it asks to stop.
-std::vector<AxisStop> stops_in(const RowWrites& found, const Onlooker& onlooker, Client& client) {
-  std::vector<AxisStop> stops;
-  if (!found.several || onlooker.role < Role::operator_) return stops;
-  const AxisImage* last = nullptr;
-  for (const RowWrite& each : found.rows) {
-    if (each.axis == nullptr || each.axis == std::exchange(last, each.axis)) continue;
-    if (const auto stop = stop_of(found, *each.axis, onlooker, client)) stops.push_back({each.axis->number, *stop});
-  }
-  return stops;
 }
 
 /// Gateway register 8. Changed by who may command, it is a sign of life for every axis, and takes over what an ended
@@ -319,15 +316,19 @@ Errc check_row(const Request& request, const UnitView& view, const Onlooker& onl
   return check_role_and_addresses(resolve_rows(request, view, onlooker), onlooker.role).code;
 }
 
+std::vector<AxisStop> stops_in_registers(const Request& request, const UnitView& view, const Onlooker& onlooker) {
+  return stops_in(resolve_rows(request, view, onlooker), onlooker);
+}
+
 Planned plan_register_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
   const RowWrites found = resolve_rows(request, view, onlooker);
   const auto refuse = [&](const WrongRow& wrong) {
     return Refused{wrong.code, found.several && is_wrong(wrong.code) ? std::optional(wrong.row) : std::nullopt,
-                   stops_in(found, onlooker, client)};
+                   stops_in(found, onlooker)};
   };
   if (const WrongRow wrong = check_rows(found, onlooker.role); wrong.code != Errc::ok) return refuse(wrong);
   if (const Errc wrong = check_read(request, view, onlooker); wrong != Errc::ok)
-    return Refused{wrong, std::nullopt, stops_in(found, onlooker, client)};
+    return Refused{wrong, std::nullopt, stops_in(found, onlooker)};
 
   WritePlan plan;
   if (found.axis == nullptr) {

@@ -8,7 +8,10 @@ namespace {
 
 bool stops_through(const RegisterRow& row, const Request& request) {
   const bool is_controlword = row.source == Source::quantity && row.quantity == Quantity::controlword;
-  if (request.function == Function::mask_write_register) {
+  const bool masks = request.function == Function::mask_write_register;
+  if (masks && row.source == Source::command && request.and_mask == 0)
+    return request.or_mask <= kLastCommand && is_stop(Command{static_cast<Byte>(request.or_mask)});
+  if (masks) {
     // Both masks force at least one of the bits to 0.
     return is_controlword && (~request.and_mask & ~request.or_mask & kStoppingBits) != 0;
   }
@@ -59,11 +62,19 @@ Planned plan_write(const Request& request, const UnitView& view, const Onlooker&
   Planned planned = request.writes_coils() ? plan_coil_write(request, view, onlooker, client)
                                            : plan_register_write(request, view, onlooker, client);
   if (auto* const plan = std::get_if<WritePlan>(&planned)) plan->request = client.writes;
+  if (const auto* const refused = std::get_if<Refused>(&planned))
+    for (const AxisStop& stop : refused->stops) restore(stop.after, client, stop.axis);
   return planned;
 }
 
-bool asks_for_a_stop(const Request& request, const UnitView& view, const ProcessImage& image) {
-  if (request.write_count != 1) return false;
+bool asks_for_a_stop(const Request& request, const UnitView& view, const Onlooker& onlooker) {
+  if (!request.writes()) return false;
+  if (request.write_count != 1 || request.function == Function::read_write_registers) {
+    return !(request.writes_coils() ? stops_in_coils(request, view, onlooker)
+                                    : stops_in_registers(request, view, onlooker))
+                .empty();
+  }
+  const ProcessImage& image = onlooker.image;
   if (request.writes_coils()) {
     const auto place = view.place_bit(request.write_address, image);
     if (!place || place->offset >= kCoils) return false;

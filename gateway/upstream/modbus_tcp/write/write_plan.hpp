@@ -47,9 +47,11 @@ struct WritePlan {
   WriteMemory before{};      ///< of the client, before this request
 };
 
+/// What stops of a block, alone.
 struct AxisStop {
   AxisNumber axis = 0;
   WriteBatch batch;
+  WriteMemory after{};  ///< what its client remembers then
 };
 
 /// role_forbidden, not_supported, bad_value; for a second mailbox request busy; where function 23 reads what does not
@@ -57,9 +59,7 @@ struct AxisStop {
 struct Refused {
   Errc code;
   std::optional<std::uint16_t> row{};  ///< of a block write, and not of busy: the first row or coil refused
-  /// What stops in it, of whoever may stop: carried out alone, and remembered as written. A block reaches into several
-  /// axes only where it is refused.
-  std::vector<AxisStop> stops{};
+  std::vector<AxisStop> stops{};       ///< in it: carried out alone
 };
 
 /// `client` is the one that writes: what is its own is stored there.
@@ -76,9 +76,15 @@ using Planned = std::variant<WritePlan, Refused>;
 /// Of what is written to one row alone: role and address, whatever the value. Errors: role_forbidden, not_supported.
 [[nodiscard]] Errc check_row(const Request& request, const UnitView& view, const Onlooker& onlooker);
 
-/// The request is a single write that is a stop whatever was written before: it starts ahead of a request that has to
-/// wait.
-[[nodiscard]] bool asks_for_a_stop(const Request& request, const UnitView& view, const ProcessImage& image);
+/// The stops in a write of several rows or coils that act by the rules of edges, of whoever may stop. A block reaches
+/// into several axes only where it is refused.
+[[nodiscard]] std::vector<AxisStop> stops_in_registers(const Request& request, const UnitView& view,
+                                                       const Onlooker& onlooker);
+[[nodiscard]] std::vector<AxisStop> stops_in_coils(const Request& request, const UnitView& view,
+                                                   const Onlooker& onlooker);
+/// The request is a stop: a single write that is one whatever was written before, or a block with one that acts. It
+/// starts ahead of a request that has to wait.
+[[nodiscard]] bool asks_for_a_stop(const Request& request, const UnitView& view, const Onlooker& onlooker);
 /// The axis a write is addressed to, for its result registers; 0 where it is none.
 [[nodiscard]] AxisNumber axis_of_write(const Request& request, const UnitView& view, const ProcessImage& image);
 
