@@ -61,7 +61,7 @@ TEST_F(Clients, of_a_host_outlive_their_connections_and_forget_after_60_s_but_wh
   EXPECT_EQ(later.forgotten, std::nullopt) << "a reader's return ends nothing that it commanded before";
 }
 
-TEST_F(Clients, lives_tell_of_the_newest_connection) {
+TEST_F(Clients, lives_tell_of_the_connection_that_may_most) {
   Peer peer = host(1);
   const auto client = registry.connect(peer, true, kStart).client;
   EXPECT_EQ(client->life->role, Role::operator_);
@@ -71,6 +71,26 @@ TEST_F(Clients, lives_tell_of_the_newest_connection) {
   static_cast<void>(registry.connect(peer, true, kStart));
   EXPECT_EQ(client->life->role, Role::engineer) << "by a listener that knows it otherwise";
   EXPECT_EQ(client->life->rank, 5);
+}
+
+TEST_F(Clients, lives_are_not_lowered_by_what_else_their_address_connects) {
+  Peer pump = host(1);
+  Peer weaker = pump, viewer = pump;
+  weaker.rank = 1;
+  viewer.role = Role::viewer;
+  viewer.rank = 9;
+  const auto client = registry.connect(pump, true, kStart).client;
+  const auto is_as_before = [&] { return client->life->role == Role::operator_ && client->life->rank == 3; };
+  for (const Peer& peer : {weaker, viewer}) {
+    static_cast<void>(registry.connect(peer, true, kStart));
+    EXPECT_TRUE(is_as_before()) << int{peer.rank};
+  }
+  for (int each = 0; each < 3; ++each) static_cast<void>(disconnect(client));
+  static_cast<void>(registry.connect(viewer, true, kStart));
+  EXPECT_TRUE(is_as_before()) << "it may own an axis still";
+  static_cast<void>(disconnect(client));
+  static_cast<void>(registry.connect(weaker, true, kStart));
+  EXPECT_EQ(client->life->rank, 1) << "the only one that commands now";
 }
 
 TEST_F(Clients, lives_name_connections_by_address_and_port_and_hosts_by_address) {

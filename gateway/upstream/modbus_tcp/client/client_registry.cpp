@@ -42,6 +42,18 @@ std::shared_ptr<Client> ClientRegistry::make_client(std::shared_ptr<Host> host, 
   return client;
 }
 
+/// The rank of who owns an axis is not to be lowered by whom else the same address connects, through any listener.
+void ClientRegistry::put_role(ClientLife& life, const Peer& peer, bool alone) {
+  const bool commands = peer.role >= Role::operator_;
+  if (alone && (commands || life.role < Role::operator_)) {
+    life.role = peer.role;
+    life.rank = peer.rank;
+  } else if (commands) {
+    life.role = std::max(life.role, peer.role);
+    life.rank = std::max(life.rank, peer.rank);
+  }
+}
+
 ClientRegistry::Connected ClientRegistry::connect(const Peer& peer, bool shared, Instant now) {
   Connected connected;
   Entry& entry = hosts_[peer.address];
@@ -62,8 +74,7 @@ ClientRegistry::Connected ClientRegistry::connect(const Peer& peer, bool shared,
   }
   ++connected.client->connections;
   ClientLife& alive = *connected.client->life;
-  alive.role = peer.role;
-  alive.rank = peer.rank;
+  put_role(alive, peer, connected.client->connections == 1);
   alive.origin = peer.address;
   alive.name = shared ? text(peer.address) : text(peer);
   alive.connected = true;

@@ -114,8 +114,8 @@ class ClientRegistry {
     std::shared_ptr<Client> client;
     std::optional<ClientId> forgotten;  ///< another client that is gone for good by this
   };
-  /// `shared`: listener option "client": "address". Once per connection. A client of several connections has the role
-  /// and rank of the newest.
+  /// `shared`: listener option "client": "address". Once per connection. A client of several connections has the
+  /// highest role of them and the highest rank of those that may command; a viewer changes neither.
   [[nodiscard]] Connected connect(const Peer& peer, bool shared, Instant now);
   /// The client's id where it is gone for good by this. Without a connection left its life says so before.
   std::optional<ClientId> disconnect(const std::shared_ptr<Client>& client, Instant now);
@@ -130,6 +130,8 @@ class ClientRegistry {
     std::shared_ptr<Client> shared_client;  ///< where "client" is "address"
   };
   [[nodiscard]] std::shared_ptr<Client> make_client(std::shared_ptr<Host> host, std::shared_ptr<ClientLife> life);
+  /// `alone`: its client has no other connection.
+  static void put_role(ClientLife& life, const Peer& peer, bool alone);
   [[nodiscard]] std::optional<ClientId> forget_oldest_idle();
 
   std::map<Address, Entry> hosts_;
