@@ -153,9 +153,16 @@ void check_set_position_value(Reading& reading, const CommandSpec& command, cons
   });
 }
 
-bool is_of(const Reading& reading, const std::string& object, Quantity quantity) {
-  const QuantitySpec* spec = reading.profile.find(quantity);
-  return spec != nullptr && std::find(spec->objects.begin(), spec->objects.end(), object) != spec->objects.end();
+/// Answered as done, the motor would go on.
+void check_stops(Reading& reading, const CommandSpec& command, const json& node) {
+  if (!is_stop(command.command)) return;
+  const auto check = [&](const std::vector<StepSpec>& steps, const std::string& pointer) {
+    if (std::none_of(steps.begin(), steps.end(), [](const StepSpec& step) { return step.verb == Step::Verb::write; }))
+      reading.fault(pointer_to(pointer, "steps"), "write nothing, so they stop nothing");
+  };
+  if (member(node, "steps") != nullptr) check(command.steps, command.pointer);
+  for (std::size_t i = 0; i < command.variants.size(); ++i)
+    check(command.variants[i].steps, pointer_to(pointer_to(command.pointer, "variants"), i));
 }
 
 /// On a CiA 402 drive the gateway carries it out in homing mode, by method 35: in a mode that moves, a controlword
@@ -227,6 +234,8 @@ void read_command(Reading& reading, const std::string& key, const json& node) {
   out.steps = StepReader(reading).read(node, out.pointer);
   check_values(reading, out);
   check_starts_nothing(reading, out);
+  check_stops(reading, out, node);
+  check_never_enables(reading, out);
   const bool everywhere = member(node, "steps") != nullptr || out.quick_stop_otherwise || out.as_absolute;
   if (!everywhere)
     reading.fault(out.pointer,

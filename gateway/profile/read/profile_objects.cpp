@@ -150,10 +150,6 @@ Extent extent(const std::string& protocol, const Object& object, const Place& pl
   return {std::to_string(place.address.index) + "." + std::to_string(place.address.sub), from, from + size};
 }
 
-bool are_aliases(const Object& a, const Object& b) {
-  return a.alias_of == b.name || b.alias_of == a.name || (!a.alias_of.empty() && a.alias_of == b.alias_of);
-}
-
 void check_addresses(Reading& reading) {
   const std::vector<Object>& objects = reading.profile.objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -186,6 +182,10 @@ void check_alias(Reading& reading, const Object& object) {
 }
 
 }  // namespace
+
+bool are_aliases(const Object& a, const Object& b) {
+  return a.alias_of == b.name || b.alias_of == a.name || (!a.alias_of.empty() && a.alias_of == b.alias_of);
+}
 
 void read_objects(Reading& reading) {
   const json* section = member(reading.document, "objects");

@@ -114,6 +114,15 @@ void check_keepalive(Reading& reading);
 void read_constant_rules(Reading& reading);
 void check_state_places(Reading& reading);
 
+/// Two names of one object, as "alias_of" says.
+[[nodiscard]] bool are_aliases(const Object& a, const Object& b);
+/// `object` is, on any axis, one of those that the quantity comes from.
+[[nodiscard]] bool is_of(const Reading& reading, const std::string& object, Quantity quantity);
+/// A stop, a fault reset and a save must not enable, a halt must not go on.
+void check_never_enables(Reading& reading, const CommandSpec& command);
+/// After all: neither setup nor a remedy enables the motor or gives it a mode or a target.
+void check_unasked_writes(Reading& reading);
+
 /// Reads "write"/"value"/"on"/"why" as setup and remedies have them.
 [[nodiscard]] WriteSpec read_write(Reading& reading, const nlohmann::json& node, const std::string& pointer);
 

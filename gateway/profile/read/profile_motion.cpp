@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// What no section may do by itself: enable or turn a motor that nobody has commanded.
+#include <algorithm>
+#include <array>
+
+#include "gateway/model/cia402.hpp"
+#include "gateway/profile/read/profile_reading.hpp"
+
+namespace axisgate::drive {
+
+namespace {
+
+constexpr std::array kChosenByClients{Quantity::mode, Quantity::target_position, Quantity::target_velocity,
+                                      Quantity::target_torque};
+
+/// Commands after which a motor may turn, or holds torque.
+bool may_move(Command command) {
+  return !is_stop(command) && command != Command::fault_reset && command != Command::save_parameters;
+}
+
+template <class Check>
+void each_step(const CommandSpec& command, Check&& check) {
+  for (const StepSpec& step : command.steps) check(step);
+  for (const CommandSpec::Variant& variant : command.variants)
+    for (const StepSpec& step : variant.steps) check(step);
+}
+
+bool share_an_object(const Reading& reading, const std::string& left, const std::string& right) {
+  bool found = false;
+  reading.each_meaning(left, [&](const Object& a) {
+    reading.each_meaning(right, [&](const Object& b) { found = found || a.name == b.name || are_aliases(a, b); });
+  });
+  return found;
+}
+
+/// What enables, moves or is followed by a motor, the controlword apart: its numbers tell.
+std::vector<std::string> moving_objects(const Reading& reading) {
+  const Profile& profile = reading.profile;
+  std::vector<std::string> out = profile.state.zero_before_enable;
+  for (const Quantity quantity : kChosenByClients)
+    if (const QuantitySpec* spec = profile.find(quantity); spec != nullptr)
+      out.insert(out.end(), spec->objects.begin(), spec->objects.end());
+  for (const CommandSpec& command : profile.commands)
+    if (may_move(command.command))
+      each_step(command, [&](const StepSpec& step) {
+        if (step.verb == Step::Verb::write && !is_of(reading, step.object, Quantity::controlword))
+          out.push_back(step.object);
+      });
+  return out;
+}
+
+bool may_enable(const ValueSpec& value) {
+  const auto* number = std::get_if<std::int64_t>(&value);
+  return number == nullptr || enables(*number);
+}
+
+void check_write(Reading& reading, const std::vector<std::string>& moving, const WriteSpec& write) {
+  if (is_of(reading, write.object, Quantity::controlword)) {
+    if (std::any_of(write.values.begin(), write.values.end(), may_enable))
+      reading.fault(pointer_to(write.pointer, "value"),
+                    "would enable the motor, and only a command may: bits 0 to 3 of the controlword must not all be 1");
+    return;
+  }
+  if (std::any_of(moving.begin(), moving.end(),
+                  [&](const std::string& name) { return share_an_object(reading, write.object, name); }))
+    reading.fault(pointer_to(write.pointer, "write"),
+                  "object \"" + write.object + "\" may enable or move the motor: only a command may write it");
+}
+
+}  // namespace
+
+bool is_of(const Reading& reading, const std::string& object, Quantity quantity) {
+  const QuantitySpec* spec = reading.profile.find(quantity);
+  return spec != nullptr && std::any_of(spec->objects.begin(), spec->objects.end(),
+                                        [&](const std::string& own) { return share_an_object(reading, object, own); });
+}
+
+void check_never_enables(Reading& reading, const CommandSpec& command) {
+  if (may_move(command.command)) return;
+  each_step(command, [&](const StepSpec& step) {
+    if (step.verb != Step::Verb::write || !is_of(reading, step.object, Quantity::controlword)) return;
+    const auto wrong = [&](const ValueSpec& value) {
+      const auto* number = std::get_if<std::int64_t>(&value);
+      const bool halts = number != nullptr && (*number & controlword::kHalt) != 0;
+      return may_enable(value) && !(command.command == Command::halt && halts);
+    };
+    if (std::any_of(step.values.begin(), step.values.end(), wrong))
+      reading.fault(pointer_to(step.pointer, "value"),
+                    command.command == Command::halt
+                        ? "lets the motor run: bits 0 to 3 of the controlword must not all be 1 without bit 8, halt"
+                        : "would enable the motor: bits 0 to 3 of the controlword must not all be 1 in this command");
+  });
+}
+
+void check_unasked_writes(Reading& reading) {
+  const std::vector<std::string> moving = moving_objects(reading);
+  for (const WriteSpec& write : reading.profile.setup) check_write(reading, moving, write);
+  for (const CheckSpec& check : reading.profile.checks)
+    for (const WriteSpec& write : check.remedy) check_write(reading, moving, write);
+}
+
+}  // namespace axisgate::drive
