@@ -8,6 +8,7 @@
 #include <array>
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
+#include <boost/crc.hpp>
 #include <filesystem>
 #include <utility>
 
@@ -18,8 +19,8 @@ using boost::asio::local::stream_protocol;
 using boost::system::error_code;
 
 constexpr std::string_view kControlPrefix = "axisgate/";
-/// sun_path, without the zero that makes a name abstract (unix(7)).
-constexpr std::size_t kLongestName = 107;
+/// sun_path has 108 characters: the zero before an abstract name (unix(7)) and the one that Asio puts behind are two.
+constexpr std::size_t kLongestName = 106;
 
 bool may_ask(int descriptor) {
   ucred who{};
@@ -35,8 +36,12 @@ std::string control_name(const std::string& config) {
   std::filesystem::path path = std::filesystem::absolute(config, error);
   std::string file = (error ? std::filesystem::path(config) : path).lexically_normal().string();
   const std::size_t room = kLongestName - kControlPrefix.size();
-  if (file.size() > room) file.erase(0, file.size() - room);
-  return std::string(kControlPrefix) + file;
+  if (file.size() <= room) return std::string(kControlPrefix) + file;
+  // Two may end alike. A path begins with '/', so no short one has such a name.
+  boost::crc_32_type crc;
+  crc.process_bytes(file.data(), file.size());
+  const std::string key = fmt::format("{:08x}...", crc.checksum());
+  return std::string(kControlPrefix) + key + file.substr(file.size() - room + key.size());
 }
 
 struct ControlSocket::Shared : std::enable_shared_from_this<ControlSocket::Shared> {
