@@ -44,13 +44,17 @@ struct Parsed {
   std::function<int()> chosen;
 };
 
+void add_profiles(CLI::App& command, Parsed& parsed,
+                  const std::string& what = "folder of drive profiles, searched before the shipped ones") {
+  command.add_option("--profiles", parsed.profiles, what)->check(CLI::Validator(no_folder, ""))->type_name("DIR");
+}
+
 /// A command that reads a configuration.
 CLI::App* add_config_command(CLI::App& app, Parsed& parsed, const std::string& name, const std::string& what,
                              std::string& config) {
   CLI::App* command = app.add_subcommand(name, what);
   command->add_option("CONFIG", config, "configuration file (JSON)")->required();
-  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
-      ->type_name("DIR");
+  add_profiles(*command, parsed);
   return command;
 }
 
@@ -101,8 +105,7 @@ void add_top(CLI::App& app, Parsed& parsed) {
   CLI::App* command = app.add_subcommand("top", "Live table of all axes of a running gateway");
   command->add_option("HOST:PORT", parsed.top.endpoint, "the gateway's Modbus-TCP listener")->required();
   command->add_option("CONFIG", parsed.top.config, "its configuration file: axes are shown with their names");
-  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
-      ->type_name("DIR");
+  add_profiles(*command, parsed);
   command->add_option("--interval", parsed.top.interval_ms, "milliseconds between two tables")
       ->check(CLI::Range(50, 60000).description(""))
       ->type_name("MS")
@@ -128,8 +131,7 @@ void add_top(CLI::App& app, Parsed& parsed) {
 void add_topics(CLI::App& app, Parsed& parsed) {
   CLI::App* command = app.add_subcommand("topics", "Show all axes live, as DDS subscribers see them");
   command->add_option("CONFIG", parsed.topics.config, "the gateway's configuration file: where it publishes");
-  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
-      ->type_name("DIR");
+  add_profiles(*command, parsed);
   command->add_option("--domain", parsed.topics.domain, "DDS domain; goes before that of CONFIG")
       ->check(CLI::Range(0, 232).description(""))
       ->type_name("N");
@@ -153,8 +155,7 @@ void add_profile(CLI::App& app, Parsed& parsed) {
   command->add_option("FILE", parsed.profile.file, "profile (JSON)")->required();
   command->add_option("--eds", parsed.profile.eds, "compare its CANopen objects with the maker's EDS file")
       ->type_name("FILE");
-  command->add_option("--profiles", parsed.profiles, "folder where profiles that it extends may lie, beside its own")
-      ->type_name("DIR");
+  add_profiles(*command, parsed, "folder where profiles that it extends may lie, beside its own");
   command->footer(
       "Exit code 1: mistakes, or something in which profile and EDS cannot both be right.\n"
       "Example: axisgate profile check schemas/drives/kinco-jd.json");
@@ -202,8 +203,7 @@ void add_scan(CLI::App& app, Parsed& parsed) {
                    "bits per second, as set in the drives; a serial adapter is opened with it")
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
-      ->type_name("DIR");
+  add_profiles(*command, parsed);
   command->add_option("--timeout-ms", parsed.scan.timeout_ms, "how long each answer is waited for")
       ->check(CLI::Range(2, 10000).description(""))
       ->type_name("N")
@@ -268,8 +268,7 @@ void add_explain(CLI::App& app, Parsed& parsed) {
   CLI::App* command =
       app.add_subcommand("explain", "Say what a state, alarm, result, exception or fault code means, and what to do");
   command->add_option("WORD", parsed.explain.words, "a name, a kind and a number, or a code; none: everything");
-  command->add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
-      ->type_name("DIR");
+  add_profiles(*command, parsed);
   command->add_flag("--page", parsed.explain.page, "print docs/troubleshooting.md");
   command->footer(
       "Exit code 1: nothing is called so.\n"

@@ -68,6 +68,8 @@ TEST_F(Program, WrongCommandLinesEndWithTwoAndNameTheWord) {
       {"run x.json --log-level waring", "'waring' is none of: error, warning, info, debug; did you mean \"warning\"?"},
       {"map x.json --format jsno", "'jsno' is none of: table, md, csv, json, st; did you mean \"json\"?"},
       {"check", "CONFIG"},
+      {"check x.json --profiles /nowhere", "--profiles: '/nowhere' is no folder"},
+      {"explain --profiles /dev/null", "--profiles: '/dev/null' is no folder"},
       {"map x.json --format xml", "--format"},
       {"scan", "DEVICE"},
       {"scan slcan:", "slcan: must be followed by the path of a serial port"},

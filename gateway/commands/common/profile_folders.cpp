@@ -13,6 +13,11 @@ namespace axisgate::app {
 
 namespace fs = std::filesystem;
 
+std::string no_folder(const std::string& given) {
+  std::error_code error;
+  return fs::is_directory(given, error) ? std::string() : fmt::format("'{}' is no folder", given);
+}
+
 std::vector<std::string> profile_folders(const std::string& given) {
   std::vector<std::string> folders;
   if (!given.empty()) folders.push_back(given);

@@ -11,6 +11,9 @@
 
 namespace axisgate::app {
 
+/// What is wrong with a folder that --profiles names; empty: nothing.
+[[nodiscard]] std::string no_folder(const std::string& given);
+
 /// `given`: option --profiles, may be empty.
 [[nodiscard]] std::vector<std::string> profile_folders(const std::string& given);
 
