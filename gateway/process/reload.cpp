@@ -70,10 +70,25 @@ void Reload::change(LoadedConfig wanted, std::vector<FileWatch::Watched> files) 
       });
 }
 
+bool may_stop_with_a_client(const AxisImage& axis, bool nothing_else_would) {
+  const std::uint16_t jogging = 1U << jog_coil(Command::jog_forward) | 1U << jog_coil(Command::jog_reverse);
+  const bool moves = axis.axis_state == AxisState::discrete_motion || axis.axis_state == AxisState::continuous_motion ||
+                     axis.axis_state == AxisState::homing;
+  return !axis.lease.rules.on && (((axis.level_coils & jogging) != 0) || (moves && nothing_else_would));
+}
+
 // A connection that is closed would end what keeps a motor under its owner's command.
 std::vector<std::string> Reload::clients_in_the_way(const ReloadPlan& plan) const {
   std::vector<std::string> out;
   for (const auto& axis : with_.gateway.image().axes()) {
+    const drive::Drive* drive = with_.gateway.drive_of(axis->number);
+    const bool nothing_else_would =
+        drive != nullptr && drive->model().axes.front().virtual_axis && !drive->model().stops_by_itself;
+    if (may_stop_with_a_client(*axis, nothing_else_would) && !plan.leaving_listeners.empty())
+      out.push_back(
+          fmt::format("axis {} ({}) has no lease and stops when the client that commanded it is gone, which may be "
+                      "connected to a listener that would be changed: {}",
+                      axis->number, axis->name, text(axis->axis_state)));
     const auto& owner = axis->lease.owner;
     if (!owner || axis->axis_state == AxisState::disabled) continue;
     for (const std::size_t place : plan.leaving_listeners) {

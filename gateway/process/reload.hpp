@@ -68,6 +68,10 @@ class Reload {
   boost::asio::thread_pool thread_{1};  ///< last: joined before the rest goes
 };
 
+/// With "lease": null nobody owns the axis, and still it would be stopped if the client went that commanded its motion.
+/// `nothing_else_would`: no drive that notices a dead gateway, and none that CiA 402 has a state for.
+[[nodiscard]] bool may_stop_with_a_client(const AxisImage& axis, bool nothing_else_would);
+
 /// The files that make a configuration what it is, itself first.
 [[nodiscard]] std::vector<std::string> files_of(const Config& config);
 
