@@ -20,13 +20,40 @@ TEST_F(ByHand, AMoveEnablesStartsWaitsAndGivesBack) {
 }
 
 TEST_F(ByHand, AMoveOfTheIdBeforeIsNotItsOwn) {
-  moving();
+  begin(HandTask::move);
   view_.motion_id = 17;
   view_.motion = MotionState::completed;
+  enabled();
+  static_cast<void>(written());
+  answer();
+  static_cast<void>(written());
+  answer();
   look();
   pass(std::chrono::seconds(2));
   look();
   EXPECT_THAT(written(), IsEmpty());
+}
+
+TEST_F(ByHand, AMoveWhosePlaceAnotherMotionTookHasFailed) {
+  const auto taken_by = [&](std::uint16_t id) {
+    view_.motion_id = id;
+    view_.motion = MotionState::active;
+    look();
+    stopped_and_given_back(44);
+    EXPECT_EQ(plan_->exit_code(), 1);
+    EXPECT_EQ(plan_->words(), "the move of axis 4 has ended: another motion took its place");
+  };
+  moving();
+  taken_by(17);
+  moving();
+  taken_by(0);  // what it was before
+  begin(HandTask::move);
+  enabled();
+  static_cast<void>(written());
+  answer();
+  static_cast<void>(written());
+  answer();
+  taken_by(17);  // before a look has shown the own one
 }
 
 TEST_F(ByHand, ALookFromBeforeAnAnswerCountsForNothing) {

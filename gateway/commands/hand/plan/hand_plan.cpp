@@ -125,6 +125,7 @@ void HandPlan::step_done(Instant now) {
     case Step::target:
       claim(now);
       write_command(arguments_.relative ? Command::move_relative : Command::move_absolute);
+      motion_before_ = view_->motion_id;
       may_move_ = true;
       return go(Step::start);
     case Step::start:
@@ -259,7 +260,13 @@ void HandPlan::watch(Instant now) {
     return finish(1, fmt::format("the lease of {} ran out: the gateway has stopped it", name), now);
   if (view.has(AxisInput::stop_latched) || !view.has(AxisInput::enabled))
     return finish(1, fmt::format("{} was stopped by another client, its lease or its drive", name), now);
-  if (arguments_.task != HandTask::move || view.motion_id != id_) return;
+  if (arguments_.task != HandTask::move || step_ != Step::working) return;
+  if (view.motion_id == id_)
+    motion_before_ = id_;
+  else if (view.motion_id == motion_before_)
+    return;
+  else
+    return finish(1, fmt::format("the move of {} has ended: another motion took its place", name), now);
   if (view.motion == MotionState::completed) {
     // At its target it may still be told to turn: velocities are old by a filter's time. No stop is needed for that.
     may_move_ = false;

@@ -128,6 +128,7 @@ class HandPlan {
   std::uint32_t answered_ = 0;   ///< writes, heartbeats left out
   std::optional<HandView> view_;
   std::uint16_t id_ = 0;
+  std::uint16_t motion_before_ = 0;  ///< move: what motion_id may show; its own, once a look has shown that
   std::uint16_t beat_ = 0;
   bool beat_waits_ = false;
   bool claimed_ = false;       ///< something was written that asks
