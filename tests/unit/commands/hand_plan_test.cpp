@@ -137,6 +137,53 @@ TEST_F(ByHand, EachStepThatIsRefusedSaysWhichAndWhy) {
   given_back(43);
 }
 
+/// Key "writes": "posted": answered before it is done.
+TEST_F(ByHand, AnEnableThatIsOnItsWayIsAwaited) {
+  begin(HandTask::move);
+  look();
+  static_cast<void>(written());
+  answer();
+  EXPECT_THAT(written(), ElementsAre(command(Command::enable, 42)));
+  answer();
+  view_.command_id_seen = 42;
+  view_.result = CommandResult::pending;
+  for (int i = 0; i < 3; ++i) {
+    look();
+    EXPECT_THAT(written(), IsEmpty());
+  }
+  view_.result = CommandResult::done;
+  set(AxisInput::enabled);
+  look();
+  EXPECT_THAT(written(), ElementsAre(HandWrite{.what = What::target_position, .number = Rational(5, 2)}));
+}
+
+TEST_F(ByHand, AnEnableOrAStartThatFailsLaterSaysWhy) {
+  begin(HandTask::jog);
+  look();
+  static_cast<void>(written());
+  answer();
+  static_cast<void>(written());
+  answer();
+  view_.command_id_seen = 42;
+  view_.result = CommandResult::state_unsuitable;
+  look();
+  EXPECT_THAT(plan_->words(), HasSubstr("axis 4: enable was not carried out, result 9"));
+  EXPECT_EQ(plan_->exit_code(), 1);
+  given_back(43);
+
+  begin(HandTask::move);
+  enabled();
+  static_cast<void>(written());
+  answer();
+  static_cast<void>(written());
+  answer();
+  view_.command_id_seen = 43;
+  view_.result = CommandResult::refused_by_drive;
+  look();
+  EXPECT_THAT(plan_->words(), HasSubstr("axis 4: move_absolute was not carried out, result 3"));
+  stopped_and_given_back(44);
+}
+
 TEST_F(ByHand, AStartThatIsRefusedBeforeItBeganStopsNothing) {
   begin(HandTask::move);
   enabled();

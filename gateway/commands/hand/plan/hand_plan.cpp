@@ -258,6 +258,15 @@ void HandPlan::watch(Instant now) {
   }
   if (lease_ms_ && !view.mine())
     return finish(1, fmt::format("the lease of {} ran out: the gateway has stopped it", name), now);
+  // With "writes": "posted" the answer says only that it is on its way.
+  const bool begins = step_ == Step::enabled || (arguments_.task == HandTask::move && view.motion_id != id_);
+  if (begins && view.command_id_seen == id_ && view.result == CommandResult::pending) return;
+  if (begins && view.command_id_seen == id_ && view.result > CommandResult::done) {
+    refused_what_ = step_ == Step::enabled ? text(Command::enable)
+                    : arguments_.relative  ? text(Command::move_relative)
+                                           : text(Command::move_absolute);
+    return finish(1, why_refused(), now);
+  }
   if (view.has(AxisInput::stop_latched) || !view.has(AxisInput::enabled))
     return finish(1, fmt::format("{} was stopped by another client, its lease or its drive", name), now);
   if (arguments_.task != HandTask::move || step_ != Step::working) return;

@@ -9,7 +9,9 @@ namespace axisgate::app {
 
 std::string HandPlan::why_refused() const {
   const auto result = static_cast<std::uint32_t>(view_->result);
-  std::string out = fmt::format("{}: {} was refused with {}", axis_text(), refused_what_, exception_text(exception_));
+  std::string out = fmt::format(
+      "{}: {} was {}", axis_text(), refused_what_,
+      exception_ == ModbusException::none ? "not carried out" : "refused with " + exception_text(exception_));
   if (exception_ == ModbusException::illegal_function)
     return out + ": the gateway gives this computer another role than operator (key \"allow\")";
   if (exception_ == ModbusException::illegal_data_address)
