@@ -54,8 +54,22 @@ void read_allow(const ConfigNode& node, ListenerSettings& settings, ConfigFaults
   }
 }
 
+bool is_everybody(const AllowEntry& entry) {
+  for (const char* all : {"0.0.0.0/0", "::/0"})
+    if (const auto network = parse_network(all); entry.network == network->address && entry.prefix == network->prefix)
+      return true;
+  return false;
+}
+
 void warn_about_reach(const ConfigNode& node, const ListenerSettings& settings, ConfigFaults& faults) {
+  if (settings.has_allow && settings.allow.empty())
+    faults.warn(node.pointer("allow"), "names nobody, so nobody can connect: name a network, or leave `allow` out");
   if (is_loopback(settings.host)) return;
+  for (std::size_t i = 0; i < settings.allow.size(); ++i)
+    if (settings.allow[i].role == Role::engineer && is_everybody(settings.allow[i]))
+      faults.warn(fmt::format("{}/{}/role", node.pointer("allow"), i),
+                  "every host that reaches this address is engineer, and may write limits and any object of a drive: "
+                  "name the engineers' own addresses");
   if (!settings.has_allow) {
     faults.warn(
         node.pointer("listen"),

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "adapters/can/can_device.hpp"
@@ -82,7 +83,9 @@ void check_unique(const Config& config, ConfigFaults& faults) {
                  fmt::format("\"{}\" is the name of {} too: give each bus a name of its own", bus.name, *first));
     }
     // A serial CAN adapter is a serial port too.
-    const std::string device = can::parse_can_device(bus.device).path;
+    // As it is spelled: what a symbolic link points to may change while the gateway runs.
+    const std::string device =
+        std::filesystem::path(can::parse_can_device(bus.device).path).lexically_normal().string();
     if (const auto* first = device.empty() ? nullptr : devices.second_use(device, bus.pointer)) {
       faults.add(
           bus.pointer + "/device",

@@ -210,6 +210,24 @@ TEST_F(ConfigLoader, WarnsWithoutRefusing) {
   EXPECT_THAT(loaded.warnings[2], HasSubstr("/metres_per_rev: without the key \"dds\" this has no effect"));
 }
 
+TEST_F(ConfigLoader, WarnsOfAListenerThatIsOpenToNobodyOrToEverybodyAsEngineer) {
+  const auto warnings = [&](const std::string& allow, bool reached = true) {
+    std::string file = one_drive(R"(, "allow": )" + allow);
+    if (reached) file.replace(file.find("127.0.0.1"), 9, "0.0.0.0");
+    return load_good(file).warnings;
+  };
+  const auto nobody = ElementsAre(HasSubstr("/modbus_tcp/0/allow: names nobody, so nobody can connect"));
+  EXPECT_THAT(warnings("[]"), nobody);
+  EXPECT_THAT(warnings("[]", false), nobody);
+  const auto all =
+      ElementsAre(HasSubstr("/modbus_tcp/0/allow/0/role: every host that reaches this address is engineer"));
+  EXPECT_THAT(warnings(R"([{"from": "0.0.0.0/0", "role": "engineer"}])"), all);
+  EXPECT_THAT(warnings(R"([{"from": "::/0", "role": "engineer"}])"), all);
+  EXPECT_THAT(warnings(R"([{"from": "0.0.0.0/0", "role": "engineer"}])", false), IsEmpty());
+  EXPECT_THAT(warnings(R"([{"from": "0.0.0.0/0", "role": "operator"}])"), IsEmpty());
+  EXPECT_THAT(warnings(R"([{"from": "fd00::/96", "role": "engineer"}])"), IsEmpty());
+}
+
 TEST_F(ConfigLoader, ToldOfAFileThatIsNotThereNamesIt) {
   const LoadResult result = load_config("/nowhere/gateway.json", kShipped);
   const auto& faults = std::get<std::vector<ConfigFault>>(result);
