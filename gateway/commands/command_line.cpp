@@ -2,6 +2,8 @@
 #include "gateway/commands/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -317,7 +319,12 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
 
 int run_command_line(int argc, const char* const* argv) {
   const CommandLine line = parse_command_line(argc, argv);
-  return line.run ? line.run() : line.exit_code;
+  if (!line.run) return line.exit_code;
+  const int code = line.run();
+  // What was said counts as said only once it is written.
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  std::cerr << "axisgate: what it had to say could not all be written to standard output\n";
+  return std::max(code, 1);
 }
 
 }  // namespace axisgate::app

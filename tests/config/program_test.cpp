@@ -58,6 +58,16 @@ TEST_F(Program, CheckEndsWithOneWhereABusIsOverloaded) {
   EXPECT_THAT(ended.err, HasSubstr("a bus is planned over 100 %"));
 }
 
+TEST_F(Program, WhatAFullDiskHasNotTakenIsNotDone) {
+  const std::string file = write("right.json", one_drive("/dev/ttyUSB0", 1, ""));
+  for (const std::string command : {"check ", "profile check "}) {
+    const Ended ended =
+        run(command + (command == "check " ? file : test::source_path("schemas/drives/kinco-jd.json")) + " >/dev/full");
+    EXPECT_EQ(ended.code, 1) << command;
+    EXPECT_THAT(ended.err, HasSubstr("could not all be written to standard output")) << command;
+  }
+}
+
 TEST_F(Program, WrongCommandLinesEndWithTwoAndNameTheWord) {
   const std::pair<std::string, std::string> cases[] = {
       {"chekc x.json", "axisgate: there is no command 'chekc'; did you mean \"check\"?"},
