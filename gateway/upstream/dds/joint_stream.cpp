@@ -24,6 +24,7 @@ void JointStream::begin_anew() {
   asked_.reset();
   waiting_.reset();
   told_astray_ = false;
+  refused_ = false;
 }
 
 void JointStream::look_for_endings(const JointView& axis) {
@@ -37,6 +38,8 @@ bool JointStream::in_step(const JointTarget& target, double position, const Join
   const bool there =
       target.is_velocity ? target.value == 0 : std::fabs(position - axis.position) <= axis.tolerance;  // NaN: no
   if (!there) {
+    leaving_ = in_step_.has_value();
+    if (leaving_) begin_anew();
     astray_ = !std::exchange(told_astray_, true);
     return false;
   }
@@ -50,6 +53,7 @@ bool JointStream::in_step(const JointTarget& target, double position, const Join
 
 JointTarget JointStream::ask(const JointTarget& target) {
   busy_ = true;
+  refused_ = false;
   asked_ = target;
   waiting_.reset();
   return target;
@@ -57,7 +61,7 @@ JointTarget JointStream::ask(const JointTarget& target) {
 
 std::optional<JointTarget> JointStream::on_sample(const Guid& writer, const JointTarget& target, double position,
                                                   const JointView& axis) {
-  astray_ = false;
+  astray_ = leaving_ = false;
   if (writer != writer_) begin_anew();
   writer_ = writer;
   look_for_endings(axis);
@@ -72,6 +76,7 @@ std::optional<JointTarget> JointStream::on_sample(const Guid& writer, const Join
 
 std::optional<JointTarget> JointStream::on_result(Errc code, const JointView& axis) {
   busy_ = false;
+  refused_ = code != Errc::ok;
   // What the axis cannot do is not asked again and again; what had no room or no answer may be, by a newer sample.
   if (code != Errc::ok && code != Errc::bad_value) asked_.reset();
   if (code == Errc::not_owner) begin_anew();
@@ -82,5 +87,7 @@ std::optional<JointTarget> JointStream::on_result(Errc code, const JointView& ax
 }
 
 bool JointStream::take_astray() { return std::exchange(astray_, false); }
+
+bool JointStream::take_leaving() { return std::exchange(leaving_, false); }
 
 }  // namespace axisgate::dds

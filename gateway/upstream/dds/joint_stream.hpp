@@ -40,6 +40,13 @@ class JointStream {
   void begin_anew();
   /// It has just turned out, for the first time since the stream last acted, that it is not where the enabled axis is.
   [[nodiscard]] bool take_astray();
+  /// What was sampled last is what is asked of the axis, or waits to be: neither out of step nor refused.
+  [[nodiscard]] bool follows() const { return in_step_.has_value() && !refused_; }
+  /// The stream that was in step asks for something else than before, and not from where the axis is: it does not ask
+  /// for its motion any more.
+  [[nodiscard]] bool take_leaving();
+  /// What was asked last has no result yet.
+  [[nodiscard]] bool busy() const { return busy_; }
 
  private:
   [[nodiscard]] bool in_step(const JointTarget& target, double position, const JointView& axis);
@@ -51,7 +58,9 @@ class JointStream {
   Endings::Point since_ = 0;     ///< when it came into step
   std::optional<JointTarget> asked_{};
   std::optional<JointTarget> waiting_{};
-  bool busy_ = false;  ///< what was asked last has no result yet
+  bool busy_ = false;
+  bool refused_ = false;  ///< what was asked last
+  bool leaving_ = false;
   bool told_astray_ = false;
   bool astray_ = false;
 };

@@ -60,6 +60,16 @@ Command command_of(RosAction action) {
   return Command::none;
 }
 
+constexpr std::uint16_t kVelocityRuns = 1U << 7U;
+
+bool velocity_runs(const AxisImage& axis) { return (shown_level_coils(axis) & kVelocityRuns) != 0; }
+
+/// A motion is on that a stream may have asked for.
+bool streamed_motion(const AxisImage& axis) {
+  return velocity_runs(axis) || axis.axis_state == AxisState::discrete_motion ||
+         axis.axis_state == AxisState::continuous_motion;
+}
+
 /// It is not so already.
 bool changes(Command command, const AxisImage& axis) {
   if (command == Command::enable) return !axis.has(AxisInput::enabled);
@@ -117,6 +127,7 @@ std::map<std::string_view, const AxisImage*> RosRequests::axes_by_name() const {
   return out;
 }
 
+// `renews`: before anybody knows whether it is refused.
 WriteBatch RosRequests::new_batch(const Joint& joint, bool renews) const {
   WriteBatch batch;
   batch.client = joint.life->id;
@@ -129,10 +140,12 @@ WriteBatch RosRequests::new_batch(const Joint& joint, bool renews) const {
   return batch;
 }
 
-void RosRequests::heard(Joint& joint, Instant now) {
-  joint.newest = now;
-  joint.life->last_request = now;
-  joint.life->heartbeat = now;
+// A sign of life of then.
+void RosRequests::heard(const AxisImage& axis, Joint& joint, Instant then) {
+  joint.life->last_request = joint.life->heartbeat = std::max(joint.life->last_request, then);
+  // A repetition asks for nothing anew, but its owner writes all the same.
+  if (axis.lease.owned_by(joint.life->id) && axis.lease.rules.renew == LeaseRenewal::write)
+    submit_alone(axis.number, new_batch(joint, true));
 }
 
 void RosRequests::on_link_down(Instant now) {
@@ -173,7 +186,7 @@ void RosRequests::take_target(const AxisImage& axis, double position, double vel
   const bool is_velocity = std::isnan(position);
   if (is_velocity && std::isnan(velocity)) return;  // it leaves this axis alone, and is no sign of life for it
   Joint& joint = joint_of(axis.number);
-  heard(joint, now);
+  joint.newest = now;
   if (stop_order_.overtaken(axis.number, from.received)) return;
   const auto value = units_of(axis.number)
                          .to_register(is_velocity ? Quantity::target_velocity : Quantity::target_position,
@@ -196,20 +209,26 @@ void RosRequests::take_target(const AxisImage& axis, double position, double vel
                                axis.name, position, view.position, view.tolerance),
              now);
   }
+  if (joint.stream.take_leaving() && (joint.stream.busy() || streamed_motion(axis))) halt(axis.number, joint);
+  // What does not act says nothing of the program whose stream moves the motor. Where none does, it keeps the torque.
+  if (joint.stream.follows()) joint.followed = now;
   if (target) return ask(axis.number, target);
-  // Nothing is asked of it anew, but its owner writes all the same.
-  if (axis.lease.owned_by(joint.life->id) && axis.lease.rules.renew == LeaseRenewal::write)
-    submit_alone(axis.number, new_batch(joint));
+  if (joint.stream.follows() || !streamed_motion(axis)) heard(axis, joint, now);
+}
+
+void RosRequests::halt(AxisNumber axis, const Joint& joint) {
+  WriteBatch batch = new_batch(joint, false);
+  batch.command = Command::halt;
+  submit_alone(axis, batch);
 }
 
 WriteBatch RosRequests::batch_of(const AxisImage& axis, const Joint& joint, const JointTarget& target) const {
-  constexpr std::uint16_t kVelocityRuns = 1U << 7U;
-  WriteBatch batch = new_batch(joint);
+  WriteBatch batch = new_batch(joint, false);
   batch.claims = true;
   batch.setpoints.push_back({target.is_velocity ? Quantity::target_velocity : Quantity::target_position, target.value});
   // While it runs, a new velocity acts by itself.
-  const bool runs = target.is_velocity && (shown_level_coils(axis) & kVelocityRuns) != 0;
-  if (!runs) batch.command = target.is_velocity ? Command::run_velocity : Command::move_absolute;
+  if (!target.is_velocity || !velocity_runs(axis))
+    batch.command = target.is_velocity ? Command::run_velocity : Command::move_absolute;
   return batch;
 }
 
@@ -219,21 +238,26 @@ void RosRequests::ask(AxisNumber number, std::optional<JointTarget> target) {
     const AxisImage* const axis = image_.find(number);
     if (axis == nullptr) return;
     Joint& joint = joint_of(number);
-    const auto at_once = commands_.submit(
-        number, batch_of(*axis, joint, *target), [self = std::weak_ptr(self_), number](const BatchResult& result) {
-          const auto here = self.lock();
-          if (here == nullptr) return;
-          const AxisImage* const there = here->image_.find(number);
-          if (there == nullptr) {
-            here->joints_.erase(number);
-            return;
-          }
-          Joint& asked = here->joint_of(number);
-          here->ask(number, asked.stream.on_result(result.outcome.code, here->view_of(*there, asked)));
-        });
+    const auto at_once = commands_.submit(number, batch_of(*axis, joint, *target),
+                                          [self = std::weak_ptr(self_), number](const BatchResult& result) {
+                                            const auto here = self.lock();
+                                            if (here == nullptr) return;
+                                            const AxisImage* const there = here->image_.find(number);
+                                            if (there == nullptr) {
+                                              here->joints_.erase(number);
+                                              return;
+                                            }
+                                            here->ask(number, here->take_result(*there, result.outcome.code));
+                                          });
     if (!at_once) return;
-    target = joint.stream.on_result(at_once->outcome.code, view_of(*axis, joint));
+    target = take_result(*axis, at_once->outcome.code);
   }
+}
+
+std::optional<JointTarget> RosRequests::take_result(const AxisImage& axis, Errc code) {
+  Joint& joint = joint_of(axis.number);
+  if (code == Errc::ok) heard(axis, joint, joint.followed);
+  return joint.stream.on_result(code, view_of(axis, joint));
 }
 
 void RosRequests::submit_alone(AxisNumber axis, const WriteBatch& batch) {
@@ -260,18 +284,34 @@ void RosRequests::on_action(const RosActionRecord& record, Instant now) {
     return complain(
         fmt::format("ros2: {} of {}: a stop that came after it was carried out first", text(command), axis->name), now);
   }
-  // A stop is carried out whatever its age. What is old, or asks for what is so already, says nothing of the program
-  // that keeps a motor running.
-  const bool fresh = signs_.fresh(record.written, now);
-  const bool renews = fresh && changes(command, *axis);
+  // A stop is carried out whatever its age. What is old, asks for what is so already, or is refused, says nothing of
+  // the program that keeps a motor running.
+  const bool acts = changes(command, *axis);
   Joint& joint = joint_of(record.axis);
   joint.newest = now;
-  if (renews) heard(joint, now);
-  if (!is_stop(command)) joint.stream.begin_anew();
+  if (command == Command::home) return home(record.axis, joint, now);
+  const bool renews = acts && signs_.fresh(record.written, now);
+  if (renews) heard(*axis, joint, now);
+  if (!is_stop(command) && acts) joint.stream.begin_anew();
   WriteBatch batch = new_batch(joint, renews);
   batch.command = command;
   batch.claims = !is_stop(command);
   submit_alone(record.axis, batch);
+}
+
+// One that is refused leaves the stream that moves the motor as it is.
+void RosRequests::home(AxisNumber number, Joint& joint, Instant now) {
+  WriteBatch batch = new_batch(joint, false);
+  batch.command = Command::home;
+  batch.claims = true;
+  const auto done = [self = std::weak_ptr(self_), number, now](const BatchResult& result) {
+    const auto here = self.lock();
+    const AxisImage* const axis = here == nullptr ? nullptr : here->image_.find(number);
+    if (axis != nullptr && result.outcome.code == Errc::ok) here->heard(*axis, here->joint_of(number), now);
+  };
+  const auto at_once = commands_.submit(number, batch, done);
+  if (at_once) done(*at_once);
+  if (!at_once || at_once->outcome.code == Errc::ok) joint.stream.begin_anew();
 }
 
 }  // namespace axisgate::dds

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What ROS 2 nodes ask of axes by topics: joint_commands for all of them, and enable, quick_stop, fault_reset and home
 // of each (design 4). Promises that each axis has one client for all nodes, whose lease a sample that names a target
-// for the axis renews, so that silence ends it; that a sample which cannot be meant as it stands is refused whole; that
-// nothing but the topic enable enables. Never replies: what is refused is an event or a line of the log.
+// for the axis renews, so that silence ends it; that while a stream's motion is on, a sample which does not act renews
+// nothing; that a sample which cannot be meant as it stands is refused whole; that nothing but the topic enable
+// enables. Never replies: what is refused is an event or a line of the log.
 #pragma once
 
 #include <map>
@@ -45,17 +46,21 @@ class RosRequests {
   struct Joint {
     std::shared_ptr<ClientLife> life{};
     JointStream stream{};
-    Instant newest = kLongAgo;  ///< when the newest sample for this axis came, renewing or not
+    Instant newest = kLongAgo;    ///< when the newest sample for this axis came, renewing or not
+    Instant followed = kLongAgo;  ///< when the newest one of a stream that moves it came
   };
   [[nodiscard]] Joint& joint_of(AxisNumber axis);
   [[nodiscard]] const DdsUnits& units_of(AxisNumber axis) const;
   [[nodiscard]] JointView view_of(const AxisImage& axis, const Joint& joint) const;
   [[nodiscard]] std::map<std::string_view, const AxisImage*> axes_by_name() const;
-  [[nodiscard]] WriteBatch new_batch(const Joint& joint, bool renews = true) const;
-  void heard(Joint& joint, Instant now);
+  [[nodiscard]] WriteBatch new_batch(const Joint& joint, bool renews) const;
+  void heard(const AxisImage& axis, Joint& joint, Instant then);
   void take_target(const AxisImage& axis, double position, double velocity, const JointCommandsRecord& from,
                    Instant now);
   void ask(AxisNumber axis, std::optional<JointTarget> target);
+  [[nodiscard]] std::optional<JointTarget> take_result(const AxisImage& axis, Errc code);
+  void halt(AxisNumber axis, const Joint& joint);
+  void home(AxisNumber axis, Joint& joint, Instant now);
   [[nodiscard]] WriteBatch batch_of(const AxisImage& axis, const Joint& joint, const JointTarget& target) const;
   /// What its axis says of it is an event.
   void submit_alone(AxisNumber axis, const WriteBatch& batch);

@@ -311,6 +311,59 @@ TEST_F(Ros, AnEnableThatChangesNothingKeepsNoRunAlive) {
   EXPECT_TRUE(stopped()) << "its stream is silent";
 }
 
+// Samples that do not act are no sign of life of the program whose stream moves the motor.
+struct RosRunning : Ros {
+  void SetUp() override {
+    act(RosAction::enable);
+    ASSERT_TRUE(stream_until(velocities(0), [&] { return enabled(); }));
+    stream(velocities(0), 200ms);
+    ASSERT_TRUE(stream_until(velocities(3), [&] { return std::fabs(rig.state().velocity - 3) < 0.1; }));
+  }
+  dds::JointCommandsRecord velocities_of(std::uint8_t writer, double velocity) {
+    auto out = velocities(velocity);
+    out.writer = guid(writer);
+    return out;
+  }
+  bool stopped() { return (rig.state().alarms & bit(AxisAlarm::stop_latched)) != 0; }
+  /// Its lease has run out while this was streamed.
+  void expect_stop(const dds::JointCommandsRecord& record) {
+    const Instant silent = rig.now();
+    EXPECT_TRUE(stream_until(record, [&] { return stopped(); }));
+    EXPECT_LE(rig.now() - silent, 2200ms);
+    EXPECT_TRUE(rig.run_until([&] { return !rig.turns(); }, 5s));
+  }
+};
+
+TEST_F(RosRunning, AnothersStreamOutOfStepKeepsNoRunAlive) { expect_stop(velocities_of(2, 3)); }
+
+TEST_F(RosRunning, AnothersPositionsOutOfStepKeepNoRunAlive) { expect_stop(sample({-1000}, 2)); }
+
+TEST_F(RosRunning, AValueThatNoRegisterHoldsKeepsNoRunAlive) { expect_stop(velocities(1e12)); }
+
+TEST_F(RosRunning, AVelocityThatTheAxisRefusesKeepsNoRunAlive) { expect_stop(velocities(1e5)); }
+
+TEST_F(RosRunning, PositionsOfItsOwnNodeThatAreNotWhereItIsEndTheRunAtOnce) {
+  const double hold = position() - 10;
+  stream(sample({hold}), 1s);
+  EXPECT_FALSE(rig.turns());
+  EXPECT_TRUE(enabled()) << "halted, and no more than that";
+  stream(sample({hold}), 3s);
+  EXPECT_FALSE(rig.turns());
+  stream(velocities(3), 1s);
+  EXPECT_FALSE(rig.turns()) << "it was not 0 since";
+}
+
+TEST_F(RosRunning, AnEnableThatChangesNothingLeavesTheStreamInStep) {
+  act(RosAction::enable);
+  EXPECT_TRUE(stream_until(velocities(-3), [&] { return std::fabs(rig.state().velocity + 3) < 0.1; }));
+}
+
+TEST_F(RosRunning, AHomeThatIsRefusedKeepsNoRunAlive) {
+  const Instant silent = rig.now();
+  for (; !stopped() && rig.now() < silent + 5s; rig.run(100ms)) act(RosAction::home);
+  EXPECT_LE(rig.now() - silent, 2200ms);
+}
+
 struct RosWithWrites : Ros {
   RosWithWrites() : Ros(options()) {}
   static DdsRigOptions options() {
