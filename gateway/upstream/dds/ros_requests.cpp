@@ -196,8 +196,7 @@ void RosRequests::take_target(const AxisImage& axis, double position, double vel
                                 is_velocity ? velocity : position),
                     now);
   }
-  JointView view = view_of(axis, joint);
-  if (namesakes_.taken()) view.ready = false;
+  const JointView view = view_of(axis, joint);
   const auto target = joint.stream.on_sample(from.writer, {is_velocity, *value}, position, view);
   if (joint.stream.take_astray()) {
     complain(is_velocity
@@ -238,20 +237,32 @@ void RosRequests::ask(AxisNumber number, std::optional<JointTarget> target) {
     const AxisImage* const axis = image_.find(number);
     if (axis == nullptr) return;
     Joint& joint = joint_of(number);
-    const auto at_once = commands_.submit(number, batch_of(*axis, joint, *target),
-                                          [self = std::weak_ptr(self_), number](const BatchResult& result) {
-                                            const auto here = self.lock();
-                                            if (here == nullptr) return;
-                                            const AxisImage* const there = here->image_.find(number);
-                                            if (there == nullptr) {
-                                              here->joints_.erase(number);
-                                              return;
-                                            }
-                                            here->ask(number, here->take_result(*there, result.outcome.code));
-                                          });
+    const WriteBatch batch = batch_of(*axis, joint, *target);
+    if (namesakes_.taken() && batch.command != Command::none) return refuse_start(*axis, joint);
+    const auto at_once =
+        commands_.submit(number, batch, [self = std::weak_ptr(self_), number](const BatchResult& result) {
+          const auto here = self.lock();
+          if (here == nullptr) return;
+          const AxisImage* const there = here->image_.find(number);
+          if (there == nullptr) {
+            here->joints_.erase(number);
+            return;
+          }
+          here->ask(number, here->take_result(*there, result.outcome.code));
+        });
     if (!at_once) return;
     target = take_result(*axis, at_once->outcome.code);
   }
+}
+
+// The axis has another gateway beside this one. Its stream must come into step anew: where it is by the time that the
+// name is free nobody knows. Whoever asks a run for a position does not ask for the run any more.
+void RosRequests::refuse_start(const AxisImage& axis, Joint& joint) {
+  joint.stream.begin_anew();
+  static_cast<void>(joint.stream.on_result(Errc::never_started, view_of(axis, joint)));
+  if (velocity_runs(axis)) halt(axis.number, joint);
+  complain(fmt::format("joint_commands starts nothing on {}: {} has our name", axis.name, namesakes_.text()),
+           joint.newest);
 }
 
 std::optional<JointTarget> RosRequests::take_result(const AxisImage& axis, Errc code) {

@@ -59,6 +59,7 @@ class RosRequests {
                    Instant now);
   void ask(AxisNumber axis, std::optional<JointTarget> target);
   [[nodiscard]] std::optional<JointTarget> take_result(const AxisImage& axis, Errc code);
+  void refuse_start(const AxisImage& axis, Joint& joint);
   void halt(AxisNumber axis, const Joint& joint);
   void home(AxisNumber axis, Joint& joint, Instant now);
   [[nodiscard]] WriteBatch batch_of(const AxisImage& axis, const Joint& joint, const JointTarget& target) const;

@@ -364,6 +364,51 @@ TEST_F(RosRunning, AHomeThatIsRefusedKeepsNoRunAlive) {
   EXPECT_LE(rig.now() - silent, 2200ms);
 }
 
+// Contract: starts are refused, and running motions keep their leases.
+struct RosNamesake : RosRunning {
+  void take_name(bool gone = false) { rig.give(dds::NamesakeRecord{guid(9), kServo, "192.168.1.8", gone}); }
+};
+
+TEST_F(RosNamesake, ARunThatIsOnIsChangedAndStoppedByItsStream) {
+  take_name();
+  EXPECT_TRUE(stream_until(velocities(-3), [&] { return std::fabs(rig.state().velocity + 3) < 0.1; }));
+  stream(velocities(-3), 3s);
+  EXPECT_FALSE(stopped()) << "it keeps its lease";
+  stream(velocities(0), 1s);
+  EXPECT_FALSE(rig.turns());
+}
+
+TEST_F(RosNamesake, AnothersZeroStopsARun) {
+  take_name();
+  stream(velocities_of(2, 0), 1s);
+  EXPECT_FALSE(rig.turns());
+}
+
+TEST_F(RosNamesake, NothingStartsWhileItIsTakenNorByItself) {
+  act(RosAction::disable);
+  ASSERT_TRUE(rig.run_until([&] { return !enabled(); }));
+  control();
+  take_name();
+  const double before = position();
+  stream(sample({before}), 100ms);
+  stream(sample({before + 1}), 500ms);
+  stream(velocities(0), 100ms);
+  stream(velocities(3), 500ms);
+  stream(sample({before + 1}), 500ms);
+  take_name(true);
+  stream(sample({before + 1}), 500ms);
+  EXPECT_NEAR(position(), before, 1e-3);
+  stream(sample({position()}), 100ms);
+  EXPECT_TRUE(reaches(before + 1));
+}
+
+TEST_F(RosNamesake, APositionEndsARunAndStartsNoMove) {
+  take_name();
+  EXPECT_TRUE(rig.turns());
+  for (int i = 0; i < 100; ++i) stream(sample({position()}), kPeriod);
+  EXPECT_FALSE(rig.turns());
+}
+
 struct RosWithWrites : Ros {
   RosWithWrites() : Ros(options()) {}
   static DdsRigOptions options() {
