@@ -4,6 +4,7 @@
 #include <array>
 
 #include "gateway/image/register_map.hpp"
+#include "gateway/image/shown.hpp"
 #include "gateway/upstream/dds_link/stop_commands.hpp"
 
 namespace axisgate::dds {
@@ -142,6 +143,17 @@ bool lets_go(const CommandRecord& record) { return stops(record) || command_of(r
 bool starts(const CommandRecord& record, bool held) {
   const Command command = command_of(record);
   return command == Command::enable || (asks_to_move(command) && !(is_jog(command) && held));
+}
+
+bool begins_beside(const CommandRecord& record, const AxisImage& axis) {
+  constexpr unsigned kVelocityRuns = 7;
+  const bool moves = axis.axis_state == AxisState::discrete_motion;
+  const bool runs =
+      axis.axis_state == AxisState::continuous_motion || (unsigned{shown_level_coils(axis)} >> kVelocityRuns & 1U) != 0;
+  if (has(record, kHasMode) && !((moves || runs) && record.mode == shown_value(axis, Quantity::mode_display)))
+    return true;
+  if (has(record, kHasTargetPosition) && !moves) return true;
+  return has(record, kHasTargetVelocity | kHasTargetTorque) && !runs;
 }
 
 PlannedCommand plan_command(const CommandRecord& record, const WriteBatch& from, const AxisImage* axis,

@@ -30,6 +30,9 @@ using PlannedCommand = std::variant<CommandPlan, Errc>;
 /// May put torque on or set a motor going that stands: the press of a jog's button, but not the button held.
 [[nodiscard]] bool starts(const CommandRecord& record, bool held);
 
+/// What is written beside the command may set a motor going: a mode, or a target that is none of the motion that is on.
+[[nodiscard]] bool begins_beside(const CommandRecord& record, const AxisImage& axis);
+
 /// `from`: a write batch of this writer, with its deadlines, that asks for nothing yet. `axis`: nullptr where there is
 /// none of that number. `held`: the sample's jog command is held already: this is no new press.
 [[nodiscard]] PlannedCommand plan_command(const CommandRecord& record, const WriteBatch& from, const AxisImage* axis,

@@ -161,7 +161,10 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
     const auto found = client->held.find(record.axis);
     held = found != client->held.end() && found->second.direction == Command{record.command};
   }
-  if (namesakes_.taken() && starts(record, held)) return end(record, what, kNameTaken, now);
+  // Of a stop or a release it is what stands beside it that is refused.
+  const bool begins = namesakes_.taken() && axis != nullptr && begins_beside(record, *axis);
+  if (namesakes_.taken() && (starts(record, held) || (begins && !exempt))) return end(record, what, kNameTaken, now);
+  if (begins) record.mask = 0;
   static const DdsUnits kUsual;
   const auto units = units_.find(record.axis);
   PlannedCommand planned = plan_command(record, new_batch(life, fresh && named, now), axis,
@@ -169,7 +172,7 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
   if (const auto* const refused = std::get_if<Errc>(&planned)) return end(record, what, *refused, now);
   auto& plan = std::get<CommandPlan>(planned);
   if (record.request_id == 0) plan.afterwards = Errc::bad_value;
-  if (record.mask != asked.mask) plan.afterwards = Errc::never_started;
+  if (record.mask != asked.mask && !begins) plan.afterwards = Errc::never_started;
   press(record, axis, held);
   if (stops(record)) stop_order_.stopped(record.axis, record.received);
   // Where the participant has written objects of this axis first, by its other writer, that one makes way: for as long
@@ -177,8 +180,11 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
   const auto& owner = axis->lease.owner;
   const auto sibling = owner ? clients_.asks_for_objects(*owner, *life) : nullptr;
   if (sibling) sibling->connected = false;
-  start(record.axis, std::move(plan),
-        [record, held](DdsRequests& self, const BatchResult& result) { self.end_command(record, held, result); });
+  start(record.axis, std::move(plan), [record, held, begins](DdsRequests& self, const BatchResult& result) {
+    if (!begins || result.outcome.code != Errc::ok) return self.end_command(record, held, result);
+    self.memory_.ended(key_of(record), record.command, kNameTaken);
+    self.reply(record, kNameTaken);
+  });
   if (sibling) sibling->connected = true;
 }
 
@@ -191,6 +197,8 @@ void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {
   if (const auto* const why = std::get_if<NotAdmitted>(&admitted)) return refuse(record, what, *why, now);
   if (record.write && stop_order_.overtaken(record.axis, record.received))
     return end(record, what, Errc::dropped_by_stop, now);
+  // Nobody knows here what an object does: it may enable, or start.
+  if (record.write && namesakes_.taken()) return end(record, what, kNameTaken, now);
   auto life = std::get<std::shared_ptr<const ClientLife>>(admitted);
   const AxisImage* const axis = image_.find(record.axis);
   // Objects are asked for by a writer of their own: where its participant commands the axis by another, it is that

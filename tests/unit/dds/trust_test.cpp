@@ -23,8 +23,8 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 constexpr int kTold = 2, kTooOld = 6, kWrong = 17, kTaken = 22;
-constexpr std::uint8_t kEnable = 1, kDisable = 2, kQuickStop = 3, kHalt = 4, kMove = 6, kRun = 8, kRelease = 13,
-                       kJogForward = 31, kJogEnd = 33;
+constexpr std::uint8_t kEnable = 1, kDisable = 2, kQuickStop = 3, kHalt = 4, kFaultReset = 5, kMove = 6, kRun = 8,
+                       kRelease = 13, kJogForward = 31, kJogEnd = 33;
 
 DdsSettings named(const std::string& name, std::optional<Duration> max_age = {}) {
   DdsSettings out = PlainSession::settings();
@@ -175,13 +175,58 @@ TEST_F(TwoOfOneName, StartNothingUntilOneIsGone) {
   EXPECT_THAT(plain.name_taken, ElementsAre(true));
   for (const std::uint8_t number : {kEnable, kMove, kRun}) EXPECT_EQ(ask(number), kTaken) << int{number};
   EXPECT_NE(ask(kJogForward, kHasJogVelocity), kTaken) << "the button that is held goes on";
-  EXPECT_EQ(ask(0, kHasTargetVelocity), kTold);
   EXPECT_EQ(ask(kJogEnd), kTold);
   EXPECT_EQ(ask(kJogForward, kHasJogVelocity), kTaken) << "a new press";
   EXPECT_EQ(ask(kQuickStop), kTold);
   duplicate(0, true);
   EXPECT_THAT(plain.name_taken, ElementsAre(true, false));
   EXPECT_EQ(ask(kEnable), kTold);
+}
+
+// A drive in a velocity mode runs by its set-point alone.
+TEST_F(TwoOfOneName, StartNothingBySetpointsEither) {
+  duplicate(1);
+  AxisImage& axis = *plain.image.find(1);
+  axis.axis_state = AxisState::standstill;
+  EXPECT_EQ(ask(0, kHasMode), kTaken);
+  for (const std::uint32_t target : {kHasTargetPosition, kHasTargetVelocity, kHasTargetTorque}) {
+    EXPECT_EQ(ask(0, target), kTaken) << target;
+    EXPECT_EQ(ask(kFaultReset, target), kTaken) << target;
+  }
+  EXPECT_EQ(ask(0, kHasProfileVelocity), kTold);
+  EXPECT_EQ(ask(kFaultReset), kTold);
+  axis.axis_state = AxisState::discrete_motion;
+  EXPECT_EQ(ask(0, kHasTargetPosition), kTold);
+  EXPECT_EQ(ask(0, kHasTargetVelocity), kTaken) << "it is not what runs";
+  axis.axis_state = AxisState::continuous_motion;
+  EXPECT_EQ(ask(0, kHasTargetVelocity), kTold) << "a run that is on";
+  EXPECT_EQ(ask(0, kHasTargetTorque), kTold);
+  EXPECT_EQ(ask(0, kHasTargetPosition), kTaken);
+  axis[Quantity::mode_display].value = 3;
+  EXPECT_EQ(ask(0, kHasMode | kHasTargetVelocity), kTaken) << "another mode";
+  axis[Quantity::mode_display].value = 0;
+  EXPECT_EQ(ask(0, kHasMode | kHasTargetVelocity), kTold);
+}
+
+TEST_F(TwoOfOneName, StopAndLetGoAndNoMoreThanThat) {
+  duplicate(1);
+  plain.image.find(1)->axis_state = AxisState::standstill;
+  for (const std::uint8_t number : {kQuickStop, kHalt, kRelease}) {
+    plain.port.submitted.clear();
+    EXPECT_EQ(ask(number, kHasMode | kHasTargetVelocity), kTaken) << "said of what stands beside it";
+    ASSERT_THAT(plain.port.submitted, SizeIs(1)) << int{number};
+    EXPECT_THAT(plain.port.submitted.front().batch.setpoints, IsEmpty()) << int{number};
+    EXPECT_FALSE(plain.port.submitted.front().batch.mode) << int{number};
+  }
+}
+
+TEST_F(TwoOfOneName, WriteNoObjects) {
+  ObjectRequestRecord object{guid(1, 2), 1, gateway_id("cell_7"), 1, 1, false, 0x6040, 0, 2, 15, {}};
+  duplicate(1);
+  EXPECT_EQ(plain.ask<ObjectReplyRecord>(object), kTold) << "a read";
+  object.request_id = 2;
+  object.write = true;
+  EXPECT_EQ(plain.ask<ObjectReplyRecord>(object), kTaken);
 }
 
 TEST_F(TwoOfOneName, WithOtherAxesAreNone) {
