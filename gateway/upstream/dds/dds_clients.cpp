@@ -169,6 +169,7 @@ DdsClient* DdsClients::on_sample(const Guid& writer, std::optional<std::int32_t>
     client->life->name = name_of(writer);
     client->life->strength = client->strength;
     client->life->lease_limit = client->lease_limit;
+    recall_held(writer, *client);
   }
   client->beats_alone = false;
   if (strength) client->life->strength = strength;
@@ -209,7 +210,23 @@ void DdsClients::end(DdsClient& client) {
   commands_.client_gone(life->id);
 }
 
+void DdsClients::remember_held(const Guid& writer, DdsClient& client) {
+  if (client.held.empty()) return;
+  for (auto& [axis, jog] : client.held) jog.starting = false;
+  held_before_.emplace_back(writer, std::move(client.held));
+  if (held_before_.size() > kMaxWriters) held_before_.pop_front();
+}
+
+void DdsClients::recall_held(const Guid& writer, DdsClient& client) {
+  const auto found =
+      std::find_if(held_before_.begin(), held_before_.end(), [&](const auto& each) { return each.first == writer; });
+  if (found == held_before_.end()) return;
+  client.held = std::move(found->second);
+  held_before_.erase(found);
+}
+
 DdsClients::Clients::iterator DdsClients::forget(Clients::iterator client) {
+  remember_held(client->first, client->second);
   end(client->second);
   return clients_.erase(client);
 }

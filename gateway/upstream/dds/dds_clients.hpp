@@ -7,8 +7,10 @@
 // Never speaks to an axis, but to say that a client is gone.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/process_image.hpp"
@@ -90,6 +92,8 @@ class DdsClients {
   [[nodiscard]] bool make_room();
   void end(DdsClient& client);
   Clients::iterator forget(Clients::iterator client);
+  void remember_held(const Guid& writer, DdsClient& client);
+  void recall_held(const Guid& writer, DdsClient& client);
   void look_at_deadlines();
 
   const Identities& identities_;
@@ -97,6 +101,9 @@ class DdsClients {
   const ProcessImage& image_;
   CommandPort& commands_;
   Clients clients_;
+  /// Buttons of writers that were taken for gone, kMaxWriters at most, the newest last: one that comes back still holds
+  /// them, and has not pressed them anew.
+  std::deque<std::pair<Guid, std::map<AxisNumber, HeldJog>>> held_before_;
   ClientId next_id_ = kFirstDdsClient;
   bool link_up_ = false;
   Instant deadline_ = kNever;

@@ -139,6 +139,24 @@ TEST_P(Jogged, AWriterThatDiesHoldsNoButton) {
   EXPECT_TRUE(stands());
 }
 
+// Its process stood still, say, with the button held.
+TEST_P(Jogged, AWriterThatComesBackHasNotPressedItsButtonAnew) {
+  enable();
+  EXPECT_EQ(jog(kForward), kDone);
+  hold(kForward, 1s);
+  rig.die(writer);
+  rig.run(600ms);
+  EXPECT_TRUE(stands());
+  static_cast<void>(rig.writer(1));
+  EXPECT_EQ(hold(kForward, 1s), kNotNew);
+  EXPECT_FALSE(rig.turns(axis));
+  EXPECT_EQ(rig.ask(writer, kEnd, axis).result, kDone);
+  enable();
+  EXPECT_EQ(jog(kForward), kDone);
+  hold(kForward, 500ms);
+  EXPECT_TRUE(rig.turns(axis));
+}
+
 TEST_P(Jogged, EndsWithoutAPressAreNoHarm) {
   enable();
   EXPECT_EQ(rig.ask(writer, kEnd, axis).result, kDone);
