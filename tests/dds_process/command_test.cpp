@@ -224,8 +224,11 @@ TEST(CommandWriter, IsInTheBeatsOnlyWhereItsLivelinessIsASignOfLife) {
   EXPECT_EQ(told[automatic->guid()], LivelinessKind::automatic);
   EXPECT_EQ(told[participant->guid()], LivelinessKind::manual_by_participant);
   auto counts = peer.writer<AxisCommand>(kCommands, {.liveliness = Liveliness::manual_by_topic, .lease = lease});
+  ASSERT_TRUE(counts->wait_matched());
   std::optional<BeatRecord> beat;
+  std::uint64_t id = 0;
   do {
+    ASSERT_TRUE(counts->write(command(1, ++id)));
     beat = child.next<BeatRecord>();
     ASSERT_TRUE(beat);
   } while (beat->writers.empty());

@@ -87,6 +87,7 @@ TEST(Writers, OfAWholeDomainAreInTheBeats) {
   for (std::size_t i = 0; i <= kMaxWritersKnown; ++i) {
     watch.on_discovered(writer_of(i), statement);
     watch.on_matched(writer_of(i), kNow);
+    watch.on_sample(writer_of(i), kNow);
   }
   EXPECT_EQ(watch.take_changes(kNow).refused, 2U) << "when it was found, and when it was matched";
   std::size_t told = 0;
@@ -97,6 +98,29 @@ TEST(Writers, OfAWholeDomainAreInTheBeats) {
     told += record.writers.size();
   }
   EXPECT_EQ(told, kMaxWritersKnown);
+}
+
+// Of a program that hangs the library goes on to be found, by a new axisgate-dds as well.
+TEST(Writers, ThatAreFoundHaveGivenNoSignOfLifeUntilTheyAssert) {
+  WriterWatch watch;
+  WriterStatement statement;
+  statement.kind = LivelinessKind::manual_by_topic;
+  statement.lease.length = 1'000'000'000;
+  const Guid writer = writer_of(1);
+  const auto beats = [&] {
+    static_cast<void>(watch.take_changes(kNow));
+    return watch.beats(kNow).front().writers.size();
+  };
+  watch.on_discovered(writer, statement);
+  watch.on_matched(writer, kNow);
+  EXPECT_EQ(beats(), 0U);
+  watch.on_liveliness(writer, statement.lease, true);
+  EXPECT_EQ(beats(), 1U);
+  watch.on_unmatched(writer);
+  watch.on_matched(writer, kNow);
+  EXPECT_EQ(beats(), 0U) << "found again";
+  watch.on_sample(writer, kNow);
+  EXPECT_EQ(beats(), 1U);
 }
 
 TEST(Namesake, WithManyAxesIsToldTurnByTurnAndOfNoneThatNoGatewayHas) {

@@ -35,6 +35,7 @@ void WriterWatch::on_matched(const Guid& writer, SteadyNs now) {
   Writer* known = find_or_add(writer);
   if (known == nullptr || known->matched) return;
   known->matched = true;
+  known->asserted = false;
   known->good_until = now + known->statement.lease.length + kFirstGrace;
 }
 
@@ -65,6 +66,7 @@ void WriterWatch::on_liveliness(const Guid& writer, const LivelinessLease& asked
   Writer* known = find(writer);
   if (known == nullptr || known->statement.lease != asked) return;
   known->heard = alive;
+  known->asserted = known->asserted || alive;
   if (alive) return;
   known->good_until = 0;
   known->lost_since = known->told;
@@ -73,7 +75,9 @@ void WriterWatch::on_liveliness(const Guid& writer, const LivelinessLease& asked
 void WriterWatch::on_sample(const Guid& writer, SteadyNs now) {
   const std::lock_guard lock(mutex_);
   Writer* known = find(writer);
-  if (known != nullptr) known->good_until = std::max(known->good_until, now + known->statement.lease.length);
+  if (known == nullptr) return;
+  known->asserted = true;
+  known->good_until = std::max(known->good_until, now + known->statement.lease.length);
 }
 
 WriterWatch::Changes WriterWatch::take_changes(SteadyNs now) {
@@ -106,7 +110,7 @@ std::vector<BeatRecord> WriterWatch::beats(SteadyNs now) const {
   const std::lock_guard lock(mutex_);
   std::vector<BeatRecord> records(1);
   for (const auto& [guid, writer] : writers_) {
-    if (!writer.told || writer.statement.lease.length == 0 || !writer.there(now)) continue;
+    if (!writer.told || !writer.asserted || writer.statement.lease.length == 0 || !writer.there(now)) continue;
     if (records.back().writers.size() == kMaxBeats) records.emplace_back();
     records.back().writers.push_back(guid);
   }

@@ -70,6 +70,7 @@ class WriterWatch {
     WriterStatement statement{};
     bool discovered = false;  ///< and so its statement known: another participant of ours matches it
     bool matched = false;
+    bool asserted = false;    ///< since it was matched: that it was found is no sign of life
     bool heard = false;       ///< by the reader of its lease: alive
     SteadyNs good_until = 0;  ///< by our own reckoning, where it is not heard
     bool lost_since = false;  ///< also if it came back
