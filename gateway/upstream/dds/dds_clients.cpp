@@ -134,11 +134,14 @@ std::string DdsClients::on_writer(const WriterRecord& record) {
   return told;
 }
 
+// As of when they were said: they may have lain in the socket while this gateway stood still.
 void DdsClients::on_beats(const BeatRecord& record, Instant now) {
+  const Instant said = record.said == 0 ? now : std::min(now, Instant(Duration(record.said)));
   for (const Guid& writer : record.writers) {
     DdsClient* const client = find(writer);
     if (client == nullptr) continue;
-    client->life->last_request = client->life->heartbeat = now;
+    client->life->last_request = std::max(client->life->last_request, said);
+    client->life->heartbeat = std::max(client->life->heartbeat, said);
     client->returns_by = kNever;
   }
   look_at_deadlines();

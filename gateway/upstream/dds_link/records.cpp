@@ -68,6 +68,7 @@ void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>,
 
 template <typename Coder, typename R>
 void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, BeatRecord> {
+  coder(r.said);
   coder.list(r.writers, kMaxBeats, [&](auto& writer) { coder(writer); });
 }
 

@@ -18,7 +18,7 @@
 namespace axisgate::dds {
 
 /// First byte of each packet. Both ends are installed together: another version is another installation.
-inline constexpr std::uint8_t kLinkVersion = 3;
+inline constexpr std::uint8_t kLinkVersion = 4;
 inline constexpr std::size_t kMaxPacket = 64 * 1024;
 inline constexpr std::size_t kMaxName = 64;
 inline constexpr std::size_t kMaxText = 256;
@@ -147,6 +147,7 @@ struct WriterRecord {
 /// liveliness is a sign of life (dds_link/liveliness.hpp).
 struct BeatRecord {
   std::vector<Guid> writers;  ///< at most kMaxBeats
+  SteadyNs said = 0;          ///< when this was sent: the gateway may have stood still since
   friend bool operator==(const BeatRecord&, const BeatRecord&) = default;
 };
 

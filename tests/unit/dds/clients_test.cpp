@@ -83,6 +83,18 @@ TEST_F(Writers, AreHeardByTheirBeatsWhichAreHeartbeats) {
   EXPECT_EQ(life->heartbeat, kStart + 1s);
 }
 
+TEST_F(Writers, AreHeardAsOfThenWhereTheirBeatsLayInTheSocket) {
+  const auto life = there(guid(1));
+  const auto said = [](Instant then) { return beat(guid(1), then.time_since_epoch().count()); };
+  clients.on_beats(said(kStart + 1s), kStart + 5s);
+  EXPECT_EQ(life->last_request, kStart + 1s);
+  EXPECT_EQ(life->heartbeat, kStart + 1s);
+  clients.on_beats(said(kStart + 500ms), kStart + 5s);
+  EXPECT_EQ(life->last_request, kStart + 1s);
+  clients.on_beats(said(kStart + 9s), kStart + 5s);
+  EXPECT_EQ(life->last_request, kStart + 5s) << "never later than now";
+}
+
 TEST_F(Writers, OfALivelinessThatCountsForNothingAreToldSoOnce) {
   for (const auto kind : {LivelinessKind::automatic, LivelinessKind::manual_by_participant}) {
     const Guid who = guid(static_cast<std::uint8_t>(kind));

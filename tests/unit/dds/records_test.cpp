@@ -33,7 +33,7 @@ std::vector<Record> one_of_each() {
   GatewayRecord gateway{2, 499, 17, UINT32_MAX, 0x80, 5, {a_bus("can0"), a_bus("")}};
   ReplyRecord reply{1, UINT64_MAX, a_guid(), 21, 0x08000022};
   ObjectReplyRecord object_reply{2, 1, a_guid(), 2, 3, 4, {1, 2, 3}};
-  BeatRecord beats{{a_guid(), Guid{}}};
+  BeatRecord beats{{a_guid(), Guid{}}, 123456789012345};
   CommandRecord command{
       a_guid(), -5, 123456789012345, {0xCAFEBABE, "cell_7"}, 1, 2, 33, -3, 0x7FF, 1, -2, 3, 4, 5, 6, 7, 8, -9, -4};
   ObjectRequestRecord object{a_guid(), -1, {7, "cell_8"}, 9, 8, true, 0x6040, 1, 4, 0xFFFFFFFF, {9}};

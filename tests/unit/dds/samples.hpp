@@ -24,7 +24,7 @@ inline constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
   return {writer, strength, false, "192.168.1.7"};
 }
 [[nodiscard]] inline dds::WriterRecord writer_gone(const dds::Guid& writer) { return {writer, 0, true, {}}; }
-[[nodiscard]] inline dds::BeatRecord beat(const dds::Guid& writer) { return {{writer}}; }
+[[nodiscard]] inline dds::BeatRecord beat(const dds::Guid& writer, dds::SteadyNs said = 0) { return {{writer}, said}; }
 
 [[nodiscard]] inline dds::CommandRecord command(const dds::Guid& writer, std::uint8_t number, std::uint64_t id,
                                                 std::uint16_t axis = 1) {

@@ -108,10 +108,10 @@ WriterWatch::Changes WriterWatch::take_changes(SteadyNs now) {
 
 std::vector<BeatRecord> WriterWatch::beats(SteadyNs now) const {
   const std::lock_guard lock(mutex_);
-  std::vector<BeatRecord> records(1);
+  std::vector<BeatRecord> records(1, BeatRecord{{}, now});
   for (const auto& [guid, writer] : writers_) {
     if (!writer.told || !writer.asserted || writer.statement.lease.length == 0 || !writer.there(now)) continue;
-    if (records.back().writers.size() == kMaxBeats) records.emplace_back();
+    if (records.back().writers.size() == kMaxBeats) records.push_back({{}, now});
     records.back().writers.push_back(guid);
   }
   return records;
