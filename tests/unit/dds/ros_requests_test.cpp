@@ -2,11 +2,8 @@
 // ROS 2 nodes before the shipped core: streams of joint_commands, the topics of an axis, and what the motor does.
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <limits>
-
 #include "gateway/upstream/dds_link/ros_names.hpp"
-#include "tests/unit/dds/dds_rig.hpp"
+#include "tests/unit/dds/ros_rig.hpp"
 #include "tests/unit/drive/clients.hpp"
 
 namespace axisgate::test {
@@ -16,52 +13,6 @@ using namespace std::chrono_literals;
 using dds::RosAction;
 using testing::Contains;
 using testing::HasSubstr;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr Duration kPeriod = 10ms;
-constexpr double kNear = 0.002;  ///< three units of 10000 in a turn: the drive stands within its own window
-
-struct Ros : testing::Test {
-  explicit Ros(DdsRigOptions options = {}) : rig(std::move(options)) {}
-
-  [[nodiscard]] double position() { return rig.state().position; }
-  void act(RosAction action, AxisNumber axis = kServo) {
-    rig.give(dds::RosActionRecord{guid(9), 0, axis, static_cast<std::uint8_t>(action)});
-  }
-  dds::JointCommandsRecord sample(std::vector<double> positions, std::uint8_t writer = 1) {
-    dds::JointCommandsRecord out;
-    out.writer = guid(writer);
-    out.positions = std::move(positions);
-    out.names = {rig.axis(kServo).name, rig.axis(kStepper).name};
-    out.names.resize(std::max<std::size_t>(1, std::min<std::size_t>(2, out.positions.size())));
-    return out;
-  }
-  dds::JointCommandsRecord velocities(double velocity) {
-    auto out = sample({});
-    out.velocities = {velocity};
-    return out;
-  }
-  /// The same sample again and again, as a control loop writes it.
-  void stream(const dds::JointCommandsRecord& record, Duration time) {
-    for (const Instant end = rig.now() + time; rig.now() < end; rig.run(kPeriod)) rig.give(record);
-  }
-  bool stream_until(const dds::JointCommandsRecord& record, const std::function<bool()>& done) {
-    for (const Instant end = rig.now() + 20s; !done() && rig.now() < end; rig.run(kPeriod)) rig.give(record);
-    return done();
-  }
-  bool enabled() { return rig.axis().has(AxisInput::enabled); }
-  /// Enabled, and a stream that is where the axis is.
-  void control() {
-    act(RosAction::enable);
-    ASSERT_TRUE(stream_until(sample({position()}), [&] { return enabled(); }));
-    stream(sample({position()}), 100ms);
-  }
-  bool reaches(double wanted) {
-    return stream_until(sample({wanted}), [&] { return std::fabs(position() - wanted) < kNear; });
-  }
-
-  DdsRig rig;
-};
 
 TEST_F(Ros, AStreamEnablesNothing) {
   stream(sample({1}), 3s);
@@ -309,104 +260,6 @@ TEST_F(Ros, AnEnableThatChangesNothingKeepsNoRunAlive) {
     act(RosAction::fault_reset);
   }
   EXPECT_TRUE(stopped()) << "its stream is silent";
-}
-
-// Samples that do not act are no sign of life of the program whose stream moves the motor.
-struct RosRunning : Ros {
-  void SetUp() override {
-    act(RosAction::enable);
-    ASSERT_TRUE(stream_until(velocities(0), [&] { return enabled(); }));
-    stream(velocities(0), 200ms);
-    ASSERT_TRUE(stream_until(velocities(3), [&] { return std::fabs(rig.state().velocity - 3) < 0.1; }));
-  }
-  dds::JointCommandsRecord velocities_of(std::uint8_t writer, double velocity) {
-    auto out = velocities(velocity);
-    out.writer = guid(writer);
-    return out;
-  }
-  bool stopped() { return (rig.state().alarms & bit(AxisAlarm::stop_latched)) != 0; }
-  /// Its lease has run out while this was streamed.
-  void expect_stop(const dds::JointCommandsRecord& record) {
-    const Instant silent = rig.now();
-    EXPECT_TRUE(stream_until(record, [&] { return stopped(); }));
-    EXPECT_LE(rig.now() - silent, 2200ms);
-    EXPECT_TRUE(rig.run_until([&] { return !rig.turns(); }, 5s));
-  }
-};
-
-TEST_F(RosRunning, AnothersStreamOutOfStepKeepsNoRunAlive) { expect_stop(velocities_of(2, 3)); }
-
-TEST_F(RosRunning, AnothersPositionsOutOfStepKeepNoRunAlive) { expect_stop(sample({-1000}, 2)); }
-
-TEST_F(RosRunning, AValueThatNoRegisterHoldsKeepsNoRunAlive) { expect_stop(velocities(1e12)); }
-
-TEST_F(RosRunning, AVelocityThatTheAxisRefusesKeepsNoRunAlive) { expect_stop(velocities(1e5)); }
-
-TEST_F(RosRunning, PositionsOfItsOwnNodeThatAreNotWhereItIsEndTheRunAtOnce) {
-  const double hold = position() - 10;
-  stream(sample({hold}), 1s);
-  EXPECT_FALSE(rig.turns());
-  EXPECT_TRUE(enabled()) << "halted, and no more than that";
-  stream(sample({hold}), 3s);
-  EXPECT_FALSE(rig.turns());
-  stream(velocities(3), 1s);
-  EXPECT_FALSE(rig.turns()) << "it was not 0 since";
-}
-
-TEST_F(RosRunning, AnEnableThatChangesNothingLeavesTheStreamInStep) {
-  act(RosAction::enable);
-  EXPECT_TRUE(stream_until(velocities(-3), [&] { return std::fabs(rig.state().velocity + 3) < 0.1; }));
-}
-
-TEST_F(RosRunning, AHomeThatIsRefusedKeepsNoRunAlive) {
-  const Instant silent = rig.now();
-  for (; !stopped() && rig.now() < silent + 5s; rig.run(100ms)) act(RosAction::home);
-  EXPECT_LE(rig.now() - silent, 2200ms);
-}
-
-// Contract: starts are refused, and running motions keep their leases.
-struct RosNamesake : RosRunning {
-  void take_name(bool gone = false) { rig.give(dds::NamesakeRecord{guid(9), kServo, "192.168.1.8", gone}); }
-};
-
-TEST_F(RosNamesake, ARunThatIsOnIsChangedAndStoppedByItsStream) {
-  take_name();
-  EXPECT_TRUE(stream_until(velocities(-3), [&] { return std::fabs(rig.state().velocity + 3) < 0.1; }));
-  stream(velocities(-3), 3s);
-  EXPECT_FALSE(stopped()) << "it keeps its lease";
-  stream(velocities(0), 1s);
-  EXPECT_FALSE(rig.turns());
-}
-
-TEST_F(RosNamesake, AnothersZeroStopsARun) {
-  take_name();
-  stream(velocities_of(2, 0), 1s);
-  EXPECT_FALSE(rig.turns());
-}
-
-TEST_F(RosNamesake, NothingStartsWhileItIsTakenNorByItself) {
-  act(RosAction::disable);
-  ASSERT_TRUE(rig.run_until([&] { return !enabled(); }));
-  control();
-  take_name();
-  const double before = position();
-  stream(sample({before}), 100ms);
-  stream(sample({before + 1}), 500ms);
-  stream(velocities(0), 100ms);
-  stream(velocities(3), 500ms);
-  stream(sample({before + 1}), 500ms);
-  take_name(true);
-  stream(sample({before + 1}), 500ms);
-  EXPECT_NEAR(position(), before, 1e-3);
-  stream(sample({position()}), 100ms);
-  EXPECT_TRUE(reaches(before + 1));
-}
-
-TEST_F(RosNamesake, APositionEndsARunAndStartsNoMove) {
-  take_name();
-  EXPECT_TRUE(rig.turns());
-  for (int i = 0; i < 100; ++i) stream(sample({position()}), kPeriod);
-  EXPECT_FALSE(rig.turns());
 }
 
 struct RosWithWrites : Ros {
