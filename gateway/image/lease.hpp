@@ -31,7 +31,7 @@ struct ClientLife {
   std::uint8_t rank = 0;  ///< 0..9: command take_over takes an axis from a lower one
   Origin origin{};
   std::string name;                 ///< "192.168.1.7:51234", for events
-  Instant last_request = kLongAgo;  ///< any request, reads included; of a client that is an address, writes alone
+  Instant last_request = kLongAgo;  ///< any request, reads included; of an address, accepted writes alone
   Instant heartbeat = kLongAgo;     ///< gateway register 8 was written with another value than before
   bool connected = true;            ///< false: its connection has ended, its leases are orphans
   bool is_address = false;          ///< listener option "client": "address": a host, with all its connections

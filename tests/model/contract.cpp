@@ -189,7 +189,8 @@ int Contract::send(std::size_t client, const Write& write) {
       pending.verdict = judge.write(write);
       // 3.5, "renew": whether "a write to this axis" that is refused is one is not said; nor whether half of a row is.
       const bool done = pending.verdict.answers.contains(0) && !next.clients[std::min(client, kModbus)].half;
-      if (options_.only_writes_renew && next.owner == world.owner && !done)
+      const bool by_writes = options_.only_writes_renew || (options_.by_address && !is_dds(client));
+      if (by_writes && next.owner == world.owner && !done)
         next.lease_ends_ms = std::min(next.lease_ends_ms, world.lease_ends_ms);
       // Of one that is refused nobody can tell whether it has taken an orphan lease over.
       if (next.retaken && next.owner == world.owner && !pending.verdict.answers.contains(0)) {

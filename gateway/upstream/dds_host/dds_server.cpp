@@ -29,7 +29,7 @@ DdsServer::DdsServer(boost::asio::io_context& io, Runtime& runtime, const DdsSet
       turn_timer_(runtime.make_timer([this] { turn(); })),
       patience_(runtime.make_timer([this] { on_patience_ended(); })),
       session_(settings, image, events, commands, [this] { turn_timer_->expires_at(runtime_.now()); },
-               {[this](const std::string& line) { log_.write(LogLevel::info, "dds", line); },
+               {[this](const std::string& line) { log_.write(LogLevel::info, "dds", printable(line)); },
                 [this](bool taken, const std::string& where) { on_name_taken(taken, where); }}) {}
 
 DdsServer::~DdsServer() { stop(); }
