@@ -31,7 +31,7 @@ TEST(Stepper, FoundRunningItIsAdoptedAndNothingIsWrittenToIt) {
   rig.online();
   EXPECT_NE(rig.axis().alarms & bit(AxisAlarm::adopted_running), 0U);
   EXPECT_TRUE(rig.axis().has(AxisInput::enabled));
-  EXPECT_EQ(rig.axis().axis_state, AxisState::discrete_motion);
+  EXPECT_EQ(rig.axis().axis_state, AxisState::continuous_motion);
   EXPECT_EQ(rig.writes(), 0U);
   ASSERT_EQ(rig.code(rig.command(Command::quick_stop)), Errc::ok);
   EXPECT_TRUE(rig.stands());
