@@ -279,17 +279,6 @@ bool add_command_steps(const AxisCore& core, Command command, Plan& plan) {
   return true;
 }
 
-void add_limits_of_move(const AxisCore& core, Plan& plan) {
-  for (const Quantity each :
-       {Quantity::profile_velocity, Quantity::profile_acceleration, Quantity::profile_deceleration}) {
-    const Binding* binding = core.model.binding(each);
-    const auto held = core.value(each);
-    if (binding == nullptr || !held || binding->limits.holds(*held) || !core.model.takes(each)) continue;
-    const Range& limits = binding->limits;
-    static_cast<void>(add_write(core, each, {std::clamp(*held, limits.min, limits.max)}, plan));
-  }
-}
-
 Errc judge_move(const AxisCore& core, bool relative) {
   const Binding* target = core.model.binding(Quantity::target_position);
   const auto wanted = core.target_position();

@@ -300,4 +300,15 @@ bool nothing_to_send(const AxisCore& core, const WriteBatch& batch) {
   return !mode.refused() && mode.actions.empty();
 }
 
+void add_limits_of_move(const AxisCore& core, Plan& plan) {
+  for (const Quantity each :
+       {Quantity::profile_velocity, Quantity::profile_acceleration, Quantity::profile_deceleration}) {
+    const Binding* binding = core.model.binding(each);
+    const auto held = core.value(each);
+    if (binding == nullptr || !held || binding->limits.holds(*held) || !core.model.takes(each)) continue;
+    const Range& limits = binding->limits;
+    static_cast<void>(add_write(core, each, {std::clamp(*held, limits.min, limits.max)}, plan));
+  }
+}
+
 }  // namespace axisgate::drive
