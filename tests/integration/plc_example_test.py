@@ -275,6 +275,7 @@ class OfATable(PlcStory):
         panel = self.peer("127.0.0.2").axis(1)
         panel.set(profile_velocity=300000, target_position=50000000)
         panel.command("enable")
+        self.until("the axis is enabled", lambda: "enabled" in self.watched(1).inputs())  # "posted": not with the answer
         self.cycles(2)  # each state is seen
         panel.command("move_absolute")
         self.until_motor_turns(1)
