@@ -145,11 +145,14 @@ bool starts(const CommandRecord& record, bool held) {
   return command == Command::enable || (asks_to_move(command) && !(is_jog(command) && held));
 }
 
+bool velocity_runs(const AxisImage& axis) {
+  constexpr unsigned kVelocityRuns = 1U << 7U;
+  return (unsigned{shown_level_coils(axis)} & kVelocityRuns) != 0;
+}
+
 bool begins_beside(const CommandRecord& record, const AxisImage& axis) {
-  constexpr unsigned kVelocityRuns = 7;
   const bool moves = axis.axis_state == AxisState::discrete_motion;
-  const bool runs =
-      axis.axis_state == AxisState::continuous_motion || (unsigned{shown_level_coils(axis)} >> kVelocityRuns & 1U) != 0;
+  const bool runs = axis.axis_state == AxisState::continuous_motion || velocity_runs(axis);
   if (has(record, kHasMode) && !((moves || runs) && record.mode == shown_value(axis, Quantity::mode_display)))
     return true;
   if (has(record, kHasTargetPosition) && !moves) return true;

@@ -30,6 +30,8 @@ using PlannedCommand = std::variant<CommandPlan, Errc>;
 /// May put torque on or set a motor going that stands: the press of a jog's button, but not the button held.
 [[nodiscard]] bool starts(const CommandRecord& record, bool held);
 
+/// A velocity run is on, as coil 7 shows it.
+[[nodiscard]] bool velocity_runs(const AxisImage& axis);
 /// What is written beside the command may set a motor going: a mode, or a target that is none of the motion that is on.
 [[nodiscard]] bool begins_beside(const CommandRecord& record, const AxisImage& axis);
 

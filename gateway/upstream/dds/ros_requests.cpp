@@ -12,6 +12,7 @@
 
 #include "gateway/image/register_map.hpp"
 #include "gateway/image/shown.hpp"
+#include "gateway/upstream/dds/command_batches.hpp"
 #include "gateway/upstream/dds/dds_session.hpp"
 #include "gateway/upstream/dds_link/ros_names.hpp"
 
@@ -59,10 +60,6 @@ Command command_of(RosAction action) {
   }
   return Command::none;
 }
-
-constexpr std::uint16_t kVelocityRuns = 1U << 7U;
-
-bool velocity_runs(const AxisImage& axis) { return (shown_level_coils(axis) & kVelocityRuns) != 0; }
 
 /// A motion is on that a stream may have asked for.
 bool streamed_motion(const AxisImage& axis) {
