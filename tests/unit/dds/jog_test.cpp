@@ -38,6 +38,14 @@ struct Jogged : testing::TestWithParam<AxisNumber> {
   bool stands() {
     return rig.run_until([&] { return !rig.turns(axis); }, 5s);
   }
+  void die_with_the_button_held() {
+    enable();
+    EXPECT_EQ(jog(kForward), kDone);
+    hold(kForward, 1s);
+    rig.die(writer);
+    rig.run(600ms);
+    EXPECT_TRUE(stands());
+  }
   double velocity() { return rig.state(axis).velocity / kTurn; }
 };
 
@@ -130,23 +138,11 @@ TEST_P(Jogged, ABurstOfSamplesIsOneJog) {
   EXPECT_TRUE(rig.turns(axis));
 }
 
-TEST_P(Jogged, AWriterThatDiesHoldsNoButton) {
-  enable();
-  EXPECT_EQ(jog(kForward), kDone);
-  hold(kForward, 1s);
-  rig.die(writer);
-  rig.run(600ms);
-  EXPECT_TRUE(stands());
-}
+TEST_P(Jogged, AWriterThatDiesHoldsNoButton) { die_with_the_button_held(); }
 
 // Its process stood still, say, with the button held.
 TEST_P(Jogged, AWriterThatComesBackHasNotPressedItsButtonAnew) {
-  enable();
-  EXPECT_EQ(jog(kForward), kDone);
-  hold(kForward, 1s);
-  rig.die(writer);
-  rig.run(600ms);
-  EXPECT_TRUE(stands());
+  die_with_the_button_held();
   static_cast<void>(rig.writer(1));
   EXPECT_EQ(hold(kForward, 1s), kNotNew);
   EXPECT_FALSE(rig.turns(axis));
