@@ -64,6 +64,11 @@ class ByHand : public ::testing::Test {
       plan_->on_answer(Exception::none, now_);
     }
   }
+  /// Whatever was written.
+  void answer_unseen() {
+    static_cast<void>(written());
+    answer();
+  }
   void answer(Exception exception = Exception::none) {
     carry();
     ASSERT_FALSE(unanswered_.empty());

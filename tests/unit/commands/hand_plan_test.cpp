@@ -24,10 +24,8 @@ TEST_F(ByHand, AMoveOfTheIdBeforeIsNotItsOwn) {
   view_.motion_id = 17;
   view_.motion = MotionState::completed;
   enabled();
-  static_cast<void>(written());
-  answer();
-  static_cast<void>(written());
-  answer();
+  answer_unseen();
+  answer_unseen();
   look();
   pass(std::chrono::seconds(2));
   look();
@@ -49,10 +47,8 @@ TEST_F(ByHand, AMoveWhosePlaceAnotherMotionTookHasFailed) {
   taken_by(0);  // what it was before
   begin(HandTask::move);
   enabled();
-  static_cast<void>(written());
-  answer();
-  static_cast<void>(written());
-  answer();
+  answer_unseen();
+  answer_unseen();
   taken_by(17);  // before a look has shown the own one
 }
 
@@ -126,8 +122,7 @@ TEST_F(ByHand, EachStepThatIsRefusedSaysWhichAndWhy) {
   arguments_.rpm.reset();
   begin(HandTask::enable);
   look();
-  static_cast<void>(written());
-  answer();
+  answer_unseen();
   static_cast<void>(written());
   answer(Exception::server_device_failure);
   view_.result = CommandResult::state_unsuitable;
@@ -141,8 +136,7 @@ TEST_F(ByHand, EachStepThatIsRefusedSaysWhichAndWhy) {
 TEST_F(ByHand, AnEnableThatIsOnItsWayIsAwaited) {
   begin(HandTask::move);
   look();
-  static_cast<void>(written());
-  answer();
+  answer_unseen();
   EXPECT_THAT(written(), ElementsAre(command(Command::enable, 42)));
   answer();
   view_.command_id_seen = 42;
@@ -160,10 +154,8 @@ TEST_F(ByHand, AnEnableThatIsOnItsWayIsAwaited) {
 TEST_F(ByHand, AnEnableOrAStartThatFailsLaterSaysWhy) {
   begin(HandTask::jog);
   look();
-  static_cast<void>(written());
-  answer();
-  static_cast<void>(written());
-  answer();
+  answer_unseen();
+  answer_unseen();
   view_.command_id_seen = 42;
   view_.result = CommandResult::state_unsuitable;
   look();
@@ -173,10 +165,8 @@ TEST_F(ByHand, AnEnableOrAStartThatFailsLaterSaysWhy) {
 
   begin(HandTask::move);
   enabled();
-  static_cast<void>(written());
-  answer();
-  static_cast<void>(written());
-  answer();
+  answer_unseen();
+  answer_unseen();
   view_.command_id_seen = 43;
   view_.result = CommandResult::refused_by_drive;
   look();
@@ -187,8 +177,7 @@ TEST_F(ByHand, AnEnableOrAStartThatFailsLaterSaysWhy) {
 TEST_F(ByHand, AStartThatIsRefusedBeforeItBeganStopsNothing) {
   begin(HandTask::move);
   enabled();
-  static_cast<void>(written());
-  answer();
+  answer_unseen();
   static_cast<void>(written());
   answer(Exception::server_device_busy);
   look();
@@ -198,8 +187,7 @@ TEST_F(ByHand, AStartThatIsRefusedBeforeItBeganStopsNothing) {
 TEST_F(ByHand, AStartOfWhichNobodyKnowsWhetherItBeganIsStopped) {
   begin(HandTask::move);
   enabled();
-  static_cast<void>(written());
-  answer();
+  answer_unseen();
   static_cast<void>(written());
   answer(Exception::gateway_target_failed);
   look();
@@ -245,8 +233,7 @@ TEST_F(ByHand, AMotorThatHasJustBegunToTurnIsNotTakenForOneThatStands) {
 TEST_F(ByHand, AMotorThatNeverStandsKeepsItsTorqueAndIsTold) {
   moving();
   plan_->end("Ctrl-C", now_);
-  static_cast<void>(written());
-  answer();
+  answer_unseen();
   pass(HandPlan::kStandLimit + 20 * kMs);
   EXPECT_THAT(written(), ElementsAre(command(Command::release, 44)));
   EXPECT_THAT(plan_->words(), HasSubstr("was not seen to stand within 20 s"));
@@ -255,8 +242,7 @@ TEST_F(ByHand, AMotorThatNeverStandsKeepsItsTorqueAndIsTold) {
 TEST_F(ByHand, AnEndWhileAnAnswerIsWaitedForIsNotTakenForward) {
   begin(HandTask::move);
   enabled();
-  static_cast<void>(written());
-  answer();
+  answer_unseen();
   EXPECT_THAT(written(), ElementsAre(command(Command::move_absolute, 43)));
   plan_->end("Ctrl-C", now_);
   EXPECT_THAT(written(), ElementsAre(stop(Command::quick_stop)));
@@ -337,8 +323,7 @@ TEST_F(ByHand, ALostNetworkIsToldWithWhatStopsTheAxisThen) {
   EXPECT_THAT(plan_->words(), HasSubstr("it stops axis 4 when its lease runs out, within 2000 ms"));
   begin(HandTask::move);
   look();
-  static_cast<void>(written());
-  answer();
+  answer_unseen();
   plan_->lost("no answer in time");
   EXPECT_THAT(plan_->words(), HasSubstr("axis 4 has no lease"));
 }
