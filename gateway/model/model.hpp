@@ -44,6 +44,8 @@ struct ObjectDef {
   bool trigger = false;  ///< the write itself starts something: never skipped as unchanged, never repeated
   /// Nobody has printed its width: read with Exchange::size 0 it is as wide as the drive answers, `size` at most.
   bool any_width = false;
+  /// Another name of a speed, an enable or a motion: no client writes it past the limits, the latch and the owner.
+  bool mailbox_reads_only = false;
   bool emulated = false;  ///< not in the drive: statusword, controlword and mode of a virtual axis (virtual_axis.hpp)
   /// Objects at the same place in the drive: what is written to one is in all of them.
   std::vector<ObjectId> aliases{};

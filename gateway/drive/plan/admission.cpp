@@ -38,9 +38,9 @@ bool cuts_a_quantity(const AxisCore& core, const ObjectRequest& request) {
   const auto last = [](int first, std::uint8_t size) { return first + (size > 2 ? 1 : 0); };
   const auto guarded = [&](ObjectId id) {
     const auto& bindings = core.model.bindings;
-    return belongs_to_a_command(core, id) || std::any_of(bindings.begin(), bindings.end(), [&](const Binding& b) {
-             return b.object == id && b.writable;
-           });
+    return core.object(id).mailbox_reads_only || belongs_to_a_command(core, id) ||
+           std::any_of(bindings.begin(), bindings.end(),
+                       [&](const Binding& b) { return b.object == id && b.writable; });
   };
   for (std::size_t i = 0; i < core.drive.objects.size(); ++i) {
     const ObjectDef& object = core.drive.objects[i];
@@ -53,7 +53,8 @@ bool cuts_a_quantity(const AxisCore& core, const ObjectRequest& request) {
 }
 
 // A virtual axis's drive takes its commands as numbers in an object: by the mailbox they are the same commands, with
-// the gate and the latch. What the gateway has no command for needs an axis that may start. No value: it is none.
+// the gate and the latch. What the gateway has no command for, such as the drive's own jog, would know no limit and no
+// end by the dead man's button. No value: it is none.
 std::optional<Errc> as_command(const AxisCore& core, ObjectId id, std::int64_t number, WriteBatch& out) {
   if (!core.is_virtual() || !core.object(id).trigger || !belongs_to_a_command(core, id)) return std::nullopt;
   constexpr std::array kCommands{Command::quick_stop,    Command::halt,          Command::fault_reset,
@@ -66,8 +67,7 @@ std::optional<Errc> as_command(const AxisCore& core, ObjectId id, std::int64_t n
     out.command = command;
     return Errc::ok;
   }
-  if (number != 0 && !core.motion.may_start(core.facts())) return Errc::state_unsuitable;
-  return std::nullopt;
+  return number == 0 ? std::nullopt : std::optional(Errc::bad_value);
 }
 
 // The quantity that a write of this object is one of; where several are at its place, that of the mode in force.
@@ -81,12 +81,13 @@ const Binding* quantity_at(const AxisCore& core, ObjectId id) {
   return found;
 }
 
-// Another motor's object, one that moves or enables without any rule of ours standing before it, or, where a write is
-// always one of a whole control frame, one that is no field of it.
+// A further name of what a register says, another motor's object, one that moves or enables without any rule of ours
+// standing before it, or, where a write is always one of a whole control frame, one that is no field of it.
 bool out_of_reach(const AxisCore& core, ObjectId id) {
   const bool frames = !core.drive.composed.empty();
   if (id == kNoObject) return frames;
   const ObjectDef& object = core.object(id);
+  if (object.mailbox_reads_only) return true;
   if (object.slot != bus::kNoAxis && object.slot < core.drive.axes.size() &&
       &core.drive.axes[object.slot] != &core.model)
     return true;

@@ -188,7 +188,7 @@ Plan plan_move(const AxisCore& core, Command command) {
   // A drive that follows its target would take even a distance for one.
   if (core.facts().enabled() && (core.controlword() & core.model.cia402.follow_bits) != 0)
     plan.add(Action::write(core.model.controlword, core.controlword() & kEnabledBits));
-  add_limits_of_move(core, plan);
+  add_held_limits(core, 1, plan);
   Plan steps;
   if (!add_command_steps(core, command, steps)) return steps;
   bool written = false;
@@ -218,6 +218,7 @@ Plan plan_run(const AxisCore& core, Command command) {
   Plan steps;
   if (!add_command_steps(core, command, steps)) return steps;
   Plan plan;
+  add_held_limits(core, velocity ? 3 : 4, plan);
   const bool by_steps = writes(steps, binding->object);
   // Where the drive must be told to run, it must know how fast before.
   if (core.is_virtual() && !by_steps && !add_write(core, quantity, core.running_target(quantity), plan))
@@ -233,6 +234,7 @@ Plan plan_home(const AxisCore& core) {
   const auto method = homing_method(core);
   if (!method) return Plan::refuse(Errc::bad_value);
   Plan plan;
+  add_held_limits(core, 6, plan);
   if (!add_write(core, Quantity::homing_method, {*method}, plan)) return Plan::refuse(Errc::bad_value);
   // A set_position that failed half-way may have left 0 there.
   if (core.offset_owed) {

@@ -230,6 +230,23 @@ bool may_be_written(const AxisCore& core, const Setpoint& sp, const AxisFacts& f
   return !(kept_alive && state.cached && raw && state.number == *raw);
 }
 
+// What says how fast an axis moves in this mode, and how it gets there.
+std::vector<Quantity> speeds_of(int motion_mode) {
+  using enum Quantity;
+  switch (motion_mode) {
+    case 1:
+      return {profile_velocity, profile_acceleration, profile_deceleration};
+    case 3:
+      return {profile_acceleration, profile_deceleration};
+    case 4:
+      return {max_velocity, max_torque};
+    case 6:
+      return {homing_speed_switch, homing_speed_zero, homing_acceleration};
+    default:
+      return {};
+  }
+}
+
 }  // namespace
 
 Plan plan_setpoints(const AxisCore& core, const WriteBatch& batch) {
@@ -283,7 +300,10 @@ Plan plan_raw_mode(const AxisCore& core, std::int16_t mode) {
   Plan change = plan_mode(core, mode);
   Plan plan;
   if (!change.refused() && !change.actions.empty() && core.facts().enabled()) {
-    if (core.is_continuous(mode)) add_running_targets(core, true, plan);
+    if (core.is_continuous(mode)) {
+      add_running_targets(core, true, plan);
+      add_held_limits(core, mode, plan);
+    }
     // In modes 7 and 8 the target is the demand of every cycle: the change itself must not be a step.
     if (mode == 7 || mode == 8) add_target_here(core, plan);
   }
@@ -300,9 +320,8 @@ bool nothing_to_send(const AxisCore& core, const WriteBatch& batch) {
   return !mode.refused() && mode.actions.empty();
 }
 
-void add_limits_of_move(const AxisCore& core, Plan& plan) {
-  for (const Quantity each :
-       {Quantity::profile_velocity, Quantity::profile_acceleration, Quantity::profile_deceleration}) {
+void add_held_limits(const AxisCore& core, int mode, Plan& plan) {
+  for (const Quantity each : speeds_of(mode)) {
     const Binding* binding = core.model.binding(each);
     const auto held = core.value(each);
     if (binding == nullptr || !held || binding->limits.holds(*held) || !core.model.takes(each)) continue;

@@ -82,9 +82,9 @@ bool append(Plan& plan, Plan more);
 void add_steps(const AxisCore& core, const Steps& steps, Plan& plan);
 /// Appends the command's steps in the mode in force; false (and refused) where the drive has none.
 bool add_command_steps(const AxisCore& core, Command command, Plan& plan);
-/// What the drive holds beyond the configured limits of velocity and acceleration, from its maker or another tool, is
-/// written as the limit: a move goes by it.
-void add_limits_of_move(const AxisCore& core, Plan& plan);
+/// What the drive holds beyond the configured limits of velocity, acceleration and torque, from its maker or another
+/// tool, is written as the limit where a motion in this mode (CiA 402, 6060h) goes by it.
+void add_held_limits(const AxisCore& core, int mode, Plan& plan);
 /// Writes the quantity's value unless the drive is known to hold it. False where it cannot be had in the drive's
 /// numbers.
 [[nodiscard]] bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan);

@@ -56,6 +56,7 @@ struct Object {
   bool writable = false;
   bool trigger = false;
   bool any_width = false;  ///< canopen: read as wide as the drive answers
+  bool mailbox_reads_only = false;
   Nvm nvm = Nvm::no;
   std::string unit;
   std::optional<Range> range;  ///< raw

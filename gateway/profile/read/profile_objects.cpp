@@ -111,6 +111,7 @@ void read_object(Reading& reading, const std::string& name, const json& node) {
   read_access(node, out);
   out.trigger = flag_in(node, "trigger", false);
   out.any_width = flag_in(node, "any_width", false);
+  out.mailbox_reads_only = text_in(node, "mailbox") == "read";
   const std::string nvm = text_in(node, "nvm");
   out.nvm = nvm.empty() ? reading.profile.nvm : nvm_named(nvm);
   out.unit = text_in(node, "unit");

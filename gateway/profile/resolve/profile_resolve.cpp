@@ -208,6 +208,7 @@ void resolve_objects(Resolving& r) {
     def.turns_on = at.turns_on;
     def.trigger = object.trigger;
     def.any_width = object.any_width && r.input.protocol == "canopen";
+    def.mailbox_reads_only = object.mailbox_reads_only;
     def.nvm = object.nvm;
     r.ids.emplace(object.name, static_cast<ObjectId>(r.model.objects.size()));
     r.model.objects.push_back(std::move(def));

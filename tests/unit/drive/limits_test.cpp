@@ -81,6 +81,88 @@ TEST(Limits, OfAVelocityThatTheDriveHoldsFromElsewhereHoldToo) {
   }
 }
 
+// The same of whatever else says how fast a motion goes.
+TEST(Limits, OfSpeedsThatTheDriveHoldsFromElsewhereHoldInEveryKindOfMotion) {
+  struct Held {
+    Command command;
+    std::int16_t mode;
+    std::uint16_t raw_start;  // none where 15 itself starts
+    simulated::ObjectKey at;
+    Quantity shown;
+  };
+  constexpr std::int64_t kVelocity = 30'000, kAcceleration = 20'000;
+  constexpr std::array kHeld{
+      Held{Command::run_velocity, 3, 0, {0x6083, 0}, Quantity::profile_acceleration},
+      Held{Command::run_velocity, 3, 0, {0x6084, 0}, Quantity::profile_deceleration},
+      Held{Command::home, 6, 0x1F, {0x6099, 1}, Quantity::homing_speed_switch},
+      Held{Command::home, 6, 0x1F, {0x6099, 2}, Quantity::homing_speed_zero},
+      Held{Command::home, 6, 0x1F, {0x609A, 0}, Quantity::homing_acceleration},
+  };
+  for (const Held& held : kHeld) {
+    for (const bool raw : {false, true}) {
+      SCOPED_TRACE(testing::Message() << "object " << std::hex << held.at.index << (raw ? ", raw" : ""));
+      RigOptions options;
+      options.axis.velocity_limit = kVelocity;
+      options.axis.acceleration_limit = kAcceleration;
+      options.axis.homing_method = 19;
+      Rig rig(KincoType::jd, options);
+      rig.motor().poke(held.at, 40'000'000);
+      rig.bring_to(enabled);
+      rig.stage.run(1s);
+      const std::int64_t limit = held.at.index == 0x6099 ? kVelocity : kAcceleration;
+      ASSERT_GT(rig.axis()[held.shown].value, limit);
+      ASSERT_EQ(rig.ask(setpoints({{Quantity::target_velocity, 10'000}})).outcome.code, Errc::ok);
+      if (raw) {
+        ASSERT_EQ(rig.write(Quantity::mode, held.mode).outcome.code, Errc::ok);
+        ASSERT_EQ(rig.ask(with_controlword(0x000F)).outcome.code, Errc::ok);
+        if (held.raw_start != 0) {
+          ASSERT_EQ(rig.ask(with_controlword(held.raw_start)).outcome.code, Errc::ok);
+        }
+      } else {
+        ASSERT_EQ(rig.command(held.command).outcome.code, Errc::ok);
+      }
+      EXPECT_TRUE(rig.turns());
+      rig.stage.run(1s);
+      EXPECT_LE(rig.axis()[held.shown].value, limit);
+      EXPECT_GT(rig.axis()[held.shown].value, limit * 9 / 10);
+    }
+  }
+}
+
+TEST(Limits, OfAMaxVelocityThatTheDriveHoldsHoldInTorqueMode) {
+  constexpr std::int64_t kLimit = 30'000;
+  RigOptions options;
+  options.axis.velocity_limit = kLimit;
+  Rig rig(KincoType::jd, options);
+  rig.bring_to(enabled);
+  ASSERT_GT(rig.axis()[Quantity::max_velocity].value, kLimit);
+  ASSERT_EQ(rig.ask(with_command(Command::run_torque, {{Quantity::target_torque, 100}})).outcome.code, Errc::ok);
+  EXPECT_TRUE(rig.turns());
+  rig.stage.run(1s);
+  EXPECT_EQ(rig.axis()[Quantity::max_velocity].value, kLimit);
+}
+
+// Further names of a speed, an enable or a motion: no limit, latch or owner stands before them.
+TEST(Mailbox, OnlyReadsWhatWouldGoPastTheRegisters) {
+  struct Way {
+    std::uint16_t index;
+    std::uint8_t sub, size;
+    std::uint32_t data;
+  };
+  constexpr std::array kWays{Way{0x2FF0, 0x05, 1, 1},   Way{0x2FF0, 0x06, 2, 2'000}, Way{0x2FF0, 0x07, 2, 2'000},
+                             Way{0x2FF0, 0x09, 2, 100}, Way{0x2FF0, 0x0C, 2, 11},    Way{0x6071, 0, 2, 100}};
+  Rig rig(KincoType::jd);
+  rig.bring_to(enabled);
+  for (const Way& way : kWays) {
+    SCOPED_TRACE(testing::Message() << std::hex << way.index << "." << int{way.sub});
+    EXPECT_EQ(rig.mailbox_write(way.index, way.sub, way.size, way.data).outcome.code, Errc::bad_value);
+    EXPECT_TRUE(rig.writes().empty());
+  }
+  WriteBatch read;
+  read.object = ObjectRequest{false, 0x6071, 0, 2, 0};
+  EXPECT_EQ(rig.ask(read).outcome.code, Errc::ok);
+}
+
 TEST(Limits, ThePairIsCheckedTogetherAndNeverStandsTheWrongWayRound) {
   Rig rig(KincoType::md);
   rig.bring_to(disabled);

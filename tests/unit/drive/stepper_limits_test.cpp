@@ -109,6 +109,21 @@ TEST(Stepper, TheDrivesOwnCommandsByTheMailboxKnowTheGateAndTheLatch) {
   EXPECT_EQ(rig.code(rig.mailbox_write(kControlRegister, 2, 1)), Errc::state_unsuitable);
 }
 
+TEST(Stepper, TheMailboxStartsNothingThatNoRegisterStarts) {
+  constexpr std::uint16_t kJogSpeed = 308, kSimulatedInput = 410;
+  constexpr std::array kOwnMotions{4U, 5U, 16U};  // jog to and fro, a stored program
+  StepperRig rig;
+  rig.online();
+  rig.enable();
+  for (const std::uint32_t number : kOwnMotions)
+    EXPECT_EQ(rig.code(rig.mailbox_write(kControlRegister, 2, number)), Errc::bad_value) << number;
+  EXPECT_EQ(rig.code(rig.mailbox_write(kJogSpeed, 2, 5'000)), Errc::bad_value);
+  EXPECT_EQ(rig.code(rig.mailbox_write(kJogSpeed, 4, 5'000)), Errc::bad_value) << "and its neighbour";
+  EXPECT_EQ(rig.code(rig.mailbox_write(kSimulatedInput, 2, 1)), Errc::bad_value);
+  EXPECT_EQ(rig.motor().peek(kJogSpeed), 1'000);
+  EXPECT_EQ(rig.mailbox_read(kJogSpeed, 2).outcome.code, Errc::ok);
+}
+
 TEST(Stepper, TheMailboxCannotWriteHalfATargetBehindTheLimits) {
   StepperOptions options;
   options.axis.position_limits = Range{-50'000, 50'000};
