@@ -120,6 +120,49 @@ TEST_P(Closing, AnEnableThatWaitsNeverStarts) {
   EXPECT_FALSE(faulted_within(10s));
 }
 
+// One that is under way, whatever of it was sent: told that it was not reached, it leaves no torque behind.
+TEST_P(Closing, AnEnableUnderWayIsReachedOrWithdrawn) {
+  if (!is_cia402(GetParam())) return;
+  constexpr std::uint64_t kExchanges = 40;
+  for (std::uint64_t which = 0; which < kExchanges; ++which) {
+    SCOPED_TRACE(which);
+    Plant plant(GetParam(), with_leases());
+    plant.ready_but_disabled();
+    const std::uint64_t heard = plant.requests_heard();
+    const auto asked = plant.a.begin(one(row::command, kEnable));
+    ASSERT_TRUE(plant.stage.run_until([&] { return plant.requests_heard() >= heard + which; }, 3s));
+    bool closed = false;
+    plant.stage.gateway().close([&] { closed = true; });
+    ASSERT_TRUE(plant.stage.run_until([&] { return closed; }, 3s + 1ms));
+    const auto answer = plant.a.answer_of(asked);
+    ASSERT_TRUE(answer);
+    const bool enabled = plant.motor().enabled.value_or(false);
+    EXPECT_EQ(enabled, answer->ok());
+    plant.crash_gateway();
+    if (!enabled) {
+      EXPECT_FALSE(plant.stage.run_until([&] { return plant.motor().enabled.value_or(false); }, 2s));
+    }
+  }
+}
+
+// Ended while it brings its drives up, at each exchange of that: none of them misses a gateway that is gone.
+TEST_P(Closing, LeavesNoAlarmOnAnIdleDriveThatIsBroughtUp) {
+  constexpr std::uint64_t kExchanges = 60;
+  for (std::uint64_t which = 1; which < kExchanges; ++which) {
+    SCOPED_TRACE(which);
+    Plant plant(GetParam(), with_leases());
+    const std::uint64_t heard = plant.requests_heard();
+    const auto online = [&] { return plant.stage.axis(1).link_state == LinkState::online; };
+    if (!plant.stage.run_until([&] { return plant.requests_heard() >= heard + which || online(); }, 10s)) break;
+    if (online()) break;
+    bool closed = false;
+    plant.stage.gateway().close([&] { closed = true; });
+    ASSERT_TRUE(plant.stage.run_until([&] { return closed; }, 3s + 1ms));
+    plant.crash_gateway();
+    EXPECT_FALSE(plant.stage.run_until([&] { return plant.motor().faulted; }, 10s));
+  }
+}
+
 // The cable is out, the drive unresponsive, a reply lost: it ends in time all the same, and the drive still misses the
 // gateway or is disabled.
 TEST_P(Closing, EndsInTimeWhateverTheWireDoes) {

@@ -21,9 +21,10 @@ bool Axis::ends_with_gateway(const Pending& pending) const {
   return closing_ && (!pending.command_sequence->is_stop() || pending.command_sequence->stop_is_over());
 }
 
-// Some of its steps were sent, and nobody will see what comes of them.
+// Some of its steps were sent, and the rest will not be: what might still come of them is withdrawn, as it is at the
+// end of a client's time.
 void Axis::end_begun(Pending& pending) {
-  pending.command_sequence->abort(refusal(Errc::timed_out));
+  pending.command_sequence->expire();
   complete(pending.id, pending.command_sequence->result());
 }
 

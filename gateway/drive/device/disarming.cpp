@@ -7,19 +7,25 @@
 
 namespace axisgate::drive {
 
-void Disarming::begin(const ObjectStore& store) {
+void Disarming::begin(const ObjectStore& store, bool broken_off) {
   entries_.clear();
   cleared_ = 0;
   tries_ = 0;
   for (auto last = model_.setup.rbegin(); last != model_.setup.rend(); ++last) {
-    const ObjectWrite& setup = *last;
-    const bool watches = std::ranges::find(model_.loss_objects, setup.object) != model_.loss_objects.end();
-    const ObjectState& now = store[setup.object];
-    if (watches && now.known && !now.refused && now.number == setup.raw && setup.raw != 0) entries_.push_back(setup);
+    const bool watches = std::ranges::find(model_.loss_objects, last->object) != model_.loss_objects.end();
+    const bool told = !broken_off || !model_.object(last->object).readable;
+    if (watches && last->raw != 0 && (!told || is_armed(*last, store))) entries_.push_back(*last);
   }
   if (entries_.empty()) return end(Outcome::nothing_to_do);
   gather_states();
-  look(Phase::look, store);
+  if (!broken_off) return look(Phase::look, store);
+  phase_ = Phase::look_at_entries;
+  at_ = 0;
+}
+
+bool Disarming::is_armed(const ObjectWrite& entry, const ObjectStore& store) {
+  const ObjectState& now = store[entry.object];
+  return now.known && !now.refused && now.number == entry.raw;
 }
 
 void Disarming::begin_look(const ObjectStore& store) {
@@ -76,6 +82,8 @@ void Disarming::next_state(const ObjectStore& store) {
 
 std::optional<Disarming::Next> Disarming::next() const {
   switch (phase_) {
+    case Phase::look_at_entries:
+      return Next{entries_[at_].object, false, 0};
     case Phase::look:
     case Phase::look_again:
       return Next{states_[at_], false, 0};
@@ -95,6 +103,11 @@ std::optional<Disarming::Next> Disarming::next() const {
 void Disarming::on_result(const bus::ExchangeResult& result, bool trusted, const ObjectStore& store) {
   const bool answered = trusted && (result.code == Errc::ok || result.code == Errc::refused_by_drive);
   switch (phase_) {
+    case Phase::look_at_entries:
+      if (!answered) return put_back(Outcome::unknown);
+      if (++at_ < entries_.size()) return;
+      std::erase_if(entries_, [&](const ObjectWrite& entry) { return !is_armed(entry, store); });
+      return entries_.empty() ? end(Outcome::nothing_to_do) : look(Phase::look, store);
     case Phase::look:
     case Phase::look_again:
       if (!trusted || result.code != Errc::ok) return put_back(Outcome::unknown);

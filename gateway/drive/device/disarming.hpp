@@ -32,8 +32,9 @@ class Disarming {
 
   explicit Disarming(const DriveModel& model) : model_(model) {}
 
-  /// `store`: of a drive that is online. What is read from now on counts.
-  void begin(const ObjectStore& store);
+  /// `store`: of a drive that is online; what is read from now on counts. `broken_off`: it was being brought up, and
+  /// which entries were written by then is read first.
+  void begin(const ObjectStore& store, bool broken_off = false);
   /// Whether a motor has torque is read, and nothing is written: disabled, enabled or unknown.
   void begin_look(const ObjectStore& store);
   /// Nothing can be asked of the drive: its state is unknown.
@@ -50,12 +51,13 @@ class Disarming {
   [[nodiscard]] Outcome outcome() const { return outcome_; }
 
  private:
-  enum class Phase : std::uint8_t { look, clear, look_again, put_back, over };
+  enum class Phase : std::uint8_t { look_at_entries, look, clear, look_again, put_back, over };
   void end(Outcome outcome);
   void put_back(Outcome outcome);
   void look(Phase phase, const ObjectStore& store);
   void gather_states();
   void next_state(const ObjectStore& store);
+  [[nodiscard]] static bool is_armed(const ObjectWrite& entry, const ObjectStore& store);
   [[nodiscard]] bool holds_any_motor(const ObjectStore& store) const;
 
   const DriveModel& model_;

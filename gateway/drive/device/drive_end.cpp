@@ -5,15 +5,15 @@
 
 namespace axisgate::drive {
 
-bool DriveEnd::begin(Closing why, bool known, const ObjectStore& store, std::function<void()> closed) {
+bool DriveEnd::begin(Closing why, Known known, const ObjectStore& store, std::function<void()> closed) {
   why_ = why;
   closed_ = std::move(closed);
   disarming_.give_up();
-  if (!known) return false;
+  if (known == Known::nothing || (known == Known::in_part && why == Closing::look)) return false;
   if (why == Closing::look)
     disarming_.begin_look(store);
   else
-    disarming_.begin(store);
+    disarming_.begin(store, known == Known::in_part);
   return true;
 }
 

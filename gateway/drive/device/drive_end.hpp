@@ -19,6 +19,13 @@ enum class Closing : std::uint8_t {
   taken_away     ///< as gateway_ends, while the gateway goes on
 };
 
+/// What is known of the drive then.
+enum class Known : std::uint8_t {
+  nothing,  ///< it does not answer, or was not looked at
+  in_part,  ///< it is being brought up
+  whole     ///< it is online, and the store holds what it holds
+};
+
 class DriveEnd {
  public:
   /// Its stops are looked at again after so long.
@@ -26,8 +33,8 @@ class DriveEnd {
 
   explicit DriveEnd(const DriveModel& model) : disarming_(model) {}
 
-  /// `known`: the drive is online, and `store` holds what it holds. True: there is something to be asked of it.
-  bool begin(Closing why, bool known, const ObjectStore& store, std::function<void()> closed);
+  /// True: there is something to be asked of it.
+  bool begin(Closing why, Known known, const ObjectStore& store, std::function<void()> closed);
   [[nodiscard]] bool begun() const { return why_.has_value(); }
   /// It stays after all: true where what makes it miss the gateway may have been cleared.
   bool take_back();

@@ -114,10 +114,12 @@ Instant Drive::schedule_keep_alive() {
 void Drive::close(Closing why, std::function<void()> closed) {
   begin_turn();
   for (auto& axis : axes_) axis->close();
-  // A bring-up would arm what is to be disarmed, and start nodes. What it has not read nobody knows: it is left.
+  // A bring-up would arm what is to be disarmed, and start nodes. What it has armed so far is looked at; but only of a
+  // drive that was brought up is it known what a reload needs to know.
   if (jobs_.setup != 0) bus_.finish(std::exchange(jobs_.setup, 0));
+  const Known known = brought_up() ? Known::whole : turn_.link == LinkState::setup ? Known::in_part : Known::nothing;
   // Polls and what else is slow do not hold up the end.
-  if (end_.begin(why, brought_up(), store_, std::move(closed))) jobs_.end = queue_own(bus::Priority::command);
+  if (end_.begin(why, known, store_, std::move(closed))) jobs_.end = queue_own(bus::Priority::command);
   after_event();
 }
 

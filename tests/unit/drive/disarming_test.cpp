@@ -42,6 +42,7 @@ struct Played {
                                          {kLifeFactor, 3},      {kReaction, 1},        {kElse, 7}};
   std::map<int, Befalls> befalls;
   std::function<void(Played&, int step)> meanwhile = [](Played&, int) {};
+  std::optional<int> brought_up_to{};  ///< so many of its entries are written; the store knows what was there before
   std::vector<ObjectId> written{};
   int steps = 0;
   Disarming::Outcome outcome{};
@@ -56,9 +57,9 @@ struct Played {
   void play() {
     const DriveModel model = two_motors();
     ObjectStore store(model.objects);
-    for (const auto& [id, number] : drive) store.read(id, number, {});
+    for (const auto& [id, number] : drive) store.read(id, brought_up_to ? 0 : number, {});
     Disarming disarming(model);
-    disarming.begin(store);
+    disarming.begin(store, brought_up_to.has_value());
     constexpr int kMost = 100;
     for (auto next = disarming.next(); next && steps < kMost; next = disarming.next(), ++steps) {
       meanwhile(*this, steps);
@@ -129,6 +130,27 @@ TEST(Disarming, LeavesAnEntryThatHoldsAnotherNumber) {
   nothing.play();
   EXPECT_EQ(nothing.outcome, Disarming::Outcome::nothing_to_do);
   EXPECT_EQ(nothing.steps, 0);
+}
+
+// Which of its entries a bring-up has written before it was broken off nobody knows: they are read.
+TEST(Disarming, ReadsWhatABrokenOffBringUpHasWritten) {
+  for (int written = 0; written <= 3; ++written) {
+    SCOPED_TRACE(written);
+    Played played;
+    played.brought_up_to = written;
+    constexpr std::array kInOrder{kGuardTime, kLifeFactor, kReaction};
+    for (std::size_t i = static_cast<std::size_t>(written); i < kInOrder.size(); ++i) played.drive[kInOrder[i]] = 0;
+    played.play();
+    EXPECT_TRUE(played.disarmed());
+    EXPECT_EQ(played.written.size(), static_cast<std::size_t>(written));
+    EXPECT_EQ(played.outcome, written == 0 ? Disarming::Outcome::nothing_to_do : Disarming::Outcome::disarmed);
+  }
+  Played lost;
+  lost.brought_up_to = 3;
+  lost.befalls[0] = Befalls::lost_reply;
+  lost.play();
+  EXPECT_EQ(lost.outcome, Disarming::Outcome::unknown);
+  EXPECT_TRUE(lost.armed());
 }
 
 // Whatever befalls any two of its exchanges, beside a drive that is enabled at any moment or never: what it says is so.

@@ -27,7 +27,7 @@ struct Ending {
   DriveEnd end{model};
   int called = 0;
 
-  bool begin(Closing why, bool known = true) {
+  bool begin(Closing why, Known known = Known::whole) {
     store.read(0, 0x250, {});
     store.read(1, 500, {});
     return end.begin(why, known, store, [this] { ++called; });
@@ -46,11 +46,20 @@ struct Ending {
 
 TEST(DriveEnd, ADriveOfWhichNothingIsKnownIsAskedNothingAndToldOf) {
   Ending it;
-  EXPECT_FALSE(it.begin(Closing::gateway_ends, false));
+  EXPECT_FALSE(it.begin(Closing::gateway_ends, Known::nothing));
   EXPECT_TRUE(it.end.begun());
   EXPECT_FALSE(it.end.next());
   EXPECT_EQ(it.end.outcome(), Disarming::Outcome::unknown);
   EXPECT_NE(it.end.told(), "");
+}
+
+// It is to be taken away if no motor has torque: that nobody can tell of a drive in its bring-up.
+TEST(DriveEnd, OneThatIsBroughtUpIsDisarmedAndNotLookedAt) {
+  Ending look;
+  EXPECT_FALSE(look.begin(Closing::look, Known::in_part));
+  EXPECT_EQ(look.end.outcome(), Disarming::Outcome::unknown);
+  Ending it;
+  EXPECT_TRUE(it.begin(Closing::gateway_ends, Known::in_part));
 }
 
 TEST(DriveEnd, WhatTheLogSaysIsTheEndOfTheGatewayAlone) {
