@@ -161,6 +161,31 @@ TEST_P(StrangersJog, ClaimsNothingWithTheVelocityThatTheAxisHolds) {
   EXPECT_EQ(a_.word(shown::owner), kMe);
 }
 
+/// A DDS writer that owns the axis, and a stronger one.
+class StrongersRefusal : public Claims {
+ protected:
+  std::uint8_t answer_to(std::size_t writer, const Rows& sample) {
+    const std::uint64_t request = writers_.begin({.function = fc::sample, .sample = sample}, writer);
+    EXPECT_TRUE(plant_.stage.run_until([&] { return writers_.result_of(request).has_value(); }));
+    return writers_.result_of(request).value_or(0);
+  }
+  DdsWriters writers_{plant_.stage, 1, {1, 5}};
+};
+
+TEST_P(StrongersRefusal, TakesNothingAway) {
+  constexpr std::uint8_t kDone = 2;
+  constexpr std::int64_t kSetPosition = 11;
+  Rows start = plant_.endless_target();
+  start[row::command] = plant_.endless_command();
+  ASSERT_EQ(answer_to(0, start), kDone);
+  ASSERT_TRUE(plant_.turns_within(1s));
+  const std::uint8_t refused = answer_to(1, {{row::set_position_value, 0}, {row::command, kSetPosition}});
+  EXPECT_NE(refused, kDone) << "it moves";
+  EXPECT_NE(refused, kNotOwner) << "it is the stronger one";
+  EXPECT_TRUE(plant_.keeps_turning());
+  EXPECT_EQ(answer_to(0, {{row::command, kRelease}}), kDone) << "its axis as before";
+}
+
 class WithoutLeases : public testing::TestWithParam<Subject> {
  protected:
   WithoutLeases() { plant_.ready(); }
@@ -229,6 +254,7 @@ TEST_P(WithoutLeases, SetpointsBesideACommandThatIsRefusedAreTakenOnlyIfTheyWoul
 
 INSTANTIATE_TEST_SUITE_P(Every, Claims, testing::ValuesIn(kSubjects), named);
 INSTANTIATE_TEST_SUITE_P(Every, StrangersJog, testing::ValuesIn(subjects(has_speeds)), named);
+INSTANTIATE_TEST_SUITE_P(Every, StrongersRefusal, testing::ValuesIn(kSubjects), named);
 INSTANTIATE_TEST_SUITE_P(Every, WithoutLeases, testing::ValuesIn(kSubjects), named);
 
 }  // namespace

@@ -340,8 +340,9 @@ bool refused_by_state(const AxisCore& core, Command command) {
 }
 
 bool accepts_nothing(const AxisCore& core, const WriteBatch& batch) {
+  const bool value_alone = batch.set_position_value && batch.command != Command::set_position;
   if (batch.command == Command::none || is_stop(batch.command) || batch.mode || batch.controlword || batch.object ||
-      batch.set_position_value || batch.jog_velocity)
+      value_alone || batch.jog_velocity)
     return false;
   const bool with_command =
       std::all_of(batch.setpoints.begin(), batch.setpoints.end(), [](const Setpoint& sp) { return sp.with_command; });
