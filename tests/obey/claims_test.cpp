@@ -121,6 +121,21 @@ TEST_P(Claims, AreNotMadeByAStartWhileTheStopIsLatched) {
   EXPECT_EQ(a_.word(shown::owner), kMe);
 }
 
+// 3.2: "sequence steps when any value, valid bit, link_state, owner or error of the axis changes".
+TEST_P(Claims, StepTheSequence) {
+  const auto sequence = [this] { return plant_.stage.axis(1).sequence; };
+  ASSERT_EQ(a_.row(here_.row, here_.value), kOk);
+  plant_.run(1s);
+  const auto owned = sequence();
+  ASSERT_EQ(a_.command(kRelease), kOk);
+  const auto released = sequence();
+  EXPECT_NE(released, owned);
+  plant_.run(100ms);
+  const auto free = sequence();
+  ASSERT_EQ(b_.row(here_.row, here_.value), kOk) << "what it holds already";
+  EXPECT_NE(sequence(), free);
+}
+
 /// A DDS writer beside a_, which owns the axis.
 class StrangersJog : public Claims {
  protected:

@@ -211,6 +211,63 @@ TEST_P(Stops, StayLatchedWhereTheDriveWasGoneBetweenTheTwoStepsOutOfIt) {
   EXPECT_FALSE(plant_.motor().enabled.value_or(false));
 }
 
+// A homing that was halted is over, and can be begun anew at once; the mode is what it was.
+class HaltedHoming : public Stops {
+ protected:
+  void SetUp() override { ASSERT_EQ(a_.row(row::homing_method, kHomeSwitch), kOk); }
+  void home_and_halt() {
+    ASSERT_EQ(a_.command(kHome), kOk);
+    ASSERT_TRUE(plant_.turns_within(1s));
+    ASSERT_EQ(a_.command(kHalt), kOk);
+    ASSERT_TRUE(plant_.comes_to_stand());
+  }
+  [[nodiscard]] std::int64_t mode() { return plant_.stage.axis(1)[Quantity::mode_display].value; }
+  static constexpr std::int64_t kHomeSwitch = 19, kHome = 10, kHalt = 4, kMove = 6, kHomingMode = 6;
+};
+
+TEST_P(HaltedHoming, CanBeBegunAnew) {
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_NO_FATAL_FAILURE(home_and_halt());
+    EXPECT_EQ(mode(), kHomingMode);
+  }
+  EXPECT_EQ(a_.row(row::target_position, kNear), kOk);
+  EXPECT_EQ(a_.command(kMove), kOk);
+  EXPECT_TRUE(plant_.turns_within(1s));
+}
+
+TEST_P(HaltedHoming, LeavesTheModeWhereTheHaltEnds) {
+  ASSERT_NO_FATAL_FAILURE(home_and_halt());
+  EXPECT_EQ(a_.coil(coil::halt, true), kOk);
+  EXPECT_EQ(a_.coil(coil::halt, false), kOk);
+  plant_.run(300ms);
+  EXPECT_EQ(mode(), kHomingMode);
+  EXPECT_TRUE(plant_.stands());
+  EXPECT_EQ(a_.command(kHome), kOk);
+  EXPECT_TRUE(plant_.turns_within(1s));
+}
+
+TEST_P(HaltedHoming, ByRawWordsIsNoMoveToAnOlderTarget) {
+  constexpr std::int64_t kOn = 0x0F, kGo = 0x1F, kHalted = 0x11F, kHoming = 4;
+  ASSERT_EQ(a_.row(row::target_position, kFar), kOk);
+  ASSERT_EQ(a_.row(row::mode, kHomingMode), kOk);
+  ASSERT_EQ(a_.row(row::controlword, kOn), kOk);
+  ASSERT_EQ(a_.row(row::controlword, kGo), kOk);
+  ASSERT_TRUE(plant_.turns_within(1s));
+  ASSERT_EQ(a_.row(row::controlword, kHalted), kOk);
+  ASSERT_TRUE(plant_.comes_to_stand());
+  ASSERT_EQ(a_.row(row::controlword, kOn), kOk);
+  plant_.run(300ms);
+  EXPECT_TRUE(plant_.stands());
+  EXPECT_EQ(mode(), kHomingMode);
+  ASSERT_EQ(a_.row(row::controlword, kGo), kOk);
+  EXPECT_TRUE(plant_.turns_within(1s));
+  EXPECT_EQ(a_.word(shown::axis_state), kHoming);
+}
+
+// A JD has no halt but the quick stop.
+INSTANTIATE_TEST_SUITE_P(Every, HaltedHoming,
+                         testing::Values(Subject::md_serial, Subject::md_rtu, Subject::md_can, Subject::leadshine),
+                         named);
 INSTANTIATE_TEST_SUITE_P(Every, Stops, testing::ValuesIn(kSubjects), named);
 
 }  // namespace

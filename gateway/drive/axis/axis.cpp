@@ -345,8 +345,10 @@ void Axis::complete(bus::JobId id, const BatchResult& result) {
     told.outcome = {pending.refusal, 0};
     told.refused_row = pending.refused_row;
   }
-  if (told.outcome.code != Errc::ok && !pending.command_sequence->begun())
-    forget_accepted(pending.command_sequence->batch());
+  if (told.outcome.code != Errc::ok) {
+    forget_told(core_, pending.command_sequence->batch());
+    if (!pending.command_sequence->begun()) forget_accepted(pending.command_sequence->batch());
+  }
   if (!pending.by_mailbox) show_latest(pending.command_sequence->batch(), told.outcome);
   tell_ended(pending, told.outcome);
   if (told.outcome.code == Errc::timed_out) watch_enable(*pending.command_sequence);

@@ -160,6 +160,8 @@ class Axis {
   [[nodiscard]] Errc begin_jog(WriteBatch& batch);
   [[nodiscard]] bool jog_must_stop(Command direction, std::int64_t velocity) const;
   void observe_jog();
+  void observe_reference(const AxisFacts& facts);
+  void observe_volatile();
   void stop_by_itself(Command command, bool latches, BatchCallback on_result);
   // What is owed until the drive shows it (axis_owed.cpp).
   void owe(const WriteBatch& stop);
@@ -219,6 +221,7 @@ class Axis {
   std::vector<Pending> pending_;
   std::vector<Due> due_;
   bool reference_invalidated_ = false;
+  bool forgotten_ = false;  ///< its drive holds other speeds than it was told, and a start will tell it anew
   struct {
     std::optional<ClientId> client{};
     std::shared_ptr<const ClientLife> life{};

@@ -2,6 +2,7 @@
 // What an axis sees in its drive's newest samples, and shows in its image.
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "gateway/drive/axis/axis.hpp"
 
@@ -15,14 +16,8 @@ void Axis::observe() {
   const AxisFacts facts = core_.facts();
   shown_.watch_fault();
   core_.motion.observe(facts, core_.model.homing_timeout);
-  if (core_.is_virtual() && facts.reference) core_.homed = true;
-  const bool homing = core_.motion.running() == MotionKind::homing;
-  if (core_.turn.link == LinkState::online && core_.model.homed && core_.store[core_.model.homed->object].cached) {
-    if (facts.reference && !homing) core_.homed = true;
-    // A drive that was silent and has lost its reference since has restarted, too quickly to go offline.
-    if (reference_invalidated_ && facts.reference_tells && !facts.reference) core_.homed = false;
-    reference_invalidated_ = reference_invalidated_ && !facts.reference_tells;
-  }
+  observe_reference(facts);
+  observe_volatile();
   bool clamped = false;
   for (const Binding& binding : core_.model.bindings)
     if (binding.object != kNoObject && binding.object != core_.model.controlword)
@@ -33,6 +28,39 @@ void Axis::observe() {
   if (!core_.motion.take_homing_timeout()) return;
   host_.event(image_.number, EventKind::warning, 0, "homing took longer than its timeout: halted");
   stop_by_itself(Command::halt, false, [](const BatchResult&) {});
+}
+
+void Axis::observe_reference(const AxisFacts& facts) {
+  if (core_.is_virtual() && facts.reference) core_.homed = true;
+  if (core_.turn.link != LinkState::online || !core_.model.homed || !core_.store[core_.model.homed->object].cached)
+    return;
+  const bool homing = core_.motion.running() == MotionKind::homing;
+  if (facts.reference && !homing) core_.homed = true;
+  // What says so in one mode alone says nothing in it before the homing either, unless the drive was silent since.
+  const bool lasts = reference_invalidated_ || !core_.model.homed_mode;
+  reference_invalidated_ = reference_invalidated_ && !facts.reference_tells;
+  if (!lasts || !core_.homed || !facts.reference_tells || facts.reference || homing || !pending_.empty()) return;
+  core_.homed = false;
+  core_.store.invalidate_all();
+  host_.event(image_.number, EventKind::warning, 0,
+              "it has lost its reference: it has restarted, too quickly to go offline, or is homed by somebody else");
+}
+
+// A drive without a reference and a state machine of its own: what it forgets with its power tells that it has
+// restarted. It was enabled by nobody since, and counts from where it stood.
+void Axis::observe_volatile() {
+  const bool remembers = !core_.is_virtual() || !core_.model.virtual_axis->gate_only;
+  if (remembers || core_.turn.link != LinkState::online || !pending_.empty()) return;
+  const bool forgotten = std::ranges::any_of(core_.told, [this](const auto& told) {
+    const ObjectState& state = core_.store[told.first];
+    const bool read = state.known && !state.unverified && !state.unsure && !state.clamped;
+    return read && core_.object(told.first).nvm == Nvm::no && state.number != told.second;
+  });
+  if (std::exchange(forgotten_, forgotten) || !forgotten) return;
+  core_.homed = false;
+  core_.make(core_.model.controlword, 0);
+  core_.store.invalidate_all();
+  host_.event(image_.number, EventKind::warning, 0, "it has restarted, too quickly to go offline: enable it anew");
 }
 
 // --- The image -----------------------------------------------------------------------------------------------------

@@ -27,7 +27,8 @@ void ShownAxis::publish(const Jog& jog) {
   watch_fault();
   core_.motion.observe(core_.facts(), core_.model.homing_timeout);
   tell_endings();
-  const AxisImage before = image_;
+  AxisImage before = image_;
+  before.lease.owner = std::exchange(owner_shown_, image_.lease.owner);  // it changes in the image itself
   image_.link_state = core_.turn.link;
   show_state(core_, image_);
   if (jog.active())

@@ -43,6 +43,7 @@ class ShownAxis {
   AxisHost& host_;
   Duration cycle_{};
   Instant last_statusword_ = kLongAgo;
+  std::shared_ptr<const ClientLife> owner_shown_{};
   std::uint64_t faults_told_ = 0;
   std::uint64_t losses_told_ = 0;
   struct Fault {

@@ -31,8 +31,8 @@ struct AxisFacts {
   bool reference_tells = true;  ///< what says that it is homed means that in the mode in force
   bool reference = false;       ///< the drive says that it is homed
   bool homing_failed = false;
-  bool motion_failed = false;                        ///< a move has ended elsewhere than at its target
-  std::uint64_t statusword_exchange = 0;             ///< the exchange that gave the newest statusword
+  bool motion_failed = false;             ///< a move has ended elsewhere than at its target, a run by its drive
+  std::uint64_t statusword_exchange = 0;  ///< the exchange that gave the newest statusword
   std::optional<std::uint64_t> position_exchange{};  ///< and the newest position; none: nothing tells of it
 
   [[nodiscard]] bool enabled() const { return reachable && state == State402::operation_enabled; }

@@ -180,6 +180,7 @@ void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
       if (facts.motion_failed) end(MotionState::failed);
     }
   }
+  if (kind_ == MotionKind::velocity && seen_after_start && facts.motion_failed) end(MotionState::failed);
   if (kind_ == MotionKind::homing && seen_after_start) observe_homing(facts, homing_timeout);
 }
 

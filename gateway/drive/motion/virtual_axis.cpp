@@ -67,6 +67,7 @@ bool VirtualAxis::take_found_enabled() { return std::exchange(found_enabled_, fa
 // again (or has had its time to begin), and it has reached its target if the position read after that says so.
 void VirtualAxis::follow(const Seen& seen, const VirtualProperties& facts) {
   run_.moved = run_.moved || seen.moving;
+  if (seen.moving) run_.seen_moving = seen.invalidations;
   if (!seen.standing) {
     run_.stopped = 0;
     run_.rest.reset();
@@ -96,8 +97,13 @@ void VirtualAxis::follow(const Seen& seen, const VirtualProperties& facts) {
       // A drive that stands at the homing position and ignored the command has not homed.
       if (settled) end_ = seen.homed_at && run_.moved ? End::reached : End::failed;
       break;
-    case MotionKind::none:
     case MotionKind::velocity:
+      // Where a command runs it, and not its set-point, the drive has ended the run: by an input of its own, or it has
+      // restarted, and that at once, if it was out of sight. What turns round stands for an instant.
+      if (facts.gate_only && seen.speed_asked && (rests || (run_.moved && run_.seen_moving != seen.invalidations)))
+        end_ = End::failed;
+      break;
+    case MotionKind::none:
     case MotionKind::torque:
       break;
   }

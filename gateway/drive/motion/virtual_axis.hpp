@@ -36,6 +36,9 @@ class VirtualAxis {
     std::uint16_t controlword = 0;
     int mode = 0;
     MotionKind running = MotionKind::none;
+    bool speed_asked = false;  ///< the set-point of a run is not 0
+    /// Grows with each loss of an exchange: what the drive did meanwhile nobody has seen.
+    std::uint64_t invalidations = 0;
   };
 
   /// The drive comes up anew: switch on disabled, nothing known.
@@ -50,7 +53,7 @@ class VirtualAxis {
 
   [[nodiscard]] std::uint16_t statusword(const Seen& seen) const;
   /// The motion started last ended, but not where it should have.
-  [[nodiscard]] bool motion_failed() const { return end_ == End::failed && run_.kind == MotionKind::discrete; }
+  [[nodiscard]] bool motion_failed() const { return end_ == End::failed && run_.kind != MotionKind::homing; }
   [[nodiscard]] bool homing_failed() const { return end_ == End::failed && run_.kind == MotionKind::homing; }
   [[nodiscard]] bool homing_attained() const { return end_ == End::reached && run_.kind == MotionKind::homing; }
   /// Torque is on although the axis is not enabled, and no command of the bus can take it away.
@@ -68,6 +71,7 @@ class VirtualAxis {
     std::uint64_t exchange = 0;
     bool under_way = false;
     bool moved = false;
+    std::uint64_t seen_moving = 0;       ///< Seen::invalidations then
     std::uint64_t stopped = 0;           ///< exchange that showed the axis standing again; 0: none yet
     std::optional<std::int64_t> rest{};  ///< the first position read since
     std::uint64_t rest_exchange = 0;

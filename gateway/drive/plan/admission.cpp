@@ -52,9 +52,21 @@ bool cuts_a_quantity(const AxisCore& core, const ObjectRequest& request) {
   return false;
 }
 
+// The quantity that a write of this object is one of; where several are at its place, that of the mode in force.
+const Binding* quantity_at(const AxisCore& core, ObjectId id) {
+  const Binding* found = nullptr;
+  const auto of_mode = setpoint_of_mode(core.mode_in_force());
+  for (const Binding& binding : core.model.bindings) {
+    if (binding.object == kNoObject || !binding.writable || !same_place(core, id, binding.object)) continue;
+    if (found == nullptr || of_mode == binding.quantity) found = &binding;
+  }
+  return found;
+}
+
 // A virtual axis's drive takes its commands as numbers in an object: by the mailbox they are the same commands, with
 // the gate and the latch. What the gateway has no command for, such as the drive's own jog, would know no limit and no
-// end by the dead man's button. No value: it is none.
+// end by the dead man's button; a set-point that moves the axis by being written needs one that may start. No value: it
+// is none.
 std::optional<Errc> as_command(const AxisCore& core, ObjectId id, std::int64_t number, WriteBatch& out) {
   if (!core.is_virtual() || !core.object(id).trigger || !belongs_to_a_command(core, id)) return std::nullopt;
   constexpr std::array kCommands{Command::quick_stop,    Command::halt,          Command::fault_reset,
@@ -67,18 +79,9 @@ std::optional<Errc> as_command(const AxisCore& core, ObjectId id, std::int64_t n
     out.command = command;
     return Errc::ok;
   }
-  return number == 0 ? std::nullopt : std::optional(Errc::bad_value);
-}
-
-// The quantity that a write of this object is one of; where several are at its place, that of the mode in force.
-const Binding* quantity_at(const AxisCore& core, ObjectId id) {
-  const Binding* found = nullptr;
-  const auto of_mode = setpoint_of_mode(core.mode_in_force());
-  for (const Binding& binding : core.model.bindings) {
-    if (binding.object == kNoObject || !binding.writable || !same_place(core, id, binding.object)) continue;
-    if (found == nullptr || of_mode == binding.quantity) found = &binding;
-  }
-  return found;
+  if (number == 0) return std::nullopt;
+  if (quantity_at(core, id) == nullptr) return Errc::bad_value;
+  return core.motion.may_start(core.facts()) ? std::nullopt : std::optional(Errc::state_unsuitable);
 }
 
 // A further name of what a register says, another motor's object, one that moves or enables without any rule of ours

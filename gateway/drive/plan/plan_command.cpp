@@ -188,7 +188,7 @@ Plan plan_move(const AxisCore& core, Command command) {
   // A drive that follows its target would take even a distance for one.
   if (core.facts().enabled() && (core.controlword() & core.model.cia402.follow_bits) != 0)
     plan.add(Action::write(core.model.controlword, core.controlword() & kEnabledBits));
-  add_held_limits(core, 1, plan);
+  add_speeds(core, 1, plan);
   Plan steps;
   if (!add_command_steps(core, command, steps)) return steps;
   bool written = false;
@@ -218,7 +218,7 @@ Plan plan_run(const AxisCore& core, Command command) {
   Plan steps;
   if (!add_command_steps(core, command, steps)) return steps;
   Plan plan;
-  add_held_limits(core, velocity ? 3 : 4, plan);
+  add_speeds(core, velocity ? 3 : 4, plan);
   const bool by_steps = writes(steps, binding->object);
   // Where the drive must be told to run, it must know how fast before.
   if (core.is_virtual() && !by_steps && !add_write(core, quantity, core.running_target(quantity), plan))
@@ -234,7 +234,7 @@ Plan plan_home(const AxisCore& core) {
   const auto method = homing_method(core);
   if (!method) return Plan::refuse(Errc::bad_value);
   Plan plan;
-  add_held_limits(core, 6, plan);
+  add_speeds(core, 6, plan);
   if (!add_write(core, Quantity::homing_method, {*method}, plan)) return Plan::refuse(Errc::bad_value);
   // A set_position that failed half-way may have left 0 there.
   if (core.offset_owed) {
@@ -361,8 +361,8 @@ Plan plan_preparation(const AxisCore& core, Command command) {
   const auto mode = mode_needed(core, command);
   // Refused, it must leave what runs as it was, its mode too.
   if (mode && *mode != core.mode_in_force()) add_requirements(core, command, plan);
-  if (is_motion) add_end_of_halt(core, plan);
-  if (!mode) return plan;
+  if (is_motion) add_end_of_halt(core, mode.value_or(core.mode_in_force()), plan);
+  if (!mode || writes(plan, core.model.mode)) return plan;
   if (core.is_continuous(*mode) && core.mode_in_force() != *mode) add_running_targets(core, false, plan);
   static_cast<void>(append(plan, plan_mode(core, *mode)));
   return plan;
@@ -388,7 +388,7 @@ Plan plan_command(const AxisCore& core, Command command, int mode_before) {
       return plan_save(core);
     case Command::end_halt: {
       Plan plan;
-      add_end_of_halt(core, plan);
+      add_end_of_halt(core, core.mode_in_force(), plan);
       return plan;
     }
     default:

@@ -19,7 +19,7 @@ Plan plan_raw_move(const AxisCore& core, std::uint16_t word) {
   if (relative && !core.motion.at_rest(core.facts())) return Plan::refuse(Errc::busy);  // never added
   if (const Errc code = judge_move(core, relative); code != Errc::ok) return Plan::refuse(code);
   Plan plan;
-  add_held_limits(core, 1, plan);
+  add_speeds(core, 1, plan);
   const auto target = core.motion.wanted(Quantity::target_position);
   if (target && !add_write(core, Quantity::target_position, *target, plan)) return Plan::refuse(Errc::bad_value);
   return plan;
@@ -28,7 +28,7 @@ Plan plan_raw_move(const AxisCore& core, std::uint16_t word) {
 Plan plan_raw_homing(const AxisCore& core) {
   if (!core.homing_method) return Plan::refuse(Errc::bad_value);
   Plan plan;
-  add_held_limits(core, 6, plan);
+  add_speeds(core, 6, plan);
   if (!add_write(core, Quantity::homing_method, {*core.homing_method}, plan)) return Plan::refuse(Errc::bad_value);
   plan.add(Action::at(Mark::not_homed));
   return plan;
@@ -61,13 +61,13 @@ Plan plan_controlword(const AxisCore& core, std::uint16_t word, bool command_fol
   const bool runs = enables && !halted && is_continuous(facts);
 
   if (rising(word, before, controlword::kHalt)) {
-    add_end_of_halt(core, plan);  // bit 8 falls: nothing resumes
+    add_end_of_halt(core, facts.mode, plan);  // bit 8 falls: nothing resumes
   } else if (enables && (runs || !facts.enabled())) {
     // What survives: velocity and torque that nobody has written anew since the last stop, fault or disable are made 0.
     add_running_targets(core, true, plan);
     if (!facts.enabled() && (facts.mode == 7 || facts.mode == 8)) add_target_here(core, plan);
   }
-  if (runs) add_held_limits(core, facts.mode, plan);
+  if (runs) add_speeds(core, facts.mode, plan);
   if (moves && !append(plan, plan_raw_move(core, word))) return plan;
   if (homes && !append(plan, plan_raw_homing(core))) return plan;
 

@@ -17,6 +17,10 @@ Condition equals(ObjectId object, std::int64_t number) {
   return c;
 }
 
+ObjectId mode_shown_by(const AxisCore& core) {
+  return core.model.mode_display != kNoObject ? core.model.mode_display : core.model.mode;
+}
+
 const std::int64_t* raw_mode(const AxisCore& core, std::int16_t mode) {
   for (const auto& entry : core.model.modes)
     if (entry.first == mode) return &entry.second;
@@ -188,12 +192,36 @@ bool waits_for_jog(const AxisCore& core, const WriteBatch& batch, Quantity quant
   return core.velocity_beside_jog && quantity == Quantity::target_velocity && batch.command != Command::run_velocity;
 }
 
+namespace {
+
+// Registers 47 to 52: the rest of what a start goes by is what the drive holds (design 3.2), or the start's own.
+bool is_speed(Quantity quantity) {
+  using enum Quantity;
+  return quantity == max_torque || quantity == profile_velocity || quantity == profile_acceleration ||
+         quantity == profile_deceleration;
+}
+
+void note_told(AxisCore& core, const Setpoint& sp) {
+  const Binding* binding = core.model.binding(sp.quantity);
+  if (!is_speed(sp.quantity) || binding == nullptr || binding->object == kNoObject) return;
+  const auto raw = sp.exact ? sp.exact : binding->to_raw(sp.value, core.object(binding->object));
+  if (raw) core.told.insert_or_assign(binding->object, *raw);
+}
+
+}  // namespace
+
+void forget_told(AxisCore& core, const WriteBatch& batch) {
+  for (const Setpoint& sp : batch.setpoints)
+    if (const Binding* binding = core.model.binding(sp.quantity)) core.told.erase(binding->object);
+}
+
 void remember_setpoints(AxisCore& core, const WriteBatch& batch) {
   for (const Setpoint& sp : batch.setpoints) {
     const bool beside_jog = core.velocity_beside_jog && sp.quantity == Quantity::target_velocity && !batch.jogs;
     if (beside_jog) core.velocity_beside_jog = Wanted{sp.value, sp.exact};
     if (!waits_for_jog(core, batch, sp.quantity))
       core.motion.want(sp.quantity, {sp.value, sp.exact, !holds_stop(batch)});
+    note_told(core, sp);
     if (sp.quantity == Quantity::homing_method) core.homing_method = sp.value;
     if (sp.quantity == Quantity::homing_offset) core.offset_owed.reset();
   }
@@ -208,6 +236,13 @@ void add_changed_run(const AxisCore& core, const WriteBatch& batch, Plan& plan) 
   if (!run || !run->repeat_on_change || !core.facts().enabled() || batch.command == Command::run_velocity) return;
   const Binding* binding = core.model.binding(Quantity::target_velocity);
   if (!writes(plan, binding->object)) return;
+  // Nobody has seen it for a moment: it may have ended, by a restart perhaps, and would be started anew.
+  if (!core.store[core.model.statusword].cached) {
+    plan = {};
+    plan.add(Action::read(core.model.statusword));
+    plan.add(Action::at(Mark::look_again));
+    return;
+  }
   add_steps(core, run->steps, plan);
   plan.add(Action::at(Mark::start_velocity));
 }
@@ -235,13 +270,13 @@ std::vector<Quantity> speeds_of(int motion_mode) {
   using enum Quantity;
   switch (motion_mode) {
     case 1:
-      return {profile_velocity, profile_acceleration, profile_deceleration};
+      return {profile_velocity, profile_acceleration, profile_deceleration, max_torque};
     case 3:
-      return {profile_acceleration, profile_deceleration};
+      return {profile_acceleration, profile_deceleration, max_torque};
     case 4:
       return {max_velocity, max_torque};
     case 6:
-      return {homing_speed_switch, homing_speed_zero, homing_acceleration};
+      return {homing_speed_switch, homing_speed_zero, homing_acceleration, max_torque};
     default:
       return {};
   }
@@ -272,12 +307,21 @@ Plan plan_setpoints(const AxisCore& core, const WriteBatch& batch) {
   return plan;
 }
 
+void add_mode(const AxisCore& core, int mode, Plan& plan) {
+  const std::int64_t* raw = raw_mode(core, static_cast<std::int16_t>(mode));
+  if (raw == nullptr || core.model.mode == kNoObject) return;
+  plan.add(Action::write(core.model.mode, *raw));
+  plan.add(Action::at(Mark::values_invalidated, core.model.mode));
+  plan.add(Action::wait(equals(mode_shown_by(core), *raw), kModeLimit));
+  plan.add(Action::at(Mark::mode_changed));
+}
+
 Plan plan_mode(const AxisCore& core, std::int16_t mode) {
   if (core.is_virtual()) return plan_virtual_mode(core, mode, false);
   Plan plan;
   const std::int64_t* raw = raw_mode(core, mode);
   if (raw == nullptr || core.model.mode == kNoObject) return Plan::refuse(Errc::bad_value);
-  const ObjectId display = core.model.mode_display != kNoObject ? core.model.mode_display : core.model.mode;
+  const ObjectId display = mode_shown_by(core);
   const ObjectState& asked = core.store[core.model.mode];
   const ObjectState& shown = core.store[display];
   if (asked.cached && asked.number == *raw && shown.cached && shown.number == *raw) return plan;
@@ -288,10 +332,7 @@ Plan plan_mode(const AxisCore& core, std::int16_t mode) {
     plan.add(Action::at(Mark::look_again));
     return plan;
   }
-  plan.add(Action::write(core.model.mode, *raw));
-  plan.add(Action::at(Mark::values_invalidated, core.model.mode));
-  plan.add(Action::wait(equals(display, *raw), kModeLimit));
-  plan.add(Action::at(Mark::mode_changed));
+  add_mode(core, mode, plan);
   return plan;
 }
 
@@ -302,7 +343,7 @@ Plan plan_raw_mode(const AxisCore& core, std::int16_t mode) {
   if (!change.refused() && !change.actions.empty() && core.facts().enabled()) {
     if (core.is_continuous(mode)) {
       add_running_targets(core, true, plan);
-      add_held_limits(core, mode, plan);
+      add_speeds(core, mode, plan);
     }
     // In modes 7 and 8 the target is the demand of every cycle: the change itself must not be a step.
     if (mode == 7 || mode == 8) add_target_here(core, plan);
@@ -320,13 +361,18 @@ bool nothing_to_send(const AxisCore& core, const WriteBatch& batch) {
   return !mode.refused() && mode.actions.empty();
 }
 
-void add_held_limits(const AxisCore& core, int mode, Plan& plan) {
+void add_speeds(const AxisCore& core, int mode, Plan& plan) {
   for (const Quantity each : speeds_of(mode)) {
     const Binding* binding = core.model.binding(each);
+    if (binding == nullptr || !core.model.takes(each)) continue;
+    const ObjectState& state = core.store[binding->object];
+    const auto told = core.told.find(binding->object);
+    if (told != core.told.end() && !state.clamped) {
+      if (!state.known || state.number != told->second) plan.add(Action::write(binding->object, told->second));
+      continue;
+    }
     const auto held = core.value(each);
-    if (binding == nullptr || !held || binding->limits.holds(*held) || !core.model.takes(each)) continue;
-    const Range& limits = binding->limits;
-    static_cast<void>(add_write(core, each, {std::clamp(*held, limits.min, limits.max)}, plan));
+    if (held && *held > binding->limits.max) static_cast<void>(add_write(core, each, {binding->limits.max}, plan));
   }
 }
 

@@ -139,7 +139,7 @@ bool halts_by_word(const AxisCore& core) {
          (!halt_is_quick_stop(core) && hold_an_enabling_word(core, *steps_of(core, Command::halt)));
 }
 
-void add_end_of_halt(const AxisCore& core, Plan& plan) {
+void add_end_of_halt(const AxisCore& core, int mode_after, Plan& plan) {
   const std::uint16_t word = core.controlword();
   if ((word & controlword::kHalt) == 0) return;
   constexpr std::uint16_t kShutdown = 0x0006, kTake = 0x0030;  // new set-point, change at once
@@ -157,12 +157,13 @@ void add_end_of_halt(const AxisCore& core, Plan& plan) {
   if (!core.is_continuous(core.mode_in_force()) && target != nullptr && !core.object(target->object).trigger) {
     // A halted homing would go on, and so would a move whose target was merely overwritten: the drive must have taken
     // the new set-point, the present position, before bit 8 falls.
-    if (core.mode_in_force() != 1) static_cast<void>(append(plan, plan_mode(core, 1)));
+    if (core.mode_in_force() != 1) add_mode(core, 1, plan);
     plan.add(Action::write(core.model.controlword, controlword::kHalt | kEnabled));
     add_target_here(core, plan);
     plan.add(Action::write(core.model.controlword, controlword::kHalt | kEnabled | kTake));
   }
   plan.add(Action::write(core.model.controlword, kEnabled));
+  if (writes(plan, core.model.mode) && mode_after != 1) add_mode(core, mode_after, plan);
 }
 
 }  // namespace axisgate::drive

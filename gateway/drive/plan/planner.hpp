@@ -15,6 +15,8 @@ namespace axisgate::drive {
 [[nodiscard]] bool limits_in_order(const AxisCore& core, const WriteBatch& batch);
 /// Parameters and set-points: those that may reach the drive now.
 [[nodiscard]] Plan plan_setpoints(const AxisCore& core, const WriteBatch& batch);
+/// What was asked for here has failed: no start goes by it.
+void forget_told(AxisCore& core, const WriteBatch& batch);
 /// Targets are remembered in the motion rules even where they may not reach the drive now.
 void remember_setpoints(AxisCore& core, const WriteBatch& batch);
 /// The mode a command needs: writes it and waits for the display.
@@ -60,7 +62,8 @@ inline constexpr Duration kStopLimit = std::chrono::seconds(5);
 /// In the mode in force the axis halts by bit 8 of the controlword: its profile's halt is that bit, or it is virtual.
 [[nodiscard]] bool halts_by_word(const AxisCore& core);
 /// What must be written before a halt may end, and the controlword without bit 8.
-void add_end_of_halt(const AxisCore& core, Plan& plan);
+/// The drive is in `mode_after` (CiA 402, unified) then, whatever mode that took meanwhile.
+void add_end_of_halt(const AxisCore& core, int mode_after, Plan& plan);
 
 // --- Virtual axes --------------------------------------------------------------------------------------------------
 
@@ -82,9 +85,12 @@ bool append(Plan& plan, Plan more);
 void add_steps(const AxisCore& core, const Steps& steps, Plan& plan);
 /// Appends the command's steps in the mode in force; false (and refused) where the drive has none.
 bool add_command_steps(const AxisCore& core, Command command, Plan& plan);
-/// What the drive holds beyond the configured limits of velocity, acceleration and torque, from its maker or another
-/// tool, is written as the limit where a motion in this mode (CiA 402, 6060h) goes by it.
-void add_held_limits(const AxisCore& core, int mode, Plan& plan);
+/// Writes the mode, whatever is in force, and waits until the drive shows it; nothing where it is none of the drive's.
+void add_mode(const AxisCore& core, int mode, Plan& plan);
+/// What a motion in this mode (CiA 402, 6060h) goes by: speeds, ramps and max_torque as a client has asked for them
+/// last, where the drive holds others, having restarted perhaps; and the configured limit for what it holds beyond
+/// that, from its maker or another tool.
+void add_speeds(const AxisCore& core, int mode, Plan& plan);
 /// Writes the quantity's value unless the drive is known to hold it. False where it cannot be had in the drive's
 /// numbers.
 [[nodiscard]] bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan);

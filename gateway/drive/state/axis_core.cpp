@@ -138,6 +138,8 @@ std::optional<VirtualAxis::Seen> AxisCore::seen() const {
   out.running = motion.running();
   const auto velocity = value(Quantity::velocity_actual);
   const auto target = value(Quantity::target_velocity);
+  out.speed_asked = target.value_or(0) != 0;
+  out.invalidations = store.invalidations();
   constexpr std::int64_t kTolerance = 50;  // a fiftieth of the target: "reached" is a window in CiA 402 as well (606Dh)
   if (velocity && target && out.running == MotionKind::velocity)
     out.at_velocity = std::llabs(*velocity - *target) <= std::llabs(*target) / kTolerance + model.standstill_velocity;

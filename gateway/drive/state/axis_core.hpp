@@ -46,6 +46,9 @@ struct AxisCore {
     std::uint64_t invalidations = 0;
   };
   std::optional<SentTo> sent_to{};
+  /// Speeds and ramps in the drive's numbers as a client has asked for them last. Every start goes by them (design 3.3,
+  /// set-points), also where the drive has restarted since and holds its own.
+  std::map<ObjectId, std::int64_t> told{};
   NvmBudget nvm{};
 
   /// link_state online or suspect.

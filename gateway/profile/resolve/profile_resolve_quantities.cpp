@@ -19,6 +19,15 @@ bool is_directed(const QuantityRow& row) {
   return directed && (row.type == RegisterType::i16 || row.type == RegisterType::i32);
 }
 
+/// A speed or a ramp that the drive would hold as 0 is none: 0 means "leave as it is" (design 3.3 Zeros), and a drive
+/// that is told to slow down at 0 may turn on.
+Range numbers_of_write(const QuantityRow& row, const Object& object, const ObjectDef& def) {
+  Range out = intersection(object.numbers(), def.range());
+  const bool rate = row.type == RegisterType::u32 && (row.kind == Kind::velocity || row.kind == Kind::acceleration);
+  if (rate && row.writable) out.min = std::max<std::int64_t>(out.min, 1);
+  return out;
+}
+
 /// On an inverted axis the drive's positive limit is the axis's negative one.
 Quantity opposite(Quantity quantity) {
   if (quantity == Quantity::position_limit_min) return Quantity::position_limit_max;
@@ -167,7 +176,7 @@ class AxisQuantities {
     if (row.quantity == Quantity::homing_method) translate(out);
     if (row.writable) limit(row, spec, object, def, out);
     if (!out.scaled) {
-      out.recipe.raw = intersection(object.numbers(), def.range());
+      out.recipe.raw = numbers_of_write(row, object, def);
       out.recipe.allowed = out.limits;
     }
     return out;
@@ -182,7 +191,7 @@ class AxisQuantities {
 
   void limit(const QuantityRow& row, const QuantitySpec& spec, const Object& object, const ObjectDef& def,
              Binding& out) {
-    const Range raw = intersection(object.numbers(), def.range());
+    const Range raw = numbers_of_write(row, object, def);
     if (!out.codes.empty())
       out.limits = {out.codes.front().first, out.codes.back().first};
     else if (out.scaled)
