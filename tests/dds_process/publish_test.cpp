@@ -230,6 +230,26 @@ TEST(PublishedGateway, HasItsBusesAndReachesALateJoiner) {
   EXPECT_EQ(got->buses()[1].name().to_string(), "can0");
 }
 
+TEST(PublishedReplies, AreWrittenForAnyAxisNumber) {
+  constexpr std::uint16_t kMoreThanAGatewayHas = 600;
+  Child child({"--commands"});
+  Peer peer;
+  auto replies = peer.reader<CommandReply>("axisgate/command_reply", {.depth = 0});
+  // Volatile: it is sent again until the two know each other.
+  for (std::uint64_t id = 0; !replies->next_within(std::chrono::milliseconds(100)); ++id) {
+    ASSERT_LT(id, 300U);
+    child.send(ReplyRecord{.axis = 0, .request_id = id});
+  }
+  for (std::uint16_t axis = 1; axis <= kMoreThanAGatewayHas; ++axis) {
+    child.send(ReplyRecord{.axis = axis});
+    std::optional<CommandReply> reply;
+    do {
+      reply = replies->next();
+      ASSERT_TRUE(reply) << "axis " << axis;
+    } while (reply->axis() != axis);
+  }
+}
+
 TEST(PublishedJoints, AreAllAxesInOneMessageOnceAPeriod) {
   Child child({"--ros2", "--min-period-ms=200"});
   Peer peer;

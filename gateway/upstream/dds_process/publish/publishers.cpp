@@ -13,8 +13,6 @@ namespace {
 /// Axes 1 to 499, and the gateway itself as 0.
 constexpr std::int32_t kMostStates = 500;
 constexpr std::int32_t kEventsKept = 16;
-/// Replies that a reader may be behind with, per axis.
-constexpr std::int32_t kRepliesKept = 64;
 
 template <typename Type>
 fastdds::TypeSupport type() {
@@ -37,10 +35,8 @@ Publishers::Publishers(Participant& participant, const GatewayId& gateway, Wake&
                                           writer_qos(kEventsKept, kMostStates, true))),
       gateway_state_(participant.make_writer(kGatewayTopicName, "gateway_state", type<GatewayStatePubSubType>(),
                                              writer_qos(1, 1, true))),
-      command_reply_(participant, "command_reply", type<CommandReplyPubSubType>(),
-                     writer_qos(kRepliesKept, kMostStates, false), gateway_, wake),
-      object_reply_(participant, "object_reply", type<ObjectReplyPubSubType>(),
-                    writer_qos(kRepliesKept, kMostStates, false), gateway_, wake) {}
+      command_reply_(participant, "command_reply", type<CommandReplyPubSubType>(), gateway_, wake),
+      object_reply_(participant, "object_reply", type<ObjectReplyPubSubType>(), gateway_, wake) {}
 
 bool Publishers::publish(const Record& record, SteadyNs now, ClockDifference difference) {
   if (const auto* state = std::get_if<StateRecord>(&record)) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The DataWriter of a topic of replies, and the replies that wait for the readers of new clients (held_replies.hpp).
-// Promises what those promise, and to wake whoever is to call write_held() when such a reader was found. Never waits.
+// Promises what those promise, a reply for any axis number that is asked for, a bound on what is kept for readers that
+// are behind, and to wake whoever is to call write_held() when such a reader was found. Never waits.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "gateway/upstream/dds_process/participant/participant.hpp"
@@ -12,10 +14,15 @@
 
 namespace axisgate::dds {
 
+/// Replies that a reader may be behind with, for each axis number; and of all numbers together: beyond, it has lost
+/// them.
+inline constexpr std::size_t kRepliesKept = 64;
+inline constexpr std::size_t kMostRepliesKept = 500 * kRepliesKept;
+
 class ReplyWriter : private fastdds::DataWriterListener {
  public:
   ReplyWriter(Participant& participant, const std::string& name, const fastdds::TypeSupport& type,
-              const fastdds::DataWriterQos& qos, const GatewayId& gateway, Wake& wake);
+              const GatewayId& gateway, Wake& wake);
   ~ReplyWriter() override;
   ReplyWriter(const ReplyWriter&) = delete;
   ReplyWriter& operator=(const ReplyWriter&) = delete;
@@ -31,8 +38,10 @@ class ReplyWriter : private fastdds::DataWriterListener {
 
  private:
   void on_publication_matched(fastdds::DataWriter* writer, const fastdds::PublicationMatchedStatus& info) override;
+  void make_room(std::uint16_t axis);
   template <typename Reply>
   void write_now(const Reply& reply) {
+    make_room(reply.axis);
     // What cannot be sent is in the history, or is overtaken by the next sample: there is nobody to tell.
     auto sample = to_idl(reply, gateway_);
     writer_.write(&sample);
@@ -41,6 +50,9 @@ class ReplyWriter : private fastdds::DataWriterListener {
   const GatewayId& gateway_;
   Wake& wake_;
   HeldReplies held_;
+  /// What the library keeps at most of each axis number, and in all: written since all readers had everything.
+  std::map<std::uint16_t, std::size_t> kept_of_;
+  std::size_t kept_ = 0;
   fastdds::DataWriter& writer_;
 };
 
