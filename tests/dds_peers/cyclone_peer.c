@@ -374,7 +374,8 @@ static void write_sample(const struct Line* line) {
     std_msgs_msg_dds__Empty_ nothing;
   } sample;
   topic->fill(line, &sample);
-  checked("write", dds_write(topic->writer, &sample));
+  const bool last = strcmp(word(line, 0), "writedispose") == 0;
+  checked("write", last ? dds_writedispose(topic->writer, &sample) : dds_write(topic->writer, &sample));
 }
 
 static void delete_writer(const struct Line* line) {
@@ -399,7 +400,7 @@ int main(int argc, char** argv) {
       make_reader(&line);
     else if (strcmp(word(&line, 0), "writer") == 0)
       make_writer(&line);
-    else if (strcmp(word(&line, 0), "write") == 0)
+    else if (strcmp(word(&line, 0), "write") == 0 || strcmp(word(&line, 0), "writedispose") == 0)
       write_sample(&line);
     else if (strcmp(word(&line, 0), "assert") == 0)
       checked("assert", dds_assert_liveliness(topic_of(word(&line, 1))->writer));

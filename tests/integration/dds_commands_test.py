@@ -2,7 +2,7 @@
 """axis_command: a DDS writer of either vendor does all that a Modbus client can, gets one reply each time, and can ask nothing twice."""
 import time
 
-from dds_stage import (BAD_VALUE, COMMAND, DONE, NO_AXIS, NOT_SUPPORTED, RPM, SEEN, STATE_UNSUITABLE, TURN, VENDORS,
+from dds_stage import (BAD_VALUE, COMMAND, CYCLONE, DONE, NO_AXIS, NOT_SUPPORTED, RPM, SEEN, STATE_UNSUITABLE, TURN, VENDORS,
                        DdsStory, main)
 from lease_stage import NOBODY
 from modbus import (ABORTED, ACTIVE, COMPLETED, CONTINUOUS, DISABLED, DISCRETE, ERROR_STOP, STANDSTILL, STOPPING, Axis)
@@ -139,6 +139,20 @@ class Jog(Commanded):
             until("it jogs", lambda peer=peer, number=number: peer.ask(number, "jog_forward") and self.speed(number) != 0)
             self.until_it_stands(number)  # nobody says so any more
             self.assertIn("enabled", axis.inputs())
+
+
+class LastOfItsInstance(Commanded):
+    lines_of = ("serial",)
+
+    def test_its_data_count_as_those_of_any_other_sample(self):
+        peer = self.commander(CYCLONE)
+        self.run_by_dds(peer, 1)
+        for command in ("quick_stop", "disable", "enable"):
+            self.at = command
+            request = peer.write("axis_command", verb="writedispose", axis=1, command=COMMAND[command])
+            self.assert_one_answer(peer, request, DONE)
+        self.watched(1).until(axis_state=STANDSTILL)
+        self.let_go(peer, 1)
 
 
 class Once(Commanded):

@@ -152,11 +152,11 @@ class Peer(Program):
 
         until(f"{answers} comes", answered)
 
-    def write(self, topic, request_id=None, **members):
-        """The sample's request id."""
+    def write(self, topic, request_id=None, verb="write", **members):
+        """The sample's request id. `writedispose`, of Cyclone DDS alone: the last sample of its instance, together with its disposal."""
         number = next(self.ids) if request_id is None else request_id
         members = {"gateway": self.gateway, "gateway_key": zlib.crc32(self.gateway.encode()), **members}
-        self.say("write", topic, f"request_id={number}", *(f"{name}={value}" for name, value in members.items()))
+        self.say(verb, topic, f"request_id={number}", *(f"{name}={value}" for name, value in members.items()))
         return number
 
     def ask(self, axis, command="none", request_id=None, **members):

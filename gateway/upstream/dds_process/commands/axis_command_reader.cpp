@@ -10,6 +10,12 @@ namespace {
 
 namespace rtps = eprosima::fastrtps::rtps;
 
+/// False: it has no data, as the end of an instance mostly has none. The last sample of an instance may come together
+/// with its disposal, and says what any other says.
+bool read(GuardedType<AxisCommandPubSubType>& type, rtps::CacheChange_t& change, AxisCommand& sample) {
+  return change.serializedPayload.length > 0 && type.deserialize(&change.serializedPayload, &sample);
+}
+
 }  // namespace
 
 AxisCommandReader::History::History(const CommandIntake& intake) : ReaderHistory(command_history()), intake_(intake) {}
@@ -24,8 +30,7 @@ bool AxisCommandReader::History::received_change(rtps::CacheChange_t* change, st
 bool AxisCommandReader::History::is_stop(rtps::CacheChange_t& change) {
   AxisCommand sample;
   // Of one in fragments only the first may be here.
-  if (change.kind != rtps::ALIVE || !change.is_fully_assembled()) return false;
-  return type_.deserialize(&change.serializedPayload, &sample) && is_stop_command(sample.command());
+  return change.is_fully_assembled() && read(type_, change, sample) && is_stop_command(sample.command());
 }
 
 AxisCommandReader::AxisCommandReader(RtpsParticipant& participant, CommandTopic topic, CommandIntake& intake,
@@ -53,7 +58,7 @@ void AxisCommandReader::onNewCacheChangeAdded(rtps::RTPSReader*, const rtps::Cac
   AxisCommand sample;
   // The library reads from its buffer with a pointer that may write, and removes what it has given us as const.
   auto* const mine = const_cast<rtps::CacheChange_t*>(change);
-  if (change->kind == rtps::ALIVE && type_.deserialize(&mine->serializedPayload, &sample)) {
+  if (read(type_, *mine, sample)) {
     const Guid writer = to_guid(change->writerGUID);
     const SteadyNs now = steady_now();
     watch_.on_sample(writer, now);
