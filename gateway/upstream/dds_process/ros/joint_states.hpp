@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // All axes as one ROS 2 sensor_msgs/JointState, in the order of their numbers.
-// Promises NaN where an axis has no value, that the first message has all axes there are, and that one is due only when
-// a state has come since the last one.
-// Never fills in effort: the motors' rated torque in Nm is not known.
+// Promises NaN where an axis has no value that is good now, that the first message has all axes there are, and that one
+// is due only when a state has come since the last one. Never fills in effort: the motors' rated torque in Nm is not
+// known.
 #pragma once
 
 #include <ros2_msgs.h>
