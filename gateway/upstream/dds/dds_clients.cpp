@@ -72,11 +72,48 @@ bool DdsClients::has_place(const Guid& writer) const {
   return has_one || clients_.size() - beating_alone() < kMaxWritersKnown;
 }
 
+DdsClient& DdsClients::know(const Guid& writer) {
+  const auto [at, is_new] = clients_.try_emplace(writer);
+  DdsClient& client = at->second;
+  if (!is_new) return client;
+  const auto before = gone_owners_.find(writer);
+  for (const auto& axis : image_.axes()) {
+    const auto& owner = axis->lease.owner;
+    if (!owner || owner->connected || owner->origin != origin_of(writer)) continue;
+    client.left.push_back({axis->number, owner->id, before != gone_owners_.end() && before->second == owner->id});
+  }
+  return client;
+}
+
+// Design 3.5 and 4: a sign of life of its own program takes an orphan lease over. Of a writer that was there already
+// when the owner went it is none for the owner's axes: they are stopped when their time is over.
+void DdsClients::take_back(const Guid& writer, bool own_alone, Instant now) {
+  const auto found = clients_.find(writer);
+  if (found == clients_.end()) return;
+  std::vector<LeftAxis>& all = found->second.left;
+  const auto rest =
+      std::stable_partition(all.begin(), all.end(), [&](const LeftAxis& each) { return own_alone && !each.own; });
+  const std::vector<LeftAxis> taken(rest, all.end());
+  all.erase(rest, all.end());
+  for (const LeftAxis& each : taken) {
+    const AxisImage* const axis = image_.find(each.axis);
+    if (axis == nullptr || !axis->lease.owned_by(each.owner)) continue;
+    const DdsClient* const client = on_sample(writer, std::nullopt, true, now);
+    if (client == nullptr) return;
+    WriteBatch sign;
+    sign.client = client->life->id;
+    sign.role = client->life->role;
+    sign.life = client->life;
+    sign.is_write = sign.beats = true;
+    static_cast<void>(commands_.submit(each.axis, sign, [](const BatchResult&) {}));
+  }
+}
+
 // A heartbeat is a topic of its own: it may be here before anything else of its writer is.
 DdsClient* DdsClients::beating(const Guid& writer, Instant now) {
   const auto found = clients_.find(writer);
   if (found == clients_.end() && beating_alone() >= kMaxBeatsBefore) return nullptr;
-  DdsClient& client = found == clients_.end() ? clients_[writer] : found->second;
+  DdsClient& client = found == clients_.end() ? know(writer) : found->second;
   client.beats_alone = client.beats_alone || found == clients_.end();
   if (client.beats_alone) {
     client.returns_by = now + kReturnsWithin;
@@ -86,9 +123,12 @@ DdsClient* DdsClients::beating(const Guid& writer, Instant now) {
 }
 
 bool DdsClients::makes_way(const DdsClient& client) const {
-  if (client.life == nullptr || client.unleased || !client.held.empty()) return false;
-  return std::none_of(image_.axes().begin(), image_.axes().end(),
-                      [&](const auto& axis) { return axis->lease.owned_by(client.life->id); });
+  return client.life != nullptr && !client.unleased && client.held.empty() && !owns(client.life->id);
+}
+
+bool DdsClients::owns(ClientId client) const {
+  return std::any_of(image_.axes().begin(), image_.axes().end(),
+                     [&](const auto& axis) { return axis->lease.owned_by(client); });
 }
 
 /// Of those that make way the one that was heard longest ago is no client any more, until it asks again.
@@ -117,7 +157,7 @@ std::string DdsClients::on_writer(const WriterRecord& record) {
   if (record.gone) {
     if (const auto found = clients_.find(record.writer); found != clients_.end()) forget(found);
   } else if (has_place(record.writer)) {
-    DdsClient& client = clients_[record.writer];
+    DdsClient& client = know(record.writer);
     client.strength = record.strength;
     client.where = record.where;
     client.returns_by = kNever;
@@ -138,6 +178,7 @@ std::string DdsClients::on_writer(const WriterRecord& record) {
 void DdsClients::on_beats(const BeatRecord& record, Instant now) {
   const Instant said = record.said == 0 ? now : std::min(now, Instant(Duration(record.said)));
   for (const Guid& writer : record.writers) {
+    take_back(writer, true, now);
     DdsClient* const client = find(writer);
     if (client == nullptr) continue;
     client->life->last_request = std::max(client->life->last_request, said);
@@ -157,6 +198,7 @@ void DdsClients::on_heartbeat(const HeartbeatRecord& record, Instant now) {
   client->counter = record.counter;
   client->lease_limit.reset();
   if (record.lease_ms != 0) client->lease_limit = std::chrono::milliseconds(record.lease_ms);
+  take_back(record.client, false, now);
   if (client->life == nullptr) return;
   client->life->last_request = client->life->heartbeat = now;
   client->life->lease_limit = client->lease_limit;
@@ -167,7 +209,7 @@ DdsClient* DdsClients::on_sample(const Guid& writer, std::optional<std::int32_t>
   DdsClient* client = find(writer);
   if (client == nullptr) {
     if (!has_place(writer) || !make_room()) return nullptr;
-    client = &clients_[writer];
+    client = &know(writer);
     client->life = new_life(writer);
     client->life->name = name_of(writer);
     client->life->strength = client->strength;
@@ -230,6 +272,8 @@ void DdsClients::recall_held(const Guid& writer, DdsClient& client) {
 
 DdsClients::Clients::iterator DdsClients::forget(Clients::iterator client) {
   remember_held(client->first, client->second);
+  std::erase_if(gone_owners_, [&](const auto& each) { return !owns(each.second); });
+  if (const auto& life = client->second.life; life != nullptr && owns(life->id)) gone_owners_[client->first] = life->id;
   end(client->second);
   return clients_.erase(client);
 }

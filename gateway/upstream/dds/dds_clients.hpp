@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The DDS writers as clients of the gateway: one ClientLife each, by which leases are judged (design 3.5 and 4). A
 // writer is a client from its first sample for this gateway on, with the lease that its heartbeats before that have
-// asked for. Promises that the number of what is remembered is bounded, and that none makes way for a newcomer that
-// owns an axis, holds a button or may have a motor running; that a writer whose end is told or who does not come back
-// is dead to its leases; that the silence of axisgate-dds itself is not taken for theirs for as long as their grace.
-// Never speaks to an axis, but to say that a client is gone.
+// asked for. What a client that is gone has left is taken over by its own liveliness when it is back, and by the
+// heartbeat of any writer of its participant that has come since. Promises that the number of what is remembered is
+// bounded, and that none makes way for a newcomer that owns an axis, holds a button or may have a motor running; that a
+// writer whose end is told or who does not come back is dead to its leases; that the silence of axisgate-dds itself is
+// not taken for theirs for as long as their grace. Never speaks to an axis, but to say that a client is gone or back.
 #pragma once
 
 #include <deque>
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/process_image.hpp"
@@ -36,6 +38,13 @@ struct HeldJog {
   bool starting = true;          ///< it has no result yet
 };
 
+/// The lease of an axis whose owner was gone when a writer of its participant came.
+struct LeftAxis {
+  AxisNumber axis = 0;
+  ClientId owner = 0;
+  bool own = false;  ///< the owner was this writer itself
+};
+
 /// One writer. `life` is null as long as it has asked for nothing; it outlives the client where it owns an axis.
 struct DdsClient {
   std::shared_ptr<ClientLife> life{};
@@ -50,6 +59,7 @@ struct DdsClient {
   std::optional<std::uint32_t> counter{};  ///< of its last heartbeat
   std::optional<Duration> lease_limit{};   ///< of the same: it holds for a client that it becomes later, too
   bool told_of_liveliness = false;         ///< the log has its line
+  std::vector<LeftAxis> left{};            ///< not taken over so far
 };
 
 class DdsClients {
@@ -87,7 +97,10 @@ class DdsClients {
   [[nodiscard]] std::shared_ptr<ClientLife> new_life(const Guid& writer);
   [[nodiscard]] std::size_t beating_alone() const;
   [[nodiscard]] bool has_place(const Guid& writer) const;
+  [[nodiscard]] DdsClient& know(const Guid& writer);
   [[nodiscard]] DdsClient* beating(const Guid& writer, Instant now);
+  void take_back(const Guid& writer, bool own_alone, Instant now);
+  [[nodiscard]] bool owns(ClientId client) const;
   [[nodiscard]] bool makes_way(const DdsClient& client) const;
   [[nodiscard]] bool make_room();
   void end(DdsClient& client);
@@ -104,6 +117,8 @@ class DdsClients {
   /// Buttons of writers that were taken for gone, kMaxWriters at most, the newest last: one that comes back still holds
   /// them, and has not pressed them anew.
   std::deque<std::pair<Guid, std::map<AxisNumber, HeldJog>>> held_before_;
+  /// Those that are gone and owned an axis when they went; at most one an axis.
+  std::map<Guid, ClientId> gone_owners_;
   ClientId next_id_ = kFirstDdsClient;
   bool link_up_ = false;
   Instant deadline_ = kNever;

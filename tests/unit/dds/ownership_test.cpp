@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "gateway/upstream/dds/command_batches.hpp"
+#include "gateway/upstream/dds/dds_clients.hpp"
 #include "tests/unit/dds/dds_rig.hpp"
 #include "tests/unit/drive/clients.hpp"
 
@@ -131,6 +132,79 @@ TEST_F(Owners, ANewWriterOfTheSameParticipantTakesTheOrphanOver) {
   EXPECT_TRUE(rig.turns());
   EXPECT_FALSE(latched());
   EXPECT_TRUE(rig.has_event("goes on as the owner, for another writer"));
+}
+
+struct Orphans : Owners {
+  const dds::Guid writer = rig.writer(1);
+  void SetUp() override { run_by(writer); }
+  void leave() {
+    rig.die(writer);
+    rig.run(1s);
+  }
+  [[nodiscard]] bool is_owner(const dds::Guid& who) {
+    const auto& owner = rig.axis().lease.owner;
+    return owner && owner->connected && owner->name.ends_with(dds::client_name(who, "192.168.1.7"));
+  }
+  /// Each half second, for longer than the lease and all its graces last.
+  void beat_for(const dds::Guid& client) {
+    dds::Guid beats = client;
+    beats[14] = 77;
+    for (std::uint32_t counter = 1; counter <= 12; ++counter) {
+      rig.give(dds::HeartbeatRecord{beats, client, counter, 0, 1});
+      rig.run(500ms);
+    }
+  }
+};
+
+TEST_F(Orphans, AreTakenOverByWhateverTheirParticipantAsks) {
+  leave();
+  const auto next = rig.writer(1, 2);
+  EXPECT_EQ(rig.ask(next, 4).result, kDone) << "a stop claims nothing by itself";
+  EXPECT_TRUE(is_owner(next));
+  rig.die(next);
+  const auto last = rig.writer(1, 3);
+  EXPECT_EQ(rig.ask(last, 13).result, kDone) << "what its program has left is its own to give back";
+  EXPECT_EQ(rig.axis().lease.owner, nullptr);
+}
+
+TEST_F(Orphans, AreNotTakenOverByWhatIsNotSurelyMeant) {
+  leave();
+  const auto next = rig.writer(1, 2);
+  rig.run(500ms);
+  dds::CommandRecord stop = command(next, 4, 0);
+  stop.gateway.name = "cell_7";  // it is meant for us by half: the stop alone is carried out
+  static_cast<void>(rig.ask(stop));
+  EXPECT_FALSE(is_owner(next));
+}
+
+TEST_F(Orphans, AreTakenOverByTheHeartbeatOfAWriterThatCameAfterwards) {
+  leave();
+  const auto next = rig.writer(1, 2);
+  rig.fall_silent(next);
+  beat_for(next);
+  EXPECT_TRUE(rig.turns());
+  EXPECT_FALSE(latched());
+  EXPECT_TRUE(is_owner(next));
+  EXPECT_TRUE(rig.has_event("goes on as the owner, for another writer"));
+}
+
+TEST_F(Orphans, AreTakenOverByTheLivelinessOfTheirWriterThatIsBack) {
+  leave();
+  static_cast<void>(rig.writer(1));
+  rig.run(6s);
+  EXPECT_TRUE(rig.turns());
+  EXPECT_TRUE(is_owner(writer));
+  EXPECT_EQ(rig.run_at(writer, 4).result, kDone);
+}
+
+TEST_F(Orphans, AreStoppedThoughOthersOfTheirProgramGoOn) {
+  const auto beside = rig.writer(1, 2);
+  const auto stranger = rig.writer(2);
+  rig.die(writer);
+  beat_for(beside);
+  beat_for(stranger);
+  EXPECT_TRUE(latched()) << "who was there before has not come back";
+  EXPECT_EQ(rig.axis().lease.owner, nullptr);
 }
 
 TEST_F(Owners, WhenTheProcessDiesItsClientsHaveThreeSecondsMoreExactlyOnce) {
