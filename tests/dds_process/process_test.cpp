@@ -195,29 +195,40 @@ TEST(Topics, SaysWhereToLookIfNoAxisIsThere) {
   EXPECT_THAT(text, HasSubstr("--domain"));
 }
 
-TEST(Namesake, IsToldOnceItsStatesAreHeardAndWhenItIsGone) {
+TEST(Namesake, IsToldOnceItsStatesAreHeardAndWhenItGivesUpAnAxisOrIsGone) {
   Child child({"--gateway-name", "cell_7"});
   Child other({"--gateway-name", "cell_8"});
   std::optional<Child> duplicate(std::in_place, std::vector<std::string>{"--gateway-name", "cell_7"});
   StateRecord state;
   state.axis = 3;
+  state.name = "lift";
   other.send(state);
   // It may have been sent before anybody listened.
   std::optional<NamesakeRecord> told;
-  while (!told) {
-    duplicate->send(state);
-    const std::optional<Record> record = child.receive(std::chrono::milliseconds(50));
-    if (record && std::holds_alternative<NamesakeRecord>(*record)) told = std::get<NamesakeRecord>(*record);
-  }
+  const auto send_until_told = [&](std::uint16_t axis, const char* name) {
+    state.axis = axis;
+    state.name = name;
+    told.reset();
+    for (const auto until = std::chrono::steady_clock::now() + kPatience; !told;) {
+      if (std::chrono::steady_clock::now() > until) return;
+      duplicate->send(state);
+      const std::optional<Record> record = child.receive(std::chrono::milliseconds(50));
+      if (record && std::holds_alternative<NamesakeRecord>(*record)) told = std::get<NamesakeRecord>(*record);
+    }
+  };
+  send_until_told(3, "lift");
+  ASSERT_TRUE(told);
   EXPECT_EQ(told->axis, 3);
   EXPECT_EQ(told->where, "127.0.0.1");
   EXPECT_FALSE(told->gone);
   const Guid writer = told->writer;
+  send_until_told(4, "turntable");
+  EXPECT_EQ(told, (NamesakeRecord{writer, 4, "127.0.0.1", false}));
+  send_until_told(3, "");  // the last state of an axis that a reload has taken away has no name
+  EXPECT_EQ(told, (NamesakeRecord{writer, 3, "127.0.0.1", true}));
   duplicate->close_link();
   told = child.next<NamesakeRecord>();
-  ASSERT_TRUE(told);
-  EXPECT_TRUE(told->gone);
-  EXPECT_EQ(told->writer, writer);
+  EXPECT_EQ(told, (NamesakeRecord{writer, 0, "127.0.0.1", true}));
 }
 
 }  // namespace

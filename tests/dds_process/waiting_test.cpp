@@ -126,13 +126,33 @@ TEST(Writers, ThatAreFoundHaveGivenNoSignOfLifeUntilTheyAssert) {
 TEST(Namesake, WithManyAxesIsToldTurnByTurnAndOfNoneThatNoGatewayHas) {
   NamesakeWatch watch(7);
   watch.on_discovered(writer_of(1), gateway_user_data(7), "192.168.1.8");
-  for (std::uint16_t axis = 1; axis <= kMaxAxisNumber + 10; ++axis) watch.on_state(writer_of(1), 7, axis);
+  for (std::uint16_t axis = 1; axis <= kMaxAxisNumber + 10; ++axis) watch.on_state(writer_of(1), 7, axis, true);
   std::size_t told = 0;
   for (auto some = watch.take(kNamesakesPerTurn); !some.empty(); some = watch.take(kNamesakesPerTurn)) {
     EXPECT_LE(some.size(), kNamesakesPerTurn);
     told += some.size();
   }
   EXPECT_EQ(told, kMaxAxisNumber);
+}
+
+TEST(Namesake, ThatGivesUpAnAxisIsToldForThatAxisAndNothingThatHasChangedBack) {
+  NamesakeWatch watch(7);
+  const Guid other = writer_of(1);
+  watch.on_discovered(other, gateway_user_data(7), "192.168.1.8");
+  const auto told = [&] { return watch.take(kNamesakesPerTurn); };
+  watch.on_state(other, 7, 3, false);
+  EXPECT_THAT(told(), SizeIs(0)) << "it was never there";
+  watch.on_state(other, 7, 3, true);
+  watch.on_state(other, 7, 4, true);
+  EXPECT_THAT(told(), SizeIs(2));
+  watch.on_state(other, 7, 3, false);
+  EXPECT_THAT(told(), ElementsAre(NamesakeRecord{other, 3, "192.168.1.8", true}));
+  for (int i = 0; i < 1000; ++i) watch.on_state(other, 7, 3, i % 2 == 0);
+  EXPECT_THAT(told(), SizeIs(0)) << "nobody has asked meanwhile, and it is as it was";
+  watch.on_removed(other);
+  EXPECT_FALSE(watch.any());
+  EXPECT_THAT(told(), ElementsAre(NamesakeRecord{other, 0, "192.168.1.8", true})) << "all its axes";
+  EXPECT_THAT(told(), SizeIs(0));
 }
 
 }  // namespace

@@ -4,12 +4,14 @@
 namespace axisgate::dds {
 
 void Namesakes::on_record(const NamesakeRecord& record) {
+  const auto known = others_.find(record.writer);
   if (record.gone) {
-    others_.erase(record.writer);
+    if (known == others_.end()) return;
+    if (record.axis <= kMaxAxisNumber) known->second.axes.reset(record.axis);
+    if (record.axis == 0 || known->second.axes.none()) others_.erase(known);
     return;
   }
   if (record.axis == 0 || record.axis > kMaxAxisNumber) return;
-  const auto known = others_.find(record.writer);
   if (known == others_.end() && others_.size() >= kMaxNamesakes) return;
   Other& other = known == others_.end() ? others_[record.writer] : known->second;
   other.axes.set(record.axis);

@@ -161,7 +161,8 @@ struct HeartbeatRecord {
   friend bool operator==(const HeartbeatRecord&, const HeartbeatRecord&) = default;
 };
 
-/// Another participant has published this axis under our key, or its writer of states is gone (axis 0).
+/// Another participant has published this axis under our key; or, `gone`, has given it up, or (axis 0) its writer of
+/// states is gone.
 struct NamesakeRecord {
   Guid writer{};
   std::uint16_t axis = 0;

@@ -247,6 +247,16 @@ TEST_F(TwoOfOneName, WhoseAxisBecomesOursByAReloadAreTakenFromThenOn) {
   EXPECT_EQ(ask(kEnable), kTold);
 }
 
+TEST_F(TwoOfOneName, OfWhichOneGivesUpTheAxisAreNoneAnyMore) {
+  duplicate(1);
+  duplicate(2);
+  duplicate(1, true);
+  EXPECT_EQ(ask(kEnable), kTaken) << "there is another one";
+  duplicate(2, true);
+  EXPECT_THAT(plain.name_taken, ElementsAre(true, false));
+  EXPECT_EQ(ask(kEnable), kTold);
+}
+
 TEST_F(TwoOfOneName, AreWaitedForAfterANewStartOfTheProcess) {
   duplicate(1);
   plain.session->on_link_down(plain.now);

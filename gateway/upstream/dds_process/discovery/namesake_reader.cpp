@@ -52,7 +52,7 @@ void NamesakeReader::take_all(fastdds::DataReader& reader, const Heard& heard) {
 void NamesakeReader::on_data_available(fastdds::DataReader* reader) {
   if (reader->get_topicdescription()->get_name() == kStateTopicName) {
     take_all<AxisState>(*reader, [&](const Guid& writer, const AxisState& sample) {
-      watch_.on_state(writer, sample.gateway_key(), sample.axis());
+      watch_.on_state(writer, sample.gateway_key(), sample.axis(), sample.name().size() != 0);
     });
   } else {
     take_all<GatewayState>(*reader, [&](const Guid& writer, const GatewayState& sample) {

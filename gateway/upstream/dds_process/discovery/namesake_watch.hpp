@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Other participants that publish states of axes under our gateway's key: found by what their writers say of
-// themselves, believed once a state of theirs was heard. Promises each axis of each such writer once, and its end once.
-// Never takes our own writer for another's, nor one of which nothing is heard: that of our own former process, which a
-// discovery server still knows.
+// themselves, believed once a state of theirs was heard. Promises to tell each axis that such a writer has or has given
+// up, and its end, once each, and of what has changed back before it was told nothing. Never takes our own writer for
+// another's, nor one of which nothing is heard: that of our own former process, which a discovery server still knows.
 #pragma once
 
-#include <deque>
+#include <bitset>
 #include <map>
 #include <mutex>
 #include <set>
@@ -35,8 +35,8 @@ class NamesakeWatch {
   void on_gateway(const Guid& writer, std::uint32_t key);
   void on_gateway_gone(const Guid& writer);
 
-  /// A state of that writer was read.
-  void on_state(const Guid& writer, std::uint32_t key, std::uint16_t axis);
+  /// A state of that writer was read. `has`: it is not the last one of an axis that a reload has taken away.
+  void on_state(const Guid& writer, std::uint32_t key, std::uint16_t axis, bool has);
   /// Somebody of our key is there, though perhaps silent: states are to be read.
   [[nodiscard]] bool any() const;
   /// To be told since the last call, at most so many: the rest by the next.
@@ -45,13 +45,14 @@ class NamesakeWatch {
  private:
   struct Other {
     std::string where{};
-    std::set<std::uint16_t> axes{};  ///< heard of, and told
+    std::bitset<kMaxAxisNumber + 1> axes{};
+    std::bitset<kMaxAxisNumber + 1> told{};
+    bool gone = false;  ///< and its end is to be told
   };
   const std::uint32_t key_;
   mutable std::mutex mutex_;
   std::map<Guid, Other> others_;
-  std::set<Guid> gateways_;             ///< writers of gateway_state that have our key
-  std::deque<NamesakeRecord> changes_;  ///< of axes that a gateway can have, each of each writer once, and their ends
+  std::set<Guid> gateways_;  ///< writers of gateway_state that have our key
 };
 
 }  // namespace axisgate::dds
