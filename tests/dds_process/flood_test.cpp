@@ -103,5 +103,29 @@ TEST(AFlood, KeepsNoHeartbeatWaiting) {
   }
 }
 
+TEST(Heartbeats, OfEveryClientThatADomainMayHaveAreHeard) {
+  constexpr std::uint16_t kClients = kMaxWritersKnown;
+  Child child({"--commands"});
+  Peer peer;
+  auto writer = peer.writer<Heartbeat>("axisgate/heartbeat", {.exclusive = false});
+  ASSERT_TRUE(writer->wait_matched());
+  for (std::uint16_t client = 1; client <= kClients; ++client) {
+    Heartbeat beat;
+    Guid guid = writer->guid();
+    guid[12] = static_cast<std::uint8_t>(client >> 8U);
+    guid[13] = static_cast<std::uint8_t>(client);
+    beat.client(guid);
+    // Best effort: again until it is heard.
+    bool heard = false;
+    for (const auto until = std::chrono::steady_clock::now() + kPatience; !heard;) {
+      ASSERT_LT(std::chrono::steady_clock::now(), until) << client;
+      ASSERT_TRUE(writer->write(beat));
+      const auto record = child.receive(std::chrono::milliseconds(200));
+      const auto* const got = record ? std::get_if<HeartbeatRecord>(&*record) : nullptr;
+      heard = got != nullptr && got->client == guid;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace axisgate::dds::test

@@ -2,6 +2,7 @@
 #include "gateway/upstream/dds/dds_clients.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "gateway/upstream/dds/dds_session.hpp"
@@ -110,16 +111,26 @@ void DdsClients::take_back(const Guid& writer, bool own_alone, Instant now) {
 }
 
 // A heartbeat is a topic of its own: it may be here before anything else of its writer is.
-DdsClient* DdsClients::beating(const Guid& writer, Instant now) {
-  const auto found = clients_.find(writer);
-  if (found == clients_.end() && beating_alone() >= kMaxBeatsBefore) return nullptr;
-  DdsClient& client = found == clients_.end() ? know(writer) : found->second;
-  client.beats_alone = client.beats_alone || found == clients_.end();
+DdsClient& DdsClients::beating(const Guid& writer, Instant now) {
+  const bool is_new = !clients_.contains(writer);
+  if (is_new) make_room_to_beat();
+  DdsClient& client = know(writer);
+  client.beats_alone = client.beats_alone || is_new;
   if (client.beats_alone) {
     client.returns_by = now + kReturnsWithin;
     look_at_deadlines();
   }
-  return &client;
+  return client;
+}
+
+/// Of those that beat alone the one that was heard longest ago is forgotten.
+void DdsClients::make_room_to_beat() {
+  if (beating_alone() < kMaxBeatsBefore) return;
+  const auto longest = std::min_element(clients_.begin(), clients_.end(), [](const auto& a, const auto& b) {
+    return std::tuple(!a.second.beats_alone, a.second.returns_by) <
+           std::tuple(!b.second.beats_alone, b.second.returns_by);
+  });
+  clients_.erase(longest);
 }
 
 bool DdsClients::makes_way(const DdsClient& client) const {
@@ -193,15 +204,14 @@ void DdsClients::on_beats(const BeatRecord& record, Instant now) {
 void DdsClients::on_heartbeat(const HeartbeatRecord& record, Instant now) {
   const auto known = clients_.find(record.client);
   if (!signs_.counts(record, known == clients_.end() ? std::nullopt : known->second.counter, now)) return;
-  DdsClient* const client = beating(record.client, now);
-  if (client == nullptr) return;
-  client->counter = record.counter;
-  client->lease_limit.reset();
-  if (record.lease_ms != 0) client->lease_limit = std::chrono::milliseconds(record.lease_ms);
+  DdsClient& client = beating(record.client, now);
+  client.counter = record.counter;
+  client.lease_limit.reset();
+  if (record.lease_ms != 0) client.lease_limit = std::chrono::milliseconds(record.lease_ms);
   take_back(record.client, false, now);
-  if (client->life == nullptr) return;
-  client->life->last_request = client->life->heartbeat = now;
-  client->life->lease_limit = client->lease_limit;
+  if (client.life == nullptr) return;
+  client.life->last_request = client.life->heartbeat = now;
+  client.life->lease_limit = client.lease_limit;
 }
 
 DdsClient* DdsClients::on_sample(const Guid& writer, std::optional<std::int32_t> strength, bool fresh, Instant now) {

@@ -206,15 +206,22 @@ TEST_F(Writers, AHeartbeatOfOneThatIsGoneOrNeverComesIsForgotten) {
   EXPECT_EQ(clients.on_sample(guid(2), 0, true, kStart + 10s)->life->lease_limit, std::nullopt);
 }
 
-TEST_F(Writers, ThatOnlyBeatAreBounded) {
+TEST_F(Writers, ThatOnlyBeatAreBoundedAndTheOneHeardLongestAgoIsForgottenFirst) {
   const auto limit_of = [&](std::uint8_t n) { return clients.on_sample(guid(n), 0, true, kStart)->life->lease_limit; };
-  for (std::uint8_t n = 1; n <= kMaxBeatsBefore + 1; ++n)
-    clients.on_heartbeat(heartbeat(guid(n), 1, kStart, 300), kStart);
-  EXPECT_EQ(limit_of(kMaxBeatsBefore), 300ms);
-  EXPECT_EQ(limit_of(kMaxBeatsBefore + 1), std::nullopt);
-  static_cast<void>(clients.on_writer(writer_there(guid(1))));
-  clients.on_heartbeat(heartbeat(guid(200), 1, kStart, 300), kStart);
-  EXPECT_EQ(limit_of(200), 300ms) << "one that is told of is none of them any more";
+  const auto beats = [&](std::uint8_t n, Duration at) {
+    clients.on_heartbeat(heartbeat(guid(n), 1, kStart + at, 300), kStart + at);
+  };
+  const auto owner = there(guid(250));
+  give(owner);
+  beats(250, 0ms);
+  for (std::uint8_t n = 1; n <= kMaxBeatsBefore; ++n) beats(n, n * 1ms);
+  clients.on_heartbeat(heartbeat(guid(1), 2, kStart + 100ms, 300), kStart + 100ms);
+  beats(200, 101ms);
+  EXPECT_EQ(limit_of(200), 300ms) << "a new one is heard";
+  EXPECT_EQ(limit_of(2), std::nullopt) << "heard longest ago";
+  EXPECT_EQ(limit_of(1), 300ms);
+  EXPECT_EQ(owner->lease_limit, 300ms) << "who commands is none of them";
+  EXPECT_EQ(clients.find(guid(250))->life, owner);
 }
 
 TEST_F(Writers, ABeatOfNobodyMakesNobody) {

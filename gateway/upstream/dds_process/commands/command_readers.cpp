@@ -15,8 +15,9 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 /// Of one axis, until they are taken. Then the library takes no more, and reliable writers keep theirs.
 constexpr std::int32_t kMostSamplesPerAxis = 64;
-/// Clients whose heartbeats are heard between two looks.
-constexpr std::int32_t kMostHeartbeats = 256;
+/// Clients of a whole domain, as long as their heartbeats' writers are there. The library forgets none of these for a
+/// new one.
+constexpr std::int32_t kMostHeartbeats = 4 * kMaxWritersKnown;
 
 fastdds::DataReaderQos object_qos() {
   fastdds::DataReaderQos qos = object_reader_qos(kMostSamplesPerAxis);
