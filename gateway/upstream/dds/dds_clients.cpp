@@ -86,11 +86,12 @@ DdsClient& DdsClients::know(const Guid& writer) {
   return client;
 }
 
-// Design 3.5 and 4: a sign of life of its own program takes an orphan lease over. Of a writer that was there already
+// Design 3.5 and 4: a sign of life of its own program takes an orphan lease over. Of a writer that was heard already
 // when the owner went it is none for the owner's axes: they are stopped when their time is over.
 void DdsClients::take_back(const Guid& writer, bool own_alone, Instant now) {
   const auto found = clients_.find(writer);
   if (found == clients_.end()) return;
+  found->second.heard = true;
   std::vector<LeftAxis>& all = found->second.left;
   const auto rest =
       std::stable_partition(all.begin(), all.end(), [&](const LeftAxis& each) { return own_alone && !each.own; });
@@ -227,6 +228,7 @@ DdsClient* DdsClients::on_sample(const Guid& writer, std::optional<std::int32_t>
     recall_held(writer, *client);
   }
   client->beats_alone = false;
+  client->heard = true;
   if (strength) client->life->strength = strength;
   if (fresh) client->life->last_request = now;
   if (!is_told_of || client->returns_by != kNever) {
@@ -280,10 +282,23 @@ void DdsClients::recall_held(const Guid& writer, DdsClient& client) {
   held_before_.erase(found);
 }
 
+/// Its axes wait for its own return, and for a writer that is made as this one is deleted, and may be told of first.
+void DdsClients::leave_axes(const Guid& writer, const ClientLife& life) {
+  gone_owners_[writer] = life.id;
+  for (auto& [guid, other] : clients_) {
+    if (other.heard || !same_participant(guid, writer)) continue;
+    for (const auto& axis : image_.axes()) {
+      if (!axis->lease.owned_by(life.id)) continue;
+      std::erase_if(other.left, [&](const LeftAxis& each) { return each.axis == axis->number; });
+      other.left.push_back({axis->number, life.id, false});
+    }
+  }
+}
+
 DdsClients::Clients::iterator DdsClients::forget(Clients::iterator client) {
   remember_held(client->first, client->second);
   std::erase_if(gone_owners_, [&](const auto& each) { return !owns(each.second); });
-  if (const auto& life = client->second.life; life != nullptr && owns(life->id)) gone_owners_[client->first] = life->id;
+  if (const auto& life = client->second.life; life != nullptr && owns(life->id)) leave_axes(client->first, *life);
   end(client->second);
   return clients_.erase(client);
 }

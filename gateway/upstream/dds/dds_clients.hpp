@@ -2,7 +2,7 @@
 // The DDS writers as clients of the gateway: one ClientLife each, by which leases are judged (design 3.5 and 4). A
 // writer is a client from its first sample for this gateway on, with the lease that its heartbeats before that have
 // asked for. What a client that is gone has left is taken over by its own liveliness when it is back, and by the
-// heartbeat of any writer of its participant that has come since. Promises that the number of what is remembered is
+// heartbeat of a writer of its participant that was not heard before. Promises that the number of what is remembered is
 // bounded, and that none makes way for a newcomer that owns an axis, holds a button or may have a motor running; that a
 // writer whose end is told or who does not come back is dead to its leases; that the silence of axisgate-dds itself is
 // not taken for theirs for as long as their grace. Never speaks to an axis, but to say that a client is gone or back.
@@ -38,7 +38,7 @@ struct HeldJog {
   bool starting = true;          ///< it has no result yet
 };
 
-/// The lease of an axis whose owner was gone when a writer of its participant came.
+/// The lease of an axis whose owner went before a writer of its participant was heard.
 struct LeftAxis {
   AxisNumber axis = 0;
   ClientId owner = 0;
@@ -59,7 +59,8 @@ struct DdsClient {
   std::optional<std::uint32_t> counter{};  ///< of its last heartbeat
   std::optional<Duration> lease_limit{};   ///< of the same: it holds for a client that it becomes later, too
   bool told_of_liveliness = false;         ///< the log has its line
-  std::vector<LeftAxis> left{};            ///< not taken over so far
+  std::vector<LeftAxis> left{};            ///< not taken over so far; at most one an axis
+  bool heard = false;                      ///< it has given a sign of life
 };
 
 class DdsClients {
@@ -102,6 +103,7 @@ class DdsClients {
   void make_room_to_beat();
   void take_back(const Guid& writer, bool own_alone, Instant now);
   [[nodiscard]] bool owns(ClientId client) const;
+  void leave_axes(const Guid& writer, const ClientLife& life);
   [[nodiscard]] bool makes_way(const DdsClient& client) const;
   [[nodiscard]] bool make_room();
   void end(DdsClient& client);

@@ -188,6 +188,16 @@ TEST_F(Orphans, AreTakenOverByTheHeartbeatOfAWriterThatCameAfterwards) {
   EXPECT_TRUE(rig.has_event("goes on as the owner, for another writer"));
 }
 
+// A writer that is made as another is deleted may be told of first.
+TEST_F(Orphans, AreTakenOverByTheHeartbeatOfAWriterThatHasSaidNothingBefore) {
+  const auto next = rig.writer(1, 2);
+  rig.fall_silent(next);
+  rig.die(writer);
+  beat_for(next);
+  EXPECT_TRUE(rig.turns());
+  EXPECT_TRUE(is_owner(next));
+}
+
 TEST_F(Orphans, AreTakenOverByTheLivelinessOfTheirWriterThatIsBack) {
   leave();
   static_cast<void>(rig.writer(1));
@@ -200,10 +210,11 @@ TEST_F(Orphans, AreTakenOverByTheLivelinessOfTheirWriterThatIsBack) {
 TEST_F(Orphans, AreStoppedThoughOthersOfTheirProgramGoOn) {
   const auto beside = rig.writer(1, 2);
   const auto stranger = rig.writer(2);
+  rig.run(1s);
   rig.die(writer);
   beat_for(beside);
   beat_for(stranger);
-  EXPECT_TRUE(latched()) << "who was there before has not come back";
+  EXPECT_TRUE(latched()) << "who was heard before has not come back";
   EXPECT_EQ(rig.axis().lease.owner, nullptr);
 }
 
