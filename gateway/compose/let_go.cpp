@@ -6,10 +6,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "gateway/model/cia402.hpp"
+
 namespace axisgate::app {
 namespace {
 
 using drive::Disarming;
+
+/// Commands that are under way are looked at again after so long.
+constexpr Duration kCommandsFirst = std::chrono::milliseconds(10);
 
 /// Why this drive is not surely disabled, as far as is known without asking it; empty: it must be asked.
 std::string not_to_be_asked(const AxisImage& axis) {
@@ -19,10 +24,17 @@ std::string not_to_be_asked(const AxisImage& axis) {
   return {};
 }
 
-std::string why_not(Disarming::Outcome outcome) {
+constexpr const char* kHasTorque = "has torque";
+
+/// No motor that has torque gets as far as to have its commands broken off.
+bool shows_torque(const AxisImage& axis) {
+  return drive::holds_motor(drive::state_of(static_cast<std::uint16_t>(axis[Quantity::statusword].value)));
+}
+
+std::string found(Disarming::Outcome outcome) {
   switch (outcome) {
     case Disarming::Outcome::enabled:
-      return "has torque";
+      return kHasTorque;
     case Disarming::Outcome::unknown:
     case Disarming::Outcome::uncertain:
       return "did not tell its state";
@@ -39,6 +51,7 @@ std::string why_not(Disarming::Outcome outcome) {
 LetGo::LetGo(Runtime& runtime, const std::vector<BusLine*>& buses, std::function<Reasons()> last_word,
              std::function<void(Reasons)> done)
     : runtime_(runtime),
+      looked_by_(runtime.now() + kLettingGo),
       last_word_(std::move(last_word)),
       done_(std::move(done)),
       timer_(runtime.make_timer([this] { step(); })) {
@@ -49,11 +62,11 @@ LetGo::LetGo(Runtime& runtime, const std::vector<BusLine*>& buses, std::function
 
 LetGo::~LetGo() { reopen(); }
 
-void LetGo::close(Closing why) {
+void LetGo::close(Closing why, Instant by) {
   step_ = why;
   closed_ = true;
   open_.assign(drives_.begin(), drives_.end());
-  timer_->expires_at(runtime_.now() + (drives_.empty() ? Duration{} : kLettingGo));
+  timer_->expires_at(drives_.empty() ? runtime_.now() : by);
   for (drive::Drive* drive : drives_) {
     drive->close(why, [this, drive, alive = std::weak_ptr(alive_)] {
       if (alive.expired()) return;
@@ -66,8 +79,9 @@ void LetGo::close(Closing why) {
 void LetGo::step() {
   Reasons problems = in_the_way();
   if (!problems.empty()) return end(std::move(problems));
-  if (!closed_) return close(Closing::look);
-  if (step_ == Closing::look) return close(Closing::taken_away);
+  if (!closed_ && commands_are_under_way()) return timer_->expires_at(runtime_.now() + kCommandsFirst);
+  if (!closed_) return close(Closing::look, looked_by_);
+  if (step_ == Closing::look) return close(Closing::taken_away, runtime_.now() + kLettingGo);
   problems = last_word_();
   if (problems.empty()) closed_ = false;  // they are not ours any more
   end(std::move(problems));
@@ -87,14 +101,29 @@ LetGo::Reasons LetGo::in_the_way() const {
   Reasons out;
   for (const drive::Drive* drive : drives_) {
     for (std::size_t slot = 0; slot < drive->axis_count(); ++slot) {
-      const AxisImage& shown = drive->axis(static_cast<bus::AxisSlot>(slot)).image();
-      std::string why = not_to_be_asked(shown);
-      const bool waits = std::ranges::find(open_, drive) != open_.end();
-      if (why.empty() && closed_) why = waits ? "has not come to its end in time" : why_not(drive->closing_outcome());
-      if (!why.empty()) out.push_back(fmt::format("axis {} ({}) {}", shown.number, shown.name, why));
+      const drive::Axis& axis = drive->axis(static_cast<bus::AxisSlot>(slot));
+      const std::string why = why_not(*drive, axis);
+      if (!why.empty()) out.push_back(fmt::format("axis {} ({}) {}", axis.image().number, axis.image().name, why));
     }
   }
   return out;
+}
+
+std::string LetGo::why_not(const drive::Drive& drive, const drive::Axis& axis) const {
+  if (std::string why = not_to_be_asked(axis.image()); !why.empty()) return why;
+  if (closed_ && std::ranges::find(open_, &drive) != open_.end()) return "has not come to its end in time";
+  if (closed_) return found(drive.closing_outcome());
+  if (shows_torque(axis.image())) return kHasTorque;
+  const bool in_time = runtime_.now() < looked_by_;
+  return axis.idle() || in_time ? "" : "carries out commands all the time: reload while its clients are quiet";
+}
+
+bool LetGo::commands_are_under_way() const {
+  return std::ranges::any_of(drives_, [](const drive::Drive* drive) {
+    for (std::size_t slot = 0; slot < drive->axis_count(); ++slot)
+      if (!drive->axis(static_cast<bus::AxisSlot>(slot)).idle()) return true;
+    return false;
+  });
 }
 
 }  // namespace axisgate::app

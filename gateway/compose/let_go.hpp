@@ -2,7 +2,8 @@
 // Takes buses out of service while the gateway goes on: for a reload.
 // Promises all or nothing: only where every drive of them is online, and a read that came after the last command was
 // accepted shows that no motor has torque, are they let go; else every one accepts commands again, and what made it
-// miss the gateway is as before. Promises an answer within kLettingGo. Never enables, stops or moves anything.
+// miss the gateway is as before. Commands that are under way have their end first. Promises an answer within twice
+// kLettingGo. Never enables, stops or moves anything.
 #pragma once
 
 #include <functional>
@@ -14,7 +15,8 @@
 
 namespace axisgate::app {
 
-/// For each of its two steps: the reads of the state, and the drives' forgetting of the gateway.
+/// For each of its two steps: the reads of the state (and before them the end of commands), and the drives' forgetting
+/// of the gateway.
 inline constexpr Duration kLettingGo = std::chrono::seconds(3);
 
 class LetGo {
@@ -31,13 +33,16 @@ class LetGo {
 
  private:
   using Closing = drive::Drive::Closing;
-  void close(Closing why);
+  void close(Closing why, Instant by);
   void step();
   void reopen();
   void end(Reasons why_not);
   [[nodiscard]] Reasons in_the_way() const;
+  [[nodiscard]] std::string why_not(const drive::Drive& drive, const drive::Axis& axis) const;
+  [[nodiscard]] bool commands_are_under_way() const;
 
   Runtime& runtime_;
+  const Instant looked_by_;
   std::vector<drive::Drive*> drives_;
   std::function<Reasons()> last_word_;
   std::function<void(Reasons)> done_;
