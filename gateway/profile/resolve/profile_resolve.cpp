@@ -154,6 +154,15 @@ std::optional<ScaleRecipe> Resolving::recipe(const Unit& unit) {
   return out;
 }
 
+std::vector<std::string> Resolving::missing(const Unit& unit) {
+  std::vector<std::string> out;
+  for (const auto* factors : {&unit.mul, &unit.div})
+    for (const Factor& factor : *factors)
+      if (const auto* name = std::get_if<std::string>(&factor))
+        if (!value_of(factor, constants) && !drive_constant(*name)) out.push_back(*name);
+  return out;
+}
+
 void resolve_constants(Resolving& r) {
   std::vector<std::string> known;
   for (const auto& [name, constant] : r.profile.constants) {

@@ -160,7 +160,10 @@ class AxisQuantities {
     if (row.kind != Kind::code) {
       const Unit& unit = r_.profile.units.find(spec.unit_of(object))->second;
       std::optional<ScaleRecipe> recipe = r_.recipe(unit);
-      if (!recipe) return std::nullopt;  // not supported, never guessed
+      if (!recipe) {  // not supported, never guessed
+        refuse_limit(row, r_.missing(unit));
+        return std::nullopt;
+      }
       recipe->fixed = recipe->fixed * base_per_register(unit.base, axis_.units_per_rev);
       if (axis_.inverted && is_directed(row)) recipe->fixed = recipe->fixed * Rational(-1);
       out.scaled = !recipe->waits();
@@ -180,6 +183,19 @@ class AxisQuantities {
       out.recipe.allowed = out.limits;
     }
     return out;
+  }
+
+  /// Of a quantity that the axis lacks for want of constants: who wrote it believes that the axis is limited.
+  void refuse_limit(const QuantityRow& row, const std::vector<std::string>& constants) {
+    const AxisLimit own = axis_limit(axis_, row);
+    if (!row.writable || own.key.empty() || constants.empty()) return;
+    const std::string pointer = "/axes/" + std::to_string(slot_) + "/limits/" + own.key;
+    if (std::ranges::find(r_.faults, pointer, &Fault::pointer) != r_.faults.end()) return;  // by another quantity
+    std::string names = constants.front();
+    for (std::size_t i = 1; i < constants.size(); ++i) names += " and " + constants[i];
+    r_.fault(pointer, "limits nothing: this drive's unit of it needs " + names + ": add " +
+                          (constants.size() == 1 ? "it" : "them") +
+                          " to the drive's \"constants\", or take the limit out");
   }
 
   /// A drive that numbers its homing methods otherwise: the register has CiA 402's.

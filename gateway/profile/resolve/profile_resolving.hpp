@@ -37,6 +37,8 @@ class Resolving {
   [[nodiscard]] std::optional<FactoryWrite> factory_write(const WriteSpec& spec, bus::AxisSlot slot);
   /// What a unit makes of a number, before the axis's own factors: known now, or once constants of the drive are.
   [[nodiscard]] std::optional<ScaleRecipe> recipe(const Unit& unit);
+  /// Constants that it lacks for that.
+  [[nodiscard]] std::vector<std::string> missing(const Unit& unit);
 
   /// The motor that an axis is, and the axis that a motor is (kNoAxis: none).
   [[nodiscard]] bus::AxisSlot motor(bus::AxisSlot slot) const;
