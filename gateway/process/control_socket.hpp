@@ -18,6 +18,9 @@ namespace axisgate::app {
 
 /// "reload\n" is what is said; the answer is kReloadDone or kReloadRefused, and the result's lines, one each.
 inline constexpr std::string_view kReloadRequest = "reload\n";
+/// Anything else of its length is answered by the end of the connection: a sign of life.
+inline constexpr std::string_view kAliveRequest = "alive?\n";
+static_assert(kAliveRequest.size() == kReloadRequest.size());
 inline constexpr std::string_view kReloadDone = "done";
 inline constexpr std::string_view kReloadRefused = "refused";
 
