@@ -15,6 +15,7 @@
 #include "gateway/core/rational.hpp"
 #include "gateway/image/axis_image.hpp"
 #include "gateway/image/command.hpp"
+#include "gateway/profile/json/json_schema.hpp"
 #include "gateway/upstream/dds/dds_settings.hpp"
 #include "gateway/upstream/modbus_tcp/client/listener_settings.hpp"
 
@@ -85,7 +86,7 @@ struct BusConfig {
 
 struct Config {
   std::string file;
-  std::vector<std::string> profile_files{};  ///< read for it, each once
+  std::vector<drive::FileRead> read{};  ///< the file and its profiles, and where one was looked for in vain; each once
   std::vector<modbus_tcp::ListenerSettings> modbus_tcp;
   std::optional<dds::DdsSettings> dds;
   std::vector<BusConfig> buses;

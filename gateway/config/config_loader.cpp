@@ -42,7 +42,8 @@ void warn_about_unit_ids(const Config& config, ConfigFaults& faults) {
 
 LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders) {
   ConfigFaults faults(file);
-  auto read = drive::load_json(file);
+  LoadedConfig loaded;
+  auto read = drive::load_json(file, loaded.config.read);
   if (const auto* fault = std::get_if<drive::SchemaFault>(&read)) {
     faults.add(fault->pointer, fault->message);
     return faults.faults();
@@ -51,7 +52,6 @@ LoadResult load_config(const std::string& file, const std::vector<std::string>& 
   check_schema(document, faults);
 
   const ConfigNode root(document, "");
-  LoadedConfig loaded;
   loaded.config.file = file;
   if (root.is_object()) {
     refuse_unavailable(root, faults);

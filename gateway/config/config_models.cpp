@@ -73,13 +73,16 @@ class Profiles {
   const drive::LoadedProfile* find(const DriveConfig& config) {
     const std::string pointer = config.pointer + "/profile";
     const std::string name = is_path(config.profile) ? (base_ / config.profile).string() : config.profile;
-    const auto file = drive::find_profile(name, folders_);
+    const auto file = drive::find_profile(name, folders_, &read_);
     if (!file) {
       faults_.add(pointer, missing(config.profile, name));
       return nullptr;
     }
     auto known = loaded_.find(*file);
-    if (known == loaded_.end()) known = loaded_.emplace(*file, drive::load_profile(*file, folders_)).first;
+    if (known == loaded_.end()) {
+      known = loaded_.emplace(*file, drive::load_profile(*file, folders_)).first;
+      read_.insert(read_.end(), known->second.read.begin(), known->second.read.end());
+    }
     const drive::LoadedProfile& profile = known->second;
     if (profile.faults.empty()) return &profile;
     for (const drive::Fault& fault : profile.faults) faults_.add(ConfigFault{fault.file, fault.pointer, fault.message});
@@ -87,12 +90,11 @@ class Profiles {
     return nullptr;
   }
 
-  /// Of all that were read, with those that they extend.
-  [[nodiscard]] std::vector<std::string> files() const {
-    std::vector<std::string> out;
-    for (const auto& [file, profile] : loaded_)
-      for (const std::string& read : profile.files)
-        if (std::find(out.begin(), out.end(), read) == out.end()) out.push_back(read);
+  /// All that was read, with what they extend, and where profiles were looked for in vain; each once.
+  [[nodiscard]] std::vector<drive::FileRead> read() const {
+    std::vector<drive::FileRead> out;
+    for (const drive::FileRead& each : read_)
+      if (std::ranges::find(out, each) == out.end()) out.push_back(each);
     return out;
   }
 
@@ -109,6 +111,7 @@ class Profiles {
   const std::vector<std::string>& folders_;
   ConfigFaults& faults_;
   std::map<std::string, drive::LoadedProfile> loaded_;
+  std::vector<drive::FileRead> read_;
 };
 
 /// Without limits, an axis that can travel further than a register can count would one day show no position at all.
@@ -175,7 +178,7 @@ std::vector<std::vector<drive::DriveModel>> load_models(Config& config, const st
       if (auto model = load_model(bus, drive, profiles, faults)) drives.push_back(std::move(*model));
     }
   }
-  config.profile_files = profiles.files();
+  for (drive::FileRead& each : profiles.read()) config.read.push_back(std::move(each));
   return models;
 }
 

@@ -35,7 +35,8 @@ void check_unique(const Config& config, ConfigFaults& faults);
 /// Keys that are right and have no effect as things stand: one warning for each.
 void warn_without_effect(const ConfigNode& root, ConfigFaults& faults);
 
-/// The profiles of all drives, resolved for their axes. Drives with mistakes of their own are left out.
+/// The profiles of all drives, resolved for their axes; what was read for it is added to the configuration. Drives with
+/// mistakes of their own are left out.
 [[nodiscard]] std::vector<std::vector<drive::DriveModel>> load_models(Config& config,
                                                                       const std::vector<std::string>& profile_folders,
                                                                       ConfigFaults& faults);

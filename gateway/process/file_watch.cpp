@@ -3,14 +3,17 @@
 
 #include <array>
 #include <boost/asio/post.hpp>
+#include <filesystem>
 #include <fstream>
 #include <utility>
 
 namespace axisgate::app {
 namespace {
 
-/// As far as kMaxWatchedBytes; what cannot be read is empty.
-std::string text_of(const std::string& path) {
+/// As far as kMaxWatchedBytes; none: there is no file to be read.
+std::optional<std::string> text_of(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
   std::ifstream stream(path, std::ios::binary);
   std::string text;
   constexpr std::size_t kPiece = 4096;
@@ -22,31 +25,25 @@ std::string text_of(const std::string& path) {
 
 }  // namespace
 
-FileWatch::FileWatch(boost::asio::io_context& io, Runtime& runtime, const std::vector<std::string>& files,
+FileWatch::FileWatch(boost::asio::io_context& io, Runtime& runtime, std::vector<drive::FileRead> read,
                      std::function<void(const std::string& file)> on_change)
     : io_(io),
       runtime_(runtime),
-      watched_(read(files)),
+      watched_(std::move(read)),
       on_change_(std::move(on_change)),
       timer_(runtime.make_timer([this] { look(); })) {
   timer_->expires_at(runtime_.now() + kPeriod);
 }
 
-std::vector<FileWatch::Watched> FileWatch::read(const std::vector<std::string>& files) {
-  std::vector<Watched> out;
-  for (const std::string& file : files) out.push_back({file, text_of(file)});
-  return out;
-}
-
-void FileWatch::take(std::vector<Watched> files) {
-  boost::asio::post(thread_, [this, files = std::move(files)]() mutable { watched_ = std::move(files); });
+void FileWatch::take(std::vector<drive::FileRead> read) {
+  boost::asio::post(thread_, [this, read = std::move(read)]() mutable { watched_ = std::move(read); });
 }
 
 // The next look waits for the end of this one.
 void FileWatch::look() {
   boost::asio::post(thread_, [this, alive = std::weak_ptr(alive_)] {
     std::string differs;
-    for (const Watched& each : watched_)
+    for (const drive::FileRead& each : watched_)
       if (differs.empty() && text_of(each.file) != each.text) differs = each.file;
     boost::asio::post(io_, [this, alive, differs] {
       if (!alive.expired()) on_looked(differs);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the files that the gateway was started with still are what it runs with (gateway alarm "configuration
-// changed"). Promises that a disk which hangs never holds up the loop: files are read on a thread of their own, one
-// look at a time. Never reads more of a file than its first kMaxWatchedBytes, and never does anything about a change.
+// Whether what was read at the start, or at the last reload, still is what a start would read (gateway alarm
+// "configuration changed"). Promises that a disk which hangs never holds up the loop: files are read on a thread of
+// their own, one look at a time. Never reads more of a file than its first kMaxWatchedBytes, never opens what is no
+// regular file (a pipe would hold the thread for ever), and never does anything about a change.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "gateway/core/clock.hpp"
+#include "gateway/profile/json/json_schema.hpp"
 
 namespace axisgate::app {
 
@@ -21,18 +23,12 @@ class FileWatch {
  public:
   static constexpr Duration kPeriod = std::chrono::seconds(2);
 
-  /// `files` as they are now count as what runs. `on_change(file)`: on the loop, when the answer changes: the first
-  /// file that differs or is gone; empty: none does any more.
-  FileWatch(boost::asio::io_context& io, Runtime& runtime, const std::vector<std::string>& files,
+  /// `read` is what runs. `on_change(file)`: on the loop, when the answer changes: the first file that differs, is gone
+  /// or has appeared; empty: none does any more.
+  FileWatch(boost::asio::io_context& io, Runtime& runtime, std::vector<drive::FileRead> read,
             std::function<void(const std::string& file)> on_change);
-  struct Watched {
-    std::string file;
-    std::string text;
-  };
-  /// The files as they are now. May be called from any thread.
-  [[nodiscard]] static std::vector<Watched> read(const std::vector<std::string>& files);
   /// From now on these are what runs.
-  void take(std::vector<Watched> files);
+  void take(std::vector<drive::FileRead> read);
 
  private:
   void look();
@@ -40,7 +36,7 @@ class FileWatch {
 
   boost::asio::io_context& io_;
   Runtime& runtime_;
-  std::vector<Watched> watched_;  ///< the thread's, once it runs
+  std::vector<drive::FileRead> watched_;  ///< the thread's, once it runs
   std::function<void(const std::string&)> on_change_;
   std::string told_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< what is posted to the loop may outlive this

@@ -14,12 +14,6 @@
 
 namespace axisgate::app {
 
-std::vector<std::string> files_of(const Config& config) {
-  std::vector<std::string> files = config.profile_files;
-  files.insert(files.begin(), config.file);
-  return files;
-}
-
 Reload::Reload(boost::asio::io_context& io, Config running, std::function<LoadResult()> load, const Running& with)
     : io_(io), running_(std::move(running)), load_(std::move(load)), with_(with) {}
 
@@ -28,26 +22,24 @@ void Reload::begin(Done done) {
   if (with_.gateway.ends()) return done({false, {"the gateway ends"}});
   done_ = std::move(done);
   boost::asio::post(thread_, [this, alive = std::weak_ptr(alive_)] {
-    auto loaded = std::make_shared<Loaded>(Loaded{load_(), {}});
-    if (const auto* good = std::get_if<LoadedConfig>(&loaded->result))
-      loaded->files = FileWatch::read(files_of(good->config));
+    auto loaded = std::make_shared<LoadResult>(load_());
     boost::asio::post(io_, [this, alive, loaded] {
       if (!alive.expired()) on_loaded(std::move(*loaded));
     });
   });
 }
 
-void Reload::on_loaded(Loaded loaded) {
+void Reload::on_loaded(LoadResult loaded) {
   if (with_.gateway.ends()) return;
-  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&loaded.result)) {
+  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&loaded)) {
     std::vector<std::string> lines;
     for (const ConfigFault& fault : *faults) lines.push_back(text(fault));
     return refuse(std::move(lines));
   }
-  change(std::get<LoadedConfig>(std::move(loaded.result)), std::move(loaded.files));
+  change(std::get<LoadedConfig>(std::move(loaded)));
 }
 
-void Reload::change(LoadedConfig wanted, std::vector<FileWatch::Watched> files) {
+void Reload::change(LoadedConfig wanted) {
   const ReloadPlan plan = plan_reload(running_, wanted.config);
   std::vector<std::string> why_not = plan.refusals;
   for (std::string& line : clients_in_the_way(plan)) why_not.push_back(std::move(line));
@@ -62,9 +54,8 @@ void Reload::change(LoadedConfig wanted, std::vector<FileWatch::Watched> files) 
   Config config = wanted.config;
   with_.gateway.reload(
       plan, std::move(wanted.config), std::move(wanted.models), [this, plan] { return clients_in_the_way(plan); },
-      [this, plan, config = std::move(config), files = std::move(files),
-       start = std::move(start)](std::vector<std::string> not_done) mutable {
-        if (not_done.empty()) return commit(plan, std::move(config), std::move(files), start);
+      [this, plan, config = std::move(config), start = std::move(start)](std::vector<std::string> not_done) mutable {
+        if (not_done.empty()) return commit(plan, std::move(config), start);
         with_.server.give_up();
         refuse(std::move(not_done));
       });
@@ -102,11 +93,10 @@ std::vector<std::string> Reload::clients_in_the_way(const ReloadPlan& plan) cons
   return out;
 }
 
-void Reload::commit(const ReloadPlan& plan, Config wanted, std::vector<FileWatch::Watched> files,
-                    const std::vector<StartLine>& start) {
+void Reload::commit(const ReloadPlan& plan, Config wanted, const std::vector<StartLine>& start) {
   with_.server.commit(modbus_tcp::take_descriptors(descriptor_needs(wanted)));
   if (with_.dds != nullptr && wanted.dds) with_.dds->take_axes(wanted.dds->units);
-  with_.files.take(std::move(files));
+  with_.files.take(wanted.read);
   running_ = std::move(wanted);
   std::vector<std::string> lines = plan.changes;
   if (lines.empty()) lines.emplace_back("nothing has changed");

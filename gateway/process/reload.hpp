@@ -47,15 +47,10 @@ class Reload {
   void begin(Done done);
 
  private:
-  struct Loaded {
-    LoadResult result;
-    std::vector<FileWatch::Watched> files;
-  };
-  void on_loaded(Loaded loaded);
-  void change(LoadedConfig wanted, std::vector<FileWatch::Watched> files);
+  void on_loaded(LoadResult loaded);
+  void change(LoadedConfig wanted);
   [[nodiscard]] std::vector<std::string> clients_in_the_way(const ReloadPlan& plan) const;
-  void commit(const ReloadPlan& plan, Config wanted, std::vector<FileWatch::Watched> files,
-              const std::vector<StartLine>& start);
+  void commit(const ReloadPlan& plan, Config wanted, const std::vector<StartLine>& start);
   void refuse(std::vector<std::string> why_not);
   void end(ReloadResult result);
 
@@ -71,8 +66,5 @@ class Reload {
 /// With "lease": null nobody owns the axis, and still it would be stopped if the client went that commanded its motion.
 /// `nothing_else_would`: no drive that notices a dead gateway, and none that CiA 402 has a state for.
 [[nodiscard]] bool may_stop_with_a_client(const AxisImage& axis, bool nothing_else_would);
-
-/// The files that make a configuration what it is, itself first.
-[[nodiscard]] std::vector<std::string> files_of(const Config& config);
 
 }  // namespace axisgate::app

@@ -89,7 +89,7 @@ std::variant<json, SchemaFault> parse_json(std::string_view text) {
   }
 }
 
-std::variant<json, SchemaFault> load_json(const std::filesystem::path& path) {
+std::variant<json, SchemaFault> load_json(const std::filesystem::path& path, std::vector<FileRead>& read) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) return SchemaFault{"", "cannot be read: " + error.message()};
@@ -97,7 +97,8 @@ std::variant<json, SchemaFault> load_json(const std::filesystem::path& path) {
   std::string text(static_cast<std::size_t>(size), '\0');
   std::ifstream file(path, std::ios::binary);
   if (!file.read(text.data(), static_cast<std::streamsize>(text.size()))) return SchemaFault{"", "cannot be read"};
-  return parse_json(text);
+  read.push_back({path.string(), std::move(text)});
+  return parse_json(*read.back().text);
 }
 
 std::optional<Rational> rational_of(const json& value) {

@@ -29,9 +29,17 @@ inline constexpr std::size_t kMaxJsonFileBytes = 1U << 20U;
 inline constexpr std::size_t kMaxJsonDepth = 32;
 inline constexpr std::size_t kMaxJsonString = 4096;
 
+/// What was read, or that there was nothing to read.
+struct FileRead {
+  std::string file;
+  std::optional<std::string> text{};  ///< none: no file of this name, where one would have been taken
+  friend bool operator==(const FileRead&, const FileRead&) = default;
+};
+
 /// The document, or why there is none. A syntax error's message begins with "line 3, column 14: "; its pointer is
-/// empty. Comments are allowed; a key given twice is a fault.
-[[nodiscard]] std::variant<nlohmann::json, SchemaFault> load_json(const std::filesystem::path& path);
+/// empty. Comments are allowed; a key given twice is a fault. Adds to `read` what was read.
+[[nodiscard]] std::variant<nlohmann::json, SchemaFault> load_json(const std::filesystem::path& path,
+                                                                  std::vector<FileRead>& read);
 /// The same for text already in memory (an embedded schema, a test).
 [[nodiscard]] std::variant<nlohmann::json, SchemaFault> parse_json(std::string_view text);
 

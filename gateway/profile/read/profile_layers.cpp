@@ -90,7 +90,7 @@ class Composer {
  private:
   Layer compose(const std::string& file) {
     out_.files.push_back(file);
-    std::variant<json, SchemaFault> loaded = load_json(file);
+    std::variant<json, SchemaFault> loaded = load_json(file, out_.read);
     if (auto* wrong = std::get_if<SchemaFault>(&loaded)) {
       out_.faults.push_back({file, wrong->pointer, wrong->message});
       return {};
@@ -151,12 +151,13 @@ class Composer {
   }
 
   /// A profile may extend one of its own name in another folder: it is never its own base.
-  [[nodiscard]] std::optional<std::string> find_base(const std::string& file, const std::string& name) const {
+  [[nodiscard]] std::optional<std::string> find_base(const std::string& file, const std::string& name) {
     std::vector<std::string> folders{fs::path(file).parent_path().string()};
     folders.insert(folders.end(), folders_.begin(), folders_.end());
     for (const std::string& folder : folders) {
       std::optional<std::string> found = find_profile((fs::path(folder) / (name + ".json")).string(), {});
       if (!found && folder.empty()) found = find_profile("./" + name + ".json", {});
+      if (!found) out_.read.push_back({(fs::path(folder) / (name + ".json")).string()});
       std::error_code error;
       if (found && !fs::equivalent(*found, file, error)) return found;
     }

@@ -22,6 +22,7 @@ struct LayeredProfile {
   std::shared_ptr<const nlohmann::json> document;  ///< never null
   WrittenPlaces written;                           ///< of every place in `document`
   std::vector<std::string> files;                  ///< the profile's own file first; also where one could not be read
+  std::vector<FileRead> read;                      ///< of them, and of where a base was looked for before
   std::vector<Fault> faults;  ///< where there is one, the document lacks more than it is to blame for
 };
 

@@ -56,6 +56,7 @@ LoadedProfile load_profile(const std::string& path, const std::vector<std::strin
   LoadedProfile out;
   out.file = path;
   out.files = std::move(layered.files);
+  out.read = std::move(layered.read);
   out.written = std::move(layered.written);
   out.faults = std::move(layered.faults);
   if (!out.faults.empty()) return out;
@@ -100,7 +101,8 @@ LoadedProfile load_profile(const std::string& path, const std::vector<std::strin
   return out;
 }
 
-std::optional<std::string> find_profile(const std::string& name_or_path, const std::vector<std::string>& folders) {
+std::optional<std::string> find_profile(const std::string& name_or_path, const std::vector<std::string>& folders,
+                                        std::vector<FileRead>* missed) {
   const auto is_file = [](const std::filesystem::path& path) {
     std::error_code error;
     return std::filesystem::is_regular_file(path, error);
@@ -110,6 +112,7 @@ std::optional<std::string> find_profile(const std::string& name_or_path, const s
   for (const std::string& folder : folders) {
     const std::filesystem::path path = std::filesystem::path(folder) / (name_or_path + ".json");
     if (is_file(path)) return path.string();
+    if (missed != nullptr) missed->push_back({path.string()});
   }
   return std::nullopt;
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/profile/json/json_schema.hpp"
 #include "gateway/profile/read/profile.hpp"
 
 namespace axisgate::drive {
@@ -34,6 +35,7 @@ using WrittenPlaces = std::map<std::string, Written, std::less<>>;
 struct LoadedProfile {
   std::string file;
   std::vector<std::string> files;  ///< `file`, and those that it extends
+  std::vector<FileRead> read;      ///< of them, and of where one was looked for before it was found
   Profile profile;
   WrittenPlaces written;
   bool base_only = false;     ///< no drive: only others extend it (and a fault says so)
@@ -46,8 +48,9 @@ struct LoadedProfile {
 [[nodiscard]] LoadedProfile load_profile(const std::string& path, const std::vector<std::string>& folders = {});
 
 /// "kinco-jd" -> the first FOLDER/kinco-jd.json that exists; a name with '/' or ending in ".json" is a path already.
-/// No value where there is none.
+/// No value where there is none. Adds to `missed` where a folder before has none.
 [[nodiscard]] std::optional<std::string> find_profile(const std::string& name_or_path,
-                                                      const std::vector<std::string>& folders);
+                                                      const std::vector<std::string>& folders,
+                                                      std::vector<FileRead>* missed = nullptr);
 
 }  // namespace axisgate::drive

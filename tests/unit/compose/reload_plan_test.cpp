@@ -31,7 +31,7 @@ const char* const kRunning = R"({
           "roles": [{"certificate": "/etc/passwd", "role": "operator"}]},
   "buses": [
     {"name": "serial", "adapter": "kinco-serial", "device": "/dev/ttyUSB0", "drives": [
-      {"profile": "kinco-jd", "node": 1, "constants": {"peak_current_a": 27.5}, "axes": [{"axis": 1, "lease": {}}]}]},
+      {"profile": "kinco-jd", "node": 1, "constants": {"peak_current_a": 27.5, "rated_current_a": 4.5}, "axes": [{"axis": 1, "lease": {}}]}]},
     {"name": "rtu", "adapter": "modbus-rtu", "device": "/dev/ttyUSB1", "drives": [
       {"profile": "id286pro", "node": 3, "axes": [{"axis": 3}]}]},
     {"name": "can", "adapter": "canopen", "device": "can0", "drives": [

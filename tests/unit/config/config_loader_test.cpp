@@ -127,7 +127,7 @@ TEST_F(ConfigLoader, ReadsEveryKeyOfABusAndItsAxis) {
       "",
       R"(, "baud": 115200, "parity": "none", "rs485": "off", "cascade": true, "timeout_ms": 50, "min_gap_ms": 1, "settle_ms": 20,
          "poll": {"fast": 30, "slow": 2000}, "decode": true)",
-      "",
+      R"("constants": {"encoder_counts_per_rev": 65536, "peak_current_a": 27.5, "rated_current_a": 4.5})",
       R"(, "name": "lift", "units_per_rev": {"numerator": 60000, "denominator": 37}, "direction": "inverted",
          "limits": {"position": [-1000, 500000], "velocity": 1500000, "acceleration": 20000, "torque": 900,
                     "quick_stop_deceleration_min": 3000},
@@ -195,10 +195,19 @@ TEST_F(ConfigLoader, GivesEachDriveItsModel) {
   EXPECT_EQ(model.axes[0].number, 1);
 }
 
-TEST_F(ConfigLoader, NamesEveryFileThatAProfileIsMadeFrom) {
-  const std::string drives = kShipped.front() + "/";
-  EXPECT_THAT(load_good(one_drive("", "")).config.profile_files,
-              ElementsAre(drives + "kinco-jd.json", drives + "kinco.json", drives + "cia402.json"));
+TEST_F(ConfigLoader, KeepsWhatItHasReadAndWhereItLookedInVain) {
+  const auto text_of = [](const std::string& file) {
+    std::ifstream stream(file);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const std::string own = std::filesystem::temp_directory_path();
+  const std::string shipped = kShipped.front() + "/";
+  std::ofstream(path_) << one_drive("", "");
+  const LoadResult loaded = load_config(path_, {own, kShipped.front()});
+  std::vector<drive::FileRead> expected{{path_, one_drive("", "")}, {own + "/kinco-jd.json"}};
+  for (const char* file : {"kinco-jd.json", "kinco.json", "cia402.json"})
+    expected.push_back({shipped + file, text_of(shipped + file)});
+  EXPECT_EQ(std::get<LoadedConfig>(loaded).config.read, expected);
 }
 
 TEST_F(ConfigLoader, WarnsWithoutRefusing) {
