@@ -52,14 +52,13 @@ class ByHand : public ::testing::Test {
   /// What the plan has written is on its way; signs of life are answered in their turn.
   void carry() {
     for (const HandWrite& write : plan_->take()) {
-      const bool beat = write.what == What::heartbeat;
-      unanswered_.push_back(beat);
-      if (beat)
+      unanswered_.push_back(write.what);
+      if (write.what == What::heartbeat)
         ++beats_;
       else
         box_.push_back(write);
     }
-    while (!unanswered_.empty() && unanswered_.front()) {
+    while (!unanswered_.empty() && unanswered_.front() == What::heartbeat) {
       unanswered_.pop_front();
       plan_->on_answer(Exception::none, now_);
     }
@@ -72,9 +71,13 @@ class ByHand : public ::testing::Test {
   void answer(Exception exception = Exception::none) {
     carry();
     ASSERT_FALSE(unanswered_.empty());
+    const What what = unanswered_.front();
     unanswered_.pop_front();
     plan_->on_answer(exception, now_);
     carry();
+    // The look behind it shows its result.
+    const bool sets = what == What::target_position || what == What::profile_velocity || what == What::jog_velocity;
+    if (sets && looks_at_set_points_ && exception == Exception::none) look();
   }
   /// What is written now, signs of life left out.
   std::vector<HandWrite> written() {
@@ -152,7 +155,8 @@ class ByHand : public ::testing::Test {
   Instant now_ = Instant(std::chrono::hours(1));
   int beats_ = 0;
   std::vector<HandWrite> box_;
-  std::deque<bool> unanswered_;  ///< true: a sign of life
+  std::deque<What> unanswered_;
+  bool looks_at_set_points_ = true;
 };
 
 }  // namespace axisgate::app

@@ -151,6 +151,38 @@ TEST_F(ByHand, AnEnableThatIsOnItsWayIsAwaited) {
   EXPECT_THAT(written(), ElementsAre(HandWrite{.what = What::target_position, .number = Rational(5, 2)}));
 }
 
+TEST_F(ByHand, ASetPointThatIsOnItsWayIsAwaitedBeforeTheNextStep) {
+  looks_at_set_points_ = false;
+  arguments_.rpm = Rational(60);
+  begin(HandTask::move);
+  set(AxisInput::enabled);
+  look();
+  answer_unseen();
+  EXPECT_THAT(written(), ElementsAre(HandWrite{.what = What::profile_velocity, .number = Rational(60)}));
+  for (const auto& next :
+       {HandWrite{.what = What::target_position, .number = Rational(5, 2)}, command(Command::move_absolute, 42)}) {
+    answer();
+    EXPECT_THAT(written(), IsEmpty()) << "no look has shown its result";
+    view_.result = CommandResult::pending;
+    look();
+    EXPECT_THAT(written(), IsEmpty());
+    view_.result = CommandResult::done;
+    look();
+    EXPECT_THAT(written(), ElementsAre(next));
+  }
+}
+
+TEST_F(ByHand, ASetPointThatFailsLaterStartsNothing) {
+  begin(HandTask::move);
+  set(AxisInput::enabled);
+  look();
+  answer_unseen();
+  view_.result = CommandResult::refused_by_drive;
+  answer_unseen();
+  EXPECT_THAT(plan_->words(), HasSubstr("axis 4: target_position was not carried out, result 3"));
+  EXPECT_EQ(plan_->exit_code(), 1);
+}
+
 TEST_F(ByHand, AnEnableOrAStartThatFailsLaterSaysWhy) {
   begin(HandTask::jog);
   look();

@@ -111,23 +111,17 @@ void HandPlan::step_done(Instant now) {
   switch (step_) {
     case Step::begin:
       if (!arguments_.rpm) return after_speed(now);
-      write(
-          {.what = arguments_.task == HandTask::jog ? HandWrite::What::jog_velocity : HandWrite::What::profile_velocity,
-           .number = *arguments_.rpm});
+      write(speed_write());
       claim(now);
       return go(Step::speed);
     case Step::speed:
-      return after_speed(now);
+      return go(Step::speed_set);
     case Step::enable:
       return go(Step::enabled);
     case Step::released:
       return go(Step::working);
     case Step::target:
-      claim(now);
-      write_command(arguments_.relative ? Command::move_relative : Command::move_absolute);
-      motion_before_ = view_->motion_id;
-      may_move_ = true;
-      return go(Step::start);
+      return go(Step::target_set);
     case Step::start:
       return go(Step::working);
     case Step::stop:
@@ -140,6 +134,11 @@ void HandPlan::step_done(Instant now) {
     default:
       return;
   }
+}
+
+HandWrite HandPlan::speed_write() const {
+  const bool jog = arguments_.task == HandTask::jog;
+  return {.what = jog ? HandWrite::What::jog_velocity : HandWrite::What::profile_velocity, .number = *arguments_.rpm};
 }
 
 void HandPlan::after_speed(Instant now) {
@@ -163,6 +162,22 @@ void HandPlan::after_enable(Instant now) {
     return go(Step::released);
   }
   go(Step::working);
+}
+
+void HandPlan::after_target(Instant now) {
+  claim(now);
+  write_command(arguments_.relative ? Command::move_relative : Command::move_absolute);
+  motion_before_ = view_->motion_id;
+  may_move_ = true;
+  go(Step::start);
+}
+
+/// With "writes": "posted" its answer says only that it is on its way: what comes next must not act without it.
+bool HandPlan::settled(const HandWrite& write, Instant now) {
+  if (view_->result <= CommandResult::done) return view_->result != CommandResult::pending;
+  refused_what_ = row_text(write);
+  finish(1, why_refused(), now);
+  return false;
 }
 
 void HandPlan::button_answered(ModbusException exception, Instant now) {
@@ -190,6 +205,12 @@ void HandPlan::on_view(const HandView& view, std::uint32_t answered, Instant now
   switch (step_) {
     case Step::look:
       return first_look(now);
+    case Step::speed_set:
+      if (settled(speed_write(), now)) after_speed(now);
+      return;
+    case Step::target_set:
+      if (settled({.what = HandWrite::What::target_position}, now)) after_target(now);
+      return;
     case Step::enabled:
       if (view.has(AxisInput::enabled)) return after_enable(now);
       return watch(now);

@@ -82,10 +82,12 @@ class HandPlan {
     look,
     begin,  ///< command 0: the id is remembered
     speed,
+    speed_set,  ///< awaits a look that shows its result, as target_set
     enable,
     enabled,   ///< awaits a look that shows it
     released,  ///< jog: both buttons are told to be up, one after the other
     target,
+    target_set,
     start,
     working,  ///< holds, moves, jogs
     refused,  ///< awaits a look that tells why
@@ -103,8 +105,11 @@ class HandPlan {
   void write_button(const std::optional<JogButton::Write>& button);
   void step_done(Instant now);
   void button_answered(ModbusException exception, Instant now);
+  [[nodiscard]] HandWrite speed_write() const;
   void after_speed(Instant now);
   void after_enable(Instant now);
+  void after_target(Instant now);
+  [[nodiscard]] bool settled(const HandWrite& write, Instant now);
   void first_look(Instant now);
   void watch(Instant now);
   void stood(Instant now);
