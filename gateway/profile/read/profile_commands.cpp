@@ -236,6 +236,7 @@ void read_command(Reading& reading, const std::string& key, const json& node) {
   check_starts_nothing(reading, out);
   check_stops(reading, out, node);
   check_never_enables(reading, out);
+  check_enable_starts_nothing(reading, out);
   const bool everywhere = member(node, "steps") != nullptr || out.quick_stop_otherwise || out.as_absolute;
   if (!everywhere)
     reading.fault(out.pointer,

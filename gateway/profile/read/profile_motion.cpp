@@ -2,6 +2,7 @@
 // What no section may do by itself: enable or turn a motor that nobody has commanded.
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "gateway/model/cia402.hpp"
 #include "gateway/profile/read/profile_reading.hpp"
@@ -89,6 +90,44 @@ void check_never_enables(Reading& reading, const CommandSpec& command) {
                     command.command == Command::halt
                         ? "lets the motor run: bits 0 to 3 of the controlword must not all be 1 without bit 8, halt"
                         : "would enable the motor: bits 0 to 3 of the controlword must not all be 1 in this command");
+  });
+}
+
+void check_enable_starts_nothing(Reading& reading, const CommandSpec& command) {
+  if (command.command != Command::enable) return;
+  const std::uint32_t starts = controlword::kStart | reading.profile.state.follow_bits.value_or(controlword::kMaker);
+  const auto any = [](const StepSpec& step, auto&& wrong) {
+    return std::any_of(step.values.begin(), step.values.end(), wrong);
+  };
+  const auto begins = [&](const ValueSpec& value) {
+    const auto* number = std::get_if<std::int64_t>(&value);
+    const bool fits = number != nullptr && *number >= 0 && *number <= UINT16_MAX;  // else it is told already
+    return number == nullptr || (fits && (*number & starts) != 0);
+  };
+  const auto is_zero = [](const ValueSpec& value) {
+    const auto* number = std::get_if<std::int64_t>(&value);
+    return number != nullptr && *number == 0;
+  };
+  const auto is_here = [](const ValueSpec& value) {
+    const auto* quantity = std::get_if<Quantity>(&value);
+    return quantity != nullptr && *quantity == Quantity::position_actual;
+  };
+  each_step(command, [&](const StepSpec& step) {
+    if (step.verb != Step::Verb::write) return;
+    if (is_of(reading, step.object, Quantity::controlword) && any(step, begins))
+      reading.fault(pointer_to(step.pointer, "value"),
+                    "an enable never moves the axis: bit 4 of the controlword and those of follow_bits must be 0");
+    if (is_of(reading, step.object, Quantity::mode) && !reading.profile.state.is_virtual)
+      reading.fault(pointer_to(step.pointer, "write"),
+                    "an enable never moves the axis: a target that the drive holds could start in another mode");
+    const bool position = is_of(reading, step.object, Quantity::target_position);
+    const bool rate =
+        is_of(reading, step.object, Quantity::target_velocity) || is_of(reading, step.object, Quantity::target_torque);
+    // Where one object is both, the mode tells which.
+    const bool stays = (position && !any(step, std::not_fn(is_here))) || (rate && !any(step, std::not_fn(is_zero)));
+    if ((position || rate) && !stays)
+      reading.fault(pointer_to(step.pointer, "value"),
+                    "an enable never moves the axis: a position target takes position_actual in it, any other one 0");
   });
 }
 

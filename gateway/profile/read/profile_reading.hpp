@@ -120,6 +120,8 @@ void check_state_places(Reading& reading);
 [[nodiscard]] bool is_of(const Reading& reading, const std::string& object, Quantity quantity);
 /// A stop, a fault reset and a save must not enable, a halt must not go on.
 void check_never_enables(Reading& reading, const CommandSpec& command);
+/// An enable has no start in it, no mode and no target but to stay where it is.
+void check_enable_starts_nothing(Reading& reading, const CommandSpec& command);
 /// After all: neither setup nor a remedy enables the motor or gives it a mode or a target.
 void check_unasked_writes(Reading& reading);
 
