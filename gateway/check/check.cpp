@@ -99,6 +99,21 @@ void add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::Dr
                        in_ms(budget.stop_wait_unresponsive)));
 }
 
+/// A request that is given up before its answer can be there: each one makes a drive suspect, three of them offline.
+std::vector<std::string> timeout_warnings(const LoadedConfig& loaded, const std::vector<BusBudget>& budgets) {
+  std::vector<std::string> out;
+  for (std::size_t b = 0; b < budgets.size(); ++b) {
+    const BusConfig& bus = loaded.config.buses[b];
+    const Duration needed = budgets[b].exchange;
+    if (loaded.models[b].empty() || bus.timeout >= needed) continue;
+    out.push_back(fmt::format(
+        "bus {}: a timeout_ms of {:.0f} is shorter than the longest request, which takes {:.1f} ms with a "
+        "drive that answers after {}: its drives will be taken for unresponsive; write at least {:.0f}",
+        bus.name, in_ms(bus.timeout), in_ms(needed), answers_text(loaded.models[b]), std::ceil(in_ms(needed))));
+  }
+  return out;
+}
+
 std::string missing_quantities(const drive::AxisModel& axis) {
   std::vector<std::string_view> names;
   for (const QuantityRow& quantity : quantity_table()) {
@@ -188,6 +203,7 @@ CheckReport check(const LoadedConfig& loaded) {
     add_lines(out, dds_lines(*config.dds));
   }
   out += "\nNo function of this gateway is a safety function: emergency stop and STO are wired.\n";
+  for (const std::string& warning : timeout_warnings(loaded, budgets)) out += "warning: " + warning + "\n";
   for (const std::string& warning : lease_warnings(loaded, budgets)) out += "warning: " + warning + "\n";
   for (const std::string& warning : loaded.warnings) out += "warning: " + warning + "\n";
   return report;

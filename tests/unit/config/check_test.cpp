@@ -95,6 +95,19 @@ TEST(Check, AnOverloadedBusIsNamedWithPeriodsThatFit) {
   EXPECT_THAT(report.text, HasSubstr("\"poll\": {\"fast\": 20,"));
 }
 
+TEST(Check, WarnsOfATimeoutThatNoAnswerCanKeep) {
+  LoadedConfig loaded = one_axis();
+  BusConfig& bus = loaded.config.buses[0];
+  const Duration needed = plan_bus(timing_of(bus), loaded.models[0]).exchange;
+  bus.timeout = needed;
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("timeout_ms of")));
+  bus.timeout = milliseconds(5);
+  EXPECT_THAT(check(loaded).text,
+              HasSubstr("warning: bus lift-serial: a timeout_ms of 5 is shorter than the longest request, which takes "
+                        "10.2 ms with a drive that answers after 5 ms: its drives will be taken for unresponsive; "
+                        "write at least 11\n"));
+}
+
 TEST(Check, RepeatsTheWarnings) {
   LoadedConfig loaded = one_axis();
   loaded.warnings.push_back("gateway.json: /modbus_tcp/0/listen: everybody may read");
