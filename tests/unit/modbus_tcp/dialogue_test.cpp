@@ -166,6 +166,10 @@ class Player {
          [&] {
            desk_.port.cached.insert({1, quantity(), number(2)});
          }},
+        {"limit",
+         [&] {
+           axis.limits[static_cast<std::size_t>(quantity())] = {number(2), number(3)};
+         }},
         {"cannot", [&] { axis.supported_commands &= ~command_bit(words.at(1)); }},
         {"jogs", [&] { axis.jog_velocity = static_cast<std::uint32_t>(number()); }},
         {"set-position", [&] { desk_.port.set_positions[1] = static_cast<std::int32_t>(number()); }},

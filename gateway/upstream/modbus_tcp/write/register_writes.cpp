@@ -195,6 +195,8 @@ class BatchMaker {
       const bool changed = changed_[remembered++];
       // What the drive holds, or its client has not changed, and this role may not write is nobody's question.
       if (each.ignored || onlooker_.role < each.row->may_write) continue;
+      // "No homing method", which no write may choose: read from a drive, and carried back.
+      if (each.cached && is_quantity(*each.row, Quantity::homing_method) && each.value == 0) continue;
       const Asks how = asks(each, changed);
       if (how == Asks::no) continue;
       anew_ = anew_ || changed;
@@ -322,7 +324,8 @@ std::vector<AxisStop> stops_in_registers(const Request& request, const UnitView&
 
 Planned plan_register_write(const Request& request, const UnitView& view, const Onlooker& onlooker, Client& client) {
   const RowWrites found = resolve_rows(request, view, onlooker);
-  const auto refuse = [&](const WrongRow& wrong) {
+  const auto refuse = [&](const WrongRow& found_wrong) {
+    const WrongRow wrong = first_refused(found, found_wrong);
     return Refused{wrong.code, found.several && is_wrong(wrong.code) ? std::optional(wrong.row) : std::nullopt,
                    stops_in(found, onlooker)};
   };

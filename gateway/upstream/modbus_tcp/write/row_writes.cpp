@@ -214,4 +214,15 @@ WrongRow check_rows(const RowWrites& writes, Role role) {
   return check_values(writes);
 }
 
+WrongRow first_refused(const RowWrites& writes, const WrongRow& wrong) {
+  if (wrong.code != Errc::bad_value || writes.axis == nullptr) return wrong;
+  for (const RowWrite& each : writes.rows) {
+    if (each.row->offset >= wrong.row) break;
+    const bool asks = !each.skipped() && !each.held && is_remembered(*each.row);
+    if (asks && each.row->source == Source::quantity && !writes.axis->limit(each.row->quantity).holds(each.value))
+      return {wrong.code, each.row->offset};
+  }
+  return wrong;
+}
+
 }  // namespace axisgate::modbus_tcp

@@ -51,5 +51,7 @@ struct WrongRow {
 [[nodiscard]] WrongRow check_rows(const RowWrites& writes, Role role);
 /// The same but for the values.
 [[nodiscard]] WrongRow check_role_and_addresses(const RowWrites& writes, Role role);
+/// `wrong`, or an earlier row that the axis would refuse with the same answer, for its limits.
+[[nodiscard]] WrongRow first_refused(const RowWrites& writes, const WrongRow& wrong);
 
 }  // namespace axisgate::modbus_tcp

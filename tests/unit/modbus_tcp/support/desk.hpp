@@ -33,7 +33,10 @@ class Desk {
       axis.writable = ~((1U << 14) - 1);
       axis.supported_commands = 0x7FFE;
       axis.link_state = LinkState::online;
-      for (const QuantityRow& each : quantity_table()) axis[each.quantity] = {0, true, true, runtime.now()};
+      for (const QuantityRow& each : quantity_table()) {
+        axis[each.quantity] = {0, true, true, runtime.now()};
+        axis.limits[static_cast<std::size_t>(each.quantity)] = range_of(each.type);
+      }
       axis.oldest_cyclic = runtime.now();
     }
     image.buses.resize(2);
