@@ -55,10 +55,12 @@ std::uint16_t part_of(const RegisterRow& row, std::uint32_t value, std::uint16_t
   return static_cast<std::uint16_t>(first == low_word_first ? value & 0xFFFF : value >> 16);
 }
 
-/// Fills in from `place.offset` to the block's end or the last register asked for; how many registers that were.
+/// Fills in from `place.offset` to the block's end or the last register asked for; how many registers that were. Where
+/// nothing is to be filled in, that alone.
 std::size_t read_block(const FoundBlock& block, std::size_t wanted, const Onlooker& onlooker, std::span<Byte> to) {
   const std::size_t span = block.place.block == Block::overview ? kOverviewBlock : kAxisBlock;
   const std::size_t count = std::min(wanted, span - block.place.offset);
+  if (to.empty()) return count;
   for (std::size_t i = 0; i < count;) {
     const auto offset = static_cast<std::uint16_t>(block.place.offset + i);
     const RegisterRow* row = block.table.covering(offset);
@@ -91,7 +93,7 @@ ModbusException read_registers(const Request& request, const UnitView& view, con
     if (!place) return kOutside;
     const FoundBlock block = found_block(*place, onlooker.image);
     if (must_refuse(block.axis, onlooker.settings)) return kNoAnswer;
-    done += read_block(block, request.read_count - done, onlooker, to.subspan(2 * done));
+    done += read_block(block, request.read_count - done, onlooker, to.empty() ? to : to.subspan(2 * done));
   }
   return ModbusException::none;
 }
@@ -133,6 +135,10 @@ Pdu answer_read(const Request& request, const UnitView& view, const Onlooker& on
                                 : bits                       ? read_bits(request, view, onlooker, data)
                                                              : read_registers(request, view, onlooker, data);
   return wrong == ModbusException::none ? pdu : exception_pdu(static_cast<Byte>(request.function), wrong);
+}
+
+ModbusException judge_registers_read(const Request& request, const UnitView& view, const Onlooker& onlooker) {
+  return read_registers(request, view, onlooker, {});
 }
 
 std::optional<std::uint16_t> read_one(std::uint16_t address, const UnitView& view, const Onlooker& onlooker) {

@@ -14,6 +14,10 @@ namespace axisgate::modbus_tcp {
 /// "offline_reads": "exception" where an axis in the range cannot be reached.
 [[nodiscard]] Pdu answer_read(const Request& request, const UnitView& view, const Onlooker& onlooker);
 
+/// The exception of such a read of registers, without an answer; none: it has none.
+[[nodiscard]] ModbusException judge_registers_read(const Request& request, const UnitView& view,
+                                                   const Onlooker& onlooker);
+
 /// What the register shows now, for FC 22. No value: 32 bits wide, unlisted or outside.
 [[nodiscard]] std::optional<std::uint16_t> read_one(std::uint16_t address, const UnitView& view,
                                                     const Onlooker& onlooker);

@@ -291,9 +291,9 @@ std::vector<AxisStop> stops_in(const RowWrites& found, const Onlooker& onlooker)
 /// Of function 23, what it reads, which is judged before anything is written (V1.1b3 6.17).
 Errc check_read(const Request& request, const UnitView& view, const Onlooker& onlooker) {
   if (!request.reads()) return Errc::ok;
-  const Pdu answer = answer_read(request, view, onlooker);
-  if (answer[0] == static_cast<Byte>(request.function)) return Errc::ok;
-  return ModbusException{answer[1]} == ModbusException::illegal_data_address ? Errc::not_supported : Errc::link_lost;
+  const ModbusException wrong = judge_registers_read(request, view, onlooker);
+  if (wrong == ModbusException::none) return Errc::ok;
+  return wrong == ModbusException::illegal_data_address ? Errc::not_supported : Errc::link_lost;
 }
 
 /// Gateway register 8. Changed by who may command, it is a sign of life for every axis, and takes over what an ended
