@@ -200,7 +200,7 @@ TEST_F(ConfigLoader, KeepsWhatItHasReadAndWhereItLookedInVain) {
     std::ifstream stream(file);
     return std::string(std::istreambuf_iterator<char>(stream), {});
   };
-  const std::string own = std::filesystem::temp_directory_path();
+  const std::string own = path_ + ".folder";  // that nobody has
   const std::string shipped = kShipped.front() + "/";
   std::ofstream(path_) << one_drive("", "");
   const LoadResult loaded = load_config(path_, {own, kShipped.front()});
