@@ -175,6 +175,43 @@ TEST(Edges, of_command_ids) {
   }
 }
 
+// `own`: what the connection wrote last itself; by the address the id of another one was written since.
+TEST(Edges, what_a_connection_repeats_is_not_new_whatever_others_of_its_address_wrote) {
+  const auto write = [](Command command, std::uint16_t id, const LastWords& own) {
+    EdgeMemory memory;
+    CommandIds ids{.last = 3, .seen = 3};
+    Writing first = block();
+    static_cast<void>(memory.command_with_id(halt, 900, ids, first));
+    Writing writing = block(10ms);
+    writing.own = own;
+    return memory.command_with_id(command, id, ids, writing);
+  };
+  EXPECT_EQ(write(run_velocity, 4, {.command = 8, .id = 4}), kNothing);
+  EXPECT_EQ(write(run_velocity, 4, {.command = 0, .id = 4}), kNothing) << "zeros never erase it";
+  EXPECT_EQ(write(run_velocity, 5, {.command = 8, .id = 4}), kActs);
+  EXPECT_EQ(write(run_velocity, 4, {}), kActs) << "on a new connection the id of the address decides";
+  EXPECT_EQ(write(run_velocity, 900, {.command = 8, .id = 4}), kNothing);
+  EXPECT_EQ(write(quick_stop, 4, {.command = 3, .id = 4}), kNothing);
+  EXPECT_EQ(write(quick_stop, 4, {.command = 8, .id = 4}), kActs);
+  EXPECT_EQ(write(halt, 900, {.command = 4, .id = 4}), kActs) << "an id that differs from its own";
+}
+
+// Of one client that is all connections of an address.
+TEST(Edges, what_a_connection_repeats_without_an_id_is_not_new_either) {
+  EdgeMemory memory;
+  Writing writing = block();
+  EXPECT_EQ(memory.command(none, writing), kNothing);
+  EXPECT_EQ(memory.controlword(15, single()), kActs);
+  EXPECT_EQ(memory.command(halt, block()), kActs) << "of another connection";
+  EXPECT_EQ(memory.controlword(7, single()), kActs);
+  writing.own = {.controlword = 15, .command = 8};
+  EXPECT_EQ(memory.command(run_velocity, writing), kNothing);
+  EXPECT_EQ(memory.controlword(15, writing), kNothing);
+  writing.form = WriteForm::single;
+  EXPECT_EQ(memory.controlword(7, single()), kActs);
+  EXPECT_EQ(memory.controlword(15, writing), kActs) << "somebody presses";
+}
+
 // What ends a motion between two presses of the same command, and what the second press comes to then.
 TEST(Edges, a_single_repetition_is_not_new_after_what_ended_its_action) {
   struct Ending {

@@ -35,8 +35,10 @@ Verdict EdgeMemory::judge_single(const Item& item, const Kind& kind, const Writi
   return kind.relative || ((changed || over) && !kind.is_so) ? Verdict::not_new : Verdict::nothing;
 }
 
-Verdict EdgeMemory::judge(Item& item, std::uint16_t value, const Kind& kind, const Writing& writing) {
-  const bool same = item.written && value == item.value;
+Verdict EdgeMemory::judge(Item& item, std::uint16_t value, const Kind& kind, const Writing& writing,
+                          std::optional<std::uint16_t> own) {
+  const bool repeats = writing.form == WriteForm::block && own == value;
+  const bool same = item.written && (value == item.value || repeats);
   if (writing.form == WriteForm::single) {
     if (kind.stop || !same) return Verdict::acts;
     return judge_single(item, kind, writing);
@@ -74,7 +76,7 @@ Verdict EdgeMemory::controlword(std::uint16_t value, const Writing& writing) {
   constexpr std::uint16_t kStepsAndStart = 0x001F, kEnabled = 0x000F;  // "enabled" is all that this word asks for
   const Kind kind{.stop_word = is_stop_controlword(value),
                   .is_so = writing.enabled && (value & kStepsAndStart) == kEnabled};
-  return conclude(controlword_, value, judge(controlword_, value, kind, writing), writing);
+  return conclude(controlword_, value, judge(controlword_, value, kind, writing, writing.own.controlword), writing);
 }
 
 Verdict EdgeMemory::command(Command value, const Writing& writing) {
@@ -84,7 +86,8 @@ Verdict EdgeMemory::command(Command value, const Writing& writing) {
                   .is_so = is_so(value, writing),
                   .held_start = starts_motion(value)};
   // "0 in `command` does nothing and arms it."
-  const Verdict verdict = value == Command::none ? Verdict::nothing : judge(command_, number, kind, writing);
+  const Verdict verdict =
+      value == Command::none ? Verdict::nothing : judge(command_, number, kind, writing, writing.own.command);
   return conclude(command_, number, verdict, writing);
 }
 
@@ -94,9 +97,11 @@ Verdict EdgeMemory::command_with_id(Command value, std::uint16_t id, CommandIds&
   const bool differs = !kept || id != *ids.last;
   Verdict verdict = Verdict::nothing;
   if (is_stop(value)) {
-    const bool other_command = !command_.written || command_.value != number;
-    if (differs || other_command || writing.form == WriteForm::single) verdict = Verdict::acts;
-  } else if (value != Command::none && differs) {
+    const LastWords& own = writing.own;
+    const bool repeats = own.command == number && own.id == id;
+    const bool other = differs || !command_.written || command_.value != number || (own.id && own.id != id);
+    if ((other && !repeats) || writing.form == WriteForm::single) verdict = Verdict::acts;
+  } else if (value != Command::none && differs && id != writing.own.id) {
     // The first id of an address is only remembered: nobody knows whether it is one from before a restart.
     verdict = kept ? Verdict::acts : Verdict::not_new;
   }

@@ -25,6 +25,14 @@ enum class WriteForm : std::uint8_t { single, block };
 inline constexpr std::uint16_t kJogForward = jog_coil(Command::jog_forward);
 inline constexpr std::uint16_t kJogReverse = jog_coil(Command::jog_reverse);
 
+/// What one connection itself wrote last to one axis, whatever others of its address, or of its client, have written
+/// since. What it repeats in a block is never new.
+struct LastWords {
+  std::optional<std::uint16_t> controlword{};
+  std::optional<std::uint16_t> command{};
+  std::optional<std::uint16_t> id{};  ///< that was not 0
+};
+
 /// How and when an item is written, by whom, and what the axis is like.
 struct Writing {
   WriteForm form = WriteForm::single;
@@ -32,6 +40,7 @@ struct Writing {
   std::uint64_t request = 0;  ///< its number among the client's, from 1: two may come in one instant
   Duration rearm;             ///< listener option rearm_ms
   ClientId client = 0;
+  LastWords own{};                   ///< of the connection that writes, before this write
   const Endings* endings = nullptr;  ///< of the axis; none: nothing has ever ended
   bool enabled = false;              ///< coil 0 reads 1, and no stop is latched: an enable has nothing to do
   bool runs_velocity = false;        ///< coil 7 reads 1
@@ -78,7 +87,8 @@ class EdgeMemory {
   [[nodiscard]] Verdict controlword(std::uint16_t value, const Writing& writing);
   /// In a request without a command_id, or with command_id 0.
   [[nodiscard]] Verdict command(Command value, const Writing& writing);
-  /// In a request with a command_id other than 0: only the id decides.
+  /// In a request with a command_id other than 0: only the id decides. It is new if it is neither the last one of its
+  /// address nor the last one of its connection.
   [[nodiscard]] Verdict command_with_id(Command value, std::uint16_t id, CommandIds& ids, const Writing& writing);
   /// Not of the jog coils.
   [[nodiscard]] CoilAsks coil(const CoilRow& coil, bool value, const Writing& writing);
@@ -131,7 +141,9 @@ class EdgeMemory {
     bool is_so = false;       ///< what it asks for is so already: repeating it is answered normally
     bool held_start = false;  ///< commands 6 to 10: a target beside it asks for a start that does not come
   };
-  [[nodiscard]] static Verdict judge(Item& item, std::uint16_t value, const Kind& kind, const Writing& writing);
+  /// `own`: what the connection wrote to it last.
+  [[nodiscard]] static Verdict judge(Item& item, std::uint16_t value, const Kind& kind, const Writing& writing,
+                                     std::optional<std::uint16_t> own = std::nullopt);
   [[nodiscard]] static Verdict judge_single(const Item& item, const Kind& kind, const Writing& writing);
   [[nodiscard]] static Verdict judge_level(const Item& item, const CoilRow& coil, bool value, const Writing& writing);
   static void remember(Item& item, std::uint16_t value, const Writing& writing);

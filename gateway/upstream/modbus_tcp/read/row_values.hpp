@@ -22,6 +22,7 @@ struct Onlooker {
   const Client& client;
   Role role = Role::viewer;
   Instant now = kLongAgo;
+  std::uint64_t connection = 0;  ///< its number among those of the client
 };
 
 /// In two's complement, 16 or 32 bits wide by the row's type.

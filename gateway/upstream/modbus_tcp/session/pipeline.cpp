@@ -33,12 +33,18 @@ Pipeline::Pipeline(const SessionContext& context, Role role, std::shared_ptr<Cli
       role_(role),
       client_(std::move(client)),
       emit_(std::move(emit)),
-      on_result_(std::move(on_result)) {}
+      on_result_(std::move(on_result)),
+      connection_(++client_->last_connection) {
+  client_->words[connection_];
+}
 
-Pipeline::~Pipeline() { abandon(); }
+Pipeline::~Pipeline() {
+  abandon();
+  client_->words.erase(connection_);
+}
 
 Onlooker Pipeline::onlooker(Instant now) const {
-  return {context_.image, context_.commands, context_.settings, *client_, role_, now};
+  return {context_.image, context_.commands, context_.settings, *client_, role_, now, connection_};
 }
 
 void Pipeline::accept(const Frame& frame, Instant now) {

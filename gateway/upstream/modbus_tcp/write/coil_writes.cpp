@@ -92,7 +92,7 @@ void add_stops(const Request& request, std::uint16_t i, const UnitView::BitPlace
                std::vector<AxisStop>& stops) {
   const AxisImage& axis = *place.axis;
   const Writing writing = writing_to(axis, onlooker, WriteForm::block);
-  WriteMemory memory = memory_of(onlooker.client, axis.number);
+  WriteMemory memory = memory_of(onlooker, axis.number);
   EdgeMemory& edges = memory.edges;
   Acting acting;
   JogWrite jog;
@@ -188,7 +188,7 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
   plan.single = single;
   plan.block = block_write(request, axis.number);
   plan.not_new = asked.not_new;
-  plan.before = memory_of(client, axis.number);
+  plan.before = memory_of(onlooker, axis.number);
   client.at(axis.number).edges = edges;
   WriteBatch empty = client.new_batch(onlooker.role);
   empty.is_write = true;

@@ -78,6 +78,7 @@ class BatchMaker {
         own_(client.at(axis_)),
         single_(!found.block),
         writing_(writing_to(*found.axis, onlooker, single_ ? WriteForm::single : WriteForm::block)),
+        words_(writing_.own),
         batch_(client.new_batch(onlooker.role)) {}
 
   struct Made {
@@ -99,6 +100,7 @@ class BatchMaker {
       put_zeros();
     else
       put_words();
+    client_.put_words(onlooker_.connection, axis_, words_);
     put_heartbeat();
     if (!found_.zeros && !only_remembered) put_rows();
     batch_.claims = register_claims(batch_);
@@ -138,6 +140,7 @@ class BatchMaker {
       constexpr std::uint16_t kStart = 0x0010;  // bit 4: the other words start nothing that a target belongs to
       writing_.targets = (word & kStart) != 0 ? own_.rows.targets() : 0;
       const Verdict verdict = own_.edges.controlword(word, writing_);
+      words_.controlword = word;
       note(verdict);
       if (verdict == Verdict::acts) {
         batch_.controlword = word;
@@ -150,6 +153,8 @@ class BatchMaker {
       writing_.targets = own_.rows.targets_of(asked);
       const Verdict verdict = id() != 0 ? own_.edges.command_with_id(asked, id(), client_.host->ids[axis_], writing_)
                                         : own_.edges.command(asked, writing_);
+      words_.command = static_cast<std::uint16_t>(asked);
+      if (id() != 0) words_.id = id();
       note(verdict);
       if (verdict == Verdict::acts) batch_.command = asked;
       if (verdict == Verdict::acts) note_acting(is_stop(asked));
@@ -159,6 +164,7 @@ class BatchMaker {
 
   /// A scanner's image before its program runs asks for nothing. Two zeros stop all the same.
   void put_zeros() {
+    words_.controlword = words_.command = 0;
     if (own_.edges.zeros(writing_)) {
       batch_.controlword = 0;
       batch_.single_controlword = false;
@@ -225,6 +231,7 @@ class BatchMaker {
   ClientAxis& own_;
   bool single_;
   Writing writing_;
+  LastWords words_;
   WriteBatch batch_;
   boost::container::static_vector<bool, kMaxWriteRegisters> changed_{};
   bool acting_ = false;
@@ -251,7 +258,7 @@ std::optional<AxisStop> stop_of(const RowWrites& found, const AxisImage& axis, c
     if (each.row->source == Source::command) command = value;
     if (each.row->source == Source::command_id) id = value;
   }
-  AxisStop stop{axis.number, onlooker.client.new_batch(onlooker.role), memory_of(onlooker.client, axis.number)};
+  AxisStop stop{axis.number, onlooker.client.new_batch(onlooker.role), memory_of(onlooker, axis.number)};
   stop.batch.is_write = true;
   const Writing writing = writing_to(axis, onlooker, WriteForm::block);
   EdgeMemory edges = stop.after.edges;
@@ -265,6 +272,8 @@ std::optional<AxisStop> stop_of(const RowWrites& found, const AxisImage& axis, c
       stop.batch.command = asked;
       stop.batch.command_id = id;
       if (id != 0) stop.after.ids = ids;
+      stop.after.words.command = *command;
+      if (id != 0) stop.after.words.id = id;
       stop.after.edges = edges;
     }
   }
@@ -272,6 +281,7 @@ std::optional<AxisStop> stop_of(const RowWrites& found, const AxisImage& axis, c
   const bool disables = stop.batch.command != Command::none || axis.lease.owned_by(onlooker.client.id);
   if (word && is_stop(*word, disables) && edges.controlword(*word, writing) == Verdict::acts) {
     stop.batch.controlword = word;
+    stop.after.words.controlword = word;
     stop.after.edges = edges;
   }
   return asks_nothing(stop.batch) ? std::nullopt : std::optional(stop);
@@ -344,7 +354,7 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
   if (box.refused.code != Errc::ok) return refuse(box.refused);
 
   ClientAxis& own = client.at(plan.axis);
-  plan.before = memory_of(client, plan.axis);
+  plan.before = memory_of(onlooker, plan.axis);
   const BatchMaker::Made made = BatchMaker(found, onlooker, client).make();
   own.mailbox = box.mailbox;
   if (box.requested) {

@@ -22,8 +22,11 @@ bool stops_through(const RegisterRow& row, const Request& request) {
 
 }  // namespace
 
-WriteMemory memory_of(const Client& client, AxisNumber axis) {
+WriteMemory memory_of(const Onlooker& onlooker, AxisNumber axis) {
+  const Client& client = onlooker.client;
   WriteMemory memory;
+  memory.connection = onlooker.connection;
+  memory.words = client.last_words(onlooker.connection, axis);
   if (const ClientAxis* const own = client.find(axis)) {
     memory.edges = own->edges;
     memory.rows = own->rows;
@@ -36,6 +39,7 @@ void restore(const WriteMemory& memory, Client& client, AxisNumber axis) {
   ClientAxis& own = client.at(axis);
   own.edges = memory.edges;
   own.rows = memory.rows;
+  client.put_words(memory.connection, axis, memory.words);
   if (memory.ids)
     client.host->ids[axis] = *memory.ids;
   else
@@ -50,6 +54,7 @@ Writing writing_to(const AxisImage& axis, const Onlooker& onlooker, WriteForm fo
   writing.request = onlooker.client.writes;
   writing.rearm = onlooker.settings.rearm;
   writing.client = onlooker.client.id;
+  writing.own = onlooker.client.last_words(onlooker.connection, axis.number);
   writing.endings = &axis.endings;
   writing.enabled = (shown_level_coils(axis) & kEnabled) != 0 && !axis.has(AxisInput::stop_latched);
   writing.runs_velocity = (shown_level_coils(axis) & kRunsVelocity) != 0;

@@ -22,8 +22,10 @@ struct WriteMemory {
   EdgeMemory edges;
   RowMemory rows;
   std::optional<CommandIds> ids;
+  std::uint64_t connection = 0;  ///< that writes
+  LastWords words;
 };
-[[nodiscard]] WriteMemory memory_of(const Client& client, AxisNumber axis);
+[[nodiscard]] WriteMemory memory_of(const Onlooker& onlooker, AxisNumber axis);
 void restore(const WriteMemory& memory, Client& client, AxisNumber axis);
 
 /// How the rules of edges see a write to this axis. `Writing::targets` is left to whoever knows the item.

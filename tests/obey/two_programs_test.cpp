@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two programs at one address, each on a connection of its own (3.3 Edges): what one of them scans unchanged starts
+// nothing, whatever the other has written since.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/obey/plant.hpp"
+
+namespace axisgate::test::obey {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kTwentyScans = 20 * 50ms;
+
+class TwoPrograms : public testing::TestWithParam<std::tuple<Subject, bool>> {
+ protected:
+  TwoPrograms() { plant_.ready(); }
+  static PlantOptions options() {
+    PlantOptions options;
+    options.listener.client_is_address = std::get<1>(GetParam());
+    return options;
+  }
+  Write start_block(std::int64_t command, std::int64_t id) {
+    Rows rows = plant_.profile_rows();
+    rows.merge(plant_.endless_target());
+    rows[row::command] = command;
+    rows[row::command_id] = id;
+    return block(row::target_position, row::command_id, rows);
+  }
+  void nothing_moves_by_scans_of(const Write& unchanged) {
+    plant_.run(2s);  // the halt of some drives first overshoots, and comes back
+    const std::int64_t rests_at = plant_.comes_to_rest_at();
+    plant_.scan(plc_, unchanged, kTwentyScans);
+    EXPECT_LE(std::abs(plant_.comes_to_rest_at() - rests_at), kClose);
+  }
+  Plant plant_{std::get<0>(GetParam()), options()};
+  Client& plc_ = plant_.a;
+  std::unique_ptr<Client> panel_ = plant_.connection_from(Plant::kHostOfA);
+  std::int64_t start_ = plant_.endless_command();
+};
+
+TEST_P(TwoPrograms, OfWhichOneHaltsTheMotorTheOthersUnchangedScanLeavesAtRest) {
+  ASSERT_EQ(plc_.command(0, 3), kOk);
+  ASSERT_EQ(plc_.write(start_block(start_, 4)), kOk);
+  ASSERT_TRUE(plant_.keeps_turning());
+  ASSERT_EQ(panel_->command(kHalt, 900), kOk);
+  nothing_moves_by_scans_of(start_block(start_, 4));
+  EXPECT_EQ(plc_.write(start_block(start_, 5)), kOk);
+  EXPECT_TRUE(plant_.keeps_turning()) << "another id is new";
+}
+
+TEST_P(TwoPrograms, OfWhichOneStopsTheMotorTheOthersUnchangedEnableLeavesLatched) {
+  ASSERT_EQ(plc_.command(0, 9), kOk);
+  const Write enable = start_block(kEnable, 10);
+  ASSERT_EQ(plc_.write(enable), kOk);
+  ASSERT_EQ(panel_->command(kQuickStop, 901), kOk);
+  ASSERT_TRUE(plant_.comes_to_stand());
+  plant_.scan(plc_, enable, kTwentyScans);
+  EXPECT_EQ(plc_.word(shown::axis_state), kStopLatched);
+  EXPECT_FALSE(plant_.motor().enabled.value_or(false));
+  EXPECT_EQ(plc_.write(start_block(kEnable, 11)), kOk);
+  EXPECT_TRUE(plant_.motor().enabled.value_or(true));
+}
+
+TEST_P(TwoPrograms, OfWhichOneWritesAnIdTheOthersUnchangedRelativeMoveIsNotAdded) {
+  if (!has_positions(plant_.subject)) return;
+  ASSERT_EQ(plc_.command(0, 3), kOk);
+  Rows rows = plant_.profile_rows();
+  rows[row::target_position] = kNear;
+  rows[row::command] = kRelative;
+  rows[row::command_id] = 4;
+  const Write move = block(row::target_position, row::command_id, rows);
+  ASSERT_EQ(plc_.write(move), kOk);
+  ASSERT_LE(std::abs(plant_.comes_to_rest_at() - kNear), kClose);
+  ASSERT_EQ(panel_->command(0, 700), kOk);
+  nothing_moves_by_scans_of(move);
+  static_cast<void>(panel_->command(12, 701));  // refused while the axis is enabled
+  nothing_moves_by_scans_of(move);
+}
+
+// Of one client, where "client" is "address", and of two, where it is "connection".
+TEST_P(TwoPrograms, WithoutIdsStartNothingByWhatTheyRepeat) {
+  ASSERT_EQ(plc_.command(0), kOk);
+  ASSERT_EQ(plc_.write(start_block(start_, 0)), kOk);
+  ASSERT_TRUE(plant_.keeps_turning());
+  ASSERT_EQ(panel_->command(kHalt), kOk);
+  nothing_moves_by_scans_of(start_block(start_, 0));
+  ASSERT_EQ(plc_.write(start_block(0, 0)), kOk);
+  EXPECT_EQ(plc_.write(start_block(start_, 0)), kOk);
+  EXPECT_TRUE(plant_.keeps_turning());
+}
+
+// What one scans unchanged is no new stop either, and what it asks anew is, by whichever id.
+TEST_P(TwoPrograms, StopByWhatTheyAskAnew) {
+  const Write stop = start_block(kQuickStop, 6);
+  ASSERT_EQ(plc_.write(stop), kOk);
+  ASSERT_EQ(panel_->command(kEnable, 7), kOk);
+  ASSERT_EQ(panel_->write(start_block(start_, 8)), kOk);
+  ASSERT_TRUE(plant_.turns_within(2s));
+  plant_.scan(plc_, stop, kTwentyScans);
+  EXPECT_TRUE(plant_.keeps_turning());
+  EXPECT_EQ(panel_->write(start_block(start_, 9)), kOk);
+  EXPECT_EQ(plc_.write(start_block(kQuickStop, 9)), kOk) << "not the id that it wrote last";
+  EXPECT_TRUE(plant_.comes_to_stand());
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, TwoPrograms, testing::Combine(testing::ValuesIn(kSubjects), testing::Bool()),
+                         [](const auto& tested) {
+                           return name(std::get<0>(tested.param)) +
+                                  (std::get<1>(tested.param) ? "_one_client" : "_two_clients");
+                         });
+
+}  // namespace
+}  // namespace axisgate::test::obey
