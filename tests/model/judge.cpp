@@ -57,6 +57,8 @@ Judge::Edge Judge::command_edge(const Rows& rows, bool single) {
   Edge edge = Edge::not_new;
   if (id == 0) {
     edge = this->edge(mine.command, value, single, is_stop(value));
+    // 3.3 Not new: "so that no tool prints success for nothing": who owns it has something to give back.
+    if (edge == Edge::not_new && single && value == kRelease && world_.owner == client_) edge = Edge::acts;
   } else {
     mine.id = id;  // 3.3 Edges: "zeros never erase it", "Command 0 with an id sets the last id"
     mine.command.value = value;

@@ -191,8 +191,7 @@ TEST(Edges, what_a_connection_repeats_is_not_new_whatever_others_of_its_address_
   EXPECT_EQ(write(run_velocity, 5, {.command = 8, .id = 4}), kActs);
   EXPECT_EQ(write(run_velocity, 4, {}), kActs) << "on a new connection the id of the address decides";
   EXPECT_EQ(write(run_velocity, 900, {.command = 8, .id = 4}), kNothing);
-  EXPECT_EQ(write(quick_stop, 4, {.command = 3, .id = 4}), kNothing);
-  EXPECT_EQ(write(quick_stop, 4, {.command = 8, .id = 4}), kActs);
+  EXPECT_EQ(write(quick_stop, 4, {.command = 3, .id = 4}), kActs) << "a stop too many is the smaller harm";
   EXPECT_EQ(write(halt, 900, {.command = 4, .id = 4}), kActs) << "an id that differs from its own";
 }
 
@@ -248,6 +247,17 @@ TEST(Edges, a_single_repetition_is_not_new_after_what_ended_its_action) {
       EXPECT_EQ(press(pause + 2ms, move_absolute), kActs) << "0 arms it";
     }
   }
+}
+
+TEST(Edges, a_release_of_what_its_client_owns_acts_within_rearm_ms_too) {
+  EdgeMemory memory;
+  Writing writing = single();
+  writing.owns = true;
+  EXPECT_EQ(memory.command(release, writing), kActs);
+  EXPECT_EQ(memory.command(release, single(10ms)), kNothing) << "it is given back";
+  writing.now += 300ms;
+  EXPECT_EQ(memory.command(release, writing), kActs) << "claimed again since";
+  EXPECT_EQ(memory.command(release, single(310ms)), kNothing);
 }
 
 TEST(Edges, a_changed_target_beside_what_is_not_new_is_told) {

@@ -27,7 +27,7 @@ Verdict EdgeMemory::judge_single(const Item& item, const Kind& kind, const Writi
   const Endings& endings = writing.endings == nullptr ? nothing : *writing.endings;
   const Endings::Point since = item.acted.value_or(0);
   const bool interrupted = item.acted && endings.interrupted(since, writing.client);
-  if (rearmed && !interrupted) return Verdict::acts;
+  if ((rearmed && !interrupted) || kind.unserved) return Verdict::acts;
   // A stop too many is the smaller harm.
   if (kind.stop_word) return interrupted ? Verdict::acts : Verdict::nothing;
   const bool changed = item.targets != writing.targets;
@@ -37,7 +37,7 @@ Verdict EdgeMemory::judge_single(const Item& item, const Kind& kind, const Writi
 
 Verdict EdgeMemory::judge(Item& item, std::uint16_t value, const Kind& kind, const Writing& writing,
                           std::optional<std::uint16_t> own) {
-  const bool repeats = writing.form == WriteForm::block && own == value;
+  const bool repeats = writing.form == WriteForm::block && own == value && !kind.stop && !kind.stop_word;
   const bool same = item.written && (value == item.value || repeats);
   if (writing.form == WriteForm::single) {
     if (kind.stop || !same) return Verdict::acts;
@@ -83,6 +83,7 @@ Verdict EdgeMemory::command(Command value, const Writing& writing) {
   const auto number = static_cast<std::uint16_t>(value);
   const Kind kind{.stop = is_stop(value),
                   .relative = value == Command::move_relative,
+                  .unserved = value == Command::release && writing.owns,
                   .is_so = is_so(value, writing),
                   .held_start = starts_motion(value)};
   // "0 in `command` does nothing and arms it."
@@ -97,10 +98,10 @@ Verdict EdgeMemory::command_with_id(Command value, std::uint16_t id, CommandIds&
   const bool differs = !kept || id != *ids.last;
   Verdict verdict = Verdict::nothing;
   if (is_stop(value)) {
-    const LastWords& own = writing.own;
-    const bool repeats = own.command == number && own.id == id;
-    const bool other = differs || !command_.written || command_.value != number || (own.id && own.id != id);
-    if ((other && !repeats) || writing.form == WriteForm::single) verdict = Verdict::acts;
+    // A stop too many is the smaller harm: one that a connection repeats acts where another has written since.
+    const bool other_command = !command_.written || command_.value != number;
+    const bool other_id = differs || (writing.own.id && writing.own.id != id);
+    if (other_id || other_command || writing.form == WriteForm::single) verdict = Verdict::acts;
   } else if (value != Command::none && differs && id != writing.own.id) {
     // The first id of an address is only remembered: nobody knows whether it is one from before a restart.
     verdict = kept ? Verdict::acts : Verdict::not_new;

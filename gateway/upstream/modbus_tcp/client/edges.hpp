@@ -26,7 +26,7 @@ inline constexpr std::uint16_t kJogForward = jog_coil(Command::jog_forward);
 inline constexpr std::uint16_t kJogReverse = jog_coil(Command::jog_reverse);
 
 /// What one connection itself wrote last to one axis, whatever others of its address, or of its client, have written
-/// since. What it repeats in a block is never new.
+/// since. What it repeats in a block starts nothing.
 struct LastWords {
   std::optional<std::uint16_t> controlword{};
   std::optional<std::uint16_t> command{};
@@ -44,6 +44,7 @@ struct Writing {
   const Endings* endings = nullptr;  ///< of the axis; none: nothing has ever ended
   bool enabled = false;              ///< coil 0 reads 1, and no stop is latched: an enable has nothing to do
   bool runs_velocity = false;        ///< coil 7 reads 1
+  bool owns = false;                 ///< this client owns the axis: a release has something to give back
   bool needs_zero = false;           ///< stop-latched or faulted: coil 0 = 1 acts only after a 0
   /// RowMemory's count of changes of what the item goes by.
   std::uint64_t targets = 0;
@@ -138,6 +139,7 @@ class EdgeMemory {
     bool stop = false;        ///< asserted: commands 2 to 4, coils 2 and 3 = 1
     bool stop_word = false;   ///< a controlword that is a stop where it acts
     bool relative = false;    ///< a relative move: one that is not new always says so
+    bool unserved = false;    ///< a release of an axis that its client owns: never "done already"
     bool is_so = false;       ///< what it asks for is so already: repeating it is answered normally
     bool held_start = false;  ///< commands 6 to 10: a target beside it asks for a start that does not come
   };

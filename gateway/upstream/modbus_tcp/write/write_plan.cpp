@@ -58,6 +58,7 @@ Writing writing_to(const AxisImage& axis, const Onlooker& onlooker, WriteForm fo
   writing.endings = &axis.endings;
   writing.enabled = (shown_level_coils(axis) & kEnabled) != 0 && !axis.has(AxisInput::stop_latched);
   writing.runs_velocity = (shown_level_coils(axis) & kRunsVelocity) != 0;
+  writing.owns = axis.lease.owned_by(onlooker.client.id);
   writing.needs_zero = axis.has(AxisInput::stop_latched) || axis.has(AxisInput::fault);
   return writing;
 }
