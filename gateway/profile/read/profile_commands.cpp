@@ -159,6 +159,8 @@ void check_stops(Reading& reading, const CommandSpec& command, const json& node)
   const auto check = [&](const std::vector<StepSpec>& steps, const std::string& pointer) {
     if (std::none_of(steps.begin(), steps.end(), [](const StepSpec& step) { return step.verb == Step::Verb::write; }))
       reading.fault(pointer_to(pointer, "steps"), "write nothing, so they stop nothing");
+    else
+      check_stops_by_word(reading, command, steps, pointer_to(pointer, "steps"));
   };
   if (member(node, "steps") != nullptr) check(command.steps, command.pointer);
   for (std::size_t i = 0; i < command.variants.size(); ++i)
@@ -237,6 +239,7 @@ void read_command(Reading& reading, const std::string& key, const json& node) {
   check_stops(reading, out, node);
   check_never_enables(reading, out);
   check_enable_starts_nothing(reading, out);
+  check_turns_nothing(reading, out);
   const bool everywhere = member(node, "steps") != nullptr || out.quick_stop_otherwise || out.as_absolute;
   if (!everywhere)
     reading.fault(out.pointer,

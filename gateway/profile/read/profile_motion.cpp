@@ -55,6 +55,12 @@ bool may_enable(const ValueSpec& value) {
   return number == nullptr || enables(*number);
 }
 
+bool is_not_zero(const ValueSpec& value) {
+  if (const auto* number = std::get_if<std::int64_t>(&value)) return *number != 0;
+  const auto* amount = std::get_if<Amount>(&value);
+  return amount != nullptr && amount->number != Factor(Rational(0));
+}
+
 void check_write(Reading& reading, const std::vector<std::string>& moving, const WriteSpec& write) {
   if (is_of(reading, write.object, Quantity::controlword)) {
     if (std::any_of(write.values.begin(), write.values.end(), may_enable))
@@ -128,6 +134,33 @@ void check_enable_starts_nothing(Reading& reading, const CommandSpec& command) {
     if ((position || rate) && !stays)
       reading.fault(pointer_to(step.pointer, "value"),
                     "an enable never moves the axis: a position target takes position_actual in it, any other one 0");
+  });
+}
+
+void check_stops_by_word(Reading& reading, const CommandSpec& command, const std::vector<StepSpec>& steps,
+                         const std::string& pointer) {
+  const bool by_word = command.command == Command::quick_stop || command.command == Command::disable;
+  if (!by_word || reading.profile.state.is_virtual) return;
+  const auto stops = [](const ValueSpec& value) {
+    const auto* number = std::get_if<std::int64_t>(&value);
+    return number != nullptr && is_stop(static_cast<std::uint16_t>(*number), true);
+  };
+  const auto is_stopping = [&](const StepSpec& step) {
+    return step.verb == Step::Verb::write && is_of(reading, step.object, Quantity::controlword) &&
+           std::all_of(step.values.begin(), step.values.end(), stops);
+  };
+  if (std::none_of(steps.begin(), steps.end(), is_stopping))
+    reading.fault(pointer, "write no controlword that stops: bit 1 or bit 2 must be 0, or bits 0 to 3 be 6 or 7");
+}
+
+void check_turns_nothing(Reading& reading, const CommandSpec& command) {
+  if (may_move(command.command)) return;
+  each_step(command, [&](const StepSpec& step) {
+    if (step.verb != Step::Verb::write || std::none_of(step.values.begin(), step.values.end(), is_not_zero)) return;
+    for (const Quantity target : {Quantity::target_velocity, Quantity::target_torque})
+      if (is_of(reading, step.object, target))
+        reading.fault(pointer_to(step.pointer, "value"),
+                      "would turn the motor: " + std::string(row(target).name) + " must be 0 in this command");
   });
 }
 

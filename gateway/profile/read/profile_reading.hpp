@@ -122,6 +122,11 @@ void check_state_places(Reading& reading);
 void check_never_enables(Reading& reading, const CommandSpec& command);
 /// An enable has no start in it, no mode and no target but to stay where it is.
 void check_enable_starts_nothing(Reading& reading, const CommandSpec& command);
+/// On a CiA 402 drive a quick_stop or disable takes a controlword for it: one of these steps writes it.
+void check_stops_by_word(Reading& reading, const CommandSpec& command, const std::vector<StepSpec>& steps,
+                         const std::string& pointer);
+/// What stops, clears or stores gives the motor no speed and no torque.
+void check_turns_nothing(Reading& reading, const CommandSpec& command);
 /// After all: neither setup nor a remedy enables the motor or gives it a mode or a target.
 void check_unasked_writes(Reading& reading);
 
