@@ -193,7 +193,7 @@ class AHeartbeatAtThePrompt(Typist, CanStory):
             until("it is written", lambda node=axis, at=address, to=value: self.sim.object(self.node(node), at) == to)
             self.desk.process.stdin.close()
             self.desk.ended()
-            self.assertTrue(self.desk.found(f"{about}: ok now"), self.desk.text())
+            self.assertTrue(self.desk.found(f"{about}: reads as it should"), self.desk.text())
 
 
 class AStepperAsDelivered(Typist, Story):

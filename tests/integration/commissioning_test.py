@@ -55,7 +55,7 @@ class FactoryFresh(Story):
         self.assertEqual(self.sim.object("lift/1", "2010.03"), ENABLE_FUNCTION)
         done = self.commission(*options, answer=answer)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("din1_local_control: ok now", done.stdout)
+        self.assertIn("din1_local_control: reads as it should", done.stdout)
         self.assertEqual(self.sim.object("lift/1", "2010.03"), 0)
         self.assertNotIn("operation", self.sim.state("lift/1"))
         until("stored", lambda: self.stores() >= 1)
@@ -136,6 +136,16 @@ class AtTheDesk(Story):
             done = self.command_line("profile", "check", f"{SOURCE}/schemas/drives/{name}.json")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("is valid", done.stdout)
+
+    def test_the_profile_that_contributing_shows_is_a_whole_one(self):
+        with open(f"{SOURCE}/CONTRIBUTING.md", encoding="utf-8") as page:
+            shown = page.read().partition("```json\n")[2].partition("```")[0]
+        path = self.path("acme-servo.json")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(shown)
+        done = self.command_line("profile", "check", path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("Acme Servo, 1 motor, 2 alarms", done.stdout)
 
     def test_profile_check_names_file_and_place_of_each_mistake(self):
         path = self.path("mine.json")

@@ -200,8 +200,8 @@ int commission(const LoadedConfig& loaded, const Place& place, const CommissionO
   for (const Finding& finding : found) fmt::print("  {}\n", text(model, finding));
   const std::vector<const drive::Check*> questions = to_ask(found);
   if (questions.empty()) {
-    fmt::print("nothing to remedy\n");
-    return 0;
+    fmt::print("nothing to remedy{}\n", leaves_bad(found) ? " by a write" : "");
+    return leaves_bad(found) ? 1 : 0;
   }
   Commissioning work(bench, model, place.slot, options);
   if (const std::string why = objection(work.axes_now()); !why.empty()) {
@@ -211,7 +211,7 @@ int commission(const LoadedConfig& loaded, const Place& place, const CommissionO
   for (std::size_t i = 0; i < questions.size() && !work.input_ended(); ++i)
     work.ask(*questions[i], fmt::format("question {} of {}:", i + 1, questions.size()));
   if (!work.wrote()) fmt::print("nothing was written\n");
-  return work.all_done() ? 0 : 1;
+  return work.all_done() && !leaves_bad(found) ? 0 : 1;
 }
 
 /// Started without a standard input: the bus must not get its number, or frames would be taken for answers.

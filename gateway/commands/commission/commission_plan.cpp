@@ -10,7 +10,8 @@
 namespace axisgate::app {
 namespace {
 
-std::string address_of(const drive::ObjectDef& object) {
+std::string address_of(const drive::DriveModel& model, const drive::ObjectDef& object) {
+  if (model.protocol == "modbus-rtu") return fmt::format("{} (register {})", object.name, object.address.index);
   return fmt::format("{} ({:04X}.{:02X})", object.name, object.address.index, object.address.sub);
 }
 
@@ -57,6 +58,11 @@ std::vector<const drive::Check*> to_ask(const std::vector<Finding>& found) {
   return out;
 }
 
+bool leaves_bad(const std::vector<Finding>& found) {
+  return std::any_of(found.begin(), found.end(),
+                     [](const Finding& finding) { return finding.bad && finding.check->remedy.empty(); });
+}
+
 std::vector<drive::ObjectId> objects_of(const drive::DriveModel& model, const drive::Check& check) {
   std::vector<drive::ObjectId> out{check.bad.object};
   for (const drive::ObjectWrite& write : check.remedy)
@@ -86,7 +92,7 @@ std::string objection(const drive::DriveModel& model, const drive::Check& check,
   for (const drive::ObjectId id : objects_of(model, check)) {
     const auto before = number_of(shown, id);
     const auto after = number_of(now, id);
-    const std::string where = address_of(model.object(id));
+    const std::string where = address_of(model, model.object(id));
     if (!after || !before) return fmt::format("{} could not be read", where);
     if (!same(check, id, *before, *after))
       return fmt::format("{} is {:#x} now and was {:#x} when you were asked", where, *after, *before);
@@ -97,13 +103,13 @@ std::string objection(const drive::DriveModel& model, const drive::Check& check,
 bool means_yes(std::string_view line) { return line == "yes"; }
 
 std::string text(const drive::DriveModel& model, const drive::ObjectWrite& write) {
-  const std::string what = fmt::format("{} = {}", address_of(model.object(write.object)), write.raw);
+  const std::string what = fmt::format("{} = {}", address_of(model, model.object(write.object)), write.raw);
   return write.why.empty() ? what : fmt::format("{}  {}", what, write.why);
 }
 
 std::string text(const drive::DriveModel& model, const Finding& finding) {
   const drive::Check& check = *finding.check;
-  const std::string where = address_of(model.object(check.bad.object));
+  const std::string where = address_of(model, model.object(check.bad.object));
   if (!finding.known) return fmt::format("?    {}: {} is not known", check.name, where);
   if (!finding.bad) return fmt::format("ok   {}: {} = {:#x}", check.name, where, finding.value);
   return fmt::format("BAD  {}: {} = {:#x}\n       {}{}", check.name, where, finding.value, check.text,
@@ -113,7 +119,7 @@ std::string text(const drive::DriveModel& model, const Finding& finding) {
 std::string question(const drive::DriveModel& model, const drive::Check& check, const Numbers& shown) {
   const auto value = number_of(shown, check.bad.object);
   std::string out =
-      fmt::format("{}: {} = {}\n  {}\n  a yes writes\n", check.name, address_of(model.object(check.bad.object)),
+      fmt::format("{}: {} = {}\n  {}\n  a yes writes\n", check.name, address_of(model, model.object(check.bad.object)),
                   value ? fmt::format("{:#x}", *value) : "not known", check.text);
   for (const drive::ObjectWrite& write : check.remedy) {
     const auto now = number_of(shown, write.object);
@@ -132,13 +138,17 @@ ReadBack read_back(const drive::DriveModel& model, const drive::Check& check, co
     const auto number = number_of(after, write.object);
     const bool holds = number == object.number(drive::wire_bits(write.raw, object.size));
     const std::string reads = number ? fmt::format("reads {:#x}", *number) : "could not be read back";
-    out.text += fmt::format("  {} {}{}\n", address_of(object), reads,
-                            holds || !number ? "" : fmt::format(", although {} was written", write.raw));
+    // Its reason says when the drive goes by it, too.
+    const std::string reason = write.why.empty() ? "" : "  " + write.why;
+    out.text += fmt::format("  {} {}{}\n", address_of(model, object), reads,
+                            holds || !number ? reason : fmt::format(", although {} was written", write.raw));
     held = held && holds;
   }
   const auto bad = is_bad(model, check, after);
   out.cured = held && bad == false;
-  const char* verdict = out.cured ? "ok now" : bad == true ? "STILL BAD" : "NOT KNOWN, it could not be read back";
+  const char* verdict = out.cured     ? "reads as it should"
+                        : bad == true ? "STILL BAD"
+                                      : "NOT KNOWN, it could not be read back";
   if (bad == false && !held) verdict = "gone, but the drive does not hold what was written";
   out.text += fmt::format("  {}: {}\n", check.name, verdict);
   return out;

@@ -27,6 +27,8 @@ struct Finding {
                                             bus::AxisSlot slot);
 /// The checks that are asked about, in the same order: bad ones that have a remedy.
 [[nodiscard]] std::vector<const drive::Check*> to_ask(const std::vector<Finding>& found);
+/// Something is bad that no write remedies.
+[[nodiscard]] bool leaves_bad(const std::vector<Finding>& found);
 
 /// What was read of the drive; an object that did not answer is absent.
 using Numbers = std::map<drive::ObjectId, std::int64_t>;
@@ -53,7 +55,7 @@ struct AxisShown {
 /// "yes" and nothing else.
 [[nodiscard]] bool means_yes(std::string_view line);
 
-/// "name (2010.03) = 0  why"
+/// "name (2010.03) = 0  why"; of Modbus RTU "name (register 296) = 0  why".
 [[nodiscard]] std::string text(const drive::DriveModel& model, const drive::ObjectWrite& write);
 [[nodiscard]] std::string text(const drive::DriveModel& model, const Finding& finding);
 /// What is wrong, what it means, and each write of the remedy with what it takes the place of; lines.

@@ -134,8 +134,22 @@ TEST_F(CommissionPlan, NothingIsWrittenUnderTorqueOnAnyMotorOfTheDriveOrToADrive
 TEST_F(CommissionPlan, WhatWasWrittenIsReadBackAndSaid) {
   const ReadBack after = read_back(model_, open_limits_, {{limits, 0x40}, {din5, 0}, {din6, 0}});
   EXPECT_TRUE(after.cured);
-  EXPECT_THAT(after.text,
-              AllOf(HasSubstr("din5_function (2010.07) reads 0x0\n"), HasSubstr("limit_inputs_open: ok now")));
+  EXPECT_THAT(after.text, AllOf(HasSubstr("din5_function (2010.07) reads 0x0  takes the positive limit off DIN5\n"),
+                                HasSubstr("limit_inputs_open: reads as it should")))
+      << "when a setting acts, its reason tells";
+}
+
+TEST_F(CommissionPlan, ABadFindingThatNoWriteRemediesIsLeftBad) {
+  EXPECT_FALSE(leaves_bad({{&free_din1_, true, true, 1}}));
+  EXPECT_FALSE(leaves_bad({{&model_.checks[2], true, false, 20}}));
+  EXPECT_TRUE(leaves_bad({{&free_din1_, true, true, 1}, {&model_.checks[2], true, true, 90}}));
+}
+
+TEST_F(CommissionPlan, ARegisterOfModbusRtuHasItsNumberAsTheManualsPrintIt) {
+  drive::DriveModel model = drive_with_checks();
+  model.protocol = "modbus-rtu";
+  model.objects[din1].address = {296, 0};
+  EXPECT_THAT(text(model, model.checks[0].remedy[0]), HasSubstr("din1_function (register 296) = 0"));
 }
 
 TEST_F(CommissionPlan, AWriteThatDidNotHoldIsNoCure) {
