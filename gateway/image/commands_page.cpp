@@ -183,7 +183,7 @@ constexpr std::array kCommands{
                 "gives the lease back; an axis that is enabled stays so until the lease's time is over", "to own it",
                 "at once"},
     CommandText{Command::take_over, "takes the axis from a client of a lower rank, after a halt", "a higher rank",
-                "it stands"},
+                "the halt is seen: it slows down, or stands"},
 };
 
 /// Which exception comes with which result, and why: the outcomes of gateway/core/error, in the order of both.
@@ -226,8 +226,9 @@ motion_state (32) tells. `axisgate explain result 9` says more of a result.
   out += R"(
 **When a command acts.** A *single write* is FC 5, 6 or 22, or FC 15 or 16 with one row. Everything else is a *block*.
 
-- With an id other than 0 only the id decides: another id than the last one of this client is new. Ids are kept 60 s after the
-  client's last connection. Where none is kept, the first pair is only remembered: result 10. A program begins by writing command 0
+- With an id other than 0 only the id decides: an id is new that is neither the last one of this address nor the last one of this
+  connection. So what a program scans unchanged starts nothing, whatever others at its address write. Ids are kept 60 s after the
+  address's last connection. Where none is kept, the first pair is only remembered: result 10. A program begins by writing command 0
   with an id that it will not use next.
 - With id 0, or without register 55, another command than the one remembered is new. The first block of a connection is only
   remembered. A single write acts on an empty memory too, and again after `rearm_ms`, but not when a stop of another client, a fault
