@@ -16,7 +16,7 @@
 
 namespace axisgate::dds {
 
-/// Writers of states under our key that are known at a time; beyond, those that come count as one more, until all go.
+/// Writers of states under our key that are known at a time; those beyond are not seen until one is gone.
 inline constexpr std::size_t kMaxNamesakes = 64;
 
 class Namesakes {

@@ -119,8 +119,12 @@ axisgate::GatewayState to_idl(const GatewayRecord& record, SteadyNs now, ClockDi
   return state;
 }
 
-axisgate::CommandReply to_idl(const ReplyRecord& record, const GatewayId& gateway) {
-  axisgate::CommandReply reply;
+namespace {
+
+/// What replies of both kinds begin with.
+template <typename Reply, typename Of>
+Reply reply_to(const Of& record, const GatewayId& gateway) {
+  Reply reply;
   put_gateway(reply, gateway);
   reply.axis(record.axis);
   reply.request_id(record.request_id);
@@ -130,14 +134,14 @@ axisgate::CommandReply to_idl(const ReplyRecord& record, const GatewayId& gatewa
   return reply;
 }
 
+}  // namespace
+
+axisgate::CommandReply to_idl(const ReplyRecord& record, const GatewayId& gateway) {
+  return reply_to<axisgate::CommandReply>(record, gateway);
+}
+
 axisgate::ObjectReply to_idl(const ObjectReplyRecord& record, const GatewayId& gateway) {
-  axisgate::ObjectReply reply;
-  put_gateway(reply, gateway);
-  reply.axis(record.axis);
-  reply.request_id(record.request_id);
-  reply.writer(record.writer);
-  reply.result(record.result);
-  reply.detail(record.detail);
+  auto reply = reply_to<axisgate::ObjectReply>(record, gateway);
   reply.value(record.value);
   reply.data(record.data);
   return reply;
