@@ -176,6 +176,22 @@ TEST_P(StrangersJog, ClaimsNothingWithTheVelocityThatTheAxisHolds) {
   EXPECT_EQ(a_.word(shown::owner), kMe);
 }
 
+// Whoever asks for the end of a jog by its name is not told done while the motor turns on.
+TEST_P(StrangersJog, IsEndedByWhoeverAsksForItsEnd) {
+  constexpr std::uint8_t kDone = 2;
+  constexpr std::int64_t kJogEnd = 33;
+  ASSERT_EQ(a_.coil(coil::jog_forward, false), kOk);
+  ASSERT_EQ(a_.coil(coil::jog_forward, true), kOk);
+  ASSERT_TRUE(plant_.turns_within(300ms));
+  EXPECT_EQ(answer_to({{row::command, kJogEnd}}), kDone);
+  for (int i = 0; i < 10; ++i) {
+    plant_.run(100ms);
+    static_cast<void>(a_.coil(coil::jog_forward, true));  // it is held on
+  }
+  EXPECT_TRUE(plant_.stands());
+  EXPECT_EQ(a_.word(shown::owner), kMe);
+}
+
 /// A DDS writer that owns the axis, and a stronger one.
 class StrongersRefusal : public Claims {
  protected:

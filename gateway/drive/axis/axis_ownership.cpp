@@ -116,10 +116,14 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
     case Command::jog_reverse:
       if (const Errc code = begin_jog(batch); code != Errc::ok) return refuse(asked, code);
       break;
-    case Command::jog_end:
-      if (!may_be_jog() && (!jog_.active() || jog_.client() != batch.client)) return nothing_asked(batch);
+    case Command::jog_end: {
+      // A coil that is let go is that of its client; a DDS program asks for the end by name, and is not told done for
+      // nothing.
+      const bool may_end = jog_.client() == batch.client || (batch.life && is_dds(*batch.life));
+      if (!may_be_jog() && !(jog_.active() && may_end)) return nothing_asked(batch);
       batch.command = Command::halt;
       break;
+    }
     case Command::end_run:
       return nothing_asked(batch);
     default:
