@@ -33,11 +33,15 @@ TEST(ResolvedLimits, EveryValueWithinTheLimitsFitsTheObjectOnBothEnds) {
   }
 }
 
-TEST(ResolvedLimits, MagnitudesStartAtZero) {
+// 3.3 Zeros: 0 is no speed and no ramp, nor is what a drive would hold as 0.
+TEST(ResolvedLimits, SpeedsAndRampsStartAtTheLeastThatTheDriveHolds) {
   const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
   for (const Quantity q : {Quantity::profile_velocity, Quantity::profile_acceleration, Quantity::max_velocity,
-                           Quantity::homing_speed_zero})
-    EXPECT_EQ(binding(model, q).limits.min, 0) << row(q).name;
+                           Quantity::homing_speed_zero}) {
+    const Binding& bound = binding(model, q);
+    EXPECT_GE(bound.to_raw(bound.limits.min, model.object(bound.object)).value_or(0), 1) << row(q).name;
+    EXPECT_GT(bound.limits.min, 0) << row(q).name;
+  }
 }
 
 TEST(ResolvedLimits, TheAxisLimitsNarrowWhatAClientMayWrite) {
@@ -51,9 +55,9 @@ TEST(ResolvedLimits, TheAxisLimitsNarrowWhatAClientMayWrite) {
   const DriveModel model = resolved(shipped("kinco-md"), input);
   EXPECT_EQ(binding(model, Quantity::target_position).limits, (Range{-1000, 250000}));
   EXPECT_EQ(binding(model, Quantity::target_velocity).limits, (Range{-1500000, 1500000}));
-  EXPECT_EQ(binding(model, Quantity::profile_velocity).limits, (Range{0, 1500000}));
-  EXPECT_EQ(binding(model, Quantity::max_velocity).limits, (Range{0, 1500000}));
-  EXPECT_EQ(binding(model, Quantity::profile_deceleration).limits, (Range{0, 6000}));
+  EXPECT_EQ(binding(model, Quantity::profile_velocity).limits.max, 1500000);
+  EXPECT_EQ(binding(model, Quantity::max_velocity).limits.max, 1500000);
+  EXPECT_EQ(binding(model, Quantity::profile_deceleration).limits.max, 6000);
   EXPECT_EQ(binding(model, Quantity::target_torque).limits, (Range{-800, 800}));
   EXPECT_EQ(binding(model, Quantity::max_torque).limits, (Range{0, 800}));
   EXPECT_EQ(binding(model, Quantity::quick_stop_deceleration).limits.min, 3000);

@@ -15,12 +15,20 @@
 namespace axisgate::app {
 namespace {
 
+/// Kinco's protocol: the end of such a read and the head of any that follows are, to a drive that counts from its
+/// second byte on, a write to another station. No read could be sent behind it.
+bool closes_the_line(const bus::ObjectAddress& address, const std::string& protocol) {
+  const auto command = static_cast<kinco::Command>(address.index >> 8);
+  return protocol == adapter::kKincoSerial && kinco::is_request(command) && command != kinco::Command::read;
+}
+
 /// Where a profile's object is read on this protocol; null: it is not, or a read of it is not documented to be
 /// harmless.
 const drive::Place* read_place(const drive::Object& object, const std::string& protocol) {
   const auto at = object.places.find(protocol);
   const bool harmless = object.readable && !object.trigger;
-  return at == object.places.end() || !harmless ? nullptr : &at->second;
+  return at == object.places.end() || !harmless || closes_the_line(at->second.address, protocol) ? nullptr
+                                                                                                 : &at->second;
 }
 
 /// As they leave on the line.
