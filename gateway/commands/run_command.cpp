@@ -69,6 +69,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   for (const StartLine& line : start_lines(loaded, AXISGATE_VERSION)) log.write(LogLevel::info, line.source, line.text);
   boost::asio::io_context io(1);
   AsioRuntime runtime(io);
+  EndSignals signals(io, log);
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not
   std::signal(SIGCHLD, SIG_DFL);  // inherited as ignored, it would hide how axisgate-dds ends
   const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(descriptor_needs(loaded.config));
@@ -110,8 +111,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
     io.stop();
   };
   const std::unique_ptr<Timer> last_answers = runtime.make_timer(end);
-  EndSignals signals(
-      io, log,
+  signals.start(
       [&](bool at_once) {
         service.stopping();
         if (at_once) return end();

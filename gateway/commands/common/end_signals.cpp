@@ -26,14 +26,14 @@ bool hangups_are_ignored() {
   return ::sigaction(SIGHUP, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
-EndSignals::EndSignals(boost::asio::io_context& io, const Log& log, std::function<void(bool at_once)> on_end,
-                       std::function<void()> on_reload)
-    : log_(log),
-      on_end_(std::move(on_end)),
-      on_reload_(std::move(on_reload)),
-      has_terminal_(has_controlling_terminal()),
-      signals_(io, SIGINT, SIGTERM) {
+EndSignals::EndSignals(boost::asio::io_context& io, const Log& log)
+    : log_(log), has_terminal_(has_controlling_terminal()), signals_(io, SIGINT, SIGTERM) {
   if (!hangups_are_ignored()) signals_.add(SIGHUP);
+}
+
+void EndSignals::start(std::function<void(bool at_once)> on_end, std::function<void()> on_reload) {
+  on_end_ = std::move(on_end);
+  on_reload_ = std::move(on_reload);
   wait();
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The signals that end the gateway: SIGTERM and SIGINT; SIGHUP where the process was started from a terminal, which is
 // then gone. Promises that the first one begins the end on purpose, and a second one ends the process at once; that a
-// SIGHUP to a service asks for a reload, and one that whoever started the process has it ignore (nohup) is ignored.
-// Never decides what becomes of the drives.
+// SIGHUP to a service asks for a reload, and one that whoever started the process has it ignore (nohup) is ignored;
+// that one which comes while the process still starts is answered then, and kills nothing. Never decides what becomes
+// of the drives.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -18,9 +19,10 @@ namespace axisgate::app {
 
 class EndSignals {
  public:
-  /// `on_end(at_once)` and `on_reload()` run on the loop.
-  EndSignals(boost::asio::io_context& io, const Log& log, std::function<void(bool at_once)> on_end,
-             std::function<void()> on_reload);
+  /// From now on none of them ends the process by itself.
+  EndSignals(boost::asio::io_context& io, const Log& log);
+  /// `on_end(at_once)` and `on_reload()` run on the loop, also for what has come before.
+  void start(std::function<void(bool at_once)> on_end, std::function<void()> on_reload);
 
  private:
   void wait();
