@@ -354,5 +354,13 @@ class PlcStory(Machine):
             self.until(f"the motor of axis {number} turns", lambda number=number: self.speed(number) != 0)
 
     def until_motor_stands(self, *numbers):
+        """By its position as well: what a JD calls its speed may be from before it has begun to turn."""
+        looks = 3
         for number in numbers:
-            self.until(f"the motor of axis {number} stands", lambda number=number: self.speed(number) == 0 and self.speed(number) == 0)
+            seen = []
+
+            def stands(number=number, seen=seen):
+                seen.append(self.position(number))
+                return self.speed(number) == 0 and len(seen) >= looks and len(set(seen[-looks:])) == 1
+
+            self.until(f"the motor of axis {number} stands", stands)
