@@ -162,6 +162,8 @@ class Axis {
   void observe_jog();
   void observe_reference(const AxisFacts& facts);
   void observe_volatile();
+  /// A serial drive has restarted between two polls, as that sign tells: what was cached of it is not true any more.
+  void on_unseen_restart(const char* sign);
   void stop_by_itself(Command command, bool latches, BatchCallback on_result);
   // What is owed until the drive shows it (axis_owed.cpp).
   void owe(const WriteBatch& stop);

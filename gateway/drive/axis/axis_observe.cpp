@@ -40,14 +40,13 @@ void Axis::observe_reference(const AxisFacts& facts) {
   const bool lasts = reference_invalidated_ || !core_.model.homed_mode;
   reference_invalidated_ = reference_invalidated_ && !facts.reference_tells;
   if (!lasts || !core_.homed || !facts.reference_tells || facts.reference || homing || !pending_.empty()) return;
-  core_.homed = false;
-  core_.store.invalidate_all();
-  host_.event(image_.number, EventKind::warning, 0,
-              "it has lost its reference: it has restarted, too quickly to go offline, or is homed by somebody else");
+  on_unseen_restart(
+      "it has lost its reference: it has restarted, too quickly to go offline, or is homed by somebody else");
 }
 
 // A drive without a reference and a state machine of its own: what it forgets with its power tells that it has
-// restarted. It was enabled by nobody since, and counts from where it stood.
+// restarted. It counts from where it stood, and must be enabled anew. Who has not seen that yet may have enabled and
+// started it since: an axis that is shown as disabled must not turn.
 void Axis::observe_volatile() {
   const bool remembers = !core_.is_virtual() || !core_.model.virtual_axis->gate_only;
   if (remembers || core_.turn.link != LinkState::online || !pending_.empty()) return;
@@ -57,10 +56,16 @@ void Axis::observe_volatile() {
     return read && core_.object(told.first).nvm == Nvm::no && state.number != told.second;
   });
   if (std::exchange(forgotten_, forgotten) || !forgotten) return;
-  core_.homed = false;
+  const bool may_run = holds_motor(core_.facts().state);
   core_.make(core_.model.controlword, 0);
+  on_unseen_restart("it has restarted, too quickly to go offline: enable it anew");
+  if (may_run) stop_by_itself(Command::disable, false, [](const BatchResult&) {});
+}
+
+void Axis::on_unseen_restart(const char* sign) {
+  core_.homed = false;
   core_.store.invalidate_all();
-  host_.event(image_.number, EventKind::warning, 0, "it has restarted, too quickly to go offline: enable it anew");
+  host_.event(image_.number, EventKind::warning, 0, sign);
 }
 
 // --- The image -----------------------------------------------------------------------------------------------------

@@ -99,11 +99,15 @@ bool out_of_reach(const AxisCore& core, ObjectId id) {
   return frames || object.composed || (enables && object.trigger);
 }
 
-// A width that this protocol can carry; 0 stands for all there is, and in a write for `bytes`.
+// A width that this protocol can carry; 0 stands for all there is, and in a write for `bytes`. Of registers, the last
+// one that it takes must have an address.
 bool size_fits(const AxisCore& core, const ObjectRequest& request) {
+  constexpr unsigned kLastRegister = 0xFFFF;
   const auto fits_a_field = [](std::size_t size) { return size == 1 || size == 2 || size == 4; };
-  if (request.size != 0) return fits_a_field(request.size);
   const bool by_length = core.drive.resync.by_length;
+  const std::size_t size = request.size == 0 && !request.write ? request.count : request.size;
+  if (by_length && size > 2 && request.index == kLastRegister) return false;
+  if (request.size != 0) return fits_a_field(request.size);
   if (!request.write) return !by_length || request.count == 0 || fits_a_field(request.count);
   // Longer objects, and such of 3 bytes, are carried by a chain of exchanges: CANopen alone has them.
   return is_canopen(core.drive) && request.bytes && !request.bytes->empty() && request.bytes->size() <= kMaxObjectBytes;

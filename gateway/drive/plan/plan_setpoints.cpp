@@ -368,7 +368,7 @@ void add_speeds(const AxisCore& core, int mode, Plan& plan) {
     const ObjectState& state = core.store[binding->object];
     const auto told = core.told.find(binding->object);
     if (told != core.told.end() && !state.clamped) {
-      if (!state.known || state.number != told->second) plan.add(Action::write(binding->object, told->second));
+      static_cast<void>(add_write(core, each, {0, told->second}, plan));
       continue;
     }
     const auto held = core.value(each);

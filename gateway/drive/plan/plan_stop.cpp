@@ -154,16 +154,19 @@ void add_end_of_halt(const AxisCore& core, int mode_after, Plan& plan) {
   }
   add_running_targets(core, false, plan);
   const Binding* target = core.model.binding(Quantity::target_position);
-  if (!core.is_continuous(core.mode_in_force()) && target != nullptr && !core.object(target->object).trigger) {
+  const bool takes_target =
+      !core.is_continuous(core.mode_in_force()) && target != nullptr && !core.object(target->object).trigger;
+  const bool leaves_mode = takes_target && core.mode_in_force() != 1;
+  if (takes_target) {
     // A halted homing would go on, and so would a move whose target was merely overwritten: the drive must have taken
     // the new set-point, the present position, before bit 8 falls.
-    if (core.mode_in_force() != 1) add_mode(core, 1, plan);
+    if (leaves_mode) add_mode(core, 1, plan);
     plan.add(Action::write(core.model.controlword, controlword::kHalt | kEnabled));
     add_target_here(core, plan);
     plan.add(Action::write(core.model.controlword, controlword::kHalt | kEnabled | kTake));
   }
   plan.add(Action::write(core.model.controlword, kEnabled));
-  if (writes(plan, core.model.mode) && mode_after != 1) add_mode(core, mode_after, plan);
+  if (leaves_mode && mode_after != 1) add_mode(core, mode_after, plan);
 }
 
 }  // namespace axisgate::drive

@@ -89,6 +89,27 @@ TEST_P(QuickRestart, AndASlowOneLeavesTheSpeedThatWasAskedFor) {
   }
 }
 
+// 3.3: a number is "known to hold" only "with no timeout since": a start that comes at once finds others in the drive.
+TEST_P(QuickRestart, RightBeforeAStartLeavesTheSpeedThatWasAskedFor) {
+  for (const auto boot_time : {60ms, 200ms, 500ms}) {
+    for (const auto pause : {0ms, 20ms, 50ms, 100ms, 200ms, 400ms}) {
+      SCOPED_TRACE(testing::Message() << boot_time.count() << ' ' << pause.count());
+      Rig rig(GetParam(), quick(boot_time));
+      rig.bring_to(enabled);
+      ASSERT_EQ(rig.write(Quantity::profile_velocity, kSlowly).outcome.code, Errc::ok);
+      rig.stage.run(2s);
+      restart(rig);
+      rig.stage.run(boot_time + pause);
+      static_cast<void>(rig.command(Command::enable));
+      static_cast<void>(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 500'000}})));
+      std::int64_t fastest = 0;
+      for (int i = 0; i < 100; ++i, rig.stage.run(10ms))
+        fastest = std::max(fastest, rig.axis()[Quantity::velocity_actual].value);
+      EXPECT_LE(fastest, kSlowly + kSlowly / 20);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, QuickRestart, testing::Values(KincoType::jd, KincoType::md),
                          [](const auto& tested) { return name(tested.param); });
 
@@ -202,6 +223,38 @@ TEST(StepperRestart, IsSeenByWhatItForgets) {
     ASSERT_EQ(rig.code(rig.move_to(30'000)), Errc::ok);
     rig.stage.run(300ms);
     EXPECT_LE(rig.axis()[Quantity::velocity_actual].value, kSlowly + kSlowly / 20);
+  }
+}
+
+// Whoever enables and starts it before anybody has seen the restart: what was accepted is not what it holds by then.
+TEST(StepperRestart, RightBeforeAStartLeavesNoMotorTurningOnAnAxisThatIsDisabled) {
+  for (const auto boot_time : {0ms, 60ms, 500ms}) {
+    for (const auto pause : {0ms, 20ms, 60ms, 100ms, 200ms, 400ms, 700ms}) {
+      for (const Command start : {Command::run_velocity, Command::move_relative}) {
+        SCOPED_TRACE(testing::Message() << boot_time.count() << ' ' << pause.count() << ' ' << text(start));
+        StepperOptions options;
+        options.drive.boot_time = boot_time;
+        StepperRig rig(options);
+        rig.online();
+        ASSERT_EQ(rig.code(rig.write(Quantity::profile_velocity, kSlowly)), Errc::ok);
+        rig.stage.run(2s);
+        restart(rig);
+        rig.stage.run(boot_time + pause);
+        static_cast<void>(rig.command(Command::enable));
+        const auto target = start == Command::move_relative ? Quantity::target_position : Quantity::target_velocity;
+        static_cast<void>(rig.ask(with_command(start, {{target, 90'000}})));
+        std::int64_t fastest = 0;
+        for (int i = 0; i < 50; ++i, rig.stage.run(20ms))
+          fastest = std::max(fastest, rig.axis()[Quantity::velocity_actual].value);
+        if (start == Command::move_relative) {
+          EXPECT_LE(fastest, kSlowly + kSlowly / 20);
+        }
+        rig.stage.run(5s);
+        const bool runs = rig.motor().run_state() == simulated::Id286pro::RunState::running;
+        EXPECT_FALSE(runs && rig.axis().axis_state == AxisState::disabled);
+        EXPECT_EQ(runs, rig.axis().motion_state == MotionState::active);
+      }
+    }
   }
 }
 

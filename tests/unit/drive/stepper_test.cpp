@@ -260,5 +260,25 @@ TEST(Stepper, TheEnableSwitchAtTheDriveIsALossOfEnableThatItsReturnDoesNotUndo) 
   EXPECT_FALSE(rig.axis().has(AxisInput::enabled));
 }
 
+// There is no register after the last one.
+TEST(StepperObjects, TheLastRegisterIsOneRegister) {
+  StepperRig rig;
+  rig.online();
+  for (const bool write : {false, true}) {
+    WriteBatch batch;
+    batch.role = Role::engineer;
+    batch.object = ObjectRequest{.write = write, .index = 0xFFFF, .size = 4};
+    EXPECT_EQ(rig.code(rig.ask(batch)), Errc::bad_value) << write;
+    batch.object->size = 2;
+    EXPECT_EQ(rig.code(rig.ask(batch)), Errc::refused_by_drive) << write;
+    batch.object->index = 0xFFFE;
+    batch.object->size = 4;
+    EXPECT_EQ(rig.code(rig.ask(batch)), Errc::refused_by_drive) << write;
+  }
+  WriteBatch batch;
+  batch.object = ObjectRequest{.index = 0xFFFF, .count = 4};
+  EXPECT_EQ(rig.code(rig.ask(batch)), Errc::bad_value);
+}
+
 }  // namespace
 }  // namespace axisgate::test
