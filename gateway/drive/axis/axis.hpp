@@ -158,8 +158,15 @@ class Axis {
   void end_expired_lease();
   void on_lease_action(const BatchResult& result);
   [[nodiscard]] Errc begin_jog(WriteBatch& batch);
-  [[nodiscard]] bool jog_must_stop(Command direction, std::int64_t velocity) const;
+  [[nodiscard]] Duration usual_position_gap() const;
+  /// No value: it is not homed, or nobody knows where it is, so no limit ends the jog.
+  [[nodiscard]] std::optional<JogTravel> jog_travel(std::int64_t velocity) const;
+  [[nodiscard]] bool jog_is_starting() const;
+  /// When a halt must be sent that ends the jog before the position limit, as far as is known now.
+  [[nodiscard]] Instant jog_limit_due() const;
+  void watch_position();
   void observe_jog();
+  void end_jog_at_limit();
   void observe_reference(const AxisFacts& facts);
   void observe_volatile();
   /// A serial drive has restarted between two polls, as that sign tells: what was cached of it is not true any more.
@@ -231,6 +238,9 @@ class Axis {
   Ownership ownership_;
   Accepted accepted_;
   Jog jog_;
+  Instant jog_started_ = kLongAgo;  ///< until then it stood, or moved otherwise
+  Instant position_at_ = kLongAgo;  ///< the newest sample of the position
+  Duration position_gap_{};         ///< between two of them, while it jogs
   OwedStop owed_;
   LateEnable late_enable_;
   Telling telling_;

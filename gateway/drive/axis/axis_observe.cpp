@@ -64,6 +64,7 @@ void Axis::observe_volatile() {
 
 void Axis::on_unseen_restart(const char* sign) {
   core_.homed = false;
+  core_.machine.forget_homing();
   core_.store.invalidate_all();
   host_.event(image_.number, EventKind::warning, 0, sign);
 }

@@ -33,8 +33,6 @@ Command command_of(StopKind stop) {
   return Command::disable;
 }
 
-bool outcome_unknown(Errc code) { return command_result(code) == CommandResult::outcome_unknown; }
-
 }  // namespace
 
 // --- What is owed
@@ -171,46 +169,6 @@ bool Axis::ends_what_is_owed() const {
     const WriteBatch& batch = p.command_sequence->batch();
     return !p.command_sequence->is_stop() && (asks_to_enable(batch) || (owed_.halts() && starts_motion(batch.command)));
   });
-}
-
-// --- Jog
-// ---------------------------------------------------------------------------------------------------------------
-
-void Axis::note_jog(const Pending& pending, Errc code) {
-  if (pending.jogs && outcome_unknown(code))
-    jog_.carry();
-  else if (pending.jogs && code != Errc::ok && !pending.command_sequence->begun() && !core_.reachable())
-    end_jog();
-  if (code == Errc::ok && pending.ends_jog != 0 && pending.ends_jog == jog_.press()) end_jog();
-  const bool no_other_jog = !jog_.active() || pending.ends_jog == jog_.press();
-  if (code != Errc::ok && pending.ends_jog != 0 && !pending.stopped_by && no_other_jog && runs_unwatched()) {
-    end_jog();
-    host_.event(image_.number, EventKind::warning, 0, "jog: another command has taken its mode and failed: halted");
-    stop_by_itself(Command::halt, false, [](const BatchResult&) {});
-  }
-}
-
-// The mode of a jog was taken from it, so nobody watches its button, and nothing has begun in its place.
-bool Axis::runs_unwatched() const {
-  const AxisFacts facts = core_.facts();
-  return facts.enabled() && facts.moving && core_.motion.running() == MotionKind::none &&
-         core_.motion.axis_state(facts) != AxisState::stopping;
-}
-
-// What a client has asked for before or beside the jog is the target again; a stop has left none.
-void Axis::end_jog() {
-  jog_.end();
-  if (core_.velocity_beside_jog && core_.motion.wanted(Quantity::target_velocity))
-    core_.motion.want(Quantity::target_velocity, *core_.velocity_beside_jog);
-  core_.velocity_beside_jog.reset();
-}
-
-// Its motor has no other dead man.
-void Axis::halt_jog(std::string why) {
-  if (!jog_.active()) return;
-  end_jog();
-  host_.event(image_.number, EventKind::warning, 0, "jog: " + why + ": halted");
-  stop_by_itself(Command::halt, false, [](const BatchResult&) {});
 }
 
 }  // namespace axisgate::drive

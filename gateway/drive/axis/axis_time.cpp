@@ -52,11 +52,12 @@ void Axis::on_time() {
   }
   end_expired_lease();
   if (jog_.expired(now)) halt_jog("its coil was not written 1 again in time");
+  end_jog_at_limit();
 }
 
 Instant Axis::next_deadline() const {
   Instant next = std::min({core_.motion.deadline(), core_.fault.deadline(), ownership_.until(), jog_.until(),
-                           owed_.next_deadline(core_.turn.now)});
+                           jog_limit_due(), owed_.next_deadline(core_.turn.now)});
   for (const Pending& p : pending_)
     for (const Waiting& client : p.callbacks) next = std::min(next, deadline_of(p, client));
   for (const Due& d : due_)

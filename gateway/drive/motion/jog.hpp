@@ -57,10 +57,10 @@ struct JogTravel {
   std::int64_t velocity = 0;  ///< signed, 0.001 rpm: the faster of what is shown and what was asked for
   std::optional<std::int64_t> deceleration{};  ///< 0.1 rpm/s; none: not known, the ramp's way is not reckoned
   Rational units_per_rev{10000};
-  Duration latency{};  ///< until a halt that is decided now acts
   Range limits;
 };
-/// A halt that is decided now would come to rest at the limit in the jog's direction, or past it.
-[[nodiscard]] bool must_stop(const JogTravel& travel, Command direction);
+/// How long from this position on, at this speed, until a halt that acts then comes to rest at the limit in the jog's
+/// direction; 0: it is too late. At most an hour.
+[[nodiscard]] Duration time_left(const JogTravel& travel, Command direction);
 
 }  // namespace axisgate::drive

@@ -43,6 +43,10 @@ class VirtualAxis {
 
   /// The drive comes up anew: switch on disabled, nothing known.
   void reset() { *this = VirtualAxis{}; }
+  /// The drive counts from somewhere else: what a homing has found is true no more.
+  void forget_homing() {
+    if (run_.kind == MotionKind::homing) end_ = End::none;
+  }
   /// A controlword was carried out: its step in the state machine (CiA 402-2, 8.4).
   void control(std::uint16_t word, const VirtualProperties& facts);
   /// The drive has acknowledged a start in this exchange. `goal`: where the position will be, as the drive counts.

@@ -99,14 +99,15 @@ bool out_of_reach(const AxisCore& core, ObjectId id) {
   return frames || object.composed || (enables && object.trigger);
 }
 
-// A width that this protocol can carry; 0 stands for all there is, and in a write for `bytes`. Of registers, the last
-// one that it takes must have an address.
-bool size_fits(const AxisCore& core, const ObjectRequest& request) {
+// A width that this protocol can carry; 0 stands for all there is, and in a write for `bytes`. A register has no
+// sub-index: what the wire would leave out must not make an object of its own, past limits and latch. And the last
+// register that a request takes must have an address.
+bool can_be_asked_for(const AxisCore& core, const ObjectRequest& request) {
   constexpr unsigned kLastRegister = 0xFFFF;
   const auto fits_a_field = [](std::size_t size) { return size == 1 || size == 2 || size == 4; };
   const bool by_length = core.drive.resync.by_length;
   const std::size_t size = request.size == 0 && !request.write ? request.count : request.size;
-  if (by_length && size > 2 && request.index == kLastRegister) return false;
+  if (by_length && (request.subindex != 0 || (size > 2 && request.index == kLastRegister))) return false;
   if (request.size != 0) return fits_a_field(request.size);
   if (!request.write) return !by_length || request.count == 0 || fits_a_field(request.count);
   // Longer objects, and such of 3 bytes, are carried by a chain of exchanges: CANopen alone has them.
@@ -177,7 +178,7 @@ Errc admit(const AxisCore& core, const WriteBatch& batch) {
   if (batch.jog_velocity && (velocity == nullptr || !core.model.command(Command::run_velocity)))
     return Errc::not_supported;
   if (const Errc code = admit_command(core, batch.command); code != Errc::ok) return code;
-  if (batch.object && !size_fits(core, *batch.object)) return Errc::bad_value;
+  if (batch.object && !can_be_asked_for(core, *batch.object)) return Errc::bad_value;
   if (batch.jog_velocity && !velocity->limits.holds(*batch.jog_velocity)) return Errc::bad_value;
   for (const Setpoint& sp : batch.setpoints) {
     const Binding* binding = core.model.binding(sp.quantity);

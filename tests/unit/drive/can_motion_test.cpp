@@ -291,6 +291,31 @@ TEST_P(CanMotion, HomingByMethod35MakesThePresentPositionZeroAndIsToldAsHomed) {
   EXPECT_TRUE(rig.axis().has(AxisInput::homed));
 }
 
+// A drive that stands says where it is once a second: the position is no older for that, and a jog needs no more room.
+TEST_P(CanMotion, AJogAfterALongStandRunsUpToTheLimit) {
+  fast();
+  write(Quantity::homing_method, 35);
+  ASSERT_EQ(command(Command::home), Errc::ok);
+  ASSERT_TRUE(completes());
+  write(Quantity::position_limit_min, -50'000);
+  write(Quantity::position_limit_max, 50'000);
+  WriteBatch speed;
+  speed.jog_velocity = 300'000;
+  ASSERT_EQ(rig.stage.ask(1, speed).outcome.code, Errc::ok);
+  rig.stage.run(5s);
+  ASSERT_EQ(command(Command::jog_forward), Errc::ok);
+  for (int i = 0; i < 30; ++i) {
+    rig.stage.run(100ms);
+    WriteBatch held;
+    held.jog_again = Command::jog_forward;
+    static_cast<void>(rig.stage.ask(1, held));
+  }
+  EXPECT_FALSE(rig.axis().has(AxisInput::moving));
+  EXPECT_TRUE(rig.told("halted at the position limit"));
+  EXPECT_LE(value(Quantity::position_actual), 50'000);
+  EXPECT_GT(value(Quantity::position_actual), 30'000);
+}
+
 TEST_P(CanMotion, ARunAtSpeedZeroIsNoHoming) {
   write(Quantity::target_velocity, 0);
   ASSERT_EQ(command(Command::run_velocity), Errc::ok);

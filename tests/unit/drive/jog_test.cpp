@@ -135,6 +135,34 @@ TEST(JogOnAnAxis, EndsAtThePositionLimitOfAHomedAxis) {
   }
 }
 
+// What is asked of the drive keeps the polls waiting: the position is older than it looks.
+TEST(JogOnAnAxis, EndsAtThePositionLimitAlsoWhereSomebodyWritesAllTheTime) {
+  RigOptions options = leased();
+  options.axis.position_limits = Range{-300'000, 300'000};
+  options.axis.homing_method = 35;
+  JoggedAxis axis(options);
+  EXPECT_EQ(axis.command(axis.plc, Command::home), Errc::ok);
+  ASSERT_TRUE(axis.rig.stage.run_until([&] {
+    axis.plc->last_request = axis.rig.stage.runtime().now();
+    return axis.rig.axis().has(AxisInput::homed);
+  }));
+  WriteBatch fast = setpoints({{Quantity::profile_acceleration, 100'000}, {Quantity::profile_deceleration, 100'000}});
+  fast.jog_velocity = 1'500'000;
+  EXPECT_EQ(axis.ask(axis.plc, fast), Errc::ok);
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
+  WriteBatch held;
+  held.jog_again = Command::jog_forward;
+  for (int i = 0; i < 300; ++i) {
+    static_cast<void>(axis.ask(axis.plc, held));
+    static_cast<void>(axis.ask(axis.plc, setpoints({{Quantity::homing_speed_zero, 60'000 + 6'000 * (i % 2)}})));
+  }
+  axis.keep(axis.plc, 2s);
+  EXPECT_FALSE(axis.rig.turns());
+  const std::int64_t end = axis.rig.axis()[Quantity::position_actual].value;
+  EXPECT_LE(end, 300'000);
+  EXPECT_GT(end, 100'000);
+}
+
 TEST(JogOnAnAxis, TheButtonOfAnotherClientDoesNotEndIt) {
   JoggedAxis axis;
   EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);

@@ -291,27 +291,19 @@ TEST(JogTravel, BeginsTheHaltAsFarAheadOfTheLimitAsTheRampTakes) {
   // 600 rpm, 600 rpm/s: one second at 5 turns/s on average is 5 turns, 50,000 units.
   JogTravel travel{.position = 0, .velocity = 600'000, .deceleration = 6'000, .limits = {-200'000, 100'000}};
   travel.position = 49'000;
-  EXPECT_FALSE(must_stop(travel, Command::jog_forward));
+  EXPECT_EQ(time_left(travel, Command::jog_forward), 10ms) << "1,000 units at 10 turns/s";
   travel.position = 50'500;
-  EXPECT_TRUE(must_stop(travel, Command::jog_forward));
-  EXPECT_FALSE(must_stop(travel, Command::jog_reverse)) << "away from the limit";
+  EXPECT_EQ(time_left(travel, Command::jog_forward), 0ms);
+  EXPECT_GT(time_left(travel, Command::jog_reverse), 1s) << "away from the limit";
   travel.velocity = -600'000;
   travel.position = -150'500;
-  EXPECT_TRUE(must_stop(travel, Command::jog_reverse));
-}
-
-TEST(JogTravel, ReckonsWithTheTimeUntilAHaltActs) {
-  // 600 rpm for 100 ms is one turn.
-  JogTravel travel{.position = 91'000, .velocity = 600'000, .latency = 100ms, .limits = {0, 100'000}};
-  EXPECT_TRUE(must_stop(travel, Command::jog_forward));
-  travel.position = 89'000;
-  EXPECT_FALSE(must_stop(travel, Command::jog_forward));
+  EXPECT_EQ(time_left(travel, Command::jog_reverse), 0ms);
 }
 
 TEST(JogTravel, AtTheLimitOnlyTheWayBackIsOpen) {
   const JogTravel travel{.position = 100'000, .limits = {0, 100'000}};
-  EXPECT_TRUE(must_stop(travel, Command::jog_forward));
-  EXPECT_FALSE(must_stop(travel, Command::jog_reverse));
+  EXPECT_EQ(time_left(travel, Command::jog_forward), 0s);
+  EXPECT_EQ(time_left(travel, Command::jog_reverse), 1h) << "it stands";
 }
 
 }  // namespace

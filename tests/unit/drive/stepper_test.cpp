@@ -260,6 +260,26 @@ TEST(Stepper, TheEnableSwitchAtTheDriveIsALossOfEnableThatItsReturnDoesNotUndo) 
   EXPECT_FALSE(rig.axis().has(AxisInput::enabled));
 }
 
+// 3.1: "on Modbus RTU the register and sub 0". The wire has no sub-index: another one would be the same register, by a
+// name that no limit and no gate knows.
+TEST(StepperObjects, HaveNoSubindex) {
+  constexpr std::uint16_t kSpeed = 307, kTrigger = 323, kRun = 3;
+  StepperRig rig;
+  rig.online();
+  const std::size_t starts = rig.motor().starts().size();
+  for (const auto& [index, value] : {std::pair{kSpeed, std::uint16_t{3000}}, {kTrigger, kRun}}) {
+    for (const bool write : {false, true}) {
+      WriteBatch batch;
+      batch.role = Role::engineer;
+      batch.object = ObjectRequest{.write = write, .index = index, .subindex = 1, .size = 2, .data = value};
+      EXPECT_EQ(rig.code(rig.ask(batch)), Errc::bad_value) << index << write;
+    }
+  }
+  rig.stage.run(1s);
+  EXPECT_EQ(rig.motor().starts().size(), starts);
+  EXPECT_EQ(rig.motor().run_state(), simulated::Id286pro::RunState::stopped);
+}
+
 // There is no register after the last one.
 TEST(StepperObjects, TheLastRegisterIsOneRegister) {
   StepperRig rig;

@@ -49,6 +49,32 @@ TEST(Stepper, HomingIsAttainedWhereItsPositionSaysSo) {
   FAIL() << "neither direction found the switch";
 }
 
+// 3.1 homed: "cleared by a drive restart", also one of which only what the drive forgets tells.
+TEST(Stepper, AHomingDoesNotOutliveAQuickRestart) {
+  constexpr std::int64_t kOwnSpeed = 60'000;
+  int homed = 0;
+  for (const std::int64_t method : {19, 21}) {
+    StepperOptions options = with_origin_switch();
+    options.drive.boot_time = 60ms;
+    StepperRig rig(options);
+    rig.online();
+    ASSERT_EQ(rig.code(rig.write(Quantity::profile_velocity, kOwnSpeed)), Errc::ok);
+    rig.enable();
+    ASSERT_EQ(rig.code(rig.ask(with_command(Command::home, {{Quantity::homing_method, method}}))), Errc::ok);
+    rig.stage.run_until([&] { return rig.axis().motion_state != MotionState::active; }, 70s);
+    if (rig.axis().motion_state != MotionState::completed) continue;  // the switch lies the other way
+    ++homed;
+    rig.stage.run(1s);
+    EXPECT_TRUE(rig.axis().has(AxisInput::homed));
+    auto& link = rig.stage.rtu_link(0);
+    link.line().restart(0, link.time_of(rig.stage.runtime().now()));
+    rig.stage.run(5s);
+    EXPECT_EQ(rig.axis().link_state, LinkState::online);
+    EXPECT_FALSE(rig.axis().has(AxisInput::homed));
+  }
+  EXPECT_EQ(homed, 1);
+}
+
 TEST(Stepper, AHomingThatIsStoppedIsNotAttained) {
   StepperOptions options = with_origin_switch();
   options.drive.stored[401] = 6;  // IN2 = decelerated stop
