@@ -12,18 +12,6 @@ const ClientAxis* Client::find(AxisNumber axis) const {
   return found == axes.end() ? nullptr : &found->second;
 }
 
-LastWords Client::last_words(std::uint64_t connection, AxisNumber axis) const {
-  const auto of_connection = words.find(connection);
-  if (of_connection == words.end()) return {};
-  const auto found = of_connection->second.find(axis);
-  return found == of_connection->second.end() ? LastWords{} : found->second;
-}
-
-void Client::put_words(std::uint64_t connection, AxisNumber axis, const LastWords& last) {
-  const auto found = words.find(connection);
-  if (found != words.end()) found->second[axis] = last;
-}
-
 std::optional<std::uint16_t> Client::last_id(AxisNumber axis) const {
   const auto found = host->ids.find(axis);
   return found == host->ids.end() ? std::nullopt : found->second.last;

@@ -79,6 +79,9 @@ struct Host {
   LineBucket refused_lines;    ///< of single writes, in the log
 };
 
+/// Of one connection: to which axes it has written what last.
+using ConnectionWords = std::map<AxisNumber, LastWords>;
+
 struct Client {
   ClientId id = 0;
   Address address{};
@@ -86,9 +89,6 @@ struct Client {
   std::shared_ptr<ClientLife> life;       ///< never null; outlives the client where it owns an axis
   std::size_t connections = 0;            ///< more than one only where "client" is "address"
   std::map<AxisNumber, ClientAxis> axes;  ///< those it has written to
-  /// Of each of its connections, by the number it has here: to which axes it has written what last.
-  std::map<std::uint64_t, std::map<AxisNumber, LastWords>> words;
-  std::uint64_t last_connection = 0;
   std::uint16_t heartbeat = 0;            ///< gateway register 8
   std::optional<std::uint16_t> beat{};    ///< the same as who may command wrote it; none yet: the first is a change
   ObjectBuffers objects;                  ///< function 43/13
@@ -101,9 +101,6 @@ struct Client {
   /// nullptr where it has written nothing to this axis yet.
   [[nodiscard]] const ClientAxis* find(AxisNumber axis) const;
   [[nodiscard]] ClientAxis& at(AxisNumber axis) { return axes[axis]; }
-  [[nodiscard]] LastWords last_words(std::uint64_t connection, AxisNumber axis) const;
-  /// Of a connection that has ended nothing is kept.
-  void put_words(std::uint64_t connection, AxisNumber axis, const LastWords& last);
   /// The last command_id other than 0 from its address for this axis, if one is kept.
   [[nodiscard]] std::optional<std::uint16_t> last_id(AxisNumber axis) const;
   /// Register 30: the last that acted, or came with command 0.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "gateway/image/command_port.hpp"
 #include "gateway/image/process_image.hpp"
@@ -20,9 +21,9 @@ struct Onlooker {
   const CommandPort& commands;
   const ListenerSettings& settings;
   const Client& client;
+  const std::shared_ptr<ConnectionWords>& words;  ///< of the connection by which it looks
   Role role = Role::viewer;
   Instant now = kLongAgo;
-  std::uint64_t connection = 0;  ///< its number among those of the client
 };
 
 /// In two's complement, 16 or 32 bits wide by the row's type.

@@ -33,18 +33,12 @@ Pipeline::Pipeline(const SessionContext& context, Role role, std::shared_ptr<Cli
       role_(role),
       client_(std::move(client)),
       emit_(std::move(emit)),
-      on_result_(std::move(on_result)),
-      connection_(++client_->last_connection) {
-  client_->words[connection_];
-}
+      on_result_(std::move(on_result)) {}
 
-Pipeline::~Pipeline() {
-  abandon();
-  client_->words.erase(connection_);
-}
+Pipeline::~Pipeline() { abandon(); }
 
 Onlooker Pipeline::onlooker(Instant now) const {
-  return {context_.image, context_.commands, context_.settings, *client_, role_, now, connection_};
+  return {context_.image, context_.commands, context_.settings, *client_, words_, role_, now};
 }
 
 void Pipeline::accept(const Frame& frame, Instant now) {

@@ -102,7 +102,7 @@ class Pipeline {
   std::shared_ptr<Client> client_;
   Emit emit_;
   OnResult on_result_;
-  std::uint64_t connection_;
+  std::shared_ptr<ConnectionWords> words_ = std::make_shared<ConnectionWords>();
   std::deque<Entry> entries_;
   StagedHalf half_;
   std::uint64_t last_number_ = 0;

@@ -20,13 +20,18 @@ bool stops_through(const RegisterRow& row, const Request& request) {
   return is_controlword && is_stop_controlword(value);
 }
 
+LastWords last_words(const Onlooker& onlooker, AxisNumber axis) {
+  const auto found = onlooker.words->find(axis);
+  return found == onlooker.words->end() ? LastWords{} : found->second;
+}
+
 }  // namespace
 
 WriteMemory memory_of(const Onlooker& onlooker, AxisNumber axis) {
   const Client& client = onlooker.client;
   WriteMemory memory;
-  memory.connection = onlooker.connection;
-  memory.words = client.last_words(onlooker.connection, axis);
+  memory.connection = onlooker.words;
+  memory.words = last_words(onlooker, axis);
   if (const ClientAxis* const own = client.find(axis)) {
     memory.edges = own->edges;
     memory.rows = own->rows;
@@ -39,7 +44,7 @@ void restore(const WriteMemory& memory, Client& client, AxisNumber axis) {
   ClientAxis& own = client.at(axis);
   own.edges = memory.edges;
   own.rows = memory.rows;
-  client.put_words(memory.connection, axis, memory.words);
+  (*memory.connection)[axis] = memory.words;
   if (memory.ids)
     client.host->ids[axis] = *memory.ids;
   else
@@ -54,7 +59,7 @@ Writing writing_to(const AxisImage& axis, const Onlooker& onlooker, WriteForm fo
   writing.request = onlooker.client.writes;
   writing.rearm = onlooker.settings.rearm;
   writing.client = onlooker.client.id;
-  writing.own = onlooker.client.last_words(onlooker.connection, axis.number);
+  writing.own = last_words(onlooker, axis.number);
   writing.endings = &axis.endings;
   writing.enabled = (shown_level_coils(axis) & kEnabled) != 0 && !axis.has(AxisInput::stop_latched);
   writing.runs_velocity = (shown_level_coils(axis) & kRunsVelocity) != 0;

@@ -4,6 +4,7 @@
 // edges, but for the stops in it. Never asks anything of an axis itself: WriteRun carries the plan out.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -22,8 +23,8 @@ struct WriteMemory {
   EdgeMemory edges;
   RowMemory rows;
   std::optional<CommandIds> ids;
-  std::uint64_t connection = 0;  ///< that writes
-  LastWords words;
+  std::shared_ptr<ConnectionWords> connection{};  ///< that writes
+  LastWords words;                                ///< of it, to this axis
 };
 [[nodiscard]] WriteMemory memory_of(const Onlooker& onlooker, AxisNumber axis);
 void restore(const WriteMemory& memory, Client& client, AxisNumber axis);
