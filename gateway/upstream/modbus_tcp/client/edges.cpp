@@ -123,8 +123,9 @@ bool EdgeMemory::zeros(const Writing& writing) {
 /// Level coils: rearm_ms never applies to them, and a 1 is no standing right. Coil 3 = 1 is a stop and not judged here.
 Verdict EdgeMemory::judge_level(const Item& item, const CoilRow& coil, bool value, const Writing& writing) {
   const bool single = writing.form == WriteForm::single;
-  if (!value) return single || item.is_on() ? Verdict::acts : Verdict::nothing;
-  const bool was_zero = item.written && item.value == 0;
+  const bool held = writing.own.coils[coil.offset];
+  if (!value) return single || held || item.is_on() ? Verdict::acts : Verdict::nothing;
+  const bool was_zero = item.written && item.value == 0 && !held;
   if (was_zero) return Verdict::acts;
   if (!item.written) {
     const bool first_enable = coil.offset == kEnable && single && !writing.needs_zero;
@@ -144,7 +145,7 @@ CoilAsks EdgeMemory::coil(const CoilRow& coil, bool value, const Writing& writin
   } else if (asked != Command::none) {
     const Kind kind{
         .stop = is_stop(asked), .relative = asked == Command::move_relative, .is_so = is_so(asked, writing)};
-    verdict = judge(item, value ? 1 : 0, kind, writing);
+    verdict = judge(item, value ? 1 : 0, kind, writing, writing.own.coils[coil.offset] ? 1 : 0);
   }
   const bool swallowed = !value && writing.form == WriteForm::block && item.is_on() && item.disowned;
   if (swallowed) verdict = Verdict::nothing;
@@ -158,18 +159,22 @@ JogAsks EdgeMemory::jog(const JogWrite& write, const Writing& writing) {
     std::optional<bool> value;
     Command start;
     bool was_on;
+    bool own;  ///< this connection has written it 1 itself
     bool single;
     [[nodiscard]] bool on() const { return value.value_or(was_on); }
-    [[nodiscard]] bool rises() const { return value.value_or(false) && item.written && !was_on; }
+    [[nodiscard]] bool rises() const { return value.value_or(false) && item.written && !was_on && !own; }
     [[nodiscard]] bool first() const { return value.value_or(false) && !item.written; }
-    [[nodiscard]] bool held() const { return value.value_or(false) && was_on; }
+    [[nodiscard]] bool held() const { return value.value_or(false) && (was_on || own); }
     /// A single 0 always ends: it may be a button that is let go after a reconnect.
-    [[nodiscard]] bool falls() const { return value && !*value && (single || (was_on && !item.disowned)); }
+    [[nodiscard]] bool falls() const { return value && !*value && (single || (was_on ? !item.disowned : own)); }
   };
   const bool single = writing.form == WriteForm::single;
-  const std::array sides{
-      Side{coils_.at(kJogForward), write.forward, Command::jog_forward, coils_.at(kJogForward).is_on(), single},
-      Side{coils_.at(kJogReverse), write.reverse, Command::jog_reverse, coils_.at(kJogReverse).is_on(), single}};
+  const auto side_of = [&](std::uint16_t coil, std::optional<bool> value, Command start) {
+    Item& item = coils_.at(coil);
+    return Side{item, value, start, item.is_on(), writing.own.coils[coil], single};
+  };
+  const std::array sides{side_of(kJogForward, write.forward, Command::jog_forward),
+                         side_of(kJogReverse, write.reverse, Command::jog_reverse)};
 
   JogAsks asks;
   const bool both = sides[0].on() && sides[1].on();

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <optional>
 
@@ -26,11 +27,12 @@ inline constexpr std::uint16_t kJogForward = jog_coil(Command::jog_forward);
 inline constexpr std::uint16_t kJogReverse = jog_coil(Command::jog_reverse);
 
 /// What one connection itself wrote last to one axis, whatever others of its address, or of its client, have written
-/// since. What it repeats in a block starts nothing.
+/// since. What it repeats in a block starts nothing, and a coil that it holds nothing at all.
 struct LastWords {
   std::optional<std::uint16_t> controlword{};
   std::optional<std::uint16_t> command{};
   std::optional<std::uint16_t> id{};  ///< that was not 0
+  std::bitset<kCoils> coils{};        ///< those that it wrote 1
 };
 
 /// How and when an item is written, by whom, and what the axis is like.

@@ -62,13 +62,14 @@ bool ends_anybodys_jog(const Request& request, std::uint16_t first, const AxisIm
 
 /// What the coils of the request ask for, by the edge rules.
 Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, Writing writing, const RowMemory& rows,
-          EdgeMemory& edges) {
+          EdgeMemory& edges, LastWords& words) {
   Asked asked;
   JogWrite jog;
   for (std::uint16_t i = 0; i < request.write_count && first + i < kCoils; ++i) {
     const CoilRow& coil = coil_rows()[first + i];
     if (!supports(axis, coil)) continue;
     const bool value = request.written_coil(i);
+    words.coils[coil.offset] = value;
     if (coil.offset == kJogForward || coil.offset == kJogReverse) {
       (coil.offset == kJogForward ? jog.forward : jog.reverse) = value;
       continue;
@@ -106,11 +107,14 @@ void add_stops(const Request& request, std::uint16_t i, const UnitView::BitPlace
     const Command asked = after.coil(coil, value, writing).command;
     if (!asks_to_stop(asked)) continue;
     edges = after;
+    memory.words.coils[at] = value;
     acting.push_back(asked);
   }
   EdgeMemory after = edges;
   if (after.jog(jog, writing).ends) {
     edges = after;
+    if (jog.forward) memory.words.coils[kJogForward] = *jog.forward;
+    if (jog.reverse) memory.words.coils[kJogReverse] = *jog.reverse;
     acting.push_back(Command::jog_end);
   }
   for (const Command command : kOrder) {
@@ -178,7 +182,8 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
   EdgeMemory edges = before == nullptr ? EdgeMemory{} : before->edges;
   const RowMemory rows = before == nullptr ? RowMemory{} : before->rows;
   const Writing writing = writing_to(axis, onlooker, single ? WriteForm::single : WriteForm::block);
-  const Asked asked = ask(request, first->offset, axis, writing, rows, edges);
+  LastWords words = writing.own;
+  const Asked asked = ask(request, first->offset, axis, writing, rows, edges, words);
   // Two starts at once: no one can say which motion was meant.
   if (std::count_if(asked.acting.begin(), asked.acting.end(), asks_to_move) > 1)
     return refuse(Errc::bad_value, first_start(asked.acting));
@@ -190,6 +195,7 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
   plan.not_new = asked.not_new;
   plan.before = memory_of(onlooker, axis.number);
   client.at(axis.number).edges = edges;
+  (*onlooker.words)[axis.number] = words;
   WriteBatch empty = client.new_batch(onlooker.role);
   empty.is_write = true;
   empty.all_zero = !single && is_all_zero(request);
