@@ -9,6 +9,7 @@
 
 #include "gateway/check/check_can.hpp"
 #include "gateway/check/check_dds.hpp"
+#include "gateway/check/check_limits.hpp"
 #include "gateway/check/check_lines.hpp"
 #include "gateway/check/check_masters.hpp"
 #include "gateway/config/adapter_names.hpp"
@@ -205,6 +206,7 @@ CheckReport check(const LoadedConfig& loaded) {
   out += "\nNo function of this gateway is a safety function: emergency stop and STO are wired.\n";
   for (const std::string& warning : timeout_warnings(loaded, budgets)) out += "warning: " + warning + "\n";
   for (const std::string& warning : lease_warnings(loaded, budgets)) out += "warning: " + warning + "\n";
+  for (const std::string& warning : limit_warnings(loaded)) out += "warning: " + warning + "\n";
   for (const std::string& warning : loaded.warnings) out += "warning: " + warning + "\n";
   return report;
 }

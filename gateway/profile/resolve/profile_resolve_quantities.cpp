@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "gateway/profile/json/json_schema.hpp"
+#include "gateway/profile/resolve/limit_keys.hpp"
 #include "gateway/profile/resolve/profile_resolving.hpp"
 
 namespace axisgate::drive {
@@ -18,6 +19,9 @@ bool is_directed(const QuantityRow& row) {
       row.kind == Kind::position || row.kind == Kind::velocity || row.kind == Kind::torque || row.kind == Kind::current;
   return directed && (row.type == RegisterType::i16 || row.type == RegisterType::i32);
 }
+
+constexpr std::string_view kPosition = "position", kVelocity = "velocity", kAcceleration = "acceleration",
+                           kTorque = "torque", kQuickStop = "quick_stop_deceleration_min";
 
 /// A speed or a ramp that the drive would hold as 0 is none: 0 means "leave as it is" (design 3.3 Zeros), and a drive
 /// that is told to slow down at 0 may turn on.
@@ -42,34 +46,17 @@ struct AxisLimit {
 };
 
 AxisLimit axis_limit(const ResolveAxis& axis, const QuantityRow& row) {
-  const auto magnitude = [&](const std::optional<std::int64_t>& limit, const char* key) {
+  const std::string key(limit_key(row.quantity));
+  const auto magnitude = [&](const std::optional<std::int64_t>& limit) {
     return limit ? AxisLimit{{-*limit, *limit}, key} : AxisLimit{};
   };
-  switch (row.quantity) {
-    case Quantity::target_position:
-    case Quantity::position_limit_min:
-    case Quantity::position_limit_max:
-      return axis.position_limits ? AxisLimit{*axis.position_limits, "position"} : AxisLimit{};
-    case Quantity::target_velocity:
-    case Quantity::profile_velocity:
-    case Quantity::homing_speed_switch:
-    case Quantity::homing_speed_zero:
-    case Quantity::max_velocity:
-      return magnitude(axis.velocity_limit, "velocity");
-    case Quantity::profile_acceleration:
-    case Quantity::profile_deceleration:
-    case Quantity::homing_acceleration:
-      return magnitude(axis.acceleration_limit, "acceleration");
-    case Quantity::target_torque:
-    case Quantity::max_torque:
-      return magnitude(axis.torque_limit, "torque");
-    case Quantity::quick_stop_deceleration:
-      if (axis.quick_stop_deceleration_min)
-        return {{*axis.quick_stop_deceleration_min, INT64_MAX}, "quick_stop_deceleration_min"};
-      return {};
-    default:
-      return {};
-  }
+  if (key == kPosition) return axis.position_limits ? AxisLimit{*axis.position_limits, key} : AxisLimit{};
+  if (key == kVelocity) return magnitude(axis.velocity_limit);
+  if (key == kAcceleration) return magnitude(axis.acceleration_limit);
+  if (key == kTorque) return magnitude(axis.torque_limit);
+  if (key == kQuickStop && axis.quick_stop_deceleration_min)
+    return {{*axis.quick_stop_deceleration_min, INT64_MAX}, key};
+  return {};
 }
 
 class AxisQuantities {
@@ -247,6 +234,32 @@ class AxisQuantities {
 };
 
 }  // namespace
+
+std::string_view limit_key(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::target_position:
+    case Quantity::position_limit_min:
+    case Quantity::position_limit_max:
+      return kPosition;
+    case Quantity::target_velocity:
+    case Quantity::profile_velocity:
+    case Quantity::homing_speed_switch:
+    case Quantity::homing_speed_zero:
+    case Quantity::max_velocity:
+      return kVelocity;
+    case Quantity::profile_acceleration:
+    case Quantity::profile_deceleration:
+    case Quantity::homing_acceleration:
+      return kAcceleration;
+    case Quantity::target_torque:
+    case Quantity::max_torque:
+      return kTorque;
+    case Quantity::quick_stop_deceleration:
+      return kQuickStop;
+    default:
+      return {};
+  }
+}
 
 void resolve_quantities(Resolving& resolving, bus::AxisSlot slot) { AxisQuantities(resolving, slot).run(); }
 

@@ -7,6 +7,7 @@ namespace axisgate::app {
 namespace {
 
 using std::chrono::milliseconds;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -106,6 +107,39 @@ TEST(Check, WarnsOfATimeoutThatNoAnswerCanKeep) {
               HasSubstr("warning: bus lift-serial: a timeout_ms of 5 is shorter than the longest request, which takes "
                         "10.2 ms with a drive that answers after 5 ms: its drives will be taken for unresponsive; "
                         "write at least 11\n"));
+}
+
+TEST(Check, WarnsOfLimitsThatLimitNothing) {
+  LoadedConfig loaded = one_axis();
+  AxisConfig& axis = loaded.config.buses[0].drives[0].axes[0];
+  axis.pointer = "/buses/0/drives/0/axes/0";
+  axis.limits.velocity = 600'000;
+  drive::AxisModel& model = loaded.models[0][0].axes[0];
+  model.supported |= bit(Quantity::target_velocity);
+  model.writable |= bit(Quantity::target_velocity);
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("warning: gateway.json: ")));
+  axis.limits.quick_stop_deceleration_min = 1000;
+  axis.limits.torque = 500;
+  EXPECT_THAT(check(loaded).text,
+              AllOf(HasSubstr("warning: gateway.json: /buses/0/drives/0/axes/0/limits/quick_stop_deceleration_min: "
+                              "limits nothing, for Kinco JD has no quick_stop_deceleration that can be written on "
+                              "kinco-serial: take it out\n"),
+                    HasSubstr("/limits/torque: limits nothing, for Kinco JD has no target_torque, max_torque that"),
+                    Not(HasSubstr("/limits/velocity: "))));
+}
+
+TEST(Check, WarnsOfHomingThatNoLimitReaches) {
+  LoadedConfig loaded = one_axis();
+  drive::AxisModel& model = loaded.models[0][0].axes[0];
+  model.supported |= bit(Quantity::target_velocity) | bit(Quantity::homing_speed_zero);
+  model.writable |= bit(Quantity::target_velocity);
+  model.supported_commands |= 1U << static_cast<unsigned>(Command::home);
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach homing")));
+  loaded.config.buses[0].drives[0].axes[0].limits.velocity = 600'000;
+  EXPECT_THAT(check(loaded).text, HasSubstr("/limits/velocity: does not reach homing: of Kinco JD no homing speed is "
+                                            "known that could be written; set a safe one in the drive itself\n"));
+  model.writable |= bit(Quantity::homing_speed_zero);
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach homing")));
 }
 
 TEST(Check, RepeatsTheWarnings) {
