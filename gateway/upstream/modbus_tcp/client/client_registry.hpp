@@ -80,7 +80,10 @@ struct Host {
 };
 
 /// Of one connection: to which axes it has written what last.
-using ConnectionWords = std::map<AxisNumber, LastWords>;
+struct ConnectionWords {
+  Instant connected_at;
+  std::map<AxisNumber, LastWords> axes{};
+};
 
 struct Client {
   ClientId id = 0;

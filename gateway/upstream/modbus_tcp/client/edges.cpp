@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/modbus_tcp/client/edges.hpp"
 
+#include <algorithm>
+
 namespace axisgate::modbus_tcp {
 namespace {
 
@@ -14,6 +16,37 @@ bool is_so(Command command, const Writing& writing) {
   return command == Command::fault_reset && !writing.needs_zero;
 }
 
+const Endings& endings_of(const Writing& writing) {
+  static const Endings kNothing;
+  return writing.endings == nullptr ? kNothing : *writing.endings;
+}
+
+/// A program that has lost its connection brings what another one has stopped since.
+bool brings_back(std::uint16_t id, const CommandIds& ids, const Writing& writing) {
+  constexpr ClientId kAnybody = ~ClientId{0};
+  return !writing.own.id && std::ranges::any_of(ids.overtaken, [&](const CommandIds::Overtaken& each) {
+    return each.id == id && endings_of(writing).interrupted(each.since, kAnybody);
+  });
+}
+
+void note_id(std::uint16_t id, bool acts, CommandIds& ids, const Writing& writing) {
+  const auto forget = [&ids](std::uint16_t gone) {
+    auto& all = ids.overtaken;
+    all.erase(std::remove_if(all.begin(), all.end(), [gone](const auto& each) { return each.id == gone; }), all.end());
+  };
+  const bool differs = ids.last != id;
+  if (differs && ids.last && writing.own.id != ids.last && writing.connected_at < ids.last_at) {
+    const bool known = std::ranges::any_of(ids.overtaken, [&](const auto& each) { return each.id == *ids.last; });
+    if (!known && ids.overtaken.size() == CommandIds::kMaxOvertaken) ids.overtaken.erase(ids.overtaken.begin());
+    if (!known) ids.overtaken.push_back({*ids.last, ids.since});
+  }
+  if (writing.own.id && *writing.own.id != id) forget(*writing.own.id);  // its program has gone on
+  if (acts) forget(id);
+  if (differs) ids.since = endings_of(writing).now();
+  ids.last = id;
+  ids.last_at = writing.now;
+}
+
 }  // namespace
 
 // --- Values --------------------------------------------------------------------------------------------------------
@@ -23,8 +56,7 @@ bool is_so(Command command, const Writing& writing) {
 /// told.
 Verdict EdgeMemory::judge_single(const Item& item, const Kind& kind, const Writing& writing) {
   const bool rearmed = item.at == kLongAgo || writing.now - item.at >= writing.rearm;
-  const Endings nothing;
-  const Endings& endings = writing.endings == nullptr ? nothing : *writing.endings;
+  const Endings& endings = endings_of(writing);
   const Endings::Point since = item.acted.value_or(0);
   const bool interrupted = item.acted && endings.interrupted(since, writing.client);
   if ((rearmed && !interrupted) || kind.unserved) return Verdict::acts;
@@ -67,7 +99,7 @@ Verdict EdgeMemory::conclude(Item& item, std::uint16_t value, Verdict verdict, c
   remember(item, value, writing);
   if (fresh || verdict == Verdict::acts) item.targets = writing.targets;
   if (verdict != Verdict::acts) return verdict;
-  item.acted = writing.endings == nullptr ? Endings::Point{0} : writing.endings->now();
+  item.acted = endings_of(writing).now();
   item.told = false;
   return verdict;
 }
@@ -104,9 +136,9 @@ Verdict EdgeMemory::command_with_id(Command value, std::uint16_t id, CommandIds&
     if (other_id || other_command || writing.form == WriteForm::single) verdict = Verdict::acts;
   } else if (value != Command::none && differs && id != writing.own.id) {
     // The first id of an address is only remembered: nobody knows whether it is one from before a restart.
-    verdict = kept ? Verdict::acts : Verdict::not_new;
+    verdict = kept && !brings_back(id, ids, writing) ? Verdict::acts : Verdict::not_new;
   }
-  ids.last = id;
+  note_id(id, verdict == Verdict::acts, ids, writing);
   if (verdict == Verdict::acts || value == Command::none) ids.seen = id;
   return conclude(command_, number, verdict, writing);
 }

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <bitset>
+#include <boost/container/static_vector.hpp>
 #include <cstdint>
 #include <optional>
 
@@ -43,6 +44,7 @@ struct Writing {
   Duration rearm;             ///< listener option rearm_ms
   ClientId client = 0;
   LastWords own{};                   ///< of the connection that writes, before this write
+  Instant connected_at = kLongAgo;   ///< the same connection
   const Endings* endings = nullptr;  ///< of the axis; none: nothing has ever ended
   bool enabled = false;              ///< coil 0 reads 1, and no stop is latched: an enable has nothing to do
   bool runs_velocity = false;        ///< coil 7 reads 1
@@ -62,6 +64,16 @@ enum class Verdict : std::uint8_t {
 struct CommandIds {
   std::optional<std::uint16_t> last;  ///< the last that was not 0
   std::optional<std::uint16_t> seen;  ///< the last that acted, or came with command 0: register 30
+  Instant last_at = kLongAgo;         ///< when `last` was written last
+  Endings::Point since = 0;           ///< of the axis, when it became the last one
+  /// What another program of the address has written over. A successor of a connection comes after all that this has
+  /// written, so a connection that was there before is another program's.
+  struct Overtaken {
+    std::uint16_t id = 0;
+    Endings::Point since = 0;
+  };
+  static constexpr std::size_t kMaxOvertaken = 4;  ///< the oldest is forgotten
+  boost::container::static_vector<Overtaken, kMaxOvertaken> overtaken{};
 };
 
 /// Bit 1 = 0, bit 2 = 0, or bits 0..3 = 6 or 7: a stop, where it acts (design 3.4 Stops).
@@ -91,7 +103,8 @@ class EdgeMemory {
   /// In a request without a command_id, or with command_id 0.
   [[nodiscard]] Verdict command(Command value, const Writing& writing);
   /// In a request with a command_id other than 0: only the id decides. It is new if it is neither the last one of its
-  /// address nor the last one of its connection.
+  /// address nor the last one of its connection; nor, as the first one of a connection, an overtaken one whose action a
+  /// stop, a fault or a loss has ended since.
   [[nodiscard]] Verdict command_with_id(Command value, std::uint16_t id, CommandIds& ids, const Writing& writing);
   /// Not of the jog coils.
   [[nodiscard]] CoilAsks coil(const CoilRow& coil, bool value, const Writing& writing);

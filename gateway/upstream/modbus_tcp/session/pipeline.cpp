@@ -27,13 +27,14 @@ bool found_by_checks(Errc code) {
 
 }  // namespace
 
-Pipeline::Pipeline(const SessionContext& context, Role role, std::shared_ptr<Client> client, Emit emit,
+Pipeline::Pipeline(const SessionContext& context, Role role, std::shared_ptr<Client> client, Instant now, Emit emit,
                    OnResult on_result)
     : context_(context),
       role_(role),
       client_(std::move(client)),
       emit_(std::move(emit)),
-      on_result_(std::move(on_result)) {}
+      on_result_(std::move(on_result)),
+      words_(std::make_shared<ConnectionWords>(ConnectionWords{now})) {}
 
 Pipeline::~Pipeline() { abandon(); }
 

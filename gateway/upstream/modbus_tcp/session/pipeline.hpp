@@ -25,7 +25,8 @@ class Pipeline {
   /// accept().
   using OnResult = std::function<void(std::uint64_t number, const Outcome& outcome)>;
 
-  Pipeline(const SessionContext& context, Role role, std::shared_ptr<Client> client, Emit emit, OnResult on_result);
+  Pipeline(const SessionContext& context, Role role, std::shared_ptr<Client> client, Instant now, Emit emit,
+           OnResult on_result);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
@@ -102,7 +103,7 @@ class Pipeline {
   std::shared_ptr<Client> client_;
   Emit emit_;
   OnResult on_result_;
-  std::shared_ptr<ConnectionWords> words_ = std::make_shared<ConnectionWords>();
+  std::shared_ptr<ConnectionWords> words_;
   std::deque<Entry> entries_;
   StagedHalf half_;
   std::uint64_t last_number_ = 0;

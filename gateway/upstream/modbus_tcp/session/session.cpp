@@ -25,7 +25,7 @@ class Session::Impl {
         client_(join(context, peer, now)),
         on_output_(std::move(on_output)),
         pipeline_(
-            context, peer.role, client_,
+            context, peer.role, client_, now,
             [this](std::uint16_t transaction, std::uint8_t unit, const Pdu& pdu) { put_reply(transaction, unit, pdu); },
             [this](std::uint64_t number, const Outcome& outcome) { on_result(number, outcome); }),
         now_(now),

@@ -195,7 +195,7 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
   plan.not_new = asked.not_new;
   plan.before = memory_of(onlooker, axis.number);
   client.at(axis.number).edges = edges;
-  (*onlooker.words)[axis.number] = words;
+  onlooker.words->axes[axis.number] = words;
   WriteBatch empty = client.new_batch(onlooker.role);
   empty.is_write = true;
   empty.all_zero = !single && is_all_zero(request);

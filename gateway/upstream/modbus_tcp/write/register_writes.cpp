@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <boost/container/static_vector.hpp>
 #include <utility>
 
@@ -100,7 +101,7 @@ class BatchMaker {
       put_zeros();
     else
       put_words();
-    (*onlooker_.words)[axis_] = words_;
+    onlooker_.words->axes[axis_] = words_;
     put_heartbeat();
     if (!found_.zeros && !only_remembered) put_rows();
     batch_.claims = register_claims(batch_);
@@ -194,6 +195,20 @@ class BatchMaker {
     return !write.cached && axis.reachable() && axis.lease.owned_by(client_.id);
   }
 
+  /// What a drive holds and no write may choose, read and carried back: "no homing method", or a value beyond the
+  /// limits. But a target beside what acts on it is asked for, and refused.
+  [[nodiscard]] bool is_carried_back(const RowWrite& write) const {
+    const RegisterRow& row = *write.row;
+    const AxisImage& axis = *found_.axis;
+    if (!write.cached) return false;
+    if (row.source == Source::jog_velocity) return !axis.limit(Quantity::target_velocity).holds(write.value);
+    if (row.source != Source::quantity) return false;
+    if (row.quantity == Quantity::homing_method) return write.value == 0;
+    constexpr std::array kTargets{Quantity::target_position, Quantity::target_velocity, Quantity::target_torque};
+    const bool acted_on = acting_ && std::ranges::find(kTargets, row.quantity) != kTargets.end();
+    return !acted_on && !axis.limit(row.quantity).holds(write.value);
+  }
+
   void put_rows() {
     std::size_t remembered = 0;
     for (const RowWrite& each : found_.rows) {
@@ -201,8 +216,7 @@ class BatchMaker {
       const bool changed = changed_[remembered++];
       // What the drive holds, or its client has not changed, and this role may not write is nobody's question.
       if (each.ignored || onlooker_.role < each.row->may_write) continue;
-      // "No homing method", which no write may choose: read from a drive, and carried back.
-      if (each.cached && is_quantity(*each.row, Quantity::homing_method) && each.value == 0) continue;
+      if (is_carried_back(each)) continue;
       const Asks how = asks(each, changed);
       if (how == Asks::no) continue;
       anew_ = anew_ || changed;

@@ -21,8 +21,8 @@ bool stops_through(const RegisterRow& row, const Request& request) {
 }
 
 LastWords last_words(const Onlooker& onlooker, AxisNumber axis) {
-  const auto found = onlooker.words->find(axis);
-  return found == onlooker.words->end() ? LastWords{} : found->second;
+  const auto found = onlooker.words->axes.find(axis);
+  return found == onlooker.words->axes.end() ? LastWords{} : found->second;
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ void restore(const WriteMemory& memory, Client& client, AxisNumber axis) {
   ClientAxis& own = client.at(axis);
   own.edges = memory.edges;
   own.rows = memory.rows;
-  (*memory.connection)[axis] = memory.words;
+  memory.connection->axes[axis] = memory.words;
   if (memory.ids)
     client.host->ids[axis] = *memory.ids;
   else
@@ -60,6 +60,7 @@ Writing writing_to(const AxisImage& axis, const Onlooker& onlooker, WriteForm fo
   writing.rearm = onlooker.settings.rearm;
   writing.client = onlooker.client.id;
   writing.own = last_words(onlooker, axis.number);
+  writing.connected_at = onlooker.words->connected_at;
   writing.endings = &axis.endings;
   writing.enabled = (shown_level_coils(axis) & kEnabled) != 0 && !axis.has(AxisInput::stop_latched);
   writing.runs_velocity = (shown_level_coils(axis) & kRunsVelocity) != 0;
