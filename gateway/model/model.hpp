@@ -39,6 +39,7 @@ struct ObjectDef {
   bus::ObjectAddress address;
   std::uint8_t size = 2;  ///< bytes: 1, 2 or 4
   bool is_signed = false;
+  Range printed{INT64_MIN, INT64_MAX};  ///< what its maker's sheet says that it takes
   bool readable = true;
   bool writable = false;
   bool trigger = false;  ///< the write itself starts something: never skipped as unchanged, never repeated

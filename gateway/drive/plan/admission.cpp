@@ -114,6 +114,22 @@ bool can_be_asked_for(const AxisCore& core, const ObjectRequest& request) {
   return is_canopen(core.drive) && request.bytes && !request.bytes->empty() && request.bytes->size() <= kMaxObjectBytes;
 }
 
+// Row 78, as each object counts that takes it. How a drive counts that it has not told yet is judged at its turn.
+bool set_position_fits(const AxisCore& core, std::int32_t value) {
+  const auto fits = [&](const Step& step) {
+    const Binding* unit = step.source == Step::Source::set_position ? core.model.binding(step.quantity) : nullptr;
+    if (unit == nullptr || !unit->scaled) return true;
+    const ObjectDef& object = core.object(step.object);
+    const auto raw = unit->to_raw(value, object);
+    return raw && object.printed.holds(*raw);
+  };
+  const auto& def = core.model.command(Command::set_position);
+  return !def || (std::all_of(def->steps.begin(), def->steps.end(), fits) &&
+                  std::all_of(def->variants.begin(), def->variants.end(), [&](const CommandDef::Variant& variant) {
+                    return std::all_of(variant.steps.begin(), variant.steps.end(), fits);
+                  }));
+}
+
 // What a row of the register map has given to the write batch, alone. No value: nothing.
 std::optional<WriteBatch> part_of(const WriteBatch& batch, const RegisterRow& row) {
   WriteBatch part;
@@ -174,6 +190,7 @@ Errc admit(const AxisCore& core, const WriteBatch& batch) {
   if (batch.mode && !core.model.takes(Quantity::mode)) return Errc::not_supported;
   if (batch.controlword && !core.model.takes(Quantity::controlword)) return Errc::not_supported;
   if (batch.set_position_value && !core.model.supports(Command::set_position)) return Errc::not_supported;
+  if (batch.set_position_value && !set_position_fits(core, *batch.set_position_value)) return Errc::bad_value;
   const Binding* velocity = core.model.binding(Quantity::target_velocity);
   if (batch.jog_velocity && (velocity == nullptr || !core.model.command(Command::run_velocity)))
     return Errc::not_supported;

@@ -211,6 +211,7 @@ void resolve_objects(Resolving& r) {
     def.address = at.address;
     def.size = type.size;
     def.is_signed = type.is_signed;
+    def.printed = object.numbers();
     def.readable = object.readable && !at.write_only && !at.unasked;
     def.writable = object.writable;
     def.composed = at.composed;

@@ -102,6 +102,25 @@ TEST(Stepper, SetPositionTakesAnyValueAtStandstill) {
   EXPECT_TRUE(reads(rig.axis(), Quantity::position_actual, -77'000));
 }
 
+TEST(Stepper, SetPositionTakesNoValueThatItsRegisterDoesNotHold) {
+  constexpr std::int32_t kMost = 2'000'000'000;  // register 321, of 10,000 pulses a turn
+  StepperRig rig;
+  rig.online();
+  rig.enable();
+  for (const std::int32_t value : {kMost + 1, -kMost - 1}) {
+    WriteBatch alone;
+    alone.set_position_value = value;
+    EXPECT_EQ(rig.code(rig.ask(alone)), Errc::bad_value) << value;
+    WriteBatch both = with_command(Command::set_position);
+    both.set_position_value = value;
+    EXPECT_EQ(rig.code(rig.ask(both)), Errc::bad_value) << value;
+  }
+  EXPECT_TRUE(reads(rig.axis(), Quantity::position_actual, 0));
+  WriteBatch most = with_command(Command::set_position);
+  most.set_position_value = kMost;
+  EXPECT_EQ(rig.code(rig.ask(most)), Errc::ok);
+}
+
 // Raw words ----------------------------------------------------------------------------------------------------------
 
 TEST(Stepper, TakesTheControlwordsOfAServo) {
