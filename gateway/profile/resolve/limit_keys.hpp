@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "gateway/image/quantity.hpp"
+#include "gateway/model/model.hpp"
 
 namespace axisgate::drive {
 
