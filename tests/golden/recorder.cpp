@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/golden/recorder.hpp"
 
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+
 #include "tests/stage/transcript.hpp"
 
 namespace axisgate::test {
@@ -26,7 +30,48 @@ GatewayStage::Line staged(const simulated::CanDriveOptions& drive) {
   return line;
 }
 
+std::optional<simulated::KincoType> kinco_named(const std::string& profile) {
+  if (profile == "kinco-jd") return simulated::KincoType::jd;
+  return profile == "kinco-md" ? std::optional(simulated::KincoType::md) : std::nullopt;
+}
+
+GatewayStage::Line staged(const std::string& profile, const std::string& adapter, std::uint8_t address) {
+  simulated::DriveOptions kinco;
+  const auto type = kinco_named(profile);
+  kinco.type = type.value_or(kinco.type);
+  kinco.station = address;
+  if (adapter == "kinco-serial" && type) {
+    GatewayStage::Line line = staged(*type);
+    line.drives[0].options.station = address;
+    return line;
+  }
+  if (adapter == "modbus-rtu" && type) return staged(simulated::RtuDriveOptions(simulated::KincoRtuDrive{kinco, {}}));
+  if (adapter == "modbus-rtu" && profile == "id286pro")
+    return staged(simulated::RtuDriveOptions(simulated::Id286proOptions{.unit = address}));
+  if (adapter == "canopen" && type) return staged(simulated::CanDriveOptions(simulated::KincoCanDrive{kinco, {}}));
+  if (adapter != "canopen") throw std::runtime_error("no drive is simulated for " + profile + " on " + adapter);
+  GatewayStage::Line line = staged(simulated::CanDriveOptions(simulated::LeadshineOptions{.node = address}));
+  line.can_drives[0].profile = profile;
+  return line;
+}
+
 }  // namespace
+
+struct Recorder::Subject {
+  GatewayStage::Line line;
+  bool bring_up = false;
+  explicit Subject(const std::string& first_line) {
+    static const std::regex kForm(R"(# (\S+) on (\S+) at address (\d+)(, from its bring-up)?)");
+    std::smatch found;
+    if (!std::regex_match(first_line, found, kForm)) throw std::runtime_error("names no drive: " + first_line);
+    line = staged(found[1], found[2], static_cast<std::uint8_t>(std::stoi(found[3])));
+    bring_up = found[4].matched;
+  }
+};
+
+Recorder::Recorder(const std::string& first_line) : Recorder(Subject(first_line)) { text_ = first_line + "\n" + text_; }
+
+Recorder::Recorder(const Subject& subject) : Recorder(subject.line, subject.bring_up) {}
 
 Recorder::Recorder(simulated::KincoType type, bool bring_up) : Recorder(staged(type), bring_up) {}
 
@@ -145,6 +190,29 @@ void Recorder::read(std::uint16_t offset, std::uint16_t count) {
   store_be16(pdu, 1, static_cast<std::uint16_t>(100 + offset));
   store_be16(pdu, 3, count);
   send(std::move(pdu), "the PLC reads " + std::to_string(count) + " registers from " + std::to_string(100 + offset));
+}
+
+void Recorder::tell(const std::string& remark) {
+  static const std::regex kWrites(R"(the PLC writes registers from (\d+):((?: \d+)+))");
+  static const std::regex kReads(R"(the PLC reads (\d+) registers from (\d+))");
+  static const std::regex kSets(R"(the panel sets coil (\d+) to ([01]))");
+  static const std::regex kPass(R"((\d+) ms pass)");
+  std::smatch found;
+  const auto number = [&found](std::size_t at) { return static_cast<std::uint16_t>(std::stoi(found[at])); };
+  const auto offset = [&](std::size_t at) { return static_cast<std::uint16_t>(number(at) - 100); };
+  if (std::regex_match(remark, found, kWrites)) {
+    std::istringstream values(found[2]);
+    std::vector<std::uint16_t> registers;
+    for (std::uint16_t each = 0; values >> each;) registers.push_back(each);
+    write(offset(1), registers);
+  } else if (std::regex_match(remark, found, kReads)) {
+    read(offset(2), number(1));
+  } else if (std::regex_match(remark, found, kSets)) {
+    coil(offset(1), found[2] == "1");
+  } else {
+    say(remark);
+    if (std::regex_match(remark, found, kPass)) run(std::chrono::milliseconds(number(1)));
+  }
 }
 
 void Recorder::run(Duration time) {

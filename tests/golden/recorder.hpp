@@ -23,9 +23,14 @@ class Recorder {
   Recorder(const simulated::RtuDriveOptions& drive, bool bring_up);
   /// The same on a CAN bus; a frame is told by its identifier and its bytes.
   Recorder(const simulated::CanDriveOptions& drive, bool bring_up);
+  /// As a story's first line says: "# kinco-jd on kinco-serial at address 1", with ", from its bring-up" behind it. A
+  /// profile of no simulated drive's own name is of a CiA 402 drive on canopen. It is the first line of this one too.
+  explicit Recorder(const std::string& first_line);
 
   /// A remark of the teller, as a line of its own.
   void say(const std::string& text);
+  /// A line of a story: what the client does, or "600 ms pass", is done and told; anything else is said.
+  void tell(const std::string& remark);
   /// FC 16 at `100 + offset`; runs until the reply is there.
   void write(std::uint16_t offset, const std::vector<std::uint16_t>& registers);
   void coil(std::uint16_t number, bool on);
@@ -41,6 +46,8 @@ class Recorder {
 
  private:
   Recorder(const GatewayStage::Line& line, bool bring_up);
+  struct Subject;
+  explicit Recorder(const Subject& subject);
   void line(const std::string& who, const std::string& what);
   void send(std::vector<Byte> pdu, const std::string& meaning);
   void take_output();

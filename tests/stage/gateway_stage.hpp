@@ -39,6 +39,7 @@ struct CanStageDrive {
   /// 1018h as the configuration would have it: vendor, product, revision, serial.
   std::array<std::optional<std::uint32_t>, 4> identity{};
   std::optional<drive::ResolveAxis> axis_b{};  ///< of a Keya: its motor B; none: that motor is nobody's axis
+  std::string profile{};                       ///< of a CiA 402 drive; empty: its type's own
 };
 
 /// A Keya on RS232 or RS485.

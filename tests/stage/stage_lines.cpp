@@ -90,6 +90,7 @@ Entry entry_of(const CanStageDrive& staged) {
   }
   const auto* kinco = std::get_if<simulated::KincoCanDrive>(&staged.options);
   if (kinco != nullptr) name_kinco(entry, kinco->drive.type);
+  if (!staged.profile.empty()) entry.profile = staged.profile;
   return entry;
 }
 
