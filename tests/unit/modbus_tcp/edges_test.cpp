@@ -175,53 +175,6 @@ TEST(Edges, of_command_ids) {
   }
 }
 
-// `own`: what the connection wrote last itself; by the address the id of another one was written since.
-TEST(Edges, what_a_connection_repeats_is_not_new_whatever_others_of_its_address_wrote) {
-  const auto write = [](Command command, std::uint16_t id, const LastWords& own) {
-    EdgeMemory memory;
-    CommandIds ids{.last = 3, .seen = 3};
-    Writing first = block();
-    static_cast<void>(memory.command_with_id(halt, 900, ids, first));
-    Writing writing = block(10ms);
-    writing.own = own;
-    return memory.command_with_id(command, id, ids, writing);
-  };
-  EXPECT_EQ(write(run_velocity, 4, {.command = 8, .id = 4}), kNothing);
-  EXPECT_EQ(write(run_velocity, 4, {.command = 0, .id = 4}), kNothing) << "zeros never erase it";
-  EXPECT_EQ(write(run_velocity, 5, {.command = 8, .id = 4}), kActs);
-  EXPECT_EQ(write(run_velocity, 4, {}), kActs) << "on a new connection the id of the address decides";
-  EXPECT_EQ(write(run_velocity, 900, {.command = 8, .id = 4}), kNothing);
-  EXPECT_EQ(write(quick_stop, 4, {.command = 3, .id = 4}), kActs) << "a stop too many is the smaller harm";
-  EXPECT_EQ(write(halt, 900, {.command = 4, .id = 4}), kActs) << "an id that differs from its own";
-}
-
-TEST(Edges, what_another_program_has_overtaken_is_not_new_once_its_action_was_ended) {
-  EdgeMemory memory;
-  CommandIds ids;
-  Endings endings;
-  const auto write = [&](std::uint16_t id, std::optional<std::uint16_t> own, Duration connected, Duration now) {
-    Writing writing = block(now);
-    writing.own.id = own;
-    writing.connected_at = Instant{} + connected;
-    writing.endings = &endings;
-    return memory.command_with_id(run_velocity, id, ids, writing);
-  };
-  EXPECT_EQ(write(3, {}, 0ms, 10ms), kNotNew);
-  EXPECT_EQ(write(4, 3, 0ms, 20ms), kActs);
-  EXPECT_EQ(write(900, {}, 15ms, 30ms), kActs) << "of another program: its connection was there before";
-  EXPECT_EQ(write(4, {}, 40ms, 50ms), kActs) << "nothing was ended";
-  EXPECT_EQ(write(901, 900, 15ms, 60ms), kActs);
-  endings.stopped(kMe);
-  EXPECT_EQ(write(4, {}, 70ms, 80ms), kNotNew) << "the first id of a connection";
-  EXPECT_EQ(write(4, {}, 90ms, 100ms), kNothing) << "and the last of the address by then";
-  EXPECT_EQ(write(902, 901, 15ms, 110ms), kActs);
-  EXPECT_EQ(write(5, 4, 90ms, 120ms), kActs) << "its program goes on";
-  EXPECT_EQ(write(4, {}, 130ms, 140ms), kActs) << "and has left the id";
-  EXPECT_EQ(write(6, {}, 150ms, 160ms), kActs) << "of a successor, which has overtaken nothing";
-  endings.stopped(kMe);
-  EXPECT_EQ(write(4, {}, 170ms, 180ms), kActs) << "so the id of the address decides";
-}
-
 // Of one client that is all connections of an address.
 TEST(Edges, what_a_connection_repeats_without_an_id_is_not_new_either) {
   EdgeMemory memory;
