@@ -184,6 +184,20 @@ class ByHeartbeat(Masters):
 
         until("their axes stand", all_stand)
 
+    def test_who_ends_its_heartbeat_is_gone(self):
+        (number, master), = ((each, master) for each, master in self.masters.items() if master.vendor == CYCLONE)
+        self.at = master.name
+        place = self.events.now()
+
+        def told():  # each may be lost
+            self.counter += 2
+            master.beat(self.counter)
+            master.beat(self.counter + 1, verb="writedispose")
+            return any("is gone" in event["text"] for event in self.events.samples("axis_event", place, axis=number, kind=LEASE))
+
+        until("it is told as gone", told)
+        self.assert_stopped_for_good(number)
+
     def test_who_asks_for_a_shorter_lease_is_stopped_sooner(self):
         place = self.events.now()
 

@@ -186,9 +186,9 @@ class Peer(Program):
         number = self.write("object_request", axis=axis, index=index, subindex=subindex, **members)
         return self.sample("object_reply", request_id=number, writer=self.guids["object_request"])
 
-    def beat(self, counter, lease_ms=0, client=None):
+    def beat(self, counter, lease_ms=0, client=None, verb="write"):
         """One sample of heartbeat for its writer of commands."""
-        self.say("write", "heartbeat", f"client={client or self.guids['axis_command']}", f"counter={counter}", f"lease_ms={lease_ms}")
+        self.say(verb, "heartbeat", f"client={client or self.guids['axis_command']}", f"counter={counter}", f"lease_ms={lease_ms}")
 
     def delete(self, topic="axis_command"):
         self.say("delete", topic)

@@ -204,6 +204,11 @@ void DdsClients::on_beats(const BeatRecord& record, Instant now) {
 // asked for nothing yet: a program that dies right after its first command is stopped as soon as it wished.
 void DdsClients::on_heartbeat(const HeartbeatRecord& record, Instant now) {
   const auto known = clients_.find(record.client);
+  // Who ends it says that its program has nothing more to say. Its writer is there still: by a sample it comes back.
+  if (record.gone) {
+    if (known != clients_.end() && same_participant(record.writer, record.client)) leave(known->first, known->second);
+    return;
+  }
   if (!signs_.counts(record, known == clients_.end() ? std::nullopt : known->second.counter, now)) return;
   DdsClient& client = beating(record.client, now);
   client.counter = record.counter;
@@ -270,7 +275,7 @@ void DdsClients::end(DdsClient& client) {
 void DdsClients::remember_held(const Guid& writer, DdsClient& client) {
   if (client.held.empty()) return;
   for (auto& [axis, jog] : client.held) jog.starting = false;
-  held_before_.emplace_back(writer, std::move(client.held));
+  held_before_.emplace_back(writer, std::exchange(client.held, {}));
   if (held_before_.size() > kMaxWriters) held_before_.pop_front();
 }
 
@@ -295,11 +300,17 @@ void DdsClients::leave_axes(const Guid& writer, const ClientLife& life) {
   }
 }
 
-DdsClients::Clients::iterator DdsClients::forget(Clients::iterator client) {
-  remember_held(client->first, client->second);
+/// No client any more, until it asks again.
+void DdsClients::leave(const Guid& writer, DdsClient& client) {
+  remember_held(writer, client);
   std::erase_if(gone_owners_, [&](const auto& each) { return !owns(each.second); });
-  if (const auto& life = client->second.life; life != nullptr && owns(life->id)) leave_axes(client->first, *life);
-  end(client->second);
+  if (client.life != nullptr && owns(client.life->id)) leave_axes(writer, *client.life);
+  end(client);
+  client.unleased = false;
+}
+
+DdsClients::Clients::iterator DdsClients::forget(Clients::iterator client) {
+  leave(client->first, client->second);
   return clients_.erase(client);
 }
 

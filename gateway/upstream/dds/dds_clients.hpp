@@ -107,6 +107,7 @@ class DdsClients {
   [[nodiscard]] bool makes_way(const DdsClient& client) const;
   [[nodiscard]] bool make_room();
   void end(DdsClient& client);
+  void leave(const Guid& writer, DdsClient& client);
   Clients::iterator forget(Clients::iterator client);
   void remember_held(const Guid& writer, DdsClient& client);
   void recall_held(const Guid& writer, DdsClient& client);

@@ -109,7 +109,7 @@ void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>,
 
 template <typename Coder, typename R>
 void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>, HeartbeatRecord> {
-  coder(r.writer, r.client, r.counter, r.lease_ms, r.written);
+  coder(r.writer, r.client, r.counter, r.lease_ms, r.written, r.gone);
 }
 
 template <typename Coder, typename R>

@@ -18,7 +18,7 @@
 namespace axisgate::dds {
 
 /// First byte of each packet. Both ends are installed together: another version is another installation.
-inline constexpr std::uint8_t kLinkVersion = 4;
+inline constexpr std::uint8_t kLinkVersion = 5;
 inline constexpr std::size_t kMaxPacket = 64 * 1024;
 inline constexpr std::size_t kMaxName = 64;
 inline constexpr std::size_t kMaxText = 256;
@@ -151,13 +151,14 @@ struct BeatRecord {
   friend bool operator==(const BeatRecord&, const BeatRecord&) = default;
 };
 
-/// A sample of heartbeat, as it came.
+/// A sample of heartbeat, as it came; or, `gone`, its writer has disposed that client's instance.
 struct HeartbeatRecord {
   Guid writer{};  ///< of the heartbeat
   Guid client{};  ///< the writer of commands that it speaks for
   std::uint32_t counter = 0;
   std::uint32_t lease_ms = 0;
   SteadyNs written = 0;
+  bool gone = false;
   friend bool operator==(const HeartbeatRecord&, const HeartbeatRecord&) = default;
 };
 

@@ -48,7 +48,7 @@ std::vector<Record> one_of_each() {
           beats,
           command,
           object,
-          HeartbeatRecord{a_guid(), Guid{1, 2}, 0xFFFFFFFE, 300, -9},
+          HeartbeatRecord{a_guid(), Guid{1, 2}, 0xFFFFFFFE, 300, -9, true},
           NamesakeRecord{a_guid(), 499, "192.168.1.8", true},
           JointCommandsRecord{a_guid(), 77, {"lift", "", "feeder"}, {1.5, -2, 0}, {3}, 2},
           RosActionRecord{a_guid(), -78, 499, 3},

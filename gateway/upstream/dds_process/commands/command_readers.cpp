@@ -2,6 +2,7 @@
 #include "gateway/upstream/dds_process/commands/command_readers.hpp"
 
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <type_traits>
 
 #include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
@@ -23,6 +24,15 @@ fastdds::DataReaderQos object_qos() {
   fastdds::DataReaderQos qos = object_reader_qos(kMostSamplesPerAxis);
   qos.history().kind = fastdds::KEEP_ALL_HISTORY_QOS;
   return qos;
+}
+
+// The key of a heartbeat is its client's GUID, so its handle is, too.
+HeartbeatRecord end_of_heartbeat(const fastdds::SampleInfo& info) {
+  HeartbeatRecord out;
+  out.writer = to_guid(info.sample_identity.writer_guid());
+  out.client = to_guid(eprosima::fastrtps::rtps::iHandle2GUID(info.instance_handle));
+  out.gone = true;
+  return out;
 }
 
 }  // namespace
@@ -52,7 +62,11 @@ bool CommandReaders::take_from(fastdds::DataReader& reader, std::size_t most, st
   fastdds::SampleInfo info;
   for (; most > 0; --most) {
     if (reader.take_next_sample(&sample, &info) != ReturnCode_t::RETCODE_OK) return true;
-    if (!info.valid_data) continue;
+    if (!info.valid_data) {
+      const bool disposed = info.instance_state == fastdds::NOT_ALIVE_DISPOSED_INSTANCE_STATE;
+      if (std::is_same_v<Sample, Heartbeat> && disposed) taken.emplace_back(end_of_heartbeat(info));
+      continue;
+    }
     const Guid writer = to_guid(info.sample_identity.writer_guid());
     watch_.on_sample(writer, steady_now());
     taken.emplace_back(to_record(
