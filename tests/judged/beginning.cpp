@@ -20,6 +20,7 @@ ContractOptions options_of(const obey::Plant& plant, const Program& program, std
   const Subject subject = program.subject;
   ContractOptions options;
   options.by_address = plant.listener.client_is_address;
+  options.together = together(seed);
   options.staged = plant.listener.staged_halves;
   options.leases = program.leases;
   options.rearm_ms = plant.listener.rearm / std::chrono::milliseconds(1);
@@ -51,6 +52,11 @@ LeaseRules lease_of(const Program& program, std::uint64_t seed) {
   return rules;
 }
 
+std::size_t together(std::uint64_t seed) {
+  if (seed % 4 == 1) return 1;  // "client": "address"
+  return seed % 3 == 2 ? 2 : seed % 6 == 0 ? model::kModbus : 1;
+}
+
 Beginning begin(obey::Plant& plant, const Program& program, std::uint64_t seed) {
   constexpr std::int64_t kSinceReady = 100;
   plant.ready();
@@ -62,6 +68,10 @@ Beginning begin(obey::Plant& plant, const Program& program, std::uint64_t seed) 
   for (const auto& [offset, value] : rows)
     if (!fitter->row(offset, value).ok()) throw std::runtime_error("row " + std::to_string(offset) + " was refused");
   out.world.accepted = rows;
+  if (const Rows profile = plant.profile_rows(); profile.contains(row::profile_velocity)) {
+    out.options.rows.insert(row::profile_velocity);
+    out.world.accepted[row::profile_velocity] = profile.at(row::profile_velocity);
+  }
   fitter->command(0);
   if (!rows.empty()) fitter->command(kRelease);
   out.commands = static_cast<std::uint32_t>(fitter->wide(obey::shown::supported_commands));
@@ -71,6 +81,9 @@ Beginning begin(obey::Plant& plant, const Program& program, std::uint64_t seed) 
     out.options.parameters.insert(offset);
     out.parameters[offset] = is_wide(offset) ? static_cast<std::int32_t>(fitter->wide(offset)) : fitter->word(offset);
   }
+  if (out.parameters.contains(row::homing_speed_switch))
+    out.options.homing_speed =
+        std::max(out.parameters[row::homing_speed_switch], out.parameters[row::homing_speed_zero]);
   out.world.enabled = true;
   // It was released: the lease is open, and began a moment ago.
   if (program.leases) out.world.lease_until(out.options.lease_ms - (rows.empty() ? kSinceReady : 0));

@@ -48,7 +48,7 @@ const std::map<int, std::set<int>> kStandsFor{
 
 void Clients::connect() {
   for (std::size_t client = 0; client < kModbus; ++client) {
-    modbus_[client]->be(operators_[client] ? Role::operator_ : Role::engineer, kRanks[client]);
+    modbus_[client]->be(operators_[client] ? Role::operator_ : Role::engineer, ranks_[client]);
     modbus_[client]->connect();
   }
   participant_ = static_cast<std::uint8_t>(participant_ + kMostWriters);

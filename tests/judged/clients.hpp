@@ -16,8 +16,6 @@
 
 namespace axisgate::test::judged {
 
-/// Of `allow`: command 14 takes an axis from a lower one.
-inline constexpr std::array<std::uint8_t, model::kModbus> kRanks{5, 3, 4};
 /// Of the DDS writers, each in some of the runs; 0 as well of a SHARED one.
 inline constexpr std::array<std::array<int, model::kWriters>, 4> kStrengths{
     {{5, 5, 9}, {9, 5, 0}, {0, 0, 5}, {7, 7, 7}}};
@@ -25,13 +23,17 @@ inline constexpr std::array<const char*, model::kClients> kNames{"a", "b", "c", 
 
 class Clients {
  public:
-  /// `operator_c`: c is an operator, else an engineer as a and b.
-  Clients(obey::Plant& plant, const std::array<int, model::kWriters>& strengths, bool operator_c)
+  /// `together`: so many of Modbus have one address, and its role and rank. `operator_c`: c is an operator, else an
+  /// engineer as a and b.
+  Clients(obey::Plant& plant, const std::array<int, model::kWriters>& strengths, std::size_t together, bool operator_c)
       : plant_(plant),
         strengths_(strengths),
-        operators_{false, false, operator_c},
-        c_(plant.connection_from(kHostOfC)),
-        modbus_{&plant.a, &plant.b, c_.get()} {}
+        operators_{false, false, operator_c && together < model::kModbus},
+        b_(plant.connection_from(together > 1 ? obey::Plant::kHostOfA : obey::Plant::kHostOfB)),
+        c_(plant.connection_from(together > 2 ? obey::Plant::kHostOfA : kHostOfC)),
+        modbus_{&plant.a, b_.get(), c_.get()} {
+    for (std::size_t client = 0; client < together; ++client) ranks_[client] = ranks_[0];
+  }
 
   /// Each with its rank, before a gateway that runs.
   void connect();
@@ -53,6 +55,7 @@ class Clients {
   /// A new connection; of DDS another writer, silently: of another participant.
   void replace(std::size_t client, bool silently);
   [[nodiscard]] const std::array<bool, model::kModbus>& operators() const { return operators_; }
+  [[nodiscard]] const std::array<std::uint8_t, model::kModbus>& ranks() const { return ranks_; }
   [[nodiscard]] obey::DdsWriters& dds() { return *dds_; }
   [[nodiscard]] obey::Client& modbus(std::size_t client) { return *modbus_[client]; }
   /// What was wrong with what a viewer was told for a write (3.3 Roles: 0x01, and nothing changes).
@@ -62,8 +65,10 @@ class Clients {
   static constexpr std::uint8_t kHostOfC = 50;
   obey::Plant& plant_;
   std::array<int, model::kWriters> strengths_;
+  /// Of `allow`: command 14 takes an axis from a lower one.
+  std::array<std::uint8_t, model::kModbus> ranks_{5, 3, 4};
   std::array<bool, model::kModbus> operators_;
-  std::unique_ptr<obey::Client> c_;
+  std::unique_ptr<obey::Client> b_, c_;
   std::array<obey::Client*, model::kModbus> modbus_;
   std::optional<obey::DdsWriters> dds_;
   std::uint8_t participant_ = 0;

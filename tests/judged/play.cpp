@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "tests/judged/beginning.hpp"
 #include "tests/judged/outages.hpp"
 
 namespace axisgate::test::judged {
@@ -64,7 +63,7 @@ void Play::begin() {
   Beginning beginning = judged::begin(plant_, program_, seed_);
   watches_.emplace(plant_, neighbour_, other_bus_, [this](std::string what) { violated(std::move(what)); });
   clients_.connect();
-  std::ranges::copy(kRanks, beginning.options.ranks.begin());
+  std::ranges::copy(clients_.ranks(), beginning.options.ranks.begin());
   beginning.options.operators = clients_.operators();
   beginning.options.strengths = kStrengths.at(seed_ % kStrengths.size());
   writers_.emplace(program_, plant_.profile_rows(), beginning.parameters, beginning.commands);
@@ -210,6 +209,7 @@ void Play::outage(const Step& step) {
     case Deed::restart:
       contract_->drive_restarted();
       plant_.restart_drive(std::chrono::milliseconds(step.on ? length : 0));
+      if (!step.on && step.number % 3 != 0) return go_on_unaware(step);
       break;
     case Deed::trip:
       contract_->drive_tripped();
@@ -287,10 +287,7 @@ void Play::act(const Step& step) {
       press_out_of_sight(step);
       break;
     case Deed::scan:
-      for (std::int64_t gone = 0; gone < kLengths.at(step.length) && gone < 1500 && !over(); gone += 50) {
-        send(step.client, writers_->write_of(step), step.at_once);
-        pass(50);
-      }
+      scan(step);
       break;
     case Deed::button:
       hold_button(step);

@@ -52,10 +52,38 @@ void Play::hold_button(const Step& step) {
   if (step.on) send(step.client, one_coil(number, false), false);
 }
 
+// A PLC that writes the same block again and again. Another program, perhaps of its address, presses something
+// meanwhile.
+void Play::scan(const Step& step) {
+  constexpr std::int64_t kEachMs = 50;
+  constexpr std::array<std::uint8_t, 4> kPressed{kStops, kStops + 1, kEnables, kFirstStart};
+  for (std::int64_t gone = 0; gone < kLengths.at(step.length) && gone < kLongestHabitMs && !over(); gone += kEachMs) {
+    send(step.client, writers_->write_of(step), step.at_once);
+    pass(kEachMs);
+    if (!step.on || gone != 2 * kEachMs) continue;
+    Step other{.deed = Deed::command_by_id, .id = 2};
+    other.client = static_cast<std::uint8_t>((step.client + 1U + step.number % 2U) % kModbus);
+    other.command = kPressed.at(step.command % kPressed.size());
+    send(other.client, writers_->write_of(other), step.at_once);
+  }
+}
+
+// The drive was without power for a moment, and on most lines nobody says so: its master enables it and goes on.
+void Play::go_on_unaware(const Step& step) {
+  constexpr std::int64_t kSeenMs = 2500;
+  pass(kSeenMs);
+  send(step.client, one(row::command, kEnable), false);
+  pass(kPauses.at(step.pause));
+  send(step.client, writers_->write_of(press(step, step.at_once ? Deed::order : Deed::command)), false);
+  pass(kLongestHabitMs);
+}
+
 // One tool for each request, as mbpoll is used, or a person at a panel: set it, press it, and once more.
 void Play::use_tool(const Step& step) {
   constexpr std::array<std::int64_t, 4> kBetween{0, 50, 300, 1200};
   constexpr std::uint8_t kEachAnew = 3;  // of Step::id
+  constexpr std::uint8_t kHomes = 20;    // of Step::number, and more
+  if (step.number >= kHomes && obey::has_homing(program_.subject)) return home_again(step);
   const auto anew = [&] {
     if (step.id >= kEachAnew) replace(step.client, false);
   };
@@ -76,6 +104,21 @@ void Play::use_tool(const Step& step) {
     anew();
     pass(kBetween.at(step.length % kBetween.size()));
   }
+}
+
+// A homing that is halted, or has come to its end, and what comes after it: another one, or a move.
+void Play::home_again(const Step& step) {
+  constexpr std::array<std::int64_t, 4> kHomes{50, 300, 1200, 6000};
+  constexpr std::int64_t kHaltMs = 2500;
+  const auto say = [&](std::int64_t command) { send(step.client, one(row::command, command), false); };
+  for (unsigned i = 0; i < 2U + step.id % 2U && !over(); ++i) {
+    say(kHome);
+    pass(kHomes.at((step.length + i) % kHomes.size()));
+    if (step.on || i == 0) say(step.speed == 0 ? kQuickStop : kHalt);
+    pass(kHaltMs);
+    if (step.speed == 0) say(kEnable);
+  }
+  say(step.command % 2 == 0 ? kMove : kRelative);
 }
 
 void Play::use_monitor(const Step& step) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/judged/beginning.hpp"
 #include "tests/judged/clients.hpp"
 #include "tests/judged/history.hpp"
 #include "tests/judged/plague.hpp"
@@ -27,7 +28,7 @@ class Play {
         neighbour_(seed % 2 == 0),
         other_bus_(seed % 4 == 3),
         plant_(program.subject, options_of(program, seed)),
-        clients_(plant_, kStrengths.at(seed % kStrengths.size()), seed % 3 == 1),
+        clients_(plant_, kStrengths.at(seed % kStrengths.size()), together(seed), seed % 3 == 1),
         plague_(plant_, program_.nemesis, seed) {}
 
   Outcome run();
@@ -69,7 +70,10 @@ class Play {
   void write_halves(const Step& step);
   void send_crossed(const Step& step);
   void hold_button(const Step& step);
+  void scan(const Step& step);
+  void go_on_unaware(const Step& step);
   void use_tool(const Step& step);
+  void home_again(const Step& step);
   void use_monitor(const Step& step);
   void take_away(const Step& step);
   void insist(const Step& step);

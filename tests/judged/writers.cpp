@@ -140,6 +140,9 @@ Write Writers::write_of(const Step& step) {
     case Deed::target: {
       if (step.number % 6 == 5 && (commands_ >> kSetPosition & 1U) != 0)
         return one(row::set_position_value, kPositions[step.position % kPositions.size()]);
+      // As fast as at the beginning, or slower.
+      if (step.number % 6 == 4 && profile_.contains(row::profile_velocity))
+        return one(row::profile_velocity, profile_.at(row::profile_velocity) / (1 + step.speed % 3));
       const bool move = flavour_ == Flavour::moves || (flavour_ == Flavour::both && step.on);
       if (move) return one(row::target_position, kPositions[step.position % kPositions.size()]);
       return one(row::target_velocity, kSpeeds[step.speed % kSpeeds.size()]);

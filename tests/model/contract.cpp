@@ -47,6 +47,7 @@ void add_times(World& world, const World& other) {
   world.lease_ends_by_ms = std::max(world.lease_ends_by_ms, other.lease_ends_by_ms);
   world.lease_unsure = world.lease_unsure || other.lease_unsure;
   world.broken = world.broken || other.broken;
+  world.fastest = std::max(world.fastest, other.fastest);
   for (const auto at : {&World::started_ms, &World::changed_ms, &World::enable_asked_ms, &World::off_asked_ms,
                         &World::taken_back_by_ms})
     world.*at = std::max(world.*at, other.*at);
@@ -60,6 +61,7 @@ World without_times(World world) {
                         &World::taken_back_by_ms, &World::lease_ends_ms, &World::lease_ends_by_ms, &World::stopped_at})
     world.*at = none;
   world.lease_unsure = world.broken = false;
+  world.fastest = kNever;
   world.earlier.clear();
   return world;
 }
@@ -193,9 +195,11 @@ int Contract::send(std::size_t client, const Write& write) {
       if (by_writes && next.owner == world.owner && !done)
         next.lease_ends_ms = std::min(next.lease_ends_ms, world.lease_ends_ms);
       // Of one that is refused nobody can tell whether it has taken an orphan lease over.
-      if (next.retaken && next.owner == world.owner && !pending.verdict.answers.contains(0)) {
+      if (next.retaken && next.owner == client && !pending.verdict.answers.contains(0)) {
         next.retake_unsure = true;
         next.lease_ends_ms = world.lease_ends_ms;
+        next.orphan = world.owner != client && readings.other();
+        if (next.orphan) next.owner = world.owner;
       }
       pending.verdict.stop = judge.stopped();
       pending.verdict.takes_over = judge.takes_over();
@@ -207,6 +211,8 @@ int Contract::send(std::size_t client, const Write& write) {
         next.owner = client;
         next.lease_until(sight_.now_ms + options_.lease_of(client));
       }
+      // What else is written to another motion may change what it goes by.
+      if (!pending.verdict.starts && (next.motor != Motor::moves || world.motor != Motor::moves)) next.fastest = kNever;
       said.insert(std::exchange(pending.verdict.says, {}));
       const Rows rows = write.coils() ? Rows{} : rows_of(write);
       pending.more = rows.size() > 1;

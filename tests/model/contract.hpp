@@ -72,8 +72,9 @@ struct Half {
 struct ClientMemory {
   Item command, controlword;
   std::array<Item, 10> coils{};
-  std::optional<std::int64_t> id{};  ///< the last one that was not 0; belongs to the address
-  Rows rows{};                       ///< as written last, whatever became of it
+  std::optional<std::int64_t> id{};      ///< the last one that was not 0, of the address: with its first client alone
+  std::optional<std::int64_t> own_id{};  ///< the same of the connection
+  Rows rows{};                           ///< as written last, whatever became of it
   /// Of these it was refused, and whether that counts is not said: what was written before, none: nothing.
   boost::container::flat_map<std::uint16_t, std::optional<std::int64_t>> refused_rows{};
   void write(std::uint16_t offset, std::int64_t value, bool refused);
@@ -141,7 +142,8 @@ struct World {
   bool start_bit = false;                  ///< bit 4 may be set in the controlword in effect
   bool stale_speed = false;                ///< the speed was accepted before a stop
   Motor motor = Motor::stands;
-  std::int64_t target = 0;  ///< of the move
+  std::int64_t target = 0;        ///< of the move
+  std::int64_t fastest = kNever;  ///< that the motor may turn in this motion; kNever: nobody can tell
   std::int64_t started_ms = 0;
   std::int64_t jog = 0;  ///< 1 forward, -1 reverse: the motor runs at the jog velocity
   std::size_t jog_client = 0;
@@ -184,10 +186,14 @@ struct ContractOptions {
   std::int64_t rearm_ms = 1000;
   std::array<int, kModbus> ranks{};
   std::array<bool, kModbus> operators{};  ///< the others are engineers
+  std::size_t together = 1;               ///< so many of Modbus, the first ones, are connections of one address
+  std::int64_t homing_speed = kNever;     ///< the greatest of a homing
   std::set<std::uint16_t> parameters{};   ///< of the rows 46, 47 and 62 to 76 those that the drive has
   std::array<int, kWriters> strengths{};
   std::array<std::int64_t, kWriters> limits{kNever, kNever, kNever};  ///< lease_ms of a writer's heartbeat
   std::int64_t settles_ms = 1200;  ///< so long after an answer the motor does what was asked, ramps included
+  /// Its first client, for each client.
+  [[nodiscard]] std::size_t address_of(std::size_t client) const { return client < together ? 0 : client; }
   /// Design 4, signs of life: "the lease is the smaller of lease_ms and the configured one".
   [[nodiscard]] std::int64_t lease_of(std::size_t client) const {
     return is_dds(client) ? std::min(lease_ms, limits.at(client - kModbus)) : lease_ms;

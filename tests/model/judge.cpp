@@ -53,22 +53,25 @@ Judge::Edge Judge::command_edge(const Rows& rows, bool single) {
   const std::int64_t id = rows.contains(row::command_id) ? rows.at(row::command_id) : 0;
   ClientMemory& mine = me();
   const std::optional<std::int64_t> before = mine.command.value;
-  const std::optional<std::int64_t> last_id = mine.id;
+  // "The command is new if the id differs from the last non-zero id of this address and axis"; and from that of its own
+  // connection (D410): a program that repeats itself asks for nothing where another one of its address has asked since.
+  const std::optional<std::int64_t> last_id = this->last_id();
+  const bool repeats = mine.own_id == id;
   Edge edge = Edge::not_new;
   if (id == 0) {
     edge = this->edge(mine.command, value, single, is_stop(value));
     // 3.3 Not new: "so that no tool prints success for nothing": who owns it has something to give back.
     if (edge == Edge::not_new && single && value == kRelease && world_.owner == client_) edge = Edge::acts;
   } else {
-    mine.id = id;  // 3.3 Edges: "zeros never erase it", "Command 0 with an id sets the last id"
+    this->last_id() = mine.own_id = id;  // 3.3 Edges: "zeros never erase it", "Command 0 with an id sets the last id"
     mine.command.value = value;
     mine.command.written_ms = seen_.now_ms;
     if (is_stop(value))
-      edge = before != value || last_id != id ? Edge::acts : Edge::not_new;  // 3.4 Stops
+      edge = before != value || last_id != id || !repeats ? Edge::acts : Edge::not_new;  // 3.4 Stops
     else if (!last_id)
       edge = Edge::remembered;  // 3.3 Edges: "Where none is kept, the pair is only remembered"
     else
-      edge = *last_id != id ? Edge::acts : Edge::not_new;  // 3.3 Edges: "only the id decides"
+      edge = *last_id != id && !repeats ? Edge::acts : Edge::not_new;  // 3.3 Edges: "only the id decides"
     if (edge == Edge::acts || before != value) mine.command.acted = edge == Edge::acts;
     if (!mine.command.acted) mine.command.spoilt = false;
   }
@@ -113,6 +116,7 @@ void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
   // Whether a jog that runs goes on at another jog_velocity is not said.
   if (offset == row::jog_velocity && differs && world_.jog != 0 && readings_.other()) world_.motor = Motor::unknown;
   if (offset == row::target_velocity) world_.stale_speed = false;
+  if (offset == row::profile_velocity) world_.fastest = std::max(world_.fastest, value);
   if (differs && (offset == row::target_position || offset == row::target_velocity)) {
     me().command.changed = true;
     for (Item& coil : me().coils) coil.changed = true;
@@ -302,7 +306,7 @@ Verdict Judge::registers(const Write& write) {
   if (!single && all_zero(write, rows, verdict)) return verdict;
   Item was = me().command;
   const bool with_id = rows.contains(row::command_id) && rows[row::command_id] != 0;
-  const bool was_empty = rows.contains(row::command) && (with_id ? !me().id.has_value() : !was.value.has_value());
+  const bool was_empty = rows.contains(row::command) && (with_id ? !last_id().has_value() : !was.value.has_value());
   const Edge command = command_edge(rows, single);
   const Edge word =
       rows.contains(row::controlword) ? edge(me().controlword, rows[row::controlword], single, false) : Edge::absent;

@@ -70,6 +70,10 @@ class Judge {
   Verdict sample(const Write& write);
   Verdict half(const Half& newest, const std::optional<Half>& before);
   [[nodiscard]] ClientMemory& me() { return world_.clients[std::min(client_, kModbus)]; }
+  /// Of its address.
+  [[nodiscard]] std::optional<std::int64_t>& last_id() {
+    return world_.clients[std::min(options_.address_of(client_), kModbus)].id;
+  }
   Edge edge(Item& item, std::int64_t value, bool single, bool stop);
   Edge new_or_not(Item& item, std::int64_t value, bool single, bool stop);
   Edge command_edge(const Rows& rows, bool single);
@@ -87,6 +91,8 @@ class Judge {
   void leave_motion();
   void halted(bool asserted);
   void renew_speed();
+  [[nodiscard]] std::int64_t fastest_of(std::int64_t start) const;
+  [[nodiscard]] bool at_rest() const;
   void claim();
   /// Another client owns the axis: what asks is refused, and what is refused changes nothing.
   [[nodiscard]] bool foreign() const;

@@ -81,13 +81,30 @@ void Judge::renew_speed() {
   world_.stale_speed = false;
 }
 
+/// It stands, and nothing is under way.
+bool Judge::at_rest() const {
+  return seen_.stands && seen_.clear && !seen_.troubled && world_.motor == Motor::stands && world_.earlier.empty() &&
+         !world_.broken && !world_.adopted && !world_.held && world_.awaits == 0 && world_.pending.empty();
+}
+
+// 3.3 What asks: "the last accepted set-point is the one that every start uses": the speed of a move (D387). A homing
+// has speeds of its own.
+std::int64_t Judge::fastest_of(std::int64_t start) const {
+  if (!seen_.stands || !seen_.clear || seen_.troubled || !world_.earlier.empty()) return kNever;
+  if (start == kHome) return options_.homing_speed;
+  const auto speed = world_.accepted.find(row::profile_velocity);
+  return start > kRelative || speed == world_.accepted.end() ? kNever : speed->second;
+}
+
 void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
   if (is_start(number)) {
     // 3.3, the fixed order of one request: its set-points act before it starts.
+    const std::int64_t fastest = fastest_of(number);
+    const bool homes = number == kHome && at_rest() && world_.accepted.contains(row::homing_method);
     leave_motion();
     // Commands 9 and 10 need what is not judged here: a known max_velocity, a homing method since bring-up. Whether one
     // was refused before it claimed, or by the drive, is not judged either.
-    const bool refused = number > kRun && readings_.other();
+    const bool refused = number > kRun && !homes && readings_.other();
     if (!refused || world_.owner == client_ || readings_.other()) claim();
     // 3.3 Not new: "or another client".
     for (std::size_t c = 0; c < world_.clients.size(); ++c) {
@@ -129,6 +146,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     if (number != kRun && !world_.accepted.contains(row::target_position)) world_.motor = Motor::unknown;
     verdict = {"acts: command " + std::to_string(number), {0}};
     verdict.starts = true;
+    world_.fastest = fastest;
     return;
   }
   if (number == kTakeOver) return take_over(verdict);
@@ -232,7 +250,8 @@ void Judge::take_over(Verdict& verdict) {
       verdict = {"take_over of or from a DDS writer", {6}};
       return;
     }
-  } else if (owner != client_ && options_.ranks.at(client_) <= options_.ranks.at(owner)) {
+  } else if (options_.address_of(owner) != options_.address_of(client_) &&
+             options_.ranks.at(client_) <= options_.ranks.at(owner)) {
     verdict = {"take_over from no lower rank", {6}};
     return;
   }

@@ -25,7 +25,8 @@ void ended_by_nobody(World& world) {
 // 3.5: "renew": any request; 3.5 Signs of life: "An orphan lease is taken over by any write ... of the same address and
 // role, whatever it asks".
 void Contract::take_over(World& world, std::size_t client) const {
-  world.retaken = world.owner == client && world.orphan;
+  world.retaken = world.owner && world.orphan && options_.address_of(*world.owner) == options_.address_of(client);
+  if (world.retaken) world.owner = client;
   if (world.owner != client) return;
   // Of a write that is refused nobody can tell whether it has taken it over.
   if (std::exchange(world.orphan, false))

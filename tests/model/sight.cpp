@@ -21,6 +21,13 @@ int way(const Sight& sight) { return sight.velocity == 0 ? 0 : sight.velocity > 
 /// Creeping by a count is no motion: rounding.
 constexpr std::int64_t kCreep = 10'000;
 
+/// By so much a drive may turn faster or slower than it was told.
+std::int64_t off(std::int64_t speed) {
+  constexpr std::int64_t kSpeedShare = 50;  // one part in so many
+  constexpr std::int64_t kSlowest = 1'500;  // a drive that counts whole rpm
+  return std::max(speed / kSpeedShare, kSlowest);
+}
+
 /// Whether a motor that begins to turn as it is seen does so for this motion.
 bool leads_there(const Motion& motion, const Sight& sight) {
   const std::int64_t way = motion.kind == Motor::moves ? motion.value - sight.position : motion.value;
@@ -61,12 +68,13 @@ bool Contract::enabling_fits(World& world, const Sight& sight) const {
 }
 
 bool Contract::motion_fits(World& world, const Sight& sight) const {
-  constexpr std::int64_t kSpeedShare = 50;  // one part in so many
-  constexpr std::int64_t kSlowest = 1'500;  // a drive that counts whole rpm
   const bool settled = this->settled(world);
   if (settled) world.earlier.clear();
   const bool stands = sight.velocity == 0;
   const Motion motion = world.motion();
+  if (!trouble_ && motion.kind != Motor::stands && world.fastest != kNever &&
+      std::abs(sight.velocity) > world.fastest + off(world.fastest))
+    return false;
   if (motion.kind == Motor::unknown) return true;
   // A count, as rounding has it.
   if (std::abs(sight.position - stood_at_) <= kClose && std::abs(sight.velocity) <= kCreep) return true;
@@ -94,7 +102,7 @@ bool Contract::motion_fits(World& world, const Sight& sight) const {
     }
     case Motor::runs:
       if (motion.value == 0) return stands;
-      return std::abs(sight.velocity - motion.value) <= std::max(std::abs(motion.value) / kSpeedShare, kSlowest);
+      return std::abs(sight.velocity - motion.value) <= off(std::abs(motion.value));
     default:
       // 3.4, command 4: "target = actual is set": it still comes back, the way it did before.
       return stands || (way_ == way(sight) && leads_there({Motor::moves, world.stopped_at}, sight));
