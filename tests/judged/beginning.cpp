@@ -21,6 +21,7 @@ ContractOptions options_of(const obey::Plant& plant, const Program& program, std
   ContractOptions options;
   options.by_address = plant.listener.client_is_address;
   options.together = together(seed);
+  options.reads_fail = plant.listener.offline_reads_fail;
   options.staged = plant.listener.staged_halves;
   options.leases = program.leases;
   options.rearm_ms = plant.listener.rearm / std::chrono::milliseconds(1);

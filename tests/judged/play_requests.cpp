@@ -43,7 +43,9 @@ void Play::send(std::size_t client, Write write, bool at_once) {
   const bool posted = plant_.listener.posted_writes && !is_dds(client) && !of_object;
   if (!is_dds(client) && !of_object) {
     told_.at(client).reset();
-    newest_.at(client) = request;
+    // What could not be read has not been written, and register 25 tells nothing of it (D363).
+    const bool perhaps_unread = plant_.listener.offline_reads_fail && write.function == fc::read_write;
+    newest_.at(client) = perhaps_unread ? 0 : request;
   }
   const Rows rows = write.coils() ? Rows{} : rows_of(write);
   ids_.insert(is_dds(client)                   ? static_cast<std::int64_t>(number & 0xFFFF)

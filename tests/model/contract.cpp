@@ -240,6 +240,12 @@ int Contract::send(std::size_t client, const Write& write) {
       const bool differs = !(none.motion() == next.motion()) || none.accepted != next.accepted ||
                            none.enabled != next.enabled || none.latched != next.latched ||
                            none.faulted != next.faulted || none.owner != next.owner;
+      // Of function 23 the read is judged first, and where that is answered 0x0B nothing is written (D363).
+      if (options_.reads_fail && write.function == fc::read_write && trouble_ && !pending.verdict.stop) {
+        worlds.push_back(world);
+        Pending& unread = worlds.back().pending[number] = pending;
+        unread.unread = true;
+      }
       worlds.push_back(std::move(next));
       if (!differs) continue;
       worlds.back().pending[number].alone = false;
@@ -293,6 +299,7 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
   if (lost_count_) return true;
   const Asked asked = asked_.at(request);
   asked_.erase(request);
+  constexpr int kNoAnswer = 0x0B;
   const bool done = exceptions.contains(0);
   std::vector<World> fitting;
   for (const World& world : worlds_) {
@@ -315,8 +322,8 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
     const bool withdrawn = asked.troubled && pending.verdict.starts && !pending.void_ && exceptions.contains(4);
     const bool fits = withdrawn || (expected && (!pending.void_ || unclear)) || (late && not_done) ||
                       (dropped && (not_done || pending.more || !pending.verdict.stop)) ||
-                      (lost && (not_done || exceptions.contains(11) || pending.verdict.stop));
-    if (!fits) continue;
+                      (lost && (not_done || exceptions.contains(kNoAnswer) || pending.verdict.stop));
+    if (pending.unread ? !exceptions.contains(kNoAnswer) : !fits) continue;
     const std::optional<std::int64_t> is_at = pending.verdict.position;
     if (done && is_at && !asked.troubled && std::abs(sight_.position - *is_at) > kClose) continue;
     World next = world;
@@ -328,7 +335,7 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
     // Whether it is remembered is not said. Of a posted write that a stop or a loss has met register 25 may tell of an
     // older one.
     const bool perhaps_done = done && (dropped || lost);
-    if (!expected || (!done && pending.verdict.any_answer) || perhaps_done)
+    if (!pending.unread && (!expected || (!done && pending.verdict.any_answer) || perhaps_done))
       make_uncertain(next.clients[std::min(asked.client, kModbus)]);
     // 3.5, "renew": whether a request that waits for the drive renews when it comes or when it is answered is not said.
     if (asked.troubled && next.owner == asked.client && !next.orphan)
@@ -338,10 +345,8 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
       next.lease_until(sight_.now_ms + options_.lease_of(asked.client));
     }
     // An enable of which nobody knows: whether it is taken back once it shows is not said (D152).
-    constexpr int kUnknownOutcome = 0x0B;
     constexpr std::int64_t kTakenBackMs = 6000;
-    if (lost && pending.enables && exceptions.contains(kUnknownOutcome))
-      next.taken_back_by_ms = sight_.now_ms + kTakenBackMs;
+    if (lost && pending.enables && exceptions.contains(kNoAnswer)) next.taken_back_by_ms = sight_.now_ms + kTakenBackMs;
     if (withdrawn && !expected) {
       const World before = next;
       next.motor = Motor::stands;

@@ -111,6 +111,7 @@ struct Pending {
   Verdict verdict{};
   bool void_ = false;      ///< in this world it was never carried out: only trouble can be the cause
   bool overtaken = false;  ///< a stop came before or after it: what waits is dropped
+  bool unread = false;     ///< not even remembered: what it reads could not be read
   bool alone = true;       ///< there is no world where it was not carried out: that would be the same
   bool more = false;       ///< it holds more than one row
   bool setpoints = false;  ///< it holds nothing else
@@ -180,6 +181,7 @@ struct ContractOptions {
   bool no_halt = false;            ///< of a move: the profile stops it by what may latch the axis
   bool by_gateway = false;         ///< the CiA 402 machine is the gateway's
   bool by_address = false;         ///< "client": "address"
+  bool reads_fail = false;         ///< "offline_reads": "exception"
   bool staged = false;             ///< "halves": "staged"
   bool expiry_acts = true;         ///< false: "on_expiry": "none"
   bool only_writes_renew = false;  ///< "renew": "write"

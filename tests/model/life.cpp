@@ -186,6 +186,7 @@ void Contract::trouble_begins() {
   for (auto& [number, asked] : asked_) asked.troubled = true;
   for (World& world : worlds_) {
     world.mode.reset();
+    world.accepted.erase(row::homing_method);  // 3.4, command 10: "since bring-up"
     world.broken = world.motor != Motor::stands ||
                    std::ranges::any_of(world.earlier, [](const Motion& m) { return m.kind != Motor::stands; });
     // 3.3 Edges: "a fault, a link loss": a level or a command held since asks for nothing; what counts as one is not
