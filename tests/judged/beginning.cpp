@@ -21,6 +21,7 @@ ContractOptions options_of(const obey::Plant& plant, const Program& program, std
   ContractOptions options;
   options.by_address = plant.listener.client_is_address;
   options.together = together(seed);
+  options.velocity_limit = velocity_limit(subject, seed).value_or(kNever);
   options.reads_fail = plant.listener.offline_reads_fail;
   options.staged = plant.listener.staged_halves;
   options.leases = program.leases;
@@ -51,6 +52,13 @@ LeaseRules lease_of(const Program& program, std::uint64_t seed) {
   if (seed % 5 == 4) rules.renew = LeaseRenewal::write;
   if (seed % 4 == 2) rules.timeout = std::chrono::milliseconds(seed % 8 == 2 ? 700 : 5000);
   return rules;
+}
+
+// A Keya's moves and an iD286pro's homing have speeds that the gateway does not know.
+std::optional<std::int64_t> velocity_limit(Subject subject, std::uint64_t seed) {
+  constexpr std::int64_t kLimit = 160'000;  // no program asks for more
+  const bool known = obey::is_cia402(subject) || (obey::is_keya(subject) && !obey::has_positions(subject));
+  return known && seed % 5 == 3 ? std::optional(kLimit) : std::nullopt;
 }
 
 std::size_t together(std::uint64_t seed) {
@@ -85,6 +93,10 @@ Beginning begin(obey::Plant& plant, const Program& program, std::uint64_t seed) 
   if (out.parameters.contains(row::homing_speed_switch))
     out.options.homing_speed =
         std::max(out.parameters[row::homing_speed_switch], out.parameters[row::homing_speed_zero]);
+  // More than that is refused, though the drive may hold it.
+  for (const std::uint16_t speed : {row::homing_speed_switch, row::homing_speed_zero, row::max_velocity})
+    if (const auto held = out.parameters.find(speed); held != out.parameters.end())
+      held->second = std::min(held->second, out.options.velocity_limit);
   out.world.enabled = true;
   // It was released: the lease is open, and began a moment ago.
   if (program.leases) out.world.lease_until(out.options.lease_ms - (rows.empty() ? kSinceReady : 0));

@@ -18,6 +18,8 @@ struct Beginning {
 
 /// What the axis's lease is like, each in some of the runs.
 [[nodiscard]] LeaseRules lease_of(const Program& program, std::uint64_t seed);
+/// `limits.velocity` of the axis; none: there is none.
+[[nodiscard]] std::optional<std::int64_t> velocity_limit(Subject subject, std::uint64_t seed);
 /// So many clients of Modbus are programs at one address, with a connection each.
 [[nodiscard]] std::size_t together(std::uint64_t seed);
 [[nodiscard]] Beginning begin(obey::Plant& plant, const Program& program, std::uint64_t seed);

@@ -43,6 +43,7 @@ PlantOptions Play::options_of(const Program& program, std::uint64_t seed) {
   options.listener.float_numbers = seed % 5 == 1 && !options.listener.staged_halves;
   options.listener.offline_reads_fail = seed % 5 == 2;
   options.other_bus = seed % 4 == 3;
+  options.velocity_limit = velocity_limit(program.subject, seed);
   return options;
 }
 

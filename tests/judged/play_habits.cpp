@@ -70,7 +70,7 @@ void Play::scan(const Step& step) {
 
 // The drive was without power for a moment, and on most lines nobody says so: its master enables it and goes on.
 void Play::go_on_unaware(const Step& step) {
-  constexpr std::int64_t kSeenMs = 2500;
+  constexpr std::int64_t kSeenMs = 2000;
   pass(kSeenMs);
   send(step.client, one(row::command, kEnable), false);
   pass(kPauses.at(step.pause));
@@ -108,8 +108,8 @@ void Play::use_tool(const Step& step) {
 
 // A homing that is halted, or has come to its end, and what comes after it: another one, or a move.
 void Play::home_again(const Step& step) {
-  constexpr std::array<std::int64_t, 4> kHomes{50, 300, 1200, 6000};
-  constexpr std::int64_t kHaltMs = 2500;
+  constexpr std::array<std::int64_t, 4> kHomes{50, 300, 1200, 3000};
+  constexpr std::int64_t kHaltMs = 1000;
   const auto say = [&](std::int64_t command) { send(step.client, one(row::command, command), false); };
   for (unsigned i = 0; i < 2U + step.id % 2U && !over(); ++i) {
     say(kHome);

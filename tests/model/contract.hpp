@@ -189,6 +189,7 @@ struct ContractOptions {
   std::array<int, kModbus> ranks{};
   std::array<bool, kModbus> operators{};  ///< the others are engineers
   std::size_t together = 1;               ///< so many of Modbus, the first ones, are connections of one address
+  std::int64_t velocity_limit = kNever;   ///< "limits": {"velocity": v}
   std::int64_t homing_speed = kNever;     ///< the greatest of a homing
   std::set<std::uint16_t> parameters{};   ///< of the rows 46, 47 and 62 to 76 those that the drive has
   std::array<int, kWriters> strengths{};

@@ -72,9 +72,9 @@ bool Contract::motion_fits(World& world, const Sight& sight) const {
   if (settled) world.earlier.clear();
   const bool stands = sight.velocity == 0;
   const Motion motion = world.motion();
-  if (!trouble_ && motion.kind != Motor::stands && world.fastest != kNever &&
-      std::abs(sight.velocity) > world.fastest + off(world.fastest))
-    return false;
+  // 3.3: "Limits per axis ..., whatever the role and the way in", and whatever the drive holds (D384).
+  const std::int64_t fastest = std::min(options_.velocity_limit, motion.kind == Motor::stands ? kNever : world.fastest);
+  if (!trouble_ && std::abs(sight.velocity) > fastest + off(fastest)) return false;
   if (motion.kind == Motor::unknown) return true;
   // A count, as rounding has it.
   if (std::abs(sight.position - stood_at_) <= kClose && std::abs(sight.velocity) <= kCreep) return true;

@@ -22,6 +22,13 @@ std::vector<GatewayStage::Line> one_line(Subject subject, const PlantOptions& op
   std::vector<GatewayStage::Line> lines;
   lines.push_back(line_with(subject, options.lease, options.neighbour));
   if (options.open_points) draw_open_points(lines.back(), *options.open_points);
+  if (options.velocity_limit) {
+    GatewayStage::Line& line = lines.back();
+    for (auto& staged : line.drives) staged.axis.velocity_limit = options.velocity_limit;
+    for (auto& staged : line.rtu_drives) staged.axis.velocity_limit = options.velocity_limit;
+    for (auto& staged : line.can_drives) staged.axis.velocity_limit = options.velocity_limit;
+    for (auto& staged : line.keya_drives) staged.axis.velocity_limit = options.velocity_limit;
+  }
   if (options.other_bus) {
     lines.push_back(line_of(simulated::KincoType::jd, kAxisOfOtherBus));
     lines.back().name = "other";
@@ -46,6 +53,7 @@ Plant::Plant(Subject which, PlantOptions options)
                               std::string(message));
       }),
       neighbour_(options.neighbour && may_have_neighbour(which)),
+      makers_speed_(options.velocity_limit.has_value()),
       power_back_(stage.runtime().make_timer([this] { restart_drive(); })),
       fitter_(port_, stage.runtime(), kHostOfFitter, plain(listener)),
       a(port_, stage.runtime(), kHostOfA),
@@ -82,7 +90,7 @@ void Plant::scan(Client& client, const Write& request, Duration time) {
 Rows Plant::profile_rows() {
   constexpr unsigned kBitOfProfileVelocity = 20, kBitOfAcceleration = 21, kBitOfDeceleration = 22;
   Rows rows;
-  if (has(kBitOfProfileVelocity)) rows[row::profile_velocity] = kProfileVelocity;
+  if (has(kBitOfProfileVelocity) && !makers_speed_) rows[row::profile_velocity] = kProfileVelocity;
   if (has(kBitOfAcceleration)) rows[row::profile_acceleration] = kRamp;
   if (has(kBitOfDeceleration)) rows[row::profile_deceleration] = kRamp;
   return rows;

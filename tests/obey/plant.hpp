@@ -21,7 +21,9 @@ struct PlantOptions {
   std::uint64_t seed = 1;
   std::optional<std::uint64_t> open_points{};  ///< drawn from this (open_points.hpp); none: as the sheets print them
   bool neighbour = false;                      ///< a second drive on the line, where one may be (subject.hpp)
-  bool other_bus = false;                      ///< a line of its own beside it, with axis kAxisOfOtherBus
+  /// `limits.velocity` of axis 1; the drive keeps its maker's speed of moves.
+  std::optional<std::int64_t> velocity_limit{};
+  bool other_bus = false;  ///< a line of its own beside it, with axis kAxisOfOtherBus
 };
 inline constexpr AxisNumber kAxisOfOtherBus = 50;
 /// The same listener for whoever writes integers, whole and awaited.
@@ -127,7 +129,7 @@ class Plant {
   [[nodiscard]] std::int64_t endless_command() const { return has_speeds(subject) ? 8 : 6; }
   [[nodiscard]] Rows endless_target() const;
   Answer set_endless(Client& client);
-  /// The rows 48 to 52 that the drive has, as ready() set them: for blocks that cover them.
+  /// The rows 48 to 52 that the drive has and ready() set: for blocks that cover them.
   [[nodiscard]] Rows profile_rows();
 
   Subject subject;
@@ -142,6 +144,7 @@ class Plant {
   std::optional<modbus_tcp::ClientRegistry> registry_;
   ServedPort port_;
   bool neighbour_;
+  bool makers_speed_;
   bool wire_cut_ = false;
   bool drive_cut_ = false;
   bool drive_off_ = false;
