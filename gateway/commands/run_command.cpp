@@ -65,12 +65,12 @@ std::string status_of(const ProcessImage& image) {
 }
 
 int serve(LoadedConfig loaded, const RunOptions& options) {
+  std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not
   Log log = stderr_log(options.decode.empty() ? options.log_level : std::max(options.log_level, LogLevel::debug));
   for (const StartLine& line : start_lines(loaded, AXISGATE_VERSION)) log.write(LogLevel::info, line.source, line.text);
   boost::asio::io_context io(1);
   AsioRuntime runtime(io);
   EndSignals signals(io, log);
-  std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not
   std::signal(SIGCHLD, SIG_DFL);  // inherited as ignored, it would hide how axisgate-dds ends
   const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(descriptor_needs(loaded.config));
   modbus_tcp::ClientRegistry clients;

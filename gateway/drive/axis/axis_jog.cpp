@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gateway/drive/axis/axis.hpp"
+#include "gateway/drive/plan/planner.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -50,12 +51,7 @@ std::optional<JogTravel> Axis::jog_travel(std::int64_t velocity) const {
   travel.velocity = velocity;
   travel.deceleration = core_.value(Quantity::profile_deceleration);
   travel.units_per_rev = core_.model.units_per_rev;
-  travel.limits = target->limits;
-  // The drive's own count where they are a range: 0 and 0 is how drives are told to have none.
-  const auto low = core_.value(Quantity::position_limit_min);
-  const auto high = core_.value(Quantity::position_limit_max);
-  if (low && high && *low < *high)
-    travel.limits = {std::max(travel.limits.min, *low), std::min(travel.limits.max, *high)};
+  travel.limits = position_range(core_);
   return travel;
 }
 

@@ -160,6 +160,17 @@ bool is_position_limit(const RegisterRow& row) {
          (row.quantity == Quantity::position_limit_min || row.quantity == Quantity::position_limit_max);
 }
 
+// A distance is no position: where the move ends is judged when it starts.
+bool is_distance(const WriteBatch& batch, Quantity quantity) {
+  return quantity == Quantity::target_position && batch.command == Command::move_relative;
+}
+
+// A button that is pressed and moves nothing, since the drive counts too coarsely, would be answered as done.
+bool jog_velocity_fits(const AxisCore& core, const Binding& velocity, std::int64_t value) {
+  if (!velocity.limits.holds(value)) return false;
+  return value == 0 || !velocity.scaled || velocity.to_raw(value, core.object(velocity.object)).value_or(0) != 0;
+}
+
 // What is refused at its turn although each part of it could be: first what acts, since the rest goes before it.
 int weight(const RegisterRow& row) {
   if (row.source == Source::object_request) return 4;
@@ -177,7 +188,7 @@ std::optional<std::uint16_t> refused_row(const AxisCore& core, const WriteBatch&
   for (const RegisterRow& row : register_table(Block::axis).rows()) {
     if (!row.writable) continue;
     const std::optional<WriteBatch> part = part_of(batch, row);
-    if (!part) continue;
+    if (!part || (row.source == Source::quantity && is_distance(batch, row.quantity))) continue;
     if (admit(core, *part) == code || (crossed && is_position_limit(row))) return row.offset;
     if (acts == nullptr || weight(row) > weight(*acts)) acts = &row;
   }
@@ -196,10 +207,13 @@ Errc admit(const AxisCore& core, const WriteBatch& batch) {
     return Errc::not_supported;
   if (const Errc code = admit_command(core, batch.command); code != Errc::ok) return code;
   if (batch.object && !can_be_asked_for(core, *batch.object)) return Errc::bad_value;
-  if (batch.jog_velocity && !velocity->limits.holds(*batch.jog_velocity)) return Errc::bad_value;
+  if (batch.jog_velocity && !jog_velocity_fits(core, *velocity, *batch.jog_velocity)) return Errc::bad_value;
   for (const Setpoint& sp : batch.setpoints) {
     const Binding* binding = core.model.binding(sp.quantity);
-    if (!binding->limits.holds(sp.value)) return Errc::bad_value;
+    if (sp.quantity != Quantity::target_position && !binding->limits.holds(sp.value)) return Errc::bad_value;
+    if (sp.quantity == Quantity::target_position && !is_distance(batch, sp.quantity) &&
+        !position_range(core, batch).holds(sp.value))
+      return Errc::bad_value;
     // The drive has not told yet how it counts: nobody knows whether it could take the value.
     if (!binding->scaled) return Errc::still_in_setup;
     if (!binding->to_raw(sp.value, core.object(binding->object))) return Errc::bad_value;

@@ -292,7 +292,7 @@ Errc judge_move(const AxisCore& core, bool relative) {
     if (!base) return Errc::state_unsuitable;
     end += *base;
   }
-  return target->limits.holds(end) ? Errc::ok : Errc::bad_value;
+  return position_range(core).holds(end) ? Errc::ok : Errc::bad_value;
 }
 
 const Steps* steps_of(const AxisCore& core, Command command) {

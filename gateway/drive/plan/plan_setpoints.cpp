@@ -52,18 +52,31 @@ bool sent_with_start(Command command, Quantity quantity) {
   }
 }
 
+// What the write batch says, else what the drive holds.
+std::optional<std::int64_t> limit_after(const AxisCore& core, const WriteBatch& batch, Quantity quantity) {
+  for (const Setpoint& sp : batch.setpoints)
+    if (sp.quantity == quantity) return sp.value;
+  return core.value(quantity);
+}
+
 }  // namespace
 
 bool limits_in_order(const AxisCore& core, const WriteBatch& batch) {
-  std::optional<std::int64_t> low, high;
-  for (const Setpoint& sp : batch.setpoints) {
-    if (sp.quantity == Quantity::position_limit_min) low = sp.value;
-    if (sp.quantity == Quantity::position_limit_max) high = sp.value;
-  }
-  if (!low && !high) return true;
-  if (!low) low = core.value(Quantity::position_limit_min);
-  if (!high) high = core.value(Quantity::position_limit_max);
+  const auto is_limit = [](const Setpoint& sp) {
+    return sp.quantity == Quantity::position_limit_min || sp.quantity == Quantity::position_limit_max;
+  };
+  if (std::none_of(batch.setpoints.begin(), batch.setpoints.end(), is_limit)) return true;
+  const auto low = limit_after(core, batch, Quantity::position_limit_min);
+  const auto high = limit_after(core, batch, Quantity::position_limit_max);
   return !low || !high || *low <= *high;
+}
+
+Range position_range(const AxisCore& core, const WriteBatch& batch) {
+  const Range of_axis = core.model.binding(Quantity::target_position)->limits;
+  const auto low = limit_after(core, batch, Quantity::position_limit_min);
+  const auto high = limit_after(core, batch, Quantity::position_limit_max);
+  if (!low || !high || *low >= *high) return of_axis;
+  return {std::max(of_axis.min, *low), std::min(of_axis.max, *high)};
 }
 
 bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan) {

@@ -13,6 +13,9 @@ namespace axisgate::drive {
 
 /// Rows 72 to 75 are checked as a pair: what is written against what is written with it, or else cached.
 [[nodiscard]] bool limits_in_order(const AxisCore& core, const WriteBatch& batch);
+/// Where the axis may be sent: within the limits of axis and profile, and those that the drive holds, as far as they
+/// are known, or is told in the same write batch. 0 and 0 is how drives are told to have none.
+[[nodiscard]] Range position_range(const AxisCore& core, const WriteBatch& batch = {});
 /// Parameters and set-points: those that may reach the drive now.
 [[nodiscard]] Plan plan_setpoints(const AxisCore& core, const WriteBatch& batch);
 /// What was asked for here has failed: no start goes by it.

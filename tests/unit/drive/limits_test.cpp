@@ -38,6 +38,54 @@ TEST(Limits, HoldForEveryWayIn) {
   EXPECT_EQ(rig.ask(with_controlword(0x005F)).outcome.code, Errc::bad_value);
 }
 
+// 3.4: command 7 goes "by target_position from the set-point position": a distance is no position.
+TEST(Limits, OfThePositionAreThoseOfWhereARelativeMoveEnds) {
+  RigOptions options;
+  options.axis.position_limits = Range{1'000, 50'000};
+  Rig rig(KincoType::jd, options);
+  rig.bring_to(enabled);
+  const auto move = [&](Command command, std::int64_t target) {
+    const Errc code = rig.ask(with_command(command, {{Quantity::target_position, target}})).outcome.code;
+    rig.stage.run_until([&] { return rig.axis().motion_state != MotionState::active; });
+    return code;
+  };
+  const auto position = [&] { return rig.axis()[Quantity::position_actual].value; };
+  ASSERT_EQ(move(Command::move_absolute, 40'000), Errc::ok);
+  EXPECT_EQ(move(Command::move_relative, -500), Errc::ok);
+  EXPECT_NEAR(static_cast<double>(position()), 39'500, 10);
+  EXPECT_EQ(move(Command::move_relative, 10'501), Errc::bad_value);
+  EXPECT_EQ(move(Command::move_relative, -38'501), Errc::bad_value);
+  EXPECT_EQ(move(Command::move_absolute, -500), Errc::bad_value);
+  EXPECT_EQ(rig.command(Command::move_absolute).outcome.code, Errc::bad_value) << "the distance is no place either";
+  rig.stage.run(1s);
+  EXPECT_NEAR(static_cast<double>(position()), 39'500, 10);
+}
+
+// 3.3: 0x03 for a "value outside the axis's, profile's or drive's limits (known before sending)": such a move never
+// ends.
+TEST(Limits, ThatTheDriveHoldsItselfHoldToo) {
+  for (const KincoType type : {KincoType::jd, KincoType::md}) {
+    Rig rig(type);
+    rig.bring_to(enabled);
+    ASSERT_EQ(rig.write(Quantity::target_position, 9'000).outcome.code, Errc::ok) << "it has none yet";
+    ASSERT_EQ(rig.ask(setpoints({{Quantity::position_limit_min, -8'000}, {Quantity::position_limit_max, 8'000}}))
+                  .outcome.code,
+              Errc::ok);
+    rig.stage.run(1s);
+    EXPECT_EQ(rig.command(Command::move_absolute).outcome.code, Errc::bad_value) << "accepted before";
+    EXPECT_EQ(rig.write(Quantity::target_position, 9'000).outcome.code, Errc::bad_value);
+    EXPECT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, -8'001}})).outcome.code,
+              Errc::bad_value);
+    EXPECT_FALSE(rig.turns());
+    EXPECT_EQ(rig.ask(with_command(Command::move_absolute,
+                                   {{Quantity::position_limit_max, 10'000}, {Quantity::target_position, 9'000}}))
+                  .outcome.code,
+              Errc::ok)
+        << "wide enough from now on";
+    EXPECT_TRUE(rig.stage.run_until([&] { return rig.axis().motion_state == MotionState::completed; }));
+  }
+}
+
 TEST(Limits, OfATargetThatTheDriveHoldsFromElsewhereHoldToo) {
   Rig rig(KincoType::jd, limited());
   rig.motor().poke({0x607A, 0}, 500'000);

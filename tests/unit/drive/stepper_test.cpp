@@ -260,6 +260,18 @@ TEST(Stepper, TheEnableSwitchAtTheDriveIsALossOfEnableThatItsReturnDoesNotUndo) 
   EXPECT_FALSE(rig.axis().has(AxisInput::enabled));
 }
 
+// A button that is answered as done and moves nothing would be a lie: the drive counts in whole turns a minute.
+TEST(StepperJog, TakesNoSpeedThatTheDriveWouldHoldAsZero) {
+  StepperRig rig;
+  rig.online();
+  rig.enable();
+  WriteBatch batch;
+  for (const auto [speed, code] : {std::pair{100U, Errc::bad_value}, {0U, Errc::ok}, {1'000U, Errc::ok}}) {
+    batch.jog_velocity = speed;
+    EXPECT_EQ(rig.code(rig.ask(batch)), code) << speed;
+  }
+}
+
 // 3.1: "on Modbus RTU the register and sub 0". The wire has no sub-index: another one would be the same register, by a
 // name that no limit and no gate knows.
 TEST(StepperObjects, HaveNoSubindex) {
