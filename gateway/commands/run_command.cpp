@@ -92,7 +92,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   if (descriptors.limited()) gateway.report(EventKind::warning, modbus_tcp::text(descriptors));
   gateway.start();
   if (dds) dds->start();
-  FileWatch file_watch(io, runtime, loaded.config.read,
+  FileWatch file_watch(io, runtime, watched_files(loaded.config),
                        [&](const std::string& file) { gateway.report_file_changed(file); });
   LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
   Service service(runtime, [&](Duration slack) { return gateway.all_turn(slack); });

@@ -170,10 +170,12 @@ void Gateway::report_loop_delay(Duration delay) {
 
 void Gateway::report_file_changed(const std::string& file) {
   file_changed_ = !file.empty();
-  report(EventKind::warning, file_changed_ ? file +
-                                                 " is not what the gateway runs with: check it, and reload it "
-                                                 "(axisgate reload) when the axes of the buses that change are disabled"
-                                           : "the files on disk are what the gateway runs with again");
+  report(EventKind::warning, file_changed_
+                                 ? file +
+                                       " is not what the gateway runs with: check it, and reload it "
+                                       "(axisgate reload) when the axes of the buses that change are disabled; a file "
+                                       "of DDS is read when the gateway starts"
+                                 : "the files on disk are what the gateway runs with again");
 }
 
 // --- Rows of the gateway and of the buses, gathered when somebody reads them

@@ -89,7 +89,15 @@ struct Config {
   std::vector<drive::FileRead> read{};  ///< the file and its profiles, and where one was looked for in vain; each once
   std::vector<modbus_tcp::ListenerSettings> modbus_tcp;
   std::optional<dds::DdsSettings> dds;
+  std::vector<drive::FileRead> read_by_dds{};  ///< what axisgate-dds reads when it starts, but the private key
   std::vector<BusConfig> buses;
 };
+
+/// What the alarm "configuration changed" is about.
+[[nodiscard]] inline std::vector<drive::FileRead> watched_files(const Config& config) {
+  std::vector<drive::FileRead> all = config.read;
+  all.insert(all.end(), config.read_by_dds.begin(), config.read_by_dds.end());
+  return all;
+}
 
 }  // namespace axisgate::app

@@ -211,6 +211,24 @@ std::optional<DdsSettings> read_dds(const ConfigNode& root, const std::vector<Bu
   return settings;
 }
 
+// A renewed key comes with a certificate, and has no business in this process.
+std::vector<drive::FileRead> read_files_of_dds(const DdsSettings& settings) {
+  std::vector<drive::FileRead> out;
+  if (settings.qos_file.empty()) return out;
+  out.push_back(drive::read_file(settings.qos_file));
+  for (const dds::CertificateRole& each : settings.roles) out.push_back(drive::read_file(each.certificate));
+  const std::string qos = out.front().text.value_or("");
+  constexpr std::string_view kFile = "file://";
+  for (std::size_t at = 0; (at = qos.find(kFile, at)) != std::string::npos;) {
+    const std::string_view name = std::string_view(qos).substr(0, at).substr(std::min(at, qos.rfind("<name>", at)));
+    at += kFile.size();
+    const std::string path = qos.substr(at, qos.find_first_of("< \t\r\n", at) - at);
+    const bool known = std::any_of(out.begin(), out.end(), [&](const auto& each) { return each.file == path; });
+    if (!known && name.find("private_key") == std::string_view::npos) out.push_back(drive::read_file(path));
+  }
+  return out;
+}
+
 std::optional<Rational> read_metres_per_rev(const ConfigNode& axis, ConfigFaults& faults) {
   const bool metres = axis.string("dds_unit") == "m";
   const auto node = axis.child("metres_per_rev");

@@ -27,6 +27,8 @@ void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults);
 /// The section "dds", with the units of all axes.
 [[nodiscard]] std::optional<dds::DdsSettings> read_dds(const ConfigNode& root, const std::vector<BusConfig>& buses,
                                                        ConfigFaults& faults);
+/// What axisgate-dds reads when it starts, but the private key.
+[[nodiscard]] std::vector<drive::FileRead> read_files_of_dds(const dds::DdsSettings& settings);
 /// An axis's keys "dds_unit" and "metres_per_rev"; no value: rad.
 [[nodiscard]] std::optional<Rational> read_metres_per_rev(const ConfigNode& axis, ConfigFaults& faults);
 

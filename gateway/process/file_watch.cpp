@@ -1,30 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/process/file_watch.hpp"
 
-#include <array>
 #include <boost/asio/post.hpp>
-#include <filesystem>
-#include <fstream>
 #include <utility>
 
 namespace axisgate::app {
-namespace {
-
-/// As far as kMaxWatchedBytes; none: there is no file to be read.
-std::optional<std::string> text_of(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  std::ifstream stream(path, std::ios::binary);
-  std::string text;
-  constexpr std::size_t kPiece = 4096;
-  std::array<char, kPiece> piece{};
-  while (text.size() < kMaxWatchedBytes && (stream.read(piece.data(), piece.size()) || stream.gcount() > 0))
-    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
-  return text;
-}
-
-}  // namespace
-
 FileWatch::FileWatch(boost::asio::io_context& io, Runtime& runtime, std::vector<drive::FileRead> read,
                      std::function<void(const std::string& file)> on_change)
     : io_(io),
@@ -44,7 +24,7 @@ void FileWatch::look() {
   boost::asio::post(thread_, [this, alive = std::weak_ptr(alive_)] {
     std::string differs;
     for (const drive::FileRead& each : watched_)
-      if (differs.empty() && text_of(each.file) != each.text) differs = each.file;
+      if (differs.empty() && drive::read_file(each.file) != each) differs = each.file;
     boost::asio::post(io_, [this, alive, differs] {
       if (!alive.expired()) on_looked(differs);
     });

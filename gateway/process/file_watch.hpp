@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether what was read at the start, or at the last reload, still is what a start would read (gateway alarm
 // "configuration changed"). Promises that a disk which hangs never holds up the loop: files are read on a thread of
-// their own, one look at a time. Never reads more of a file than its first kMaxWatchedBytes, never opens what is no
-// regular file (a pipe would hold the thread for ever), and never does anything about a change.
+// their own, one look at a time. Never reads more of a file than its first kMaxWatchedBytes, and never does anything
+// about a change.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -16,8 +16,6 @@
 #include "gateway/profile/json/json_schema.hpp"
 
 namespace axisgate::app {
-
-inline constexpr std::size_t kMaxWatchedBytes = 4U << 20U;
 
 class FileWatch {
  public:

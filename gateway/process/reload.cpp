@@ -96,7 +96,8 @@ std::vector<std::string> Reload::clients_in_the_way(const ReloadPlan& plan) cons
 void Reload::commit(const ReloadPlan& plan, Config wanted, const std::vector<StartLine>& start) {
   with_.server.commit(modbus_tcp::take_descriptors(descriptor_needs(wanted)));
   if (with_.dds != nullptr && wanted.dds) with_.dds->take_axes(wanted.dds->units);
-  with_.files.take(wanted.read);
+  wanted.read_by_dds = running_.read_by_dds;  // axisgate-dds has not read them anew
+  with_.files.take(watched_files(wanted));
   running_ = std::move(wanted);
   std::vector<std::string> lines = plan.changes;
   if (lines.empty()) lines.emplace_back("nothing has changed");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading JSON files (declared in json_schema.hpp): bounded, with comments, and strict about what JSON leaves open.
+#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -87,6 +88,18 @@ std::variant<json, SchemaFault> parse_json(std::string_view text) {
   } catch (const json::exception& error) {
     return SchemaFault{"", plain(error.what())};
   }
+}
+
+FileRead read_file(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return {path};
+  std::ifstream stream(path, std::ios::binary);
+  std::string text;
+  constexpr std::size_t kPiece = 4096;
+  std::array<char, kPiece> piece{};
+  while (text.size() < kMaxWatchedBytes && (stream.read(piece.data(), piece.size()) || stream.gcount() > 0))
+    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+  return {path, std::move(text)};
 }
 
 std::variant<json, SchemaFault> load_json(const std::filesystem::path& path, std::vector<FileRead>& read) {

@@ -36,6 +36,11 @@ struct FileRead {
   friend bool operator==(const FileRead&, const FileRead&) = default;
 };
 
+/// Of a file that is watched: what is beyond is not looked at.
+inline constexpr std::size_t kMaxWatchedBytes = 4U << 20U;
+/// As far as kMaxWatchedBytes. What is no regular file is not opened: a pipe would hold its reader for ever.
+[[nodiscard]] FileRead read_file(const std::string& path);
+
 /// The document, or why there is none. A syntax error's message begins with "line 3, column 14: "; its pointer is
 /// empty. Comments are allowed; a key given twice is a fault. Adds to `read` what was read.
 [[nodiscard]] std::variant<nlohmann::json, SchemaFault> load_json(const std::filesystem::path& path,

@@ -133,6 +133,29 @@ TEST_F(ConfigDds, GivesRolesByCertificateAndAllOthersNone) {
   EXPECT_THAT(warnings("{" + roles + R"(, "interfaces": ["eth0"]})"), IsEmpty());
 }
 
+// For gateway alarm 8.
+TEST_F(ConfigDds, TellsWhichFilesItsProcessReadsButThePrivateKey) {
+  std::filesystem::create_directory(folder_);
+  const auto put = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder_ + name) << text;
+    return drive::FileRead{folder_ + name, text};
+  };
+  const auto value = [&](const std::string& name, const std::string& file) {
+    return "<property><name>dds.sec." + name + "</name><value> file://" + folder_ + file + "\n</value></property>";
+  };
+  const auto qos =
+      put("/qos.xml", "<dds>" + value("auth.builtin.PKI-DH.identity_certificate", "/a.pem") +
+                          value("auth.builtin.PKI-DH.private_key", "/a.key") +
+                          value("access.builtin.Access-Permissions.permissions", "/gone.smime") + "</dds>");
+  const auto a = put("/a.pem", "A"), b = put("/b.pem", "B");
+  static_cast<void>(put("/a.key", "secret"));
+  const LoadedConfig loaded =
+      load(R"({"commands": true, "qos_file": "qos.xml", "roles": [{"certificate": "b.pem", "role": "operator"}]})");
+  EXPECT_THAT(loaded.config.read_by_dds, ElementsAre(qos, b, a, drive::FileRead{folder_ + "/gone.smime"}));
+  EXPECT_THAT(watched_files(loaded.config), SizeIs(loaded.config.read.size() + 4));
+  EXPECT_THAT(load("{}").config.read_by_dds, IsEmpty());
+}
+
 TEST_F(ConfigDds, KnowsTheUnitsOfEveryAxis) {
   const LoadedConfig loaded = load("{}", R"(, "dds_unit": "m", "metres_per_rev": "0.005")");
   ASSERT_THAT(loaded.config.dds->units, SizeIs(2));

@@ -138,31 +138,6 @@ TEST_F(Writers, AHeartbeatCountsForItsOwnParticipantAlone) {
   EXPECT_EQ(clients.size(), 1U) << "it makes no client";
 }
 
-// Of whatever age it is: what stops is never too old.
-TEST_F(Writers, AHeartbeatThatIsDisposedIsTheEndOfItsClientUntilThatWritesAgain) {
-  const auto life = there(guid(1));
-  give(life);
-  HeartbeatRecord end = heartbeat(guid(1), 0, kStart);
-  end.gone = true;
-  HeartbeatRecord foreign = end;
-  foreign.writer = guid(2);
-  clients.on_heartbeat(foreign, kStart + 10s);
-  EXPECT_TRUE(life->connected) << "nobody speaks for another participant's";
-  clients.on_heartbeat(end, kStart + 10s);
-  EXPECT_FALSE(life->connected);
-  EXPECT_THAT(port.gone, ElementsAre(life->id));
-  const Instant later = kStart + 11s;
-  clients.on_beats(beat(guid(1)), later);
-  clients.on_heartbeat(heartbeat(guid(1), 5, later), later);
-  clients.on_heartbeat(end, later);
-  EXPECT_EQ(life->last_request, kStart) << "neither its liveliness nor a heartbeat keeps its motor running";
-  EXPECT_THAT(port.submitted, IsEmpty());
-  EXPECT_EQ(port.gone.size(), 1U);
-  EXPECT_NE(clients.on_sample(guid(1), 0, true, later)->life->id, life->id);
-  clients.on_time(kStart + 1h);
-  EXPECT_NE(clients.find(guid(1)), nullptr) << "its writer was there all the time";
-}
-
 TEST_F(Writers, AnOldHeartbeatRenewsNothing) {
   const auto life = there(guid(1));
   clients.on_heartbeat(heartbeat(guid(1), 1, kStart), kStart + 501ms);

@@ -188,6 +188,22 @@ TEST_F(Orphans, AreTakenOverByTheHeartbeatOfAWriterThatCameAfterwards) {
   EXPECT_TRUE(rig.has_event("goes on as the owner, for another writer"));
 }
 
+TEST_F(Orphans, AreThoseOfAClientThatDisposesItsHeartbeatUntilItWritesAgain) {
+  dds::HeartbeatRecord end{guid(2, 77), writer, 0, 0, 0, true};
+  rig.give(end);
+  EXPECT_TRUE(is_owner(writer)) << "nobody speaks for another participant's";
+  end.writer = guid(1, 77);
+  rig.give(end);
+  EXPECT_FALSE(is_owner(writer));
+  EXPECT_EQ(rig.run_at(writer, 5).result, kDone);
+  EXPECT_TRUE(is_owner(writer));
+  rig.run(10s);
+  EXPECT_TRUE(rig.turns()) << "its writer was there all the time";
+  rig.give(end);
+  beat_for(writer);
+  EXPECT_TRUE(latched()) << "neither its liveliness nor a heartbeat keeps its motor running";
+}
+
 // A writer that is made as another is deleted may be told of first.
 TEST_F(Orphans, AreTakenOverByTheHeartbeatOfAWriterThatHasSaidNothingBefore) {
   const auto next = rig.writer(1, 2);
