@@ -226,6 +226,29 @@ TEST(Namesake, IsToldOnceItsStatesAreHeardAndWhenItGivesUpAnAxisOrIsGone) {
   EXPECT_EQ(told, (NamesakeRecord{writer, 4, "127.0.0.1", false}));
   send_until_told(3, "");  // the last state of an axis that a reload has taken away has no name
   EXPECT_EQ(told, (NamesakeRecord{writer, 3, "127.0.0.1", true}));
+  // It is told once, and whoever stood still at that time hears it all the same.
+  Peer peer;
+  auto reader = peer.reader<AxisState>("axisgate/axis_state", {.transient_local = true, .depth = 0});
+  ASSERT_TRUE(reader->next());
+  kill(child.pid(), SIGSTOP);
+  constexpr int kMoreThanItsSocketHolds = 2000;
+  state.axis = 5;
+  state.name = "feeder";
+  for (int i = 0; i < kMoreThanItsSocketHolds; ++i) duplicate->send(state);
+  state.axis = 4;
+  state.name = "";
+  duplicate->send(state);
+  std::optional<AxisState> got;
+  do {
+    got = reader->next();
+    ASSERT_TRUE(got);
+  } while (got->axis() != 4 || got->name().size() != 0);
+  kill(child.pid(), SIGCONT);
+  do {
+    told = child.next<NamesakeRecord>();
+    ASSERT_TRUE(told);
+  } while (told->axis == 5);
+  EXPECT_EQ(told, (NamesakeRecord{writer, 4, "127.0.0.1", true}));
   duplicate->close_link();
   told = child.next<NamesakeRecord>();
   EXPECT_EQ(told, (NamesakeRecord{writer, 0, "127.0.0.1", true}));

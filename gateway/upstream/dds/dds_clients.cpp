@@ -112,8 +112,7 @@ void DdsClients::take_back(const Guid& writer, bool own_alone, Instant now) {
 }
 
 // A heartbeat is a topic of its own: it may be here before anything else of its writer is.
-DdsClient& DdsClients::beating(const Guid& writer, Instant now) {
-  const bool is_new = !clients_.contains(writer);
+DdsClient& DdsClients::beating(const Guid& writer, bool is_new, Instant now) {
   if (is_new) make_room_to_beat();
   DdsClient& client = know(writer);
   client.beats_alone = client.beats_alone || is_new;
@@ -210,7 +209,7 @@ void DdsClients::on_heartbeat(const HeartbeatRecord& record, Instant now) {
     return;
   }
   if (!signs_.counts(record, known == clients_.end() ? std::nullopt : known->second.counter, now)) return;
-  DdsClient& client = beating(record.client, now);
+  DdsClient& client = beating(record.client, known == clients_.end(), now);
   client.counter = record.counter;
   client.lease_limit.reset();
   if (record.lease_ms != 0) client.lease_limit = std::chrono::milliseconds(record.lease_ms);

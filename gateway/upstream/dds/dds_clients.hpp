@@ -99,7 +99,7 @@ class DdsClients {
   [[nodiscard]] std::size_t beating_alone() const;
   [[nodiscard]] bool has_place(const Guid& writer) const;
   [[nodiscard]] DdsClient& know(const Guid& writer);
-  [[nodiscard]] DdsClient& beating(const Guid& writer, Instant now);
+  [[nodiscard]] DdsClient& beating(const Guid& writer, bool is_new, Instant now);
   void make_room_to_beat();
   void take_back(const Guid& writer, bool own_alone, Instant now);
   [[nodiscard]] bool owns(ClientId client) const;

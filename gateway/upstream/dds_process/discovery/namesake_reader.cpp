@@ -13,7 +13,7 @@ namespace {
 /// Axes of all gateways of our key, ours among them.
 constexpr std::int32_t kMostStatesHeard = 4096;
 
-fastdds::DataReaderQos namesake_qos() { return reader_qos(false, kMostStatesHeard, 1); }
+fastdds::DataReaderQos namesake_qos(bool reliable) { return reader_qos(reliable, kMostStatesHeard, 1); }
 
 }  // namespace
 
@@ -21,7 +21,7 @@ NamesakeReader::NamesakeReader(Participant& participant, bool behind_a_server, N
     : participant_(participant), watch_(watch), wake_(wake) {
   if (!behind_a_server) return;
   const fastdds::TypeSupport type(new GuardedType<GatewayStatePubSubType>());
-  gateways_ = &participant_.make_reader(kGatewayTopicName, type, namesake_qos(), this);
+  gateways_ = &participant_.make_reader(kGatewayTopicName, type, namesake_qos(false), this);
 }
 
 NamesakeReader::~NamesakeReader() {
@@ -33,7 +33,7 @@ void NamesakeReader::update() {
   if (watch_.any() == (reader_ != nullptr)) return;
   if (reader_ == nullptr) {
     const fastdds::TypeSupport type(new GuardedType<AxisStatePubSubType>());
-    reader_ = &participant_.make_reader(kStateTopicName, type, namesake_qos(), this);
+    reader_ = &participant_.make_reader(kStateTopicName, type, namesake_qos(true), this);
   } else {
     participant_.end_reader(*std::exchange(reader_, nullptr));
   }

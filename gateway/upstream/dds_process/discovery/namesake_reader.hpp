@@ -2,7 +2,8 @@
 // A reader of axis_state, there only while another participant has our gateway's key: what it hears proves that this
 // one is no dead entry of a discovery server, and tells which axes it has. Such a server tells participants of those
 // alone whom they read, so behind one there is a reader of gateway_state as well, one sample a second and gateway.
-// Promises to wait for nobody and to be heard by nobody: best effort. Never keeps a state.
+// Promises that the last state of an axis is heard, which says once that the axis was given up: reliable. A writer of
+// states keeps the newest one of each axis, and waits for no reader. Never keeps a state.
 #pragma once
 
 #include "gateway/upstream/dds_process/discovery/namesake_watch.hpp"
