@@ -195,5 +195,23 @@ TEST(DdsCommands, AStopGoesFirstWhateverWaits) {
   EXPECT_NE(rig.state().alarms & bit(AxisAlarm::stop_latched), 0U);
 }
 
+// The gateway stood still. Where clocks differ, max_age_ms does not tell.
+TEST(DdsCommands, WhatHasWaitedTooLongForTheGatewayIsNotCarriedOutUnlessItIsAStop) {
+  DdsRig rig;
+  const auto writer = rig.writer(1);
+  ASSERT_EQ(rig.ask(writer, 1).result, kDone);
+  const auto before = [&](Duration time) { return (rig.now() - time).time_since_epoch().count(); };
+  dds::CommandRecord move = move_to(writer, 100);
+  move.received = before(501ms);
+  EXPECT_EQ(rig.ask(move).result, 6) << "never started";
+  EXPECT_FALSE(rig.turns());
+  move.received = before(500ms);
+  EXPECT_EQ(rig.ask(move).result, kDone);
+  EXPECT_TRUE(rig.turns());
+  dds::CommandRecord stop = command(writer, 3, 0);
+  stop.received = before(1h);
+  EXPECT_EQ(rig.ask(stop).result, kDone);
+}
+
 }  // namespace
 }  // namespace axisgate::test
