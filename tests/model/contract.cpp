@@ -243,8 +243,7 @@ int Contract::send(std::size_t client, const Write& write) {
       // Of function 23 the read is judged first, and where that is answered 0x0B nothing is written (D363).
       if (options_.reads_fail && write.function == fc::read_write && trouble_ && !pending.verdict.stop) {
         worlds.push_back(world);
-        Pending& unread = worlds.back().pending[number] = pending;
-        unread.unread = true;
+        (worlds.back().pending[number] = pending).unread = true;
       }
       worlds.push_back(std::move(next));
       if (!differs) continue;
