@@ -16,9 +16,10 @@ bool stronger(const ClientLife& a, const ClientLife& b) {
 Ownership::Taken Ownership::how(const ClientLife& client) const {
   if (!lease_.running) return Taken::free;
   if (!lease_.owner) return Taken::open;
+  const bool own_hand = same_hand(*lease_.owner, client);
+  if (own_hand && !lease_.owner->connected) return Taken::orphan;  // however strong: nobody is its own rival
   if (stronger(client, *lease_.owner)) return Taken::weaker;
-  if (!same_hand(*lease_.owner, client)) return Taken::lower_rank;
-  return lease_.owner->connected ? Taken::same_hand : Taken::orphan;
+  return own_hand ? Taken::same_hand : Taken::lower_rank;
 }
 
 Errc Ownership::judge(const ClientPtr& client, bool claims) const {
@@ -58,8 +59,9 @@ void Ownership::set_armed(bool armed) {
 Errc Ownership::may_take_over(const ClientPtr& client) const {
   if (!lease_.rules.on) return Errc::not_supported;
   if (!client || !lease_.owner || lease_.owner->id == client->id) return Errc::ok;
-  // Strength, not the hand, decides between DDS writers.
-  const bool own_hand = !client->strength && same_hand(*lease_.owner, *client);
+  // Strength, not the hand, decides between DDS writers that are there.
+  const Taken taken = how(*client);
+  const bool own_hand = taken == Taken::orphan || (taken == Taken::same_hand && !client->strength);
   return own_hand || lease_.owner->rank < client->rank ? Errc::ok : Errc::not_owner;
 }
 

@@ -167,6 +167,28 @@ TEST_F(Orphans, AreTakenOverByWhateverTheirParticipantAsks) {
   EXPECT_EQ(rig.axis().lease.owner, nullptr);
 }
 
+// Design-2 A8 comes before strength: a program that is back is not its own rival.
+TEST_F(Orphans, AreTakenOverByAStrongerWriterOfTheirParticipantAsByAnyOther) {
+  leave();
+  const auto next = rig.writer(1, 2, 9);
+  rig.fall_silent(next);
+  beat_for(next);
+  EXPECT_TRUE(rig.turns());
+  EXPECT_FALSE(latched());
+  EXPECT_TRUE(is_owner(next));
+  rig.die(next);
+  const auto last = rig.writer(1, 3, 10);
+  EXPECT_EQ(rig.ask(last, 13).result, kDone) << "what its program has left is its own to give back";
+  EXPECT_EQ(rig.axis().lease.owner, nullptr);
+}
+
+TEST_F(Orphans, AreTakenOverByCommand14OfTheirParticipant) {
+  leave();
+  const auto next = rig.writer(1, 2);
+  EXPECT_EQ(rig.ask(next, 14).result, kDone);
+  EXPECT_TRUE(is_owner(next));
+}
+
 TEST_F(Orphans, AreNotTakenOverByWhatIsNotSurelyMeant) {
   leave();
   const auto next = rig.writer(1, 2);
