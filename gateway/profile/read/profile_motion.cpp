@@ -55,11 +55,10 @@ bool may_enable(const ValueSpec& value) {
   return number == nullptr || enables(*number);
 }
 
-/// What a quantity says is not known here, and may be any number.
-bool is_zero(const ValueSpec& value) {
-  if (const auto* number = std::get_if<std::int64_t>(&value)) return *number == 0;
+bool is_not_zero(const ValueSpec& value) {
+  if (const auto* number = std::get_if<std::int64_t>(&value)) return *number != 0;
   const auto* amount = std::get_if<Amount>(&value);
-  return amount != nullptr && amount->number == Factor(Rational(0));
+  return amount != nullptr && amount->number != Factor(Rational(0));
 }
 
 void check_write(Reading& reading, const std::vector<std::string>& moving, const WriteSpec& write) {
@@ -111,6 +110,10 @@ void check_enable_starts_nothing(Reading& reading, const CommandSpec& command) {
     const bool fits = number != nullptr && *number >= 0 && *number <= UINT16_MAX;  // else it is told already
     return number == nullptr || (fits && (*number & starts) != 0);
   };
+  const auto is_zero = [](const ValueSpec& value) {
+    const auto* number = std::get_if<std::int64_t>(&value);
+    return number != nullptr && *number == 0;
+  };
   const auto is_here = [](const ValueSpec& value) {
     const auto* quantity = std::get_if<Quantity>(&value);
     return quantity != nullptr && *quantity == Quantity::position_actual;
@@ -153,7 +156,7 @@ void check_stops_by_word(Reading& reading, const CommandSpec& command, const std
 void check_turns_nothing(Reading& reading, const CommandSpec& command) {
   if (may_move(command.command)) return;
   each_step(command, [&](const StepSpec& step) {
-    if (step.verb != Step::Verb::write || std::all_of(step.values.begin(), step.values.end(), is_zero)) return;
+    if (step.verb != Step::Verb::write || std::none_of(step.values.begin(), step.values.end(), is_not_zero)) return;
     for (const Quantity target : {Quantity::target_velocity, Quantity::target_torque})
       if (is_of(reading, step.object, target))
         reading.fault(pointer_to(step.pointer, "value"),
