@@ -167,7 +167,7 @@ TEST_F(Orphans, AreTakenOverByWhateverTheirParticipantAsks) {
   EXPECT_EQ(rig.axis().lease.owner, nullptr);
 }
 
-// Design-2 A8 comes before strength: a program that is back is not its own rival.
+// The hand comes before strength: a program that is back is not its own rival.
 TEST_F(Orphans, AreTakenOverByAStrongerWriterOfTheirParticipantAsByAnyOther) {
   leave();
   const auto next = rig.writer(1, 2, 9);

@@ -266,7 +266,7 @@ TEST(StepperJog, TakesNoSpeedThatTheDriveWouldHoldAsZero) {
   rig.online();
   rig.enable();
   WriteBatch batch;
-  for (const auto [speed, code] : {std::pair{100U, Errc::bad_value}, {0U, Errc::ok}, {1'000U, Errc::ok}}) {
+  for (const auto& [speed, code] : {std::pair{100U, Errc::bad_value}, {0U, Errc::ok}, {1'000U, Errc::ok}}) {
     batch.jog_velocity = speed;
     EXPECT_EQ(rig.code(rig.ask(batch)), code) << speed;
   }
