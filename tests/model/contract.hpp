@@ -73,6 +73,7 @@ struct ClientMemory {
   Item command, controlword;
   std::array<Item, 10> coils{};
   std::optional<std::int64_t> id{};      ///< the last one that was not 0, of the address: with its first client alone
+  std::set<std::int64_t> ids{};          ///< all of its address
   std::optional<std::int64_t> own_id{};  ///< the same of the connection
   Rows rows{};                           ///< as written last, whatever became of it
   /// Of these it was refused, and whether that counts is not said: what was written before, none: nothing.

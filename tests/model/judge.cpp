@@ -53,10 +53,12 @@ Judge::Edge Judge::command_edge(const Rows& rows, bool single) {
   const std::int64_t id = rows.contains(row::command_id) ? rows.at(row::command_id) : 0;
   ClientMemory& mine = me();
   const std::optional<std::int64_t> before = mine.command.value;
-  // "The command is new if the id differs from the last non-zero id of this address and axis"; and from that of its own
-  // connection (D410): a program that repeats itself asks for nothing where another one of its address has asked since.
+  // "The command is new if the id differs from the last non-zero id of this address", and of its connection (D410).
   const std::optional<std::int64_t> last_id = this->last_id();
   const bool repeats = mine.own_id == id;
+  // Of a pair that a new connection brings back D422 says more.
+  auto& ids = world_.clients[std::min(options_.address_of(client_), kModbus)].ids;
+  const bool comes_back = !ids.insert(id).second && !mine.own_id;
   Edge edge = Edge::not_new;
   if (id == 0) {
     edge = this->edge(mine.command, value, single, is_stop(value));
@@ -72,6 +74,7 @@ Judge::Edge Judge::command_edge(const Rows& rows, bool single) {
       edge = Edge::remembered;  // 3.3 Edges: "Where none is kept, the pair is only remembered"
     else
       edge = *last_id != id && !repeats ? Edge::acts : Edge::not_new;  // 3.3 Edges: "only the id decides"
+    if (comes_back && edge == Edge::acts && !is_stop(value) && readings_.other()) edge = Edge::not_new;
     if (edge == Edge::acts || before != value) mine.command.acted = edge == Edge::acts;
     if (!mine.command.acted) mine.command.spoilt = false;
   }

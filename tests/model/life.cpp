@@ -175,9 +175,10 @@ void Contract::left(std::size_t client, bool silently) {
       world.pressed.at(client - kModbus) = 0;
       continue;
     }
-    const std::optional<std::int64_t> id = world.clients[client].id;
-    world.clients[client] = {};
-    world.clients[client].id = id;  // 3.3 Edges: "kept 60 s after its last connection"
+    ClientMemory next;
+    next.id = world.clients[client].id;  // 3.3 Edges: "kept 60 s after its last connection"
+    next.ids = world.clients[client].ids;
+    world.clients[client] = next;
   }
 }
 

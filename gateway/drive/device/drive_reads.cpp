@@ -98,7 +98,7 @@ bus::Exchange DriveReads::probe(Asked& asked) {
 void DriveReads::timed_out(const bus::Exchange& exchange, const Asked& asked, Instant now) {
   resync_.lost(exchange, now);
   if (asked.widened) silent_read_ = exchange;
-  store_.invalidate_all();
+  store_.lose_sight();
 }
 
 // An error answer is no answered resynchronisation read; the next candidate is tried.

@@ -381,7 +381,9 @@ void add_speeds(const AxisCore& core, int mode, Plan& plan) {
     const ObjectState& state = core.store[binding->object];
     const auto told = core.told.find(binding->object);
     if (told != core.told.end() && !state.clamped) {
-      static_cast<void>(add_write(core, each, {0, told->second}, plan));
+      // After a mode change it is taken to be as it was: what a start takes longer is a button's time.
+      if (!state.known || state.out_of_sight || state.number != told->second)
+        static_cast<void>(add_write(core, each, {0, told->second}, plan));
       continue;
     }
     const auto held = core.value(each);

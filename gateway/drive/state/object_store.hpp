@@ -20,6 +20,7 @@ struct ObjectState {
   bool refused = false;        ///< the drive does not have it: not asked again until the next bring-up
   bool unverified = false;     ///< acknowledged, but not read back yet
   bool unsure = false;         ///< a write of it may or may not have happened, and it was not read since
+  bool out_of_sight = false;   ///< the drive was silent since: it may have restarted, and hold what it holds then
   bool clamped = false;        ///< read back other than it was acknowledged; until it is written again
   bool emulated = false;       ///< the gateway's own (virtual axis): nothing invalidates it
   Instant sent_at = kLongAgo;  ///< when the request that gave the number was sent
@@ -91,6 +92,11 @@ class ObjectStore {
     for (std::size_t i = 0; i < states_.size(); ++i)
       if (!same_place(i, except) && !states_[i].emulated) states_[i].cached = states_[i].unverified = false;
     ++invalidations_;
+  }
+  /// The same, after a timeout.
+  void lose_sight() {
+    invalidate_all();
+    for (ObjectState& s : states_) s.out_of_sight = !s.emulated;
   }
   /// How often invalidate_all() was called: whoever keeps the image true reads everything anew then.
   [[nodiscard]] std::uint64_t invalidations() const { return invalidations_; }
