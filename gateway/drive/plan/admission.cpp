@@ -165,6 +165,14 @@ bool is_distance(const WriteBatch& batch, Quantity quantity) {
   return quantity == Quantity::target_position && batch.command == Command::move_relative;
 }
 
+// Limits of the drive's own bound where it is sent: with command 6, or by a target that is all that is asked for. One
+// that merely stands in a scanner's block is held against them when it is to be moved to.
+Range range_of(const AxisCore& core, const WriteBatch& batch, const Binding& binding) {
+  const bool alone = batch.setpoints.size() == 1 && batch.command == Command::none && !batch.controlword;
+  const bool sent_there = alone || batch.command == Command::move_absolute;
+  return binding.quantity == Quantity::target_position && sent_there ? position_range(core, batch) : binding.limits;
+}
+
 // A button that is pressed and moves nothing, since the drive counts too coarsely, would be answered as done.
 bool jog_velocity_fits(const AxisCore& core, const Binding& velocity, std::int64_t value) {
   if (!velocity.limits.holds(value)) return false;
@@ -210,10 +218,7 @@ Errc admit(const AxisCore& core, const WriteBatch& batch) {
   if (batch.jog_velocity && !jog_velocity_fits(core, *velocity, *batch.jog_velocity)) return Errc::bad_value;
   for (const Setpoint& sp : batch.setpoints) {
     const Binding* binding = core.model.binding(sp.quantity);
-    if (sp.quantity != Quantity::target_position && !binding->limits.holds(sp.value)) return Errc::bad_value;
-    if (sp.quantity == Quantity::target_position && !is_distance(batch, sp.quantity) &&
-        !position_range(core, batch).holds(sp.value))
-      return Errc::bad_value;
+    if (!is_distance(batch, sp.quantity) && !range_of(core, batch, *binding).holds(sp.value)) return Errc::bad_value;
     // The drive has not told yet how it counts: nobody knows whether it could take the value.
     if (!binding->scaled) return Errc::still_in_setup;
     if (!binding->to_raw(sp.value, core.object(binding->object))) return Errc::bad_value;

@@ -77,6 +77,13 @@ TEST(Limits, ThatTheDriveHoldsItselfHoldToo) {
     EXPECT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, -8'001}})).outcome.code,
               Errc::bad_value);
     EXPECT_FALSE(rig.turns());
+    EXPECT_EQ(rig.ask(with_command(Command::run_velocity,
+                                   {{Quantity::target_position, 9'000}, {Quantity::target_velocity, 60'000}}))
+                  .outcome.code,
+              Errc::ok)
+        << "it merely stands in the block";
+    EXPECT_EQ(rig.command(Command::halt).outcome.code, Errc::ok);
+    EXPECT_TRUE(rig.stage.run_until([&] { return !rig.turns(); }));
     EXPECT_EQ(rig.ask(with_command(Command::move_absolute,
                                    {{Quantity::position_limit_max, 10'000}, {Quantity::target_position, 9'000}}))
                   .outcome.code,
