@@ -89,13 +89,6 @@ bool DdsRequests::is_for_us(const GatewayId& gateway, const Guid& writer, bool l
   return lets_go;
 }
 
-// Whether clocks of other hosts are looked at or not: this one, that of axisgate-dds, is ours.
-template <typename Request>
-bool DdsRequests::is_fresh(const Request& record, Instant now) const {
-  const Duration waited = now.time_since_epoch() - std::chrono::nanoseconds(record.received);
-  return signs_.fresh(record.written, now) && (record.received == 0 || waited <= settings_.start_deadline);
-}
-
 DdsRequests::Admitted DdsRequests::admit(const Asked& asked, Instant now) {
   if (!settings_.commands) return NotAdmitted{dds_result(Errc::role_forbidden)};
   // Nor is it remembered, or a sign of life: whoever was cut off may ask once more.
@@ -139,7 +132,7 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
   if (!is_for_us(asked.gateway, asked.writer, exempt, now)) return;
   const bool named = asked.gateway == settings_.gateway;
   if (!named && !exempt) return refuse(asked, what, {dds_result(Errc::bad_value)}, now);
-  const bool fresh = is_fresh(asked, now);
+  const bool fresh = signs_.fresh(asked.written, asked.received, now);
   const Admitted admitted = admit({.key = key_of(asked),
                                    .command = asked.command,
                                    .strength = asked.strength,
@@ -199,7 +192,7 @@ void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {
   const std::string_view what = record.write ? "a write of an object" : "";
   if (!is_for_us(record.gateway, record.writer, false, now)) return;
   if (record.gateway != settings_.gateway) return refuse(record, what, {dds_result(Errc::bad_value)}, now);
-  const bool fresh = is_fresh(record, now);
+  const bool fresh = signs_.fresh(record.written, record.received, now);
   const Admitted admitted = admit({.key = key_of(record), .fresh = fresh}, now);
   if (const auto* const why = std::get_if<NotAdmitted>(&admitted)) return refuse(record, what, *why, now);
   if (record.write && stop_order_.overtaken(record.axis, record.received))

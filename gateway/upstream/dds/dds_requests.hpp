@@ -59,9 +59,6 @@ class DdsRequests {
   /// Who asks, or why it ends here.
   using Admitted = std::variant<std::shared_ptr<const ClientLife>, NotAdmitted>;
   [[nodiscard]] Admitted admit(const Asked& asked, Instant now);
-  /// What was written too long ago, or has waited too long for this gateway, is not.
-  template <typename Request>
-  [[nodiscard]] bool is_fresh(const Request& record, Instant now) const;
   /// False: another gateway's, or nobody's, and not answered. Of one that is meant for us by half, and may not be: 17.
   [[nodiscard]] bool is_for_us(const GatewayId& gateway, const Guid& writer, bool lets_go, Instant now);
   [[nodiscard]] WriteBatch new_batch(std::shared_ptr<const ClientLife> life, bool fresh, Instant now) const;

@@ -31,7 +31,7 @@ struct DdsSession::Impl {
         units(units_of(settings.units)),
         wake(std::move(on_wake)),
         told(std::move(to_tell)),
-        signs(settings.max_age),
+        signs(settings.max_age, settings.start_deadline),
         identities(settings),
         clients(identities, signs, image, commands),
         namesakes(image),

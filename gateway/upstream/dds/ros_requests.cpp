@@ -21,7 +21,8 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kTooOld =
-    "ros2: a sample is older than max_age_ms, or as far ahead of this clock: it is no sign of life, and starts nothing";
+    "ros2: a sample is older than max_age_ms, or as far ahead of this clock, or this gateway came to it later than "
+    "start_deadline_ms: it is no sign of life, and starts nothing";
 constexpr Duration kToldAgainAfter = std::chrono::minutes(1);
 
 /// Why a sample cannot be meant as it stands; empty: it can.
@@ -161,7 +162,7 @@ void RosRequests::complain(const std::string& line, Instant now) {
 
 void RosRequests::on_joint_commands(const JointCommandsRecord& record, Instant now) {
   if (!settings_.commands || identities_.role_of(record.writer) < Role::operator_) return;
-  if (!signs_.fresh(record.written, now)) return complain(kTooOld, now);
+  if (!signs_.fresh(record.written, record.received, now)) return complain(kTooOld, now);
   if (const std::string wrong = wrong_with(record); !wrong.empty())
     return complain("a sample of joint_commands is refused as a whole: " + wrong, now);
   const auto axes = axes_by_name();
@@ -282,7 +283,8 @@ void RosRequests::on_action(const RosActionRecord& record, Instant now) {
   if (!axis->supports(command))
     return complain(fmt::format("ros2: {} of {}: this drive cannot do it", text(command), axis->name), now);
   const bool starts = command == Command::enable || command == Command::home;
-  if (!is_stop(command) && !signs_.fresh(record.written, now)) return complain(kTooOld, now);
+  const bool fresh = signs_.fresh(record.written, record.received, now);
+  if (!is_stop(command) && !fresh) return complain(kTooOld, now);
   if (starts && namesakes_.taken())
     return complain(
         fmt::format("ros2: {} of {} is refused: {} has our name", text(command), axis->name, namesakes_.text()), now);
@@ -298,7 +300,7 @@ void RosRequests::on_action(const RosActionRecord& record, Instant now) {
   Joint& joint = joint_of(record.axis);
   joint.newest = now;
   if (command == Command::home) return home(record.axis, joint, now);
-  const bool renews = acts && signs_.fresh(record.written, now);
+  const bool renews = acts && fresh;
   if (renews) heard(*axis, joint, now);
   if (!is_stop(command) && acts) joint.stream.begin_anew();
   WriteBatch batch = new_batch(joint, renews);

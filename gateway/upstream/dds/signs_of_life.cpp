@@ -10,6 +10,11 @@ bool SignsOfLife::fresh(SteadyNs written, Instant now) const {
   return age <= *max_age_ && -age <= *max_age_;
 }
 
+bool SignsOfLife::fresh(SteadyNs written, SteadyNs received, Instant now) const {
+  const Duration waited = now.time_since_epoch() - std::chrono::nanoseconds(received);
+  return fresh(written, now) && (received == 0 || waited <= longest_wait_);
+}
+
 bool SignsOfLife::counts(const HeartbeatRecord& heartbeat, std::optional<std::uint32_t> last, Instant now) const {
   return same_participant(heartbeat.writer, heartbeat.client) && last != heartbeat.counter &&
          fresh(heartbeat.written, now);

@@ -23,7 +23,7 @@ using testing::IsEmpty;
 struct Writers : testing::Test {
   ProcessImage image;
   test::FakePort port;
-  SignsOfLife signs{500ms};
+  SignsOfLife signs{500ms, 500ms};
   DdsSettings settings;
   Identities identities{settings};
   DdsClients clients{identities, signs, image, port};

@@ -249,6 +249,37 @@ TEST_F(RosWithAge, AStaleStopIsNoSignOfLife) {
   EXPECT_EQ(rig.axis().lease.last_sign(), before);
 }
 
+// The gateway stood still. Where clocks differ, max_age_ms does not tell.
+TEST_F(Ros, WhatHasWaitedTooLongForTheGatewayIsNotCarriedOutUnlessItIsAStop) {
+  const auto before = [&](Duration time) { return (rig.now() - time).time_since_epoch().count(); };
+  const auto act_received = [&](RosAction action, Duration ago) {
+    rig.give(dds::RosActionRecord{guid(9), 0, kServo, static_cast<std::uint8_t>(action), before(ago)});
+    rig.run(200ms);
+  };
+  const auto stream_received = [&](double wanted, Duration ago, Duration time) {
+    for (const Instant end = rig.now() + time; rig.now() < end; rig.run(kPeriod)) {
+      auto record = sample({wanted});
+      record.received = before(ago);
+      rig.give(record);
+    }
+  };
+  act_received(RosAction::enable, 501ms);
+  EXPECT_FALSE(enabled());
+  act_received(RosAction::enable, 500ms);
+  ASSERT_TRUE(enabled());
+  const double begun = position();
+  stream_received(begun, 0ms, 200ms);
+  stream_received(begun + 7, 501ms, 1s);
+  EXPECT_NEAR(position(), begun, kNear);
+  stream_received(begun, 0ms, 200ms);
+  act_received(RosAction::quick_stop, 10s);
+  EXPECT_TRUE((rig.state().alarms & bit(AxisAlarm::stop_latched)) != 0);
+  act_received(RosAction::enable, 0ms);
+  ASSERT_TRUE(enabled());
+  stream_received(begun, 501ms, 3s);
+  EXPECT_TRUE((rig.state().alarms & bit(AxisAlarm::stop_latched)) != 0) << "no sign of life";
+}
+
 TEST_F(Ros, AnEnableThatChangesNothingKeepsNoRunAlive) {
   act(RosAction::enable);
   ASSERT_TRUE(stream_until(velocities(0), [&] { return enabled(); }));
