@@ -100,7 +100,7 @@ class Judge {
   void end_run(Verdict& verdict);
   void tell_foreign(Verdict& verdict) const;
   void jog(std::int64_t direction, std::int64_t value, Edge edge, bool single, Verdict& verdict);
-  void jog_both(Verdict& verdict);
+  void jog_both(bool newly, Verdict& verdict);
   void begin_jog(std::int64_t direction, Verdict& verdict);
   void jog_sample(std::int64_t number, Verdict& verdict);
   bool reset_fault(Verdict& verdict);

@@ -37,13 +37,19 @@ void Judge::jog(std::int64_t direction, std::int64_t value, Edge edge, bool sing
     return;
   }
   const Item& other = me().coils.at(direction > 0 ? coil::jog_reverse : coil::jog_forward);
+  const bool newly = edge == Edge::acts || (single && edge == Edge::remembered);
+  if (other.value == 1 && newly) {
+    jog_both(true, verdict);
+    // A coil that has never been 0 is told as "not new" besides.
+    if (single && edge == Edge::remembered) verdict.answers.insert(6);
+    return;
+  }
   if (edge != Edge::acts) {
     if (mine) world_.jog_ends_ms = seen_.now_ms + options_.jog_timeout_ms;
     // 3.3 Not new: "a held level is refused", and what is told of it.
     if (single && !mine) verdict = {"jog: write 0 first", {0, 6}, !world_.accepted.contains(row::jog_velocity)};
     return;
   }
-  if (other.value == 1) return jog_both(verdict);
   begin_jog(direction, verdict);
 }
 
@@ -70,9 +76,10 @@ void Judge::begin_jog(std::int64_t direction, Verdict& verdict) {
   verdict = {"jogs", {0}};
 }
 
-// Whether it halts a motion that is no jog is not said.
-void Judge::jog_both(Verdict& verdict) {
-  if (world_.jog != 0 || (world_.motor != Motor::stands && readings_.other())) halted(false);
+// D451: what is no jog is halted where the two come to be 1 together; while they stay so, a jog alone is.
+void Judge::jog_both(bool newly, Verdict& verdict) {
+  if (newly) stopped_ = true;
+  if (newly || world_.jog != 0) halted(false);
   verdict = {"jog both ways: halt", {0}, true};
 }
 
@@ -95,6 +102,8 @@ Verdict Judge::coils(const Write& write) {
   const std::size_t jogs = coil::jog_forward - write.first;  // in one request neither of the two comes first
   const bool both = write.first <= coil::jog_forward && jogs + 1 < write.words.size() && write.words[jogs] != 0 &&
                     write.words[jogs + 1] != 0;
+  const auto rises = [&](std::uint16_t number) { return me().coils.at(number).value == 0; };
+  const bool newly_both = both && (rises(coil::jog_forward) || rises(coil::jog_reverse));
   for (std::size_t i = 0; i < write.words.size(); ++i) {
     const auto number = static_cast<std::uint16_t>(write.first + i);
     if (number >= me().coils.size()) continue;
@@ -107,7 +116,7 @@ Verdict Judge::coils(const Write& write) {
                       : this->edge(item, value, single, number == coil::quick_stop && value != 0);
     if (!level && value == 0) edge = Edge::nothing;  // it arms
     if (number > coil::run_velocity && both) {
-      if (number == coil::jog_forward) jog_both(verdict);
+      if (number == coil::jog_forward) jog_both(newly_both, verdict);
       continue;
     }
     if (number > coil::run_velocity) {

@@ -181,6 +181,28 @@ TEST_P(Levels, JogHeldAfterItsTimeAsksForNothingUntilZero) {
   nothing_moves();
 }
 
+// 3.4 Jog: "Both 1: halt", whatever runs. Held on, they let the next run be.
+TEST_P(Levels, BothJogCoilsAtOneHaltARun) {
+  const auto run = [&] {
+    ASSERT_EQ(b_.row(row::target_velocity, kSpeed), kOk);
+    ASSERT_EQ(b_.command(0), kOk);
+    ASSERT_EQ(b_.command(8), kOk);
+    ASSERT_TRUE(plant_.keeps_turning());
+  };
+  const auto both = coil_block(coil::jog_forward, {1, 1});
+  ASSERT_EQ(a_.write(coil_block(coil::jog_forward, {0, 0})), kOk);
+  run();
+  EXPECT_EQ(a_.write(both), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+  run();
+  EXPECT_EQ(a_.write(both), kOk);
+  EXPECT_TRUE(plant_.keeps_turning());
+  ASSERT_EQ(a_.coil(coil::jog_reverse, false), kOk);
+  EXPECT_TRUE(plant_.keeps_turning()) << "no jog of its own";
+  EXPECT_EQ(a_.coil(coil::jog_reverse, true), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+}
+
 // The homing took the jog's mode, was refused by the drive, and nobody watched the button any more.
 TEST_P(Levels, AStartThatFailsLeavesNoJogWithoutItsButton) {
   constexpr std::int64_t kHomeSwitch = 19;

@@ -81,7 +81,8 @@ Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, Wr
       asked.acting.push_back(coil_asks.command);
   }
   const JogAsks jogs = edges.jog(jog, writing);
-  if (jogs.ends) asked.acting.push_back(ends_anybodys_jog(request, first, axis) ? Command::halt : Command::jog_end);
+  const bool halts = jogs.halts || (jogs.ends && ends_anybodys_jog(request, first, axis));
+  if (jogs.ends) asked.acting.push_back(halts ? Command::halt : Command::jog_end);
   if (jogs.start) asked.acting.push_back(*jogs.start);
   asked.not_new = asked.not_new || jogs.not_new;
   if (!any_of(asked.acting, asks_to_stop) && !any_of(asked.acting, asks_to_move)) asked.jog_again = jogs.again;
@@ -111,11 +112,11 @@ void add_stops(const Request& request, std::uint16_t i, const UnitView::BitPlace
     acting.push_back(asked);
   }
   EdgeMemory after = edges;
-  if (after.jog(jog, writing).ends) {
+  if (const JogAsks jogs = after.jog(jog, writing); jogs.ends) {
     edges = after;
     if (jog.forward) memory.words.coils[kJogForward] = *jog.forward;
     if (jog.reverse) memory.words.coils[kJogReverse] = *jog.reverse;
-    acting.push_back(Command::jog_end);
+    acting.push_back(jogs.halts ? Command::halt : Command::jog_end);
   }
   for (const Command command : kOrder) {
     if (!has(acting, command)) continue;
