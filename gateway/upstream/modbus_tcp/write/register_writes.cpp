@@ -209,6 +209,15 @@ class BatchMaker {
     return !acted_on && !axis.limit(row.quantity).holds(write.value);
   }
 
+  /// The distance of a relative move to come, beside the command of the last one: it is no position that a limit could
+  /// refuse, and is asked for with its start. Within the limits it may be a position, and is taken as one.
+  [[nodiscard]] bool waits_for_its_command(const RowWrite& write) const {
+    const RowWrite* const command = found_.of(Source::command);
+    return !acting_ && is_quantity(*write.row, Quantity::target_position) && command != nullptr &&
+           command->value == static_cast<std::int64_t>(Command::move_relative) &&
+           !found_.axis->limit(Quantity::target_position).holds(write.value);
+  }
+
   void put_rows() {
     std::size_t remembered = 0;
     for (const RowWrite& each : found_.rows) {
@@ -216,7 +225,7 @@ class BatchMaker {
       const bool changed = changed_[remembered++];
       // What the drive holds, or its client has not changed, and this role may not write is nobody's question.
       if (each.ignored || onlooker_.role < each.row->may_write) continue;
-      if (is_carried_back(each)) continue;
+      if (is_carried_back(each) || waits_for_its_command(each)) continue;
       const Asks how = asks(each, changed);
       if (how == Asks::no) continue;
       anew_ = anew_ || changed;
