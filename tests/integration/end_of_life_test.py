@@ -276,6 +276,28 @@ class LoopThatStandsLongerThanALease(End):
         self.assertTrue(self.runs(DRIVES[1]), "its owner lives")
         self.assertEqual(asks.axis(1).get("axis_state"), CONTINUOUS)
 
+    def waiting(self):
+        """How many connections have sent what the gateway has not read."""
+        with open("/proc/net/tcp", encoding="ascii") as table:
+            rows = [line.split() for line in list(table)[1:]]
+        return sum(int(row[1].partition(":")[2], 16) in self.ports and int(row[4].partition(":")[2], 16) > 0 for row in rows)
+
+    def test_a_start_that_waited_is_too_late_and_a_stop_is_a_stop(self):
+        stops, starts = self.connect().axis(1), self.connect().axis(2)
+        self.run_velocity(stops)
+        starts.set(target_velocity=100 * RPM)
+        starts.command("enable")
+        self.gateway.send(signal.SIGSTOP)
+        self.addCleanup(self.gateway.send, signal.SIGCONT)
+        stop, start = self.later(stops.command, "quick_stop"), self.later(starts.command, "run_velocity")
+        until("both have been sent", lambda: self.waiting() == 2)
+        time.sleep(3)
+        self.gateway.send(signal.SIGCONT)
+        self.assertEqual(self.code_of(start), 6)
+        self.assertEqual(self.code_of(stop), 0)
+        for drive in DRIVES.values():
+            self.until_it_stands(drive)
+
 
 class LogThatNobodyReads(Story):
     """A pipe to a program that hangs, or has gone, or a disk that is full: no reason to leave a motor alone."""

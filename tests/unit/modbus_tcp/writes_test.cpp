@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of writes is no dialogue: each row of the map, each outcome, and what a write batch carries beside what it asks.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/unit/modbus_tcp/support/desk.hpp"
@@ -88,6 +89,37 @@ TEST_F(Writes, an_owners_block_asks_for_what_is_no_longer_the_value_accepted_las
   static_cast<void>(desk.asked());
   EXPECT_TRUE(is_done(panel.write_block(141, "00 01 00 00 00 07")));
   EXPECT_EQ(desk.asked(), "nothing") << "nobody else's does";
+}
+
+// The gateway stood still: since when what it reads now has waited nobody knows.
+TEST_F(Writes, what_may_have_waited_for_the_start_deadline_before_it_was_read_is_not_begun_but_a_stop_is) {
+  desk.stood_still = 500ms;
+  for (const char* pdu : {"06 00 9A 00 08", "05 00 69 FF 00", "10 00 94 00 02 04 00 00 00 07", "06 00 08 00 01",
+                          "2B 0D 01 00 01 60 40 00 00 00 00 02 0F 00"})
+    EXPECT_EQ(plc.ask(pdu).substr(3), "06") << pdu;
+  EXPECT_EQ(desk.asked(), "-");
+  EXPECT_EQ(plc.read(125), "00 06") << "never started";
+  for (const char* pdu : {"06 00 9A 00 03", "05 00 64 00 00", "05 00 6C 00 00", "06 00 8C 00 00"})
+    EXPECT_TRUE(is_done(plc.ask(pdu))) << pdu;
+  EXPECT_EQ(desk.asked(), "quick_stop, disable, jog_end, controlword=0 alone");
+  desk.stood_still = 499ms;
+  EXPECT_TRUE(is_done(plc.write(154, 8)));
+  EXPECT_EQ(desk.asked(), "run_velocity");
+}
+
+// A PLC prepares its next relative move in one scan and asks for it in a later one.
+TEST_F(Writes, a_distance_beyond_the_limits_waits_beside_an_old_command_7_for_the_next_one) {
+  desk.axis(1).limits[static_cast<std::size_t>(Quantity::target_position)] = {0, 9};
+  const auto scan = [&](const std::string& distance, int command, int id) {  // registers 42 to 55
+    EXPECT_TRUE(is_done(plc.write_block(142, distance + std::string(20 * 2, '0') + word(command) + word(id))));
+    return desk.asked();
+  };
+  EXPECT_EQ(scan("00 00 00 00", 0, 1), "nothing") << "a first block";
+  EXPECT_THAT(scan("FF FF FF FB", 7, 2), testing::HasSubstr("target_position=-5 "));
+  EXPECT_EQ(scan("FF FF FF FA", 7, 2), "nothing");
+  EXPECT_THAT(scan("FF FF FF FA", 7, 3), testing::HasSubstr("target_position=-6+ "));
+  EXPECT_EQ(scan("00 00 00 03", 7, 3), "target_position=3") << "it may be a position";
+  EXPECT_EQ(scan("FF FF FF FA", 6, 3), "target_position=-6") << "of an absolute move it is refused";
 }
 
 TEST_F(Writes, zeros_ask_for_nothing_but_to_end_a_run_of_the_owner) {

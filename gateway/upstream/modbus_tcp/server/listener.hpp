@@ -6,6 +6,7 @@
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct ServerContext {
   CommandPort& commands;
   ClientRegistry& clients;
   const Log& log;
+  std::function<Instant()> waiting_since;
   DescriptorPlan descriptors;
   ServerCounters counters;
 };

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,9 +28,10 @@ struct ServerContext;
 
 class Server {
  public:
-  /// Copies the settings. Everything passed by reference must outlive the server.
+  /// Copies the settings. Everything passed by reference must outlive the server. `waiting_since`: SessionContext's.
   Server(boost::asio::io_context& io, Runtime& runtime, std::span<const ListenerSettings> listeners,
-         ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log);
+         ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log,
+         std::function<Instant()> waiting_since = {});
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

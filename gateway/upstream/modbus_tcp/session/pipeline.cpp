@@ -42,7 +42,7 @@ Onlooker Pipeline::onlooker(Instant now) const {
   return {context_.image, context_.commands, context_.settings, *client_, words_, role_, now};
 }
 
-void Pipeline::accept(const Frame& frame, Instant now) {
+void Pipeline::accept(const Frame& frame, Instant now, Instant came) {
   assert(entries_.size() < kMaxPipelined);
   ++context_.clients.counters.messages;
   const auto view = UnitView::of(frame.unit, context_.settings, context_.image);
@@ -58,6 +58,8 @@ void Pipeline::accept(const Frame& frame, Instant now) {
   Entry& entry = entries_.emplace_back();
   entry.number = ++last_number_;
   entry.arrived = now;
+  entry.came = came;
+  entry.waited = came < now;
   entry.transaction = frame.transaction;
   entry.unit = frame.unit;
   entry.view = view;
@@ -136,7 +138,8 @@ void Pipeline::start_ready(Instant now) {
       entry.waited = true;
       if (!asks_for_a_stop(entry.request, *entry.view, onlooker(now))) continue;
       drop_waiting_before(i);
-    } else if (const Errc why = entry.waited ? too_late(entry, now) : Errc::ok; why != Errc::ok) {
+    } else if (const Errc why = entry.waited ? too_late(entry, now) : Errc::ok;
+               why != Errc::ok && !asks_for_a_stop(entry.request, *entry.view, onlooker(now))) {
       drop(entry, why);
       continue;
     }
@@ -160,7 +163,7 @@ Errc Pipeline::too_late(const Entry& entry, Instant now) const {
   const AxisImage* const axis = context_.image.find(entry.axis);
   if (entry.writes() && axis != nullptr && axis->endings.interrupted(entry.endings, kAnybody))
     return Errc::dropped_by_stop;
-  return now - entry.arrived >= context_.settings.start_deadline ? Errc::never_started : Errc::ok;
+  return now - entry.came >= context_.settings.start_deadline ? Errc::never_started : Errc::ok;
 }
 
 void Pipeline::drop(Entry& entry, Errc why) {

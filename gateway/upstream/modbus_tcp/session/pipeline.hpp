@@ -32,8 +32,8 @@ class Pipeline {
   Pipeline& operator=(const Pipeline&) = delete;
 
   [[nodiscard]] std::size_t under_way() const { return entries_.size(); }
-  /// Only while under_way() < kMaxPipelined.
-  void accept(const Frame& frame, Instant now);
+  /// Only while under_way() < kMaxPipelined. `came`: at the earliest; it may have waited in its socket since then.
+  void accept(const Frame& frame, Instant now, Instant came);
   /// The end of a request, as on_result told it. Unknown numbers are harmless.
   void conclude(std::uint64_t number, const Outcome& outcome, Instant now);
   /// When something is to be done although nothing came: on_deadline().
@@ -52,6 +52,7 @@ class Pipeline {
   struct Entry {
     std::uint64_t number = 0;
     Instant arrived;
+    Instant came;
     AxisNumber axis = 0;         ///< that it is carried out on; 0: none
     Endings::Point endings = 0;  ///< of that axis, when it arrived
     bool waited = false;

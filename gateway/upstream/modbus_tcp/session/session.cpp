@@ -62,6 +62,7 @@ class Session::Impl {
   std::size_t taken_ = 0;            // bytes of output_
   std::size_t replies_waiting_ = 0;  // replies put into output_ since it was last empty
   Instant now_;                      // of the last call
+  Instant came_ = kNever;            // at the earliest, what was read last
   Instant part_since_ = kNever;      // first byte of a request that is not whole yet
   Instant reply_since_ = kNever;     // first byte of output_ that is not taken yet
   Instant active_at_;                // last whole request, or last reply taken
@@ -72,6 +73,7 @@ class Session::Impl {
 void Session::Impl::on_bytes(Bytes bytes, Instant now) {
   if (over()) return;
   now_ = now;
+  came_ = context_.waiting_since ? std::min(now, context_.waiting_since()) : now;
   framer_.push(bytes);
   take_requests();
 }
@@ -95,7 +97,7 @@ void Session::Impl::take_requests() {
       return;
     }
     active_at_ = now_;
-    pipeline_.accept(frame, now_);
+    pipeline_.accept(frame, now_, std::min(came_, now_));
   }
   // What is kept now waits for us, not for the client.
   part_since_ = kNever;

@@ -36,6 +36,9 @@ struct SessionContext {
   /// The time of results that come from the bus, between two calls of the server. Without it the time of the last call
   /// counts, and ages in replies to slow writes are that much too small.
   const Runtime* runtime = nullptr;
+  /// Since when what is read now may have waited in its socket, as of now: the gateway stood still meanwhile. Without
+  /// it nothing has.
+  std::function<Instant()> waiting_since{};
 };
 
 /// Why a connection ends.
@@ -59,7 +62,8 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Any split of the stream. Bytes beyond what is wanted now are kept (at most kMaxPipelined ADUs) and carried on
-  /// later.
+  /// later. A write in them that may have waited for start_deadline_ms before it was read is not carried out, unless it
+  /// asks for a stop.
   void on_bytes(Bytes bytes, Instant now);
   void on_deadline(Instant now);
   /// The connection is gone: writes under way go on, their results are nobody's.

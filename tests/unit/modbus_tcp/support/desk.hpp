@@ -59,7 +59,9 @@ class Desk {
     for (const std::string& line : std::exchange(lines_, {})) out += (out.empty() ? "" : " | ") + line;
     return out.empty() ? "-" : out;
   }
-  SessionContext context() { return {settings, image, port, registry, log, &runtime}; }
+  SessionContext context() {
+    return {settings, image, port, registry, log, &runtime, [this] { return runtime.now() - stood_still; }};
+  }
 
   static std::string told(const WriteBatch& batch) {
     std::string out;
@@ -97,6 +99,7 @@ class Desk {
 
   axisgate::test::ManualRuntime runtime;
   ListenerSettings settings;
+  Duration stood_still{};  ///< before what is read now
   ProcessImage image;
   FakeCommandPort port;
   ClientRegistry registry;
