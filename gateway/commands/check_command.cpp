@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
+#include <map>
 
 #include "gateway/check/check.hpp"
 #include "gateway/commands/common/faults_told.hpp"
@@ -12,6 +14,26 @@
 #include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
 
 namespace axisgate::app {
+
+namespace {
+
+/// The loader compares names; which line a name leads to only this machine knows.
+void warn_of_lines_with_two_names(const Config& config) {
+  constexpr std::string_view kSerialCan = "slcan:";
+  std::map<std::filesystem::path, std::string> lines;
+  for (const BusConfig& bus : config.buses) {
+    std::error_code not_here;  // of another machine, or the name of a CAN interface
+    const std::string path = bus.device.substr(bus.device.starts_with(kSerialCan) ? kSerialCan.size() : 0);
+    const auto line = std::filesystem::canonical(path, not_here);
+    if (not_here) continue;
+    const auto [first, is_new] = lines.emplace(line, bus.device);
+    if (!is_new)
+      fmt::print("warning: {} and {} are one line, {}: put the drives of one line into one bus\n", first->second,
+                 bus.device, line.string());
+  }
+}
+
+}  // namespace
 
 int run(const CheckOptions& options) {
   const LoadResult result = load_config(options.config, options.profile_folders);
@@ -23,6 +45,7 @@ int run(const CheckOptions& options) {
       modbus_tcp::plan_descriptors(modbus_tcp::descriptor_limits(), descriptor_needs(loaded.config));
   // The limit belongs to a process, not to the file: a service may have another.
   if (descriptors.limited()) fmt::print("warning: started from here, {}\n", modbus_tcp::text(descriptors));
+  warn_of_lines_with_two_names(loaded.config);
   if (loaded.config.dds) {
     const dds::Program program = dds::find_program();
     if (program.path.empty())

@@ -58,6 +58,23 @@ TEST_F(Program, CheckEndsWithOneWhereABusIsOverloaded) {
   EXPECT_THAT(ended.err, HasSubstr("a bus is planned over 100 %"));
 }
 
+TEST_F(Program, CheckTellsOfALineWithTwoNames) {
+  const std::string line = write("line", "");
+  const std::string name = (folder() / "by-id").string();
+  fs::create_symlink(line, name);
+  std::string config = one_drive(line, 1, "");
+  const auto first = config.find(R"({"name": "a")");
+  std::string second = ", " + config.substr(first, config.find("]}]}]}", first) + 4 - first);
+  for (const auto& [from, to] : {std::pair{std::string(R"("name": "a")"), std::string(R"("name": "b")")},
+                                 {line, name},
+                                 {std::string(R"("axis": 1)"), std::string(R"("axis": 2)")}})
+    second.replace(second.find(from), from.size(), to);
+  config.insert(config.find("]}]}]}", first) + 4, second);
+  const Ended ended = run("check " + write("two.json", config));
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("warning: " + line + " and " + name + " are one line, "));
+}
+
 TEST_F(Program, WhatAFullDiskHasNotTakenIsNotDone) {
   const std::string file = write("right.json", one_drive("/dev/ttyUSB0", 1, ""));
   for (const std::string command : {"check ", "profile check "}) {
