@@ -189,7 +189,8 @@ class Axis {
   [[nodiscard]] bool is_behind_rest_of_stop(const Pending& pending) const;
   void hold_rest(const Pending& pending);
   void end_jog();
-  void halt_jog(std::string why);
+  void halt_jog(const std::string& why);
+  void stop_jog(std::string told);
   [[nodiscard]] bool stop_comes_first(const WriteBatch& batch) const;
   [[nodiscard]] bool may_be_enabled() const;
   /// `refusal`: of what stood beside the stop that the write batch is.

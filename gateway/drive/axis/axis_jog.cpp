@@ -99,10 +99,7 @@ void Axis::observe_jog() {
 }
 
 void Axis::end_jog_at_limit() {
-  if (core_.turn.now < jog_limit_due()) return;
-  end_jog();
-  host_.event(image_.number, EventKind::warning, 0, "jog: halted at the position limit");
-  stop_by_itself(Command::halt, false, [](const BatchResult&) {});
+  if (core_.turn.now >= jog_limit_due()) stop_jog("jog: halted at the position limit");
 }
 
 void Axis::note_jog(const Pending& pending, Errc code) {
@@ -112,11 +109,8 @@ void Axis::note_jog(const Pending& pending, Errc code) {
     end_jog();
   if (code == Errc::ok && pending.ends_jog != 0 && pending.ends_jog == jog_.press()) end_jog();
   const bool no_other_jog = !jog_.active() || pending.ends_jog == jog_.press();
-  if (code != Errc::ok && pending.ends_jog != 0 && !pending.stopped_by && no_other_jog && runs_unwatched()) {
-    end_jog();
-    host_.event(image_.number, EventKind::warning, 0, "jog: another command has taken its mode and failed: halted");
-    stop_by_itself(Command::halt, false, [](const BatchResult&) {});
-  }
+  if (code != Errc::ok && pending.ends_jog != 0 && !pending.stopped_by && no_other_jog && runs_unwatched())
+    stop_jog("jog: another command has taken its mode and failed: halted");
 }
 
 // The mode of a jog was taken from it, so nobody watches its button, and nothing has begun in its place.
@@ -135,11 +129,14 @@ void Axis::end_jog() {
 }
 
 // Its motor has no other dead man.
-void Axis::halt_jog(std::string why) {
-  if (!jog_.active()) return;
+void Axis::stop_jog(std::string told) {
   end_jog();
-  host_.event(image_.number, EventKind::warning, 0, "jog: " + why + ": halted");
+  host_.event(image_.number, EventKind::warning, 0, std::move(told));
   stop_by_itself(Command::halt, false, [](const BatchResult&) {});
+}
+
+void Axis::halt_jog(const std::string& why) {
+  if (jog_.active()) stop_jog("jog: " + why + ": halted");
 }
 
 }  // namespace axisgate::drive
