@@ -30,7 +30,8 @@ ContractOptions options_of(const obey::Plant& plant, const Program& program, std
   options.lease_ms = lease.timeout / std::chrono::milliseconds(1);
   options.expiry_acts = lease.on_expiry != LeaseAction::none;
   options.only_writes_renew = lease.renew == LeaseRenewal::write;
-  options.no_halt = obey::is_kinco(subject) && !obey::is_md(subject) && program.flavour != Flavour::speeds;
+  options.no_halt = obey::is_kinco(subject) && !obey::is_md(subject);
+  options.both_modes = program.flavour != Flavour::speeds;
   options.by_gateway = !obey::is_cia402(subject);
   if (obey::has_positions(subject)) options.rows.insert(row::target_position);
   if (obey::has_speeds(subject)) options.rows.insert({row::target_velocity, row::jog_velocity});

@@ -194,11 +194,11 @@ int Contract::send(std::size_t client, const Write& write) {
       const bool by_writes = options_.only_writes_renew || (options_.by_address && !is_dds(client));
       if (by_writes && next.owner == world.owner && !done)
         next.lease_ends_ms = std::min(next.lease_ends_ms, world.lease_ends_ms);
-      // Of one that is refused nobody can tell whether it has taken an orphan lease over.
-      if (next.retaken && next.owner == client && !pending.verdict.answers.contains(0)) {
+      // Of one that is refused, or half of a row, nobody can tell whether it has taken an orphan lease over.
+      if (next.retaken && next.owner == client && !done) {
         next.retake_unsure = true;
         next.lease_ends_ms = world.lease_ends_ms;
-        next.orphan = world.owner != client && readings.other();
+        next.orphan = readings.other();
         if (next.orphan) next.owner = world.owner;
       }
       pending.verdict.stop = judge.stopped();

@@ -179,7 +179,8 @@ struct ContractOptions {
   std::int64_t lease_ms = 2000;
   std::int64_t jog_timeout_ms = 500;
   std::set<std::uint16_t> rows{};  ///< set-points the drive has
-  bool no_halt = false;            ///< of a move: the profile stops it by what may latch the axis
+  bool no_halt = false;            ///< but in mode 3: the profile stops it by what may latch the axis
+  bool both_modes = false;         ///< which mode is in force at a halt is anybody's guess
   bool by_gateway = false;         ///< the CiA 402 machine is the gateway's
   bool by_address = false;         ///< "client": "address"
   bool reads_fail = false;         ///< "offline_reads": "exception"

@@ -62,7 +62,10 @@ bool Judge::start_refused(std::int64_t command, Verdict& verdict) {
 
 /// 3.4 Owed stops: "An owed halt becomes quick_stop if the drive restarted, was lost for over 1 s, or its state ... is
 /// not certain."
-bool Judge::may_have_no_halt() const { return options_.no_halt || world_.other_mode || seen_.troubled; }
+bool Judge::may_have_no_halt() const {
+  const bool elsewhere = options_.both_modes || changes_mode_ || world_.mode != kVelocityMode;
+  return (options_.no_halt && elsewhere) || world_.other_mode || seen_.troubled;
+}
 
 // 3.4, command 4: "Where a drive has no halt, the profile names the replacement".
 void Judge::halted(bool asserted) {
