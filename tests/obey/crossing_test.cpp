@@ -129,6 +129,60 @@ TEST_P(CrossingWithDisable, AnEnableThatWasNeverSentLeavesTheStopBeforeItOwed) {
   }
 }
 
+// What the old owner asked while the halt of a take-over was under way began behind the halt, under the new owner.
+TEST_P(Crossing, WhatItsOwnerAsksDuringATakeOverDoesNotBeginUnderTheNewOne) {
+  for (const bool runs : {true, false})
+    for (const Duration apart : {0ms, 1ms, 2ms, 5ms, 20ms, 60ms}) {
+      SCOPED_TRACE((runs ? "it runs, " : "it is enabled, ") + std::to_string(apart / 1ms) + " ms");
+      plant_.emplace(GetParam(), with_leases());
+      plant_->ready();
+      Client& before = plant_->a;
+      const auto after = plant_->connection_from(Plant::kHostOfA);
+      ASSERT_EQ(plant_->set_endless(before), kOk);
+      if (runs) {
+        ASSERT_EQ(before.command(plant_->endless_command()), kOk);
+      }
+      sent_.clear();
+      send(*after, one(row::command, kTakeOver));
+      plant_->run(apart);
+      Rows start = plant_->endless_target();
+      start[row::command] = plant_->endless_command();
+      for (const std::int64_t id : {7, 8}) {
+        start[row::command_id] = id;
+        send(before, block(start.begin()->first, row::command_id, start));
+      }
+      all_answered();
+      EXPECT_EQ(after->word(shown::owner), kMe) << answers();
+      plant_->run(1s);
+      EXPECT_TRUE(plant_->stands()) << answers() << plant_->velocity();
+      static_cast<void>(after->row(row::target_velocity, kOtherSpeed));  // where it has one: no start
+      plant_->run(500ms);
+      EXPECT_TRUE(plant_->stands()) << answers() << plant_->velocity();
+    }
+}
+
+// And what had begun already was carried on.
+TEST_P(Crossing, AnEnableAndAStartEndWithATakeOver) {
+  for (const Duration apart : {0ms, 1ms, 5ms, 20ms, 60ms, 150ms}) {
+    SCOPED_TRACE(std::to_string(apart / 1ms) + " ms");
+    plant_.emplace(GetParam(), with_leases());
+    plant_->ready_but_disabled();
+    Client& before = plant_->a;
+    const auto after = plant_->connection_from(Plant::kHostOfA);
+    ASSERT_EQ(plant_->set_endless(before), kOk);
+    sent_.clear();
+    send(before, one(row::command, kEnable));
+    send(before, one(row::command, plant_->endless_command()));
+    plant_->run(apart);
+    send(*after, one(row::command, kTakeOver));
+    all_answered();
+    EXPECT_EQ(after->word(shown::owner), kMe) << answers();
+    ASSERT_TRUE(plant_->comes_to_stand()) << answers();
+    plant_->run(1s);
+    EXPECT_TRUE(plant_->stands()) << answers() << plant_->velocity();
+  }
+}
+
 // The enable is by the gateway's word, although a stop stands beside it: it holds, and what starts is accepted.
 TEST_P(CrossingWithDisable, AnEnableBesideAStoppingControlwordHolds) {
   for (const std::int64_t word : {0, 6, 7}) {

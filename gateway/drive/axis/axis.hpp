@@ -155,6 +155,8 @@ class Axis {
   [[nodiscard]] BatchResult released(const WriteBatch& batch);
   [[nodiscard]] std::optional<BatchResult> take_over(const WriteBatch& batch, BatchCallback on_result);
   [[nodiscard]] std::optional<BatchResult> taken_over(const WriteBatch& batch, BatchCallback on_result);
+  /// Of anybody: it waits for the wire or has begun, and is neither a stop nor a mere read.
+  [[nodiscard]] bool writes_wait() const;
   void end_expired_lease();
   void on_lease_action(const BatchResult& result);
   [[nodiscard]] Errc begin_jog(WriteBatch& batch);
@@ -237,6 +239,7 @@ class Axis {
     std::shared_ptr<const ClientLife> life{};
   } motion_by_;  ///< who commanded the motion that runs
   Ownership ownership_;
+  std::optional<ClientId> taken_by_{};  ///< its take-over's halt is under way
   Accepted accepted_;
   Jog jog_;
   Instant jog_started_ = kLongAgo;  ///< until then it stood, or moved otherwise

@@ -45,8 +45,12 @@ Errc Axis::judge_owner(const WriteBatch& batch) const {
   if (reads_alone(batch)) return Errc::ok;
   if (holds_stop(batch) && !batch.claims) return Errc::ok;
   if (batch.command == Command::jog_end || batch.command == Command::end_run) return Errc::ok;
-  if (batch.command == Command::take_over) return ownership_.may_take_over(batch.life);
+  // While its halt is under way an axis is on its way to its new owner: what the old one asked now would begin behind
+  // the halt, under another's lease.
+  const bool being_taken = taken_by_ && batch.life && batch.client != *taken_by_;
+  if (batch.command == Command::take_over) return being_taken ? Errc::not_owner : ownership_.may_take_over(batch.life);
   if (asks_nothing(batch) && !batch.jog_again) return Errc::ok;
+  if (being_taken) return Errc::not_owner;
   return ownership_.judge(batch.life, batch.claims);
 }
 
@@ -221,11 +225,12 @@ BatchResult Axis::released(const WriteBatch& batch) {
   return {};
 }
 
-// Command 14: from a lower rank, after a halt. What else stands in the request comes after it, as the new owner's.
+// Command 14: from a lower rank, after a halt, which ends what waits or has begun as well. What else stands in the
+// request comes after it, as the new owner's.
 std::optional<BatchResult> Axis::take_over(const WriteBatch& batch, BatchCallback on_result) {
   const auto owner = ownership_.owner();
   const bool from_another = owner && batch.life && owner->id != batch.life->id;
-  if (!from_another || !may_be_enabled()) return taken_over(batch, std::move(on_result));
+  if (!from_another || !(may_be_enabled() || writes_wait())) return taken_over(batch, std::move(on_result));
   WriteBatch halt;
   halt.client = batch.client;
   halt.role = batch.role;
@@ -234,15 +239,24 @@ std::optional<BatchResult> Axis::take_over(const WriteBatch& batch, BatchCallbac
   halt.command_id = batch.command_id;
   halt.start_by = batch.start_by;
   halt.answer_by = batch.answer_by;
+  taken_by_ = batch.client;
   auto halted = carry_out(halt, Errc::ok, [this, batch, on_result](const BatchResult& result) {
+    taken_by_.reset();
     if (result.outcome.code != Errc::ok) {
       on_result(result);
     } else if (const auto done = taken_over(batch, on_result)) {
       on_result(*done);
     }
   });
+  if (halted) taken_by_.reset();
   if (halted && halted->outcome.code == Errc::ok) return taken_over(batch, std::move(on_result));
   return halted;
+}
+
+bool Axis::writes_wait() const {
+  return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
+    return !p.command_sequence->is_stop() && !reads_alone(p.command_sequence->batch());
+  });
 }
 
 std::optional<BatchResult> Axis::taken_over(const WriteBatch& batch, BatchCallback on_result) {
@@ -272,9 +286,6 @@ void Axis::stop_by_itself(Command command, bool latches, BatchCallback on_result
 void Axis::end_expired_lease() {
   const auto expired = ownership_.take_expired(core_.turn.now);
   if (!expired) return;
-  const bool writes_wait = std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
-    return !p.command_sequence->is_stop() && !reads_alone(p.command_sequence->batch());
-  });
   const Command action = command_of(ownership_.rules().on_expiry);
   std::string what = "nobody has taken over the enabled axis";
   if (expired->owner) {
@@ -284,7 +295,7 @@ void Axis::end_expired_lease() {
               : expired->owner->is_address ? " after its connections had ended"
                                            : " after its connection had ended";
   }
-  const bool acts = may_be_enabled() || writes_wait;
+  const bool acts = may_be_enabled() || writes_wait();
   if (!acts || action == Command::none) {
     halt_jog("its owner's lease has run out");
     host_.event(image_.number, EventKind::lease, 0, what + (acts ? ": nothing is done (on_expiry none)" : ""));
