@@ -75,9 +75,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(descriptor_needs(loaded.config));
   modbus_tcp::ClientRegistry clients;
   Gateway gateway(loaded.config, loaded.models, runtime, log, device_wires(io, runtime, log));
-  const LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
-  modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log,
-                            [&watch] { return watch.waiting_since(); });
+  modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log);
   std::optional<dds::DdsServer> dds;
   if (loaded.config.dds) {
     dds.emplace(io, runtime, *loaded.config.dds, gateway.image(), gateway.events(), gateway, log,
@@ -96,6 +94,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   if (dds) dds->start();
   FileWatch file_watch(io, runtime, watched_files(loaded.config),
                        [&](const std::string& file) { gateway.report_file_changed(file); });
+  LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
   Service service(runtime, [&](Duration slack) { return gateway.all_turn(slack); });
   Reload reload(io, std::move(loaded.config), [&options] { return load(options); },
                 {gateway, server, dds ? &*dds : nullptr, file_watch, log});

@@ -91,9 +91,9 @@ TEST_F(Writes, an_owners_block_asks_for_what_is_no_longer_the_value_accepted_las
   EXPECT_EQ(desk.asked(), "nothing") << "nobody else's does";
 }
 
-// The gateway stood still: since when what it reads now has waited nobody knows.
-TEST_F(Writes, what_may_have_waited_for_the_start_deadline_before_it_was_read_is_not_begun_but_a_stop_is) {
-  desk.stood_still = 500ms;
+// The gateway stood still, or its client wrote far ahead of a slow drive and is gone.
+TEST_F(Writes, what_has_waited_long_in_its_socket_is_no_sign_of_life_and_not_begun_but_a_stop_is) {
+  desk.waited = 2s;
   for (const char* pdu : {"06 00 9A 00 08", "05 00 69 FF 00", "10 00 94 00 02 04 00 00 00 07", "06 00 08 00 01",
                           "2B 0D 01 00 01 60 40 00 00 00 00 02 0F 00"})
     EXPECT_EQ(plc.ask(pdu).substr(3), "06") << pdu;
@@ -101,10 +101,15 @@ TEST_F(Writes, what_may_have_waited_for_the_start_deadline_before_it_was_read_is
   EXPECT_EQ(plc.read(125), "00 06") << "never started";
   for (const char* pdu : {"06 00 9A 00 03", "05 00 64 00 00", "05 00 6C 00 00", "06 00 8C 00 00"})
     EXPECT_TRUE(is_done(plc.ask(pdu))) << pdu;
+  const auto life = last().life;
   EXPECT_EQ(desk.asked(), "quick_stop, disable, jog_end, controlword=0 alone");
-  desk.stood_still = 499ms;
+  desk.runtime.advance_by(3s);
+  EXPECT_TRUE(is_done(plc.write(154, 3)));
+  EXPECT_EQ(life->last_request, desk.runtime.now() - 2s);
+  desk.waited = 1999ms;
   EXPECT_TRUE(is_done(plc.write(154, 8)));
-  EXPECT_EQ(desk.asked(), "run_velocity");
+  EXPECT_EQ(desk.asked(), "quick_stop, run_velocity");
+  EXPECT_EQ(life->last_request, desk.runtime.now());
 }
 
 // A PLC prepares its next relative move in one scan and asks for it in a later one.

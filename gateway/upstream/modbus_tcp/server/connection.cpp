@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/modbus_tcp/server/connection.hpp"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/post.hpp>
 #include <utility>
@@ -49,8 +53,16 @@ void Connection::on_read(const error_code& error, std::size_t bytes) {
   if (ended_) return;
   if (error) return end(CloseReason::none);
   const Instant now = runtime_.now();
-  session_->on_bytes({incoming_.data(), bytes}, now);
+  session_->on_bytes({incoming_.data(), bytes}, now, heard_last(now));
   take_turn(now);
+}
+
+// The system tells it, tcp(7): this process, or a client's requests before these, may have kept them waiting.
+Instant Connection::heard_last(Instant now) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  if (getsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return now;
+  return now - std::chrono::milliseconds(info.tcpi_last_data_recv);
 }
 
 void Connection::on_deadline() {

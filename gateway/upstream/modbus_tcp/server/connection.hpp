@@ -43,6 +43,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
  private:
   void read_soon();
   void on_read(const boost::system::error_code& error, std::size_t bytes);
+  /// When the client's newest byte came to this machine.
+  [[nodiscard]] Instant heard_last(Instant now);
   void on_deadline();
   void take_turn_soon();
   void take_turn(Instant now);

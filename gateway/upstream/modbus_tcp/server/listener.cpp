@@ -70,8 +70,7 @@ bool out_of_resources(int error) { return error == EMFILE || error == ENFILE || 
 Listener::Listener(ServerContext& server, const ListenerSettings& settings, std::size_t position)
     : server_(server),
       settings_(settings),
-      session_context_{settings_,  server.image,    server.commands,     server.clients,
-                       server.log, &server.runtime, server.waiting_since},
+      session_context_{settings_, server.image, server.commands, server.clients, server.log, &server.runtime},
       position_(position),
       port_(settings.port),
       acceptor_(server.io) {}

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,7 +29,6 @@ struct ServerContext {
   CommandPort& commands;
   ClientRegistry& clients;
   const Log& log;
-  std::function<Instant()> waiting_since;
   DescriptorPlan descriptors;
   ServerCounters counters;
 };

@@ -26,9 +26,8 @@ std::shared_ptr<Listener> on_address_of(const ListenerSettings& settings, const 
 }  // namespace
 
 Server::Server(boost::asio::io_context& io, Runtime& runtime, std::span<const ListenerSettings> listeners,
-               ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log,
-               std::function<Instant()> waiting_since)
-    : context_(new ServerContext{io, runtime, image, commands, clients, log, std::move(waiting_since), {}, {}}) {
+               ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log)
+    : context_(new ServerContext{io, runtime, image, commands, clients, log, {}, {}}) {
   for (const ListenerSettings& settings : listeners) {
     listeners_.push_back(std::make_shared<Listener>(*context_, settings, listeners_.size()));
   }

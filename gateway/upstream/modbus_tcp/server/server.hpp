@@ -6,7 +6,6 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,10 +27,9 @@ struct ServerContext;
 
 class Server {
  public:
-  /// Copies the settings. Everything passed by reference must outlive the server. `waiting_since`: SessionContext's.
+  /// Copies the settings. Everything passed by reference must outlive the server.
   Server(boost::asio::io_context& io, Runtime& runtime, std::span<const ListenerSettings> listeners,
-         ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log,
-         std::function<Instant()> waiting_since = {});
+         ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

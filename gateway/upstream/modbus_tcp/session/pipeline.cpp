@@ -49,7 +49,8 @@ void Pipeline::accept(const Frame& frame, Instant now, Instant came) {
   std::variant<Request, ModbusException> decoded = decode_request(frame.pdu);
   Request* const request = std::get_if<Request>(&decoded);
   const bool writes = request != nullptr && (request->writes() || (request->reference && request->reference->write));
-  if (!context_.settings.client_is_address) client_->life->last_request = now;
+  Instant& heard = client_->life->last_request;
+  if (!context_.settings.client_is_address) heard = std::max(heard, came);
   on_deadline(now);
   // The common case, and the only one that must be quick: a read with nothing before it.
   if (entries_.empty() && view && request != nullptr && !is_carried_out(*request)) {
@@ -204,7 +205,7 @@ void Pipeline::start(Entry& entry, Instant now) {
 /// them, is no sign of the one that commands.
 void Pipeline::note_accepted_write(const Entry& entry) {
   Instant& last = client_->life->last_request;
-  if (role_ >= Role::operator_) last = std::max(last, entry.arrived);
+  if (role_ >= Role::operator_) last = std::max(last, entry.came);
 }
 
 /// The outcome table's "command_result 0": no older result may be taken for this write's.

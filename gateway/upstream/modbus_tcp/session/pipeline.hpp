@@ -32,7 +32,7 @@ class Pipeline {
   Pipeline& operator=(const Pipeline&) = delete;
 
   [[nodiscard]] std::size_t under_way() const { return entries_.size(); }
-  /// Only while under_way() < kMaxPipelined. `came`: at the earliest; it may have waited in its socket since then.
+  /// Only while under_way() < kMaxPipelined. `came`: it waits since then, in its socket perhaps.
   void accept(const Frame& frame, Instant now, Instant came);
   /// The end of a request, as on_result told it. Unknown numbers are harmless.
   void conclude(std::uint64_t number, const Outcome& outcome, Instant now);

@@ -31,7 +31,7 @@ class Session::Impl {
         now_(now),
         active_at_(now) {}
 
-  void on_bytes(Bytes bytes, Instant now);
+  void on_bytes(Bytes bytes, Instant now, Instant came);
   void on_deadline(Instant now);
   void on_closed(Instant now);
   void close() { on_closed(now_); }
@@ -62,7 +62,7 @@ class Session::Impl {
   std::size_t taken_ = 0;            // bytes of output_
   std::size_t replies_waiting_ = 0;  // replies put into output_ since it was last empty
   Instant now_;                      // of the last call
-  Instant came_ = kNever;            // at the earliest, what was read last
+  Instant came_ = kNever;            // at the latest, what was read last
   Instant part_since_ = kNever;      // first byte of a request that is not whole yet
   Instant reply_since_ = kNever;     // first byte of output_ that is not taken yet
   Instant active_at_;                // last whole request, or last reply taken
@@ -70,10 +70,10 @@ class Session::Impl {
   bool closed_ = false;
 };
 
-void Session::Impl::on_bytes(Bytes bytes, Instant now) {
+void Session::Impl::on_bytes(Bytes bytes, Instant now, Instant came) {
   if (over()) return;
   now_ = now;
-  came_ = context_.waiting_since ? std::min(now, context_.waiting_since()) : now;
+  came_ = came;
   framer_.push(bytes);
   take_requests();
 }
@@ -97,7 +97,7 @@ void Session::Impl::take_requests() {
       return;
     }
     active_at_ = now_;
-    pipeline_.accept(frame, now_, std::min(came_, now_));
+    pipeline_.accept(frame, now_, now_ - came_ < kLongWait ? now_ : came_);
   }
   // What is kept now waits for us, not for the client.
   part_since_ = kNever;
@@ -202,7 +202,7 @@ std::string_view text(CloseReason why) {
 Session::Session(const SessionContext& context, const Peer& peer, Instant now, std::function<void()> on_output)
     : impl_(std::make_unique<Impl>(context, peer, now, std::move(on_output))) {}
 Session::~Session() { impl_->close(); }
-void Session::on_bytes(Bytes bytes, Instant now) { impl_->on_bytes(bytes, now); }
+void Session::on_bytes(Bytes bytes, Instant now, Instant came) { impl_->on_bytes(bytes, now, came); }
 void Session::on_deadline(Instant now) { impl_->on_deadline(now); }
 void Session::on_closed(Instant now) { impl_->on_closed(now); }
 Bytes Session::output() const { return impl_->output(); }

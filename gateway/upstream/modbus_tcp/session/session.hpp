@@ -23,6 +23,8 @@ namespace axisgate::modbus_tcp {
 
 inline constexpr std::size_t kMaxPipelined = 4;
 inline constexpr std::size_t kMaxAdu = 260;
+/// A busy machine's turns come late as well: what has waited less than this has just come.
+inline constexpr Duration kLongWait = std::chrono::seconds(2);
 
 class ClientRegistry;
 
@@ -36,9 +38,6 @@ struct SessionContext {
   /// The time of results that come from the bus, between two calls of the server. Without it the time of the last call
   /// counts, and ages in replies to slow writes are that much too small.
   const Runtime* runtime = nullptr;
-  /// Since when what is read now may have waited in its socket, as of now: the gateway stood still meanwhile. Without
-  /// it nothing has.
-  std::function<Instant()> waiting_since{};
 };
 
 /// Why a connection ends.
@@ -62,9 +61,10 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Any split of the stream. Bytes beyond what is wanted now are kept (at most kMaxPipelined ADUs) and carried on
-  /// later. A write in them that may have waited for start_deadline_ms before it was read is not carried out, unless it
-  /// asks for a stop.
-  void on_bytes(Bytes bytes, Instant now);
+  /// later. `came`: when the newest of them came to this machine. What was there for kLongWait and more is a sign of
+  /// life of then, and a write among it is not begun after start_deadline_ms, unless it asks for a stop.
+  void on_bytes(Bytes bytes, Instant now, Instant came);
+  void on_bytes(Bytes bytes, Instant now) { on_bytes(bytes, now, now); }
   void on_deadline(Instant now);
   /// The connection is gone: writes under way go on, their results are nobody's.
   void on_closed(Instant now);

@@ -59,9 +59,7 @@ class Desk {
     for (const std::string& line : std::exchange(lines_, {})) out += (out.empty() ? "" : " | ") + line;
     return out.empty() ? "-" : out;
   }
-  SessionContext context() {
-    return {settings, image, port, registry, log, &runtime, [this] { return runtime.now() - stood_still; }};
-  }
+  SessionContext context() { return {settings, image, port, registry, log, &runtime}; }
 
   static std::string told(const WriteBatch& batch) {
     std::string out;
@@ -99,7 +97,7 @@ class Desk {
 
   axisgate::test::ManualRuntime runtime;
   ListenerSettings settings;
-  Duration stood_still{};  ///< before what is read now
+  Duration waited{};  ///< in its socket, what is read now
   ProcessImage image;
   FakeCommandPort port;
   ClientRegistry registry;
@@ -123,7 +121,8 @@ class Line {
     return reply();
   }
   void send(const std::string& pdu, std::uint8_t unit = 1) {
-    session_.on_bytes(frame(++transaction_, unit, bytes(pdu)), desk_.runtime.now());
+    const Instant now = desk_.runtime.now();
+    session_.on_bytes(frame(++transaction_, unit, bytes(pdu)), now, now - desk_.waited);
   }
   void feed(const std::vector<Byte>& raw) { session_.on_bytes(raw, desk_.runtime.now()); }
   /// The next reply's PDU, taken off the output; its header is checked against the request's place in line.
