@@ -150,7 +150,12 @@ void Play::take_away(const Step& step) {
   send(step.client, writers_->write_of(start), step.at_once);
   pass(kPauses.at(step.length % kPauses.size()));
   const auto rival = static_cast<std::uint8_t>((step.client + 1U + step.number % 2U) % kModbus);
-  send(rival, writers_->write_of({.deed = Deed::command, .client = rival, .command = kTakesOver}), step.at_once);
+  const bool answers_back = step.number / 2 % 2 != 0;
+  send(rival, writers_->write_of({.deed = Deed::command, .client = rival, .command = kTakesOver}),
+       step.at_once || answers_back);
+  if (!answers_back) return;
+  pass(kPauses.at(step.id % kPauses.size()));
+  send(step.client, writers_->write_of(start), true);
 }
 
 // 3.4 Owed stops: what is let go, or stopped, while the drive cannot be asked. Before that it may have been started.

@@ -10,19 +10,10 @@
 namespace axisgate::test::model {
 namespace {
 
-// 3.3 Outcomes: not started, nothing was sent, outcome unknown; 3.1, 43/13: an extended exception.
-const std::set<int> kTrouble{3, 4, 6, 10, 11, 0xFF};
-
 void make_uncertain(Item& item) {
   item.unsure = true;
   item.acted = item.spoilt = false;
   item.refused = true;
-}
-
-void make_uncertain(ClientMemory& client) {
-  make_uncertain(client.command);
-  make_uncertain(client.controlword);
-  for (Item& coil : client.coils) make_uncertain(coil);
 }
 
 /// Too many readings of what was remembered: from now on of each thing that acts by edges both are allowed until it is
@@ -32,7 +23,7 @@ void blur(World& world, const World& first) {
     ClientMemory& client = world.clients[c];
     client.rows = first.clients[c].rows;
     client.rows_unsure = true;
-    make_uncertain(client);
+    client.make_uncertain();
     const auto any = [](Item& item) { item.ended = item.changed = true; };
     any(client.command);
     any(client.controlword);
@@ -76,6 +67,12 @@ std::string each_once(const std::vector<World>& worlds, Call&& call) {
 }
 
 }  // namespace
+
+void ClientMemory::make_uncertain() {
+  model::make_uncertain(command);
+  model::make_uncertain(controlword);
+  for (Item& coil : coils) model::make_uncertain(coil);
+}
 
 Motion World::motion() const {
   const auto of = [&](std::uint16_t offset) { return accepted.contains(offset) ? accepted.at(offset) : 0; };
@@ -292,106 +289,6 @@ void Contract::keep_different() {
   drop_equal();
   lost_count_ = lost_count_ || worlds_.size() > kMaxWorlds;
   if (lost_count_) worlds_.resize(1);
-}
-
-bool Contract::answered(int request, const std::set<int>& exceptions) {
-  if (lost_count_) return true;
-  const Asked asked = asked_.at(request);
-  asked_.erase(request);
-  constexpr int kNoAnswer = 0x0B;
-  const bool done = exceptions.contains(0);
-  std::vector<World> fitting;
-  for (const World& world : worlds_) {
-    const Pending& pending = world.pending.at(request);
-    const auto any = [&](const std::set<int>& of) {
-      return std::ranges::any_of(exceptions, [&](int each) { return of.contains(each); });
-    };
-    const bool expected = pending.verdict.any_answer || any(pending.verdict.answers);
-    const bool dropped = exceptions.contains(6) && pending.overtaken;
-    const bool lost = asked.troubled && any(kTrouble);
-    // 3.3 Outcomes: "not started within start_deadline_ms (500)": others may have kept the drive that long.
-    constexpr std::int64_t kStartMs = 480;
-    const bool late = exceptions.contains(6) && sight_.now_ms - asked.at_ms >= kStartMs && !pending.verdict.stop;
-    // 3.3: "dropped by a stop": of a stop itself only what stands beside it. "Outcome unknown", 0x0B: both. Nothing was
-    // sent, 0x0A: a stop is owed all the same (3.4 Owed stops).
-    const bool not_done = pending.void_ || pending.alone;
-    const bool unclear = pending.verdict.any_answer && !done;
-    // 3.3 Not reached: what a drive has acknowledged and does not show is answered 0x04, and "before the answer the
-    // gateway withdraws what might still happen ...; unconfirmed: an owed stop".
-    const bool withdrawn = asked.troubled && pending.verdict.starts && !pending.void_ && exceptions.contains(4);
-    const bool fits = withdrawn || (expected && (!pending.void_ || unclear)) || (late && not_done) ||
-                      (dropped && (not_done || pending.more || !pending.verdict.stop)) ||
-                      (lost && (not_done || exceptions.contains(kNoAnswer) || pending.verdict.stop));
-    if (pending.unread ? !exceptions.contains(kNoAnswer) : !fits) continue;
-    const std::optional<std::int64_t> is_at = pending.verdict.position;
-    if (done && is_at && !asked.troubled && std::abs(sight_.position - *is_at) > kClose) continue;
-    World next = world;
-    next.pending.erase(request);
-    if (next.awaits == request) {
-      next.awaits = 0;
-      next.changed_ms = sight_.now_ms;
-    }
-    // Whether it is remembered is not said. Of a posted write that a stop or a loss has met register 25 may tell of an
-    // older one.
-    const bool perhaps_done = done && (dropped || lost);
-    if (!pending.unread && (!expected || (!done && pending.verdict.any_answer) || perhaps_done))
-      make_uncertain(next.clients[std::min(asked.client, kModbus)]);
-    // 3.5, "renew": whether a request that waits for the drive renews when it comes or when it is answered is not said.
-    if (asked.troubled && next.owner == asked.client && !next.orphan)
-      next.lease_ends_by_ms = std::max(next.lease_ends_by_ms, sight_.now_ms + options_.lease_of(asked.client));
-    if (done && pending.verdict.takes_over) {
-      next.owner = asked.client;
-      next.lease_until(sight_.now_ms + options_.lease_of(asked.client));
-    }
-    // An enable of which nobody knows: whether it is taken back once it shows is not said (D152).
-    constexpr std::int64_t kTakenBackMs = 6000;
-    if (lost && pending.enables && exceptions.contains(kNoAnswer)) next.taken_back_by_ms = sight_.now_ms + kTakenBackMs;
-    if (withdrawn && !expected) {
-      const World before = next;
-      next.motor = Motor::stands;
-      next.jog = 0;
-      next.stale_speed = next.latch_unsure = true;
-      changed(next, before);
-      World quick = next;  // 3.4 Owed stops: "An owed halt becomes quick_stop"
-      quick.latched = true;
-      quick.enabled = false;
-      quick.ladder = 0;
-      fitting.push_back(std::move(quick));
-    }
-    // An enable that was broken off between its steps.
-    if (!done && pending.enables && next.enabled && sight_.enabled == false) {
-      World off = next;
-      off.enabled = false;
-      off.motor = Motor::stands;
-      off.ladder = 0;
-      fitting.push_back(std::move(off));
-    }
-    fitting.push_back(std::move(next));
-  }
-  if (fitting.empty()) return false;
-  worlds_ = std::move(fitting);
-  keep_different();
-  return true;
-}
-
-bool Contract::surely_acts(int request) const {
-  return std::ranges::all_of(worlds_, [&](const World& world) {
-    const auto pending = world.pending.find(request);
-    return pending != world.pending.end() && pending->second.verdict.acts;
-  });
-}
-
-void Contract::unanswered(int request) {
-  if (lost_count_) return;
-  asked_.erase(request);
-  unanswered_ms_ = sight_.now_ms;
-  for (World& world : worlds_) {
-    world.pending.erase(request);
-    if (world.awaits != request) continue;
-    world.awaits = 0;
-    world.changed_ms = sight_.now_ms;
-  }
-  keep_different();
 }
 
 std::string Contract::expected() const {

@@ -72,6 +72,8 @@ struct Half {
 struct ClientMemory {
   Item command, controlword;
   std::array<Item, 10> coils{};
+  /// Of each thing that acts by edges both are allowed from now on, until it is written with another value.
+  void make_uncertain();
   std::optional<std::int64_t> id{};      ///< the last one that was not 0, of the address: with its first client alone
   std::set<std::int64_t> ids{};          ///< all of its address
   std::optional<std::int64_t> own_id{};  ///< the same of the connection
