@@ -23,6 +23,15 @@ class Crossing : public testing::TestWithParam<Subject> {
     plant_->ready();
   }
   void send(Client& by, const Write& write) { sent_.push_back({by.begin(write), &by}); }
+  /// With its target, by the second of two ids: the first one of a connection is only remembered.
+  void send_start(Client& by) {
+    Rows start = plant_->endless_target();
+    start[row::command] = plant_->endless_command();
+    for (const std::int64_t id : {7, 8}) {
+      start[row::command_id] = id;
+      send(by, block(start.begin()->first, row::command_id, start));
+    }
+  }
   void all_answered() {
     const auto told = [](const Sent& one) { return one.by->answer_of(one.number).has_value(); };
     ASSERT_TRUE(plant_->stage.run_until([&] { return std::ranges::all_of(sent_, told); }));
@@ -145,12 +154,7 @@ TEST_P(Crossing, WhatItsOwnerAsksDuringATakeOverDoesNotBeginUnderTheNewOne) {
       sent_.clear();
       send(*after, one(row::command, kTakeOver));
       plant_->run(apart);
-      Rows start = plant_->endless_target();
-      start[row::command] = plant_->endless_command();
-      for (const std::int64_t id : {7, 8}) {
-        start[row::command_id] = id;
-        send(before, block(start.begin()->first, row::command_id, start));
-      }
+      send_start(before);
       all_answered();
       EXPECT_EQ(after->word(shown::owner), kMe) << answers();
       plant_->run(1s);
@@ -172,7 +176,7 @@ TEST_P(Crossing, AnEnableAndAStartEndWithATakeOver) {
     ASSERT_EQ(plant_->set_endless(before), kOk);
     sent_.clear();
     send(before, one(row::command, kEnable));
-    send(before, one(row::command, plant_->endless_command()));
+    send_start(before);
     plant_->run(apart);
     send(*after, one(row::command, kTakeOver));
     all_answered();

@@ -145,6 +145,7 @@ class Axis {
   [[nodiscard]] bool waits_for(const WriteBatch& batch) const;
   void make_owner(const WriteBatch& batch);
   bool claims_late(Pending& pending);
+  [[nodiscard]] bool is_anothers(const WriteBatch& batch) const;
   [[nodiscard]] BatchResult nothing_asked(const WriteBatch& batch);
   [[nodiscard]] bool may_run() const;
   [[nodiscard]] bool may_be_jog() const;

@@ -76,15 +76,24 @@ void Axis::make_owner(const WriteBatch& batch) {
 // What it waited for may have made it acceptable, and the axis may be another's by now. False: it is.
 bool Axis::claims_late(Pending& pending) {
   const WriteBatch& batch = pending.command_sequence->batch();
-  if (!pending.claims_when_begun || accepts_nothing(core_, batch)) return true;
+  const bool claims = pending.claims_when_begun && !accepts_nothing(core_, batch);
+  const bool begins =
+      !pending.command_sequence->begun() && !pending.command_sequence->is_stop() && asks_to_begin(batch);
+  if (!claims && !(begins && is_anothers(batch))) return true;
   pending.claims_when_begun = false;
   if (const Errc code = judge_owner(batch); code != Errc::ok) {
     pending.command_sequence->abort(refusal(code));
     complete(pending.id, pending.command_sequence->result());
     return false;
   }
-  claim(batch);
+  if (claims) claim(batch);
   return true;
+}
+
+// What a connection that has ended has asked for is its successor's, too.
+bool Axis::is_anothers(const WriteBatch& batch) const {
+  const auto& owner = ownership_.owner();
+  return owner && batch.life && owner->id != batch.client && (is_dds(*batch.life) || !same_hand(*owner, *batch.life));
 }
 
 std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback on_result) {

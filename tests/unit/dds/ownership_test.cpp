@@ -59,6 +59,25 @@ TEST_F(Owners, ADdsWritersAxisIsNoModbusClients) {
   EXPECT_TRUE(rig.has_event("dds 192.168.1.7 010f01000000000000000000:000001 owns the axis"));
 }
 
+// It was accepted when the axis was its writer's, and waits for the wire.
+TEST_F(Owners, WhatAWeakerWriterHasAskedDoesNotBeginUnderTheStrongerOne) {
+  const auto weak = rig.writer(1, 1, 5), strong = rig.writer(3, 1, 6);
+  ASSERT_EQ(rig.ask(weak, 1).result, kDone);
+  dds::CommandRecord first = command(weak, 0, 0), run = command(weak, 8, 0);
+  first.mask = dds::kHasProfileAcceleration;
+  first.profile_acceleration = 50 * kTurn;
+  run.mask = dds::kHasTargetVelocity;
+  run.target_velocity = 5 * kTurn;
+  const auto ids = {rig.send(first), rig.send(run), rig.send(command(strong, 1, 0))};
+  ASSERT_TRUE(
+      rig.run_until([&] { return std::ranges::all_of(ids, [&](std::uint64_t id) { return rig.replies(id) == 1; }); }));
+  rig.run(1s);
+  EXPECT_FALSE(rig.turns());
+  EXPECT_TRUE(rig.axis().has(AxisInput::enabled));
+  EXPECT_EQ(rig.run_at(strong, -5).result, kDone);
+  EXPECT_TRUE(rig.turns());
+}
+
 TEST_F(Owners, AStrongerWriterTakesTheAxisOverAndTheWeakerIsRefused) {
   const auto weak = rig.writer(1, 1, 5);
   const auto equal = rig.writer(2, 1, 5);
