@@ -76,10 +76,12 @@ void Judge::begin_jog(std::int64_t direction, Verdict& verdict) {
   verdict = {"jogs", {0}};
 }
 
-// D451: what is no jog is halted where the two come to be 1 together; while they stay so, a jog alone is.
+// D451: a run that is no jog ends where the two come to be 1 together; while they stay so, a jog alone does. Whether it
+// halts a move is not said.
 void Judge::jog_both(bool newly, Verdict& verdict) {
+  const bool runs = world_.jog != 0 || (newly && world_.motor == Motor::runs && world_.motion().kind != Motor::unknown);
   if (newly) stopped_ = true;
-  if (newly || world_.jog != 0) halted(false);
+  if (runs || (world_.motor != Motor::stands && readings_.other())) halted(false);
   verdict = {"jog both ways: halt", {0}, true};
 }
 

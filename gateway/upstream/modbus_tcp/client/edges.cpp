@@ -212,7 +212,7 @@ JogAsks EdgeMemory::jog(const JogWrite& write, const Writing& writing) {
   const bool both = sides[0].on() && sides[1].on();
   for (const Side& side : sides) {
     if (side.falls() || (both && side.value.value_or(false))) asks.ends = true;
-    if (both && side.value.value_or(false) && !side.was_on && (single || !side.first())) asks.halts = true;
+    if (both && side.value.value_or(false) && !side.was_on && (single || !side.first())) asks.ends_run = true;
     if (!both && side.rises()) asks.start = side.start;
     if (!both && side.held()) asks.again = side.start;
     if (side.first()) asks.not_new = true;

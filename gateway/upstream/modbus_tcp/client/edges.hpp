@@ -86,7 +86,7 @@ struct JogWrite {
 };
 struct JogAsks {
   bool ends = false;               ///< its client's own jog
-  bool halts = false;              ///< whatever runs: both have come to be 1
+  bool ends_run = false;           ///< whoever runs it: both have come to be 1
   std::optional<Command> start{};  ///< jog_forward or jog_reverse
   std::optional<Command> again{};  ///< jog_forward or jog_reverse: its coil, which was 1, is written 1 once more
   bool not_new = false;            ///< a 1 before this client has written a 0
@@ -109,8 +109,8 @@ class EdgeMemory {
   [[nodiscard]] Verdict command_with_id(Command value, std::uint16_t id, CommandIds& ids, const Writing& writing);
   /// Not of the jog coils.
   [[nodiscard]] CoilAsks coil(const CoilRow& coil, bool value, const Writing& writing);
-  /// Both jog coils at once, since each looks at the other: 0 -> 1 starts, 1 -> 0 and both at 1 end, and both at 1
-  /// halt once. No time makes a held coil start anew.
+  /// Both jog coils at once, since each looks at the other: 0 -> 1 starts, 1 -> 0 and both at 1 end, and where
+  /// both have come to be 1 a run ends as well. No time makes a held coil start anew.
   [[nodiscard]] JogAsks jog(const JogWrite& write, const Writing& writing);
   /// A block of nothing but zeros: remembered; true where controlword goes from another value to 0, which is a stop.
   [[nodiscard]] bool zeros(const Writing& writing);

@@ -16,7 +16,7 @@ constexpr std::array kOrder{Command::quick_stop,  Command::disable,       Comman
                             Command::home,        Command::move_absolute, Command::move_relative, Command::run_velocity,
                             Command::jog_forward, Command::jog_reverse};
 
-/// Both sides of a jog coil, and each of the others, ask for one thing at most.
+/// The two jog coils ask for two things together, and each of the others for one at most.
 using Acting = boost::container::static_vector<Command, kCoils + 1>;
 
 bool has(const Acting& acting, Command command) {
@@ -81,8 +81,8 @@ Asked ask(const Request& request, std::uint16_t first, const AxisImage& axis, Wr
       asked.acting.push_back(coil_asks.command);
   }
   const JogAsks jogs = edges.jog(jog, writing);
-  const bool halts = jogs.halts || (jogs.ends && ends_anybodys_jog(request, first, axis));
-  if (jogs.ends) asked.acting.push_back(halts ? Command::halt : Command::jog_end);
+  if (jogs.ends_run) asked.acting.push_back(Command::end_run);
+  if (jogs.ends) asked.acting.push_back(ends_anybodys_jog(request, first, axis) ? Command::halt : Command::jog_end);
   if (jogs.start) asked.acting.push_back(*jogs.start);
   asked.not_new = asked.not_new || jogs.not_new;
   if (!any_of(asked.acting, asks_to_stop) && !any_of(asked.acting, asks_to_move)) asked.jog_again = jogs.again;
@@ -116,7 +116,8 @@ void add_stops(const Request& request, std::uint16_t i, const UnitView::BitPlace
     edges = after;
     if (jog.forward) memory.words.coils[kJogForward] = *jog.forward;
     if (jog.reverse) memory.words.coils[kJogReverse] = *jog.reverse;
-    acting.push_back(jogs.halts ? Command::halt : Command::jog_end);
+    if (jogs.ends_run) acting.push_back(Command::end_run);
+    acting.push_back(Command::jog_end);
   }
   for (const Command command : kOrder) {
     if (!has(acting, command)) continue;
