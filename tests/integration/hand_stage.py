@@ -39,13 +39,15 @@ class OnTerminal:
         self.reader.start()
 
     def _read(self):
+        ended = False  # what it said last is looked for once more after its end
         while True:
             try:
-                if not select.select([self.master], [], [], 0.1)[0]:
-                    if self.process.poll() is not None:
-                        return
-                    continue
-                self.shown += os.read(self.master, 4096)
+                if select.select([self.master], [], [], 0.1)[0]:
+                    self.shown += os.read(self.master, 4096)
+                elif ended:
+                    return
+                else:
+                    ended = self.process.poll() is not None
             except (OSError, ValueError):
                 return
 
