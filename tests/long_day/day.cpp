@@ -71,8 +71,10 @@ void Day::tell_lines() {
   }
 }
 
-DayLeft Day::pass(std::uint64_t faults, std::chrono::milliseconds each) {
+DayLeft Day::pass(std::uint64_t faults, std::chrono::milliseconds each,
+                  const std::function<void(const std::string&)>& tell) {
   if (!stage_.come_online()) throw std::runtime_error("the plant never came online");
+  constexpr std::chrono::milliseconds kHour = 1h;
   const auto longest = static_cast<std::uint64_t>(each.count()) / kShareOfFault;
   for (std::uint64_t fault = 0; fault < faults; ++fault) {
     const auto lasts = std::chrono::milliseconds(500 + random_.below(longest));
@@ -81,6 +83,10 @@ DayLeft Day::pass(std::uint64_t faults, std::chrono::milliseconds each) {
     faults_.end();
     live(each - lasts);
     if (fault == faults / 3) left_.allocated_at_first = mallinfo2().uordblks;
+    const std::chrono::milliseconds passed = (fault + 1) * each;
+    if (passed % kHour == 0ms)
+      tell(std::to_string(passed / kHour) + " h: allocated " + std::to_string(mallinfo2().uordblks) +
+           "; faults:" + faults_.told());
   }
   live(kQuiet);
   live(3s, false);  // leases end

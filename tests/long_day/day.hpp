@@ -3,6 +3,7 @@
 // tell what is left over and what has grown. Never judges it: the test does.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,7 +37,9 @@ class Day {
  public:
   explicit Day(std::uint64_t seed);
   /// So many faults, one in each `each`; with what was counted and left when it was quiet again.
-  [[nodiscard]] DayLeft pass(std::uint64_t faults, std::chrono::milliseconds each);
+  /// @param tell how far it is, after each virtual hour: a day takes more than one real hour
+  [[nodiscard]] DayLeft pass(std::uint64_t faults, std::chrono::milliseconds each,
+                             const std::function<void(const std::string&)>& tell);
 
  private:
   void live(Duration time, bool ask = true);

@@ -25,7 +25,9 @@ std::uint64_t number_from(const char* variable, std::uint64_t otherwise) {
 TEST(LongDay, LeavesNothingBehind) {
   const std::uint64_t minutes = number_from("AXISGATE_DAY_MINUTES", 0);
   const auto day = std::make_unique<Day>(number_from("AXISGATE_DAY_SEED", 1));
-  const DayLeft left = minutes == 0 ? day->pass(kFaults, kClose) : day->pass(minutes, std::chrono::minutes(1));
+  const auto tell = [](const std::string& line) { std::cout << line << std::endl; };
+  const DayLeft left =
+      minutes == 0 ? day->pass(kFaults, kClose, tell) : day->pass(minutes, std::chrono::minutes(1), tell);
   EXPECT_EQ(left.not_online, std::vector<AxisNumber>{});
   EXPECT_EQ(left.never_moved, std::vector<AxisNumber>{});
   EXPECT_EQ(left.wrong, "");

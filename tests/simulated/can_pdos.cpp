@@ -166,6 +166,7 @@ void CanPdos::put_values(const Pdo& pdo, CanView bytes, CanDevice& device, std::
 
 void CanPdos::start(Time now) {
   running_ = true;
+  looked_ = now - one_millisecond;
   for (Sending& sending : sending_) {
     sending = {};
     sending.at = now;
@@ -184,16 +185,18 @@ BusFrame CanPdos::send(std::size_t number, CanBytes bytes, Time now) {
 std::vector<BusFrame> CanPdos::due(CanDevice& device, Time now) {
   std::vector<BusFrame> frames;
   if (!running_) return frames;
+  const bool looks = facts_.on_change && now / one_millisecond != looked_ / one_millisecond;
+  if (looks) looked_ = now;
   for (std::size_t number = 0; number < sending_.size(); ++number) {
     const Pdo& pdo = settings_.transmit[number];
     const Sending& sending = sending_[number];
     if (!by_event(pdo)) continue;
-    CanBytes values = values_of(pdo, device, now);
-    const bool changed = facts_.on_change && (!sending.sent || values != sending.last);
-    const bool inhibited = sending.sent && now - sending.at < pdo.inhibit * facts_.inhibit_unit;
     // The event timer outranks the inhibit time (MD 4.4).
     const bool timer = pdo.event != 0 && now - sending.at >= pdo.event * one_millisecond;
-    if (timer || (changed && !inhibited)) frames.push_back(send(number, std::move(values), now));
+    const bool inhibited = sending.sent && now - sending.at < pdo.inhibit * facts_.inhibit_unit;
+    if (!timer && (inhibited || !looks)) continue;  // whatever it holds
+    CanBytes values = values_of(pdo, device, now);
+    if (timer || !sending.sent || values != sending.last) frames.push_back(send(number, std::move(values), now));
   }
   return frames;
 }

@@ -45,13 +45,13 @@ class CanPdos {
 
   void start(Time now);
   void stop() { running_ = false; }
-  // What is due to be sent: changed values, event timers.
+  // What is due to be sent: values that changed, looked at once in each millisecond, and event timers.
   std::vector<BusFrame> due(CanDevice& device, Time now);
   std::vector<BusFrame> sync(CanDevice& device, std::uint64_t tag, Time now);
   std::optional<BusFrame> asked_for(std::uint32_t id, CanDevice& device, Time now);
   // Is it an RPDO of this node?
   bool take(const BusFrame& frame, CanDevice& device, std::uint64_t tag, Time now);
-  // When due() must look again; changes have no time of their own, so once each millisecond.
+  // When due() must look again.
   std::optional<Time> next_look(Time now) const;
 
   void store() { stored_ = settings_; }
@@ -105,6 +105,7 @@ class CanPdos {
   Settings stored_;
   std::vector<Sending> sending_;
   std::vector<Waiting> waiting_;  // received, and due with the next SYNC
+  Time looked_{};                 // for changes
   bool running_ = false;
 };
 

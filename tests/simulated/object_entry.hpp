@@ -13,7 +13,12 @@ namespace axisgate::simulated {
 struct ObjectKey {
   std::uint16_t index = 0;
   std::uint8_t sub = 0;
-  auto operator<=>(const ObjectKey&) const = default;
+  bool operator==(const ObjectKey&) const = default;
+  // In one comparison: a simulated drive looks its objects up more often than it does anything else.
+  auto operator<=>(const ObjectKey& other) const { return number() <=> other.number(); }
+
+ private:
+  std::uint32_t number() const { return std::uint32_t{index} << 8 | sub; }
 };
 
 enum class ObjectType : std::uint8_t { u8, i8, u16, i16, u32, i32 };
