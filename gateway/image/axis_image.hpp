@@ -119,6 +119,8 @@ struct AxisImage : Capabilities {
   std::uint16_t level_coils = 0;
   std::uint32_t jog_velocity = 0;  ///< row 58, 0.001 rpm: the gateway's own
   Lease lease{};
+  /// A position sampled no later than this counts from another zero: a homing or a set_position was under way since.
+  Instant zero_moved = kLongAgo;
   Endings endings{};                 ///< what has ended motions: the servers' rules of edges look at it
   Instant oldest_cyclic = kLongAgo;  ///< when the oldest cyclic value was confirmed
   LatestResult latest;

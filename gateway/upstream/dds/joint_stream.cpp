@@ -10,8 +10,10 @@ JointView joint_view(const AxisImage& axis, double position, double tolerance, C
   JointView view;
   const bool moves = axis.axis_state == AxisState::standstill || axis.axis_state == AxisState::discrete_motion ||
                      axis.axis_state == AxisState::continuous_motion;
+  const Sample& sample = axis[Quantity::position_actual];
+  const bool of_before = sample.received && axis.zero_moved != kLongAgo && sample.at <= axis.zero_moved;
   view.ready = axis.reachable() && moves && axis.has(AxisInput::enabled) && !axis.has(AxisInput::fault) &&
-               !axis.has(AxisInput::stop_latched);
+               !axis.has(AxisInput::stop_latched) && !of_before;
   view.position = position;
   view.tolerance = tolerance;
   view.endings = axis.endings;

@@ -21,7 +21,8 @@ struct JointTarget {
 
 /// What a stream must know of its axis. Positions in the axis's DDS unit, NaN where there is none that is good.
 struct JointView {
-  bool ready = false;  ///< enabled, in reach, no fault, no stop latch, not homing
+  /// Enabled, in reach, no fault, no stop latch, not homing, and its position was sampled after its zero has moved.
+  bool ready = false;
   double position = 0;
   double tolerance = 0;
   Endings endings{};

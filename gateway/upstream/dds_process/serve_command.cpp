@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <optional>
 #include <system_error>
+#include <variant>
 
 #include "gateway/core/log.hpp"
 #include "gateway/upstream/dds_link/exit_codes.hpp"
@@ -24,6 +25,7 @@
 #include "gateway/upstream/dds_process/system/dead_segments.hpp"
 #include "gateway/upstream/dds_process/system/link_socket.hpp"
 #include "gateway/upstream/dds_process/system/memory_limit.hpp"
+#include "gateway/upstream/dds_process/system/standstill.hpp"
 #include "gateway/upstream/dds_process/system/start_error.hpp"
 #include "gateway/upstream/dds_process/system/steady.hpp"
 
@@ -73,6 +75,7 @@ class Server {
     SteadyNs next_memory_check = steady_now();
     for (;;) {
       wait(next_beat);
+      standstill_.turn(steady_now());
       publishers_.publish_held(steady_now());
       if (steady_now() >= next_memory_check) {
         check_memory();
@@ -151,13 +154,13 @@ class Server {
     std::vector<Record> samples;
     std::vector<Record> targets;
     if (ros_) more_ = !ros_->take(difference_, actions, targets) || more_;
-    send_all(actions);
+    send_dated(actions);
     if (readers_) {
       // First the samples, then what is known of writers: so no sample is older than what is told before it.
       more_ = !readers_->take(samples) || more_;
       const WriterWatch::Changes changes = watch_.take_changes(steady_now());
       for (const WriterRecord& record : changes.before) link_.send(record);
-      send_all(samples);
+      send_dated(samples);
       for (const WriterRecord& record : changes.after) link_.send(record);
       if (changes.refused > 0) {
         tell(link_, LogLevel::warning,
@@ -165,11 +168,22 @@ class Server {
       }
       liveliness_->update();
     }
-    send_all(targets);
+    send_dated(targets);
   }
 
   void send_all(const std::vector<Record>& records) {
     for (const Record& record : records) link_.send(record);
+  }
+
+  /// Samples of clients, each with when it came.
+  void send_dated(std::vector<Record>& records) {
+    for (Record& record : records)
+      std::visit(
+          [this](auto& sample) {
+            if constexpr (requires { sample.received; }) sample.received = standstill_.came(sample.received);
+          },
+          record);
+    send_all(records);
   }
 
   LinkSocket& link_;
@@ -186,6 +200,7 @@ class Server {
   std::optional<LivelinessReaders> liveliness_;
   std::vector<IdentityRecord> identities_;
   ClockDifference difference_ = time_of_day_difference();
+  Standstill standstill_;
   bool more_ = false;
 };
 

@@ -61,6 +61,36 @@ TEST_F(RosRunning, AHomeThatIsRefusedKeepsNoRunAlive) {
   EXPECT_LE(rig.now() - silent, 2200ms);
 }
 
+// The stream goes on while the drive's zero moves: what it asks for is the place of before, and counts from another
+// zero.
+struct RosWithoutLease : Ros {
+  RosWithoutLease() : Ros({.lease = {.on = false}}) {}
+};
+
+TEST_F(RosWithoutLease, AStreamThatGoesOnOverAHomingMovesNothing) {
+  constexpr std::int16_t kHere = 35;  // CiA 402: the present position is the home
+  dds::CommandRecord method = command(guid(7), 0, 1, kServo);
+  method.mask = dds::kHasHomingMethod;
+  method.homing_method = kHere;
+  ASSERT_EQ(rig.ask(method).result, kDone);
+  for (const bool by_another : {false, true})
+    for (int phase = 0; phase < 12; ++phase) {
+      SCOPED_TRACE(std::to_string(phase) + (by_another ? ", by another" : ""));
+      control();
+      const double away = position() + 12;
+      ASSERT_TRUE(reaches(away));
+      stream(sample({away}), 500ms);
+      rig.run(phase * 1ms);
+      if (by_another)
+        rig.send(command(guid(7), static_cast<std::uint8_t>(Command::set_position), 0, kServo));
+      else
+        act(RosAction::home);
+      stream(sample({away}), 3s);
+      EXPECT_LT(std::fabs(position()), kNear);
+      EXPECT_FALSE(rig.turns());
+    }
+}
+
 // Contract: starts are refused, and running motions keep their leases.
 struct RosNamesake : RosRunning {
   void take_name(bool gone = false) { rig.give(dds::NamesakeRecord{guid(9), kServo, "192.168.1.8", gone}); }
