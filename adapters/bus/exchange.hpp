@@ -113,6 +113,7 @@ struct UnsolicitedEvent {
     values,          ///< `fields`: process data, as map_process_data() has named it
     emergency,       ///< CiA 301 EMCY: `code`, `error_register`, `vendor`; `repeats` more like it were left out before
     duplicate_node,  ///< two devices answer to this number
+    foreign_write,   ///< it acknowledges a write that nobody here waits for: another master's, or a late answer to ours
     babbling,        ///< it floods the bus: `code` is the COB-ID
   };
   Kind kind = Kind::present;

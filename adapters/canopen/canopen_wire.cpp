@@ -219,6 +219,8 @@ void CanopenWire::on_reply_frame(Node& node, Bytes bytes, Instant now) {
     case SdoClient::Heard::What::second_reply:
       line_.count_late_reply();
       tell(node, node.unasked.on_stray_reply(heard.what == SdoClient::Heard::What::second_reply, now));
+      if (heard.acknowledges_write)
+        events_->on_unsolicited({.kind = bus::UnsolicitedEvent::Kind::foreign_write, .node = node.number});
       return;
     case SdoClient::Heard::What::mine:
       transmit(node.number, heard.step.frames);

@@ -15,6 +15,11 @@ std::array<Byte, kExpeditedBytes> value_bytes(const bus::Exchange& exchange) {
   return bytes;
 }
 
+bool acknowledges_write(const SdoReply& reply) {
+  return reply.kind == Kind::downloaded || reply.kind == Kind::segment_downloaded ||
+         reply.kind == Kind::block_downloaded;
+}
+
 bool is_write(const bus::Exchange& exchange) { return exchange.access == bus::Access::write; }
 
 /// Both answer the same request: the devices may differ in what they say.
@@ -90,9 +95,9 @@ SdoClient::Heard SdoClient::not_mine(Server& server, bool waited_for, Bytes byte
   // One more than was asked for; but where an earlier request was given up, the first one may have been its answer.
   const bool again =
       server.finished && now - server.finished->at <= duplicate_window_ && same_request(server.finished->reply, *reply);
-  if (again && server.owed == 0) return {Heard::What::second_reply};
+  if (again && server.owed == 0) return {Heard::What::second_reply, {}, acknowledges_write(*reply)};
   if (server.owed > 0) --server.owed;
-  return {Heard::What::late};
+  return {Heard::What::late, {}, acknowledges_write(*reply)};
 }
 
 SdoFrames SdoClient::abandon() {

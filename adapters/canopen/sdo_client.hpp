@@ -35,6 +35,7 @@ class SdoClient {
     };
     What what = What::bad;
     SdoStep step{};
+    bool acknowledges_write = false;  ///< of `late` and `second_reply`: the drive may hold another number since
   };
   [[nodiscard]] Heard take(std::uint8_t node, Bytes bytes, Instant now);
 

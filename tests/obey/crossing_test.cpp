@@ -179,11 +179,15 @@ TEST_P(Crossing, AnEnableAndAStartEndWithATakeOver) {
     send_start(before);
     plant_->run(apart);
     send(*after, one(row::command, kTakeOver));
+    ASSERT_TRUE(plant_->stage.run_until([&] { return after->answer_of(sent_.back().number).has_value(); }));
+    const bool enabled = plant_->motor().enabled.value_or(false);
     all_answered();
     EXPECT_EQ(after->word(shown::owner), kMe) << answers();
+    EXPECT_LE(plant_->motor().enabled.value_or(false), enabled) << answers();
     ASSERT_TRUE(plant_->comes_to_stand()) << answers();
     plant_->run(1s);
     EXPECT_TRUE(plant_->stands()) << answers() << plant_->velocity();
+    EXPECT_LE(plant_->motor().enabled.value_or(false), enabled) << answers();
   }
 }
 

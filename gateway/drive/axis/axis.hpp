@@ -172,6 +172,7 @@ class Axis {
   void end_jog_at_limit();
   void observe_reference(const AxisFacts& facts);
   void observe_volatile();
+  void observe_homing_method();
   /// A serial drive has restarted between two polls, as that sign tells: what was cached of it is not true any more.
   void on_unseen_restart(const char* sign);
   void stop_by_itself(Command command, bool latches, BatchCallback on_result);
@@ -196,6 +197,7 @@ class Axis {
   void stop_jog(std::string told);
   [[nodiscard]] bool stop_comes_first(const WriteBatch& batch) const;
   [[nodiscard]] bool may_be_enabled() const;
+  [[nodiscard]] bool zero_may_move() const;
   /// `refusal`: of what stood beside the stop that the write batch is.
   [[nodiscard]] std::optional<BatchResult> carry_out(const WriteBatch& asked, Errc refusal, BatchCallback on_result);
 
@@ -234,15 +236,18 @@ class Axis {
   std::vector<Pending> pending_;
   std::vector<Due> due_;
   bool reference_invalidated_ = false;
-  bool forgotten_ = false;  ///< its drive holds other speeds than it was told, and a start will tell it anew
+  bool holds_method_ = false;  ///< its drive was seen to hold the homing_method that a client has written
+  bool forgotten_ = false;     ///< its drive holds other speeds than it was told, and a start will tell it anew
   struct {
     std::optional<ClientId> client{};
     std::shared_ptr<const ClientLife> life{};
   } motion_by_;  ///< who commanded the motion that runs
   Ownership ownership_;
+  bool zero_moves_ = false;             ///< when it was published last
   std::optional<ClientId> taken_by_{};  ///< its take-over's halt is under way
   Accepted accepted_;
   Jog jog_;
+  bool jog_left_ = false;           ///< one has ended without a halt, and nothing was started since
   Instant jog_started_ = kLongAgo;  ///< until then it stood, or moved otherwise
   Instant position_at_ = kLongAgo;  ///< the newest sample of the position
   Duration position_gap_{};         ///< between two of them, while it jogs

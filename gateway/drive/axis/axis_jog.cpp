@@ -85,6 +85,7 @@ void Axis::watch_position() {
 
 void Axis::observe_jog() {
   watch_position();
+  jog_left_ = jog_left_ && core_.motion.running() == MotionKind::none;
   if (!jog_.active()) return;
   if (!core_.reachable()) {
     jog_.carry();
@@ -93,6 +94,7 @@ void Axis::observe_jog() {
   const bool goes_on = jog_.carried() && core_.facts().enabled();
   if (!jog_is_starting() && !goes_on && core_.motion.running() != MotionKind::velocity) {
     end_jog();  // a fault, a stop, or another command: only a new press jogs again
+    jog_left_ = true;
     return;
   }
   end_jog_at_limit();

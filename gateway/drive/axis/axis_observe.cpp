@@ -18,6 +18,7 @@ void Axis::observe() {
   core_.motion.observe(facts, core_.model.homing_timeout);
   observe_reference(facts);
   observe_volatile();
+  observe_homing_method();
   bool clamped = false;
   for (const Binding& binding : core_.model.bindings)
     if (binding.object != kNoObject && binding.object != core_.model.controlword)
@@ -62,6 +63,25 @@ void Axis::observe_volatile() {
   if (may_run) stop_by_itself(Command::disable, false, [](const BatchResult&) {});
 }
 
+// A drive that no more holds what a client has written was restarted unseen, or is set up by somebody else: 3.4 wants
+// the method "written or configured since bring-up".
+void Axis::observe_homing_method() {
+  const Binding* method = core_.model.binding(Quantity::homing_method);
+  const bool written = core_.homing_method && !core_.model.homing_method;
+  if (!written || method == nullptr || method->object == kNoObject) {
+    holds_method_ = false;
+    return;
+  }
+  const ObjectState& state = core_.store[method->object];
+  const bool read = state.cached && !state.unverified && !state.clamped;
+  if (core_.turn.link != LinkState::online || !pending_.empty() || !read) return;
+  const bool held = std::exchange(holds_method_, core_.value(Quantity::homing_method) == core_.homing_method);
+  if (!held || holds_method_) return;
+  core_.homing_method.reset();
+  host_.event(image_.number, EventKind::warning, 0,
+              "the drive does not hold the homing_method that was written: write it again before a homing");
+}
+
 void Axis::on_unseen_restart(const char* sign) {
   core_.homed = false;
   core_.machine.forget_homing();
@@ -71,7 +91,19 @@ void Axis::on_unseen_restart(const char* sign) {
 
 // --- The image -----------------------------------------------------------------------------------------------------
 
+// By whatever way a homing was asked for: from when it is asked until it was seen to be over.
+bool Axis::zero_may_move() const {
+  const auto moves_it = [](const Pending& p) {
+    const Command command = p.command_sequence->batch().command;
+    return command == Command::home || command == Command::set_position;
+  };
+  return core_.motion.running() == MotionKind::homing || std::any_of(pending_.begin(), pending_.end(), moves_it);
+}
+
 void Axis::publish() {
+  const bool moves = zero_may_move();
+  if (moves || zero_moves_) image_.zero_moved = core_.turn.now;
+  zero_moves_ = moves;
   ownership_.set_armed(core_.turn.link != LinkState::online || holds_motor(core_.facts().state));
   shown_.publish(jog_);
 }

@@ -58,7 +58,9 @@ bool Axis::may_be_enabled() const { return core_.turn.link != LinkState::online 
 void Axis::on_restarted() {
   core_.motion.disarm();
   core_.begin_mode();
-  end_jog();
+  // What said that it has started may turn on all the same (NMT reset communication): its button counts until it is
+  // seen not to.
+  jog_.carry();
   owed_.restarted();
 }
 

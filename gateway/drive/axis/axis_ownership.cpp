@@ -165,10 +165,12 @@ BatchResult Axis::nothing_asked(const WriteBatch& batch) {
   return {};
 }
 
-// A gateway that died has told nobody that a button was held. What runs since before may be its jog: whoever lets a
-// button go then means it. The iD286pro does not tell in which mode it runs, nor does a Keya on CANopen.
+// A gateway that died has told nobody that a button was held, and another master may let go on what had ended. What
+// runs by no command of ours may be a jog: whoever lets a button go then means it. The iD286pro does not tell in which
+// mode it runs, nor does a Keya on CANopen.
 bool Axis::may_be_jog() const {
   const AxisFacts facts = core_.facts();
+  if (jog_left_ && runs_unwatched()) return true;
   if (!core_.motion.found_at_start() || !facts.enabled()) return false;
   const bool tells_mode = !core_.is_virtual() || (!core_.model.virtual_axis->gate_only && facts.mode != 0);
   return tells_mode ? core_.motion.goes_on(Quantity::target_velocity, facts) : facts.moving;

@@ -33,7 +33,7 @@ CommandSequence::CommandSequence(AxisCore& core, const WriteBatch& batch, bool s
 Plan CommandSequence::plan_of(Phase phase) {
   switch (phase) {
     case Phase::stop:
-      return plan_stop(core_, batch_);
+      return plan_stop(core_, batch_, stop_attempt_.unheeded());
     case Phase::setpoints:
       return plan_setpoints(core_, batch_);
     case Phase::mode:
@@ -269,7 +269,10 @@ std::optional<CommandSequence::Move> CommandSequence::advance_wait(const Action&
   }
   // Where nobody answers a frame, what may run out without a failure tells as well that it was lost.
   const bool tells = !action.optional || !core_.drive.composed.empty();
-  if (fresh && phase_ == Phase::stop && tells && stop_attempt_.repeat_is_due(now) && repeat_stop()) return std::nullopt;
+  if (fresh && phase_ == Phase::stop && tells && stop_attempt_.repeat_is_due(now) && repeat_stop()) {
+    if (action.effect == Effect::none) stop_attempt_.was_not_heeded();
+    return std::nullopt;
+  }
   if (fresh && now < awaiting_.look_after()) return Move{Move::Kind::wait, {}, awaiting_.look_after()};
   return exchange_for(Action::read(look_at));
 }

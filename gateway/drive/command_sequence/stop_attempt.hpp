@@ -26,6 +26,9 @@ class StopAttempt {
     return in_all;
   }
   [[nodiscard]] bool repeat_is_due(Instant now) const { return now >= repeat_at_; }
+  /// It was acknowledged, and a state read later shows that the drive goes on.
+  void was_not_heeded() { unheeded_ = true; }
+  [[nodiscard]] bool unheeded() const { return unheeded_; }
 
   /// Something of it was not sent, as it could have enabled, or not seen to act.
   void withhold() { withheld_ = true; }
@@ -42,6 +45,7 @@ class StopAttempt {
   Instant until_ = kNever;        ///< of its waits together
   Instant motor_until_ = kNever;  ///< and of those that the motor alone shows the end of
   Instant repeat_at_ = kNever;
+  bool unheeded_ = false;
   bool withheld_ = false;
   bool confirmed_ = false;
   bool handed_over_ = false;

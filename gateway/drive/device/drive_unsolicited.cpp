@@ -37,6 +37,10 @@ void Drive::on_unsolicited(const bus::UnsolicitedEvent& unsolicited) {
       tell_all(EventKind::warning, model_.node,
                fmt::format("two devices answer as node {}: give one of them another number", model_.node));
       break;
+    case bus::UnsolicitedEvent::Kind::foreign_write:
+      // As after a timeout: whatever it holds is read anew, and every start writes what it goes by.
+      store_.lose_sight();
+      break;
     case bus::UnsolicitedEvent::Kind::babbling:
       tell_all(EventKind::warning, unsolicited.code,
                fmt::format("floods the bus with frames 0x{:03X}", unsolicited.code));

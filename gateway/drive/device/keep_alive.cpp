@@ -39,8 +39,12 @@ std::optional<KeepAlive::Repeat> KeepAlive::repeat(const AxisCore& core, bool st
     if (!told.known || told.unsure || told.refused) return std::nullopt;
     // A stop makes void what ran before. The 0 that it has written is repeated: a ramp of its that takes longer than
     // the drive waits would end without torque.
-    const bool stands = told.number == 0 && core.is_continuous(mode);
+    const bool runs_by_it = core.is_continuous(mode);
+    const bool stands = told.number == 0 && runs_by_it;
     if (stopping && !stands) return std::nullopt;
+    // A speed whose run has ended is nobody's any more: who has enabled the axis since, by another way than the
+    // gateway, has not asked for it.
+    if (runs_by_it && !stands && core.motion.running() == MotionKind::none) return std::nullopt;
     return Repeat{object, told.number};
   }
   return std::nullopt;

@@ -2,8 +2,8 @@
 // The keep-alive of a drive that disables itself when it hears no command (profile key "keepalive"): what is sent
 // again, and when. Pure: control writes, instants and what the axes show go in. Promises that it repeats nothing but
 // the number that a set-point object was last known to take, in a mode in which that moves nothing, for an axis that is
-// enabled, by somebody who still answers for it, and that it is asked for at half its period, so that a busy line has
-// the other half. Never enables, starts or changes anything.
+// enabled, by somebody who still answers for it, a speed only while its run is on, and that it is asked for at half its
+// period, so that a busy line has the other half. Never enables, starts or changes anything.
 #pragma once
 
 #include <optional>

@@ -57,6 +57,11 @@ Plan plan_controlword(const AxisCore& core, std::uint16_t word, bool command_fol
   const bool moves = facts.mode == 1 && word_starts(core, word, facts.enabled());
   const bool homes = facts.enabled() && facts.mode == 6 && rising(before, word, controlword::kStart);
 
+  // Whether a drive takes bit 4 of the word that enables it for a start no sheet says.
+  const bool may_move = !moves && facts.mode == 1 && enables && (word & controlword::kStart) != 0;
+  if (may_move && !facts.enabled() && judge_move(core, (word & controlword::kRelative) != 0) == Errc::bad_value)
+    return Plan::refuse(Errc::bad_value);
+
   const bool halted = (word & controlword::kHalt) != 0;
   const bool runs = enables && !halted && is_continuous(facts);
 

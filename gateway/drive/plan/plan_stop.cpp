@@ -30,6 +30,21 @@ bool hold_an_enabling_word(const AxisCore& core, const Steps& steps) {
   });
 }
 
+/// The controlword without which this drive heeds no other one after a restart (setup of its profile; JD 2.3).
+std::optional<std::int64_t> first_controlword(const AxisCore& core) {
+  for (const ObjectWrite& setup : core.drive.setup)
+    if (setup.object == core.model.controlword && setup.object != kNoObject) return setup.raw;
+  return std::nullopt;
+}
+
+// It was found enabled, so nobody has told it its first controlword yet: that is no enabling one, and ends the torque.
+Plan first_word(const AxisCore& core, std::int64_t word) {
+  Plan plan;
+  plan.add(Action::write(core.model.controlword, word));
+  plan.add(Action::wait(torque_off(core), kStopLimit));
+  return plan;
+}
+
 Plan quick_stop(const AxisCore& core) {
   Plan plan;
   if (!add_command_steps(core, Command::quick_stop, plan)) return plan;
@@ -115,7 +130,8 @@ Condition torque_off(const AxisCore& core) {
   return c;
 }
 
-Plan plan_stop(const AxisCore& core, const WriteBatch& batch) {
+Plan plan_stop(const AxisCore& core, const WriteBatch& batch, bool unheeded) {
+  if (const auto word = first_controlword(core); unheeded && word && !enables(*word)) return first_word(core, *word);
   const bool commanded = is_stop(batch.command);
   if (!stops_by_word(batch)) return by_command(core, batch.command);
   Plan plan = by_controlword(core, *batch.controlword);

@@ -54,7 +54,9 @@ void remember_setpoints(AxisCore& core, const WriteBatch& batch);
 // --- Stops ---------------------------------------------------------------------------------------------------------
 
 /// The stop of a write batch: commands 2, 3, 4, a raw controlword, or both.
-[[nodiscard]] Plan plan_stop(const AxisCore& core, const WriteBatch& batch);
+/// @param unheeded the drive has acknowledged it, and shows that it went on. One that begins to listen with a first
+///   controlword only (its profile's setup writes it) is told that word: it ends the torque.
+[[nodiscard]] Plan plan_stop(const AxisCore& core, const WriteBatch& batch, bool unheeded = false);
 /// How long a stop may take to show: a ramp at the drive's own deceleration. Meanwhile it is repeated
 /// (CommandSequence).
 inline constexpr Duration kStopLimit = std::chrono::seconds(5);

@@ -20,7 +20,7 @@ struct ObjectState {
   bool refused = false;        ///< the drive does not have it: not asked again until the next bring-up
   bool unverified = false;     ///< acknowledged, but not read back yet
   bool unsure = false;         ///< a write of it may or may not have happened, and it was not read since
-  bool out_of_sight = false;   ///< the drive was silent since: it may have restarted, and hold what it holds then
+  bool out_of_sight = false;   ///< the drive was silent, or obeyed another master, since: it may hold anything
   bool clamped = false;        ///< read back other than it was acknowledged; until it is written again
   bool emulated = false;       ///< the gateway's own (virtual axis): nothing invalidates it
   Instant sent_at = kLongAgo;  ///< when the request that gave the number was sent
@@ -93,7 +93,7 @@ class ObjectStore {
       if (!same_place(i, except) && !states_[i].emulated) states_[i].cached = states_[i].unverified = false;
     ++invalidations_;
   }
-  /// The same, after a timeout.
+  /// The same, after a timeout or another master's write.
   void lose_sight() {
     invalidate_all();
     for (ObjectState& s : states_) s.out_of_sight = !s.emulated;

@@ -27,7 +27,10 @@ struct Told {
     store.begin_exchange();
     for (drive::AxisCore& core : cores) core.begin_mode();
     show(kNow);
-    for (drive::AxisCore& core : cores) core.refresh_virtual();
+    for (drive::AxisCore& core : cores) {
+      core.refresh_virtual();
+      core.motion.start(drive::MotionKind::velocity, 0, kNow, store.exchange());  // else no speed is told again
+    }
   }
   [[nodiscard]] ObjectId id(const std::string& name) const {
     const auto at =

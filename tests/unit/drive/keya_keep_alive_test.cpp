@@ -61,6 +61,23 @@ TEST_P(KeyaKeepAlive, ADisabledDriveIsSentNothing) {
   EXPECT_THAT(rig.writes(), IsEmpty());
 }
 
+// Its run has ended for good (3.4): a speed that is repeated would start it again.
+TEST_P(KeyaKeepAlive, AMotorThatAnotherMasterEnablesIsNotGivenTheSpeedOfBefore) {
+  for (const Duration apart : {20ms, 200ms, 3000ms}) {
+    SCOPED_TRACE(apart / 1ms);
+    KeyaRig rig(options());
+    rig.online();
+    rig.enable_and_run(0);
+    rig.motor(0).enabled = false;
+    ASSERT_TRUE(rig.run_until([&] { return !rig.enabled(0); }, 1s));
+    rig.run(apart);
+    rig.motor(0).moves.clear();
+    rig.motor(0).enabled = true;
+    rig.run(3s);
+    EXPECT_THAT(rig.motor(0).moves, IsEmpty());
+  }
+}
+
 TEST_P(KeyaKeepAlive, APositionIsRepeatedWhichMovesNothing) {
   KeyaRig rig(options(1));
   rig.online();

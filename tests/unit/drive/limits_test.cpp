@@ -36,6 +36,11 @@ TEST(Limits, HoldForEveryWayIn) {
   EXPECT_TRUE(rig.writes_of(kControlword).empty()) << "known before sending";
   ASSERT_EQ(rig.ask(with_controlword(0x004F)).outcome.code, Errc::ok);
   EXPECT_EQ(rig.ask(with_controlword(0x005F)).outcome.code, Errc::bad_value);
+  ASSERT_EQ(rig.command(Command::disable).outcome.code, Errc::ok);
+  ASSERT_EQ(rig.ask(with_controlword(0x0006)).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.ask(with_controlword(0x005F)).outcome.code, Errc::bad_value) << "it may start as it enables";
+  EXPECT_EQ(rig.count(kControlword, 0x5F), 0U);
+  EXPECT_EQ(rig.ask(with_controlword(0x000F)).outcome.code, Errc::ok);
 }
 
 // 3.4: command 7 goes "by target_position from the set-point position": a distance is no position.
