@@ -99,6 +99,10 @@ void add_map(CLI::App& app, Parsed& parsed) {
       ->check(one_of({"table", "md", "csv", "json", "st"}))
       ->type_name("FORMAT")
       ->capture_default_str();
+  command
+      ->add_option("--listener", parsed.map.listener,
+                   "as this listener shows it, by its \"listen\"; without it the first one")
+      ->type_name("HOST:PORT");
   command->footer("Example: axisgate map /etc/axisgate/gateway.json --format csv > registers.csv");
   command->callback([&parsed] { choose_with_folders(parsed, parsed.map); });
 }

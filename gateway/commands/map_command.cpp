@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "gateway/commands/common/faults_told.hpp"
 #include "gateway/config/config_loader.hpp"
@@ -22,11 +23,33 @@ ListedAxis listed(const AxisConfig& config, const drive::AxisModel& model, const
   return axis;
 }
 
-ListedMap listed(const LoadedConfig& loaded) {
+using modbus_tcp::address_text;
+using Listener = modbus_tcp::ListenerSettings;
+
+bool shows_the_same(const Listener& a, const Listener& b) {
+  return a.low_word_first == b.low_word_first && a.float_numbers == b.float_numbers &&
+         a.per_axis_units == b.per_axis_units;
+}
+
+/// What this listing cannot show: stdout is for an import.
+void tell_differences(const std::vector<Listener>& listeners, const Listener& shown) {
+  const std::string name = address_text(shown.host, shown.port);
+  if (shown.per_axis_units)
+    fmt::print(
+        stderr,
+        "axisgate map: {} has \"unit_ids\": \"per-axis\": these addresses are those of unit 255; unit N shows axis N "
+        "alone, from address 0 on\n",
+        name);
+  for (const Listener& other : listeners)
+    if (!shows_the_same(shown, other))
+      fmt::print(stderr, "axisgate map: this is the map of {}; {} shows it otherwise: --listener {}\n", name,
+                 address_text(other.host, other.port), address_text(other.host, other.port));
+}
+
+ListedMap listed(const LoadedConfig& loaded, const Listener& listener) {
   ListedMap map;
-  // Listeners may differ; the first one is what a configuration is made for.
-  map.low_word_first = loaded.config.modbus_tcp.front().low_word_first;
-  map.float_numbers = loaded.config.modbus_tcp.front().float_numbers;
+  map.low_word_first = listener.low_word_first;
+  map.float_numbers = listener.float_numbers;
   for (std::size_t b = 0; b < loaded.config.buses.size(); ++b) {
     const BusConfig& bus = loaded.config.buses[b];
     map.buses.push_back(bus.name);
@@ -46,9 +69,21 @@ ListedMap listed(const LoadedConfig& loaded) {
 int run(const MapOptions& options) {
   const LoadResult result = load_config(options.config, options.profile_folders);
   if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
+  const auto& loaded = std::get<LoadedConfig>(result);
+  const std::vector<Listener>& listeners = loaded.config.modbus_tcp;
+  const auto wanted = [&](const Listener& each) {
+    return options.listener.empty() || address_text(each.host, each.port) == options.listener;
+  };
+  const auto listener = std::find_if(listeners.begin(), listeners.end(), wanted);
+  if (listener == listeners.end()) {
+    fmt::print(stderr, "{}: /modbus_tcp: no listener has \"listen\": \"{}\": give one of the configuration's\n",
+               options.config, options.listener);
+    return 1;
+  }
+  tell_differences(listeners, *listener);
   // The command line has checked the name.
   const MapFormat format = map_format_named(options.format).value_or(MapFormat::table);
-  fmt::print("{}", map_text(listed(std::get<LoadedConfig>(result)), format));
+  fmt::print("{}", map_text(listed(loaded, *listener), format));
   return 0;
 }
 

@@ -72,6 +72,16 @@ bool is_loopback(std::string_view host) {
   return parsed->bytes == modbus_tcp::Address{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
 }
 
+bool is_group_address(std::string_view host) {
+  const auto parsed = parse_address(host);
+  if (!parsed) return false;
+  constexpr std::uint8_t kMulticast4 = 0xE0, kEverybody4 = 0xFF, kMulticast6 = 0xFF;
+  if (!parsed->v4) return parsed->bytes[0] == kMulticast6;
+  const bool everybody = std::all_of(parsed->bytes.begin() + 12, parsed->bytes.end(),
+                                     [](std::uint8_t byte) { return byte == kEverybody4; });
+  return everybody || (parsed->bytes[12] & 0xF0U) == kMulticast4;
+}
+
 std::optional<Network> parse_network(std::string_view text) {
   const auto slash = text.find('/');
   const auto address = parse_address(text.substr(0, slash));

@@ -23,6 +23,8 @@ struct Endpoint {
 /// "0.0.0.0" or "::".
 [[nodiscard]] bool is_any_address(std::string_view host);
 [[nodiscard]] bool is_loopback(std::string_view host);
+/// Multicast (224.0.0.0/4, ff00::/8) or 255.255.255.255: TCP has no connection to more than one host.
+[[nodiscard]] bool is_group_address(std::string_view host);
 
 struct Network {
   modbus_tcp::Address address{};

@@ -109,6 +109,14 @@ ListenerSettings read_listener(const ConfigNode& node, ConfigFaults& faults) {
                            *listen));
     return settings;
   }
+  if (is_group_address(endpoint->host)) {
+    faults.add(
+        node.pointer("listen"),
+        fmt::format("'{}' is the address of many hosts, and a TCP server listens on one of this host's own: write "
+                    "such as \"127.0.0.1:1502\", or \"0.0.0.0:1502\" for all of them",
+                    *listen));
+    return settings;
+  }
   settings.host = endpoint->host;
   settings.port = endpoint->port;
   warn_about_reach(node, settings, faults);

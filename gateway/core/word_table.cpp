@@ -133,8 +133,9 @@ constexpr auto kWords = std::to_array<Word>({
     {result, 8, "stopped by another client", "somebody else's stop ended it", "a panel, a second program",
      "see the events"},
     {result, 9, "state unsuitable", "the axis is in no state for it",
-     "not enabled, a stop is latched or owed, a fault, moving where standstill is needed",
-     "see axis_state and the alarms"},
+     "not enabled, a stop is latched or owed, a fault, moving where standstill is needed; of a jog: it could not end "
+     "before the position limit",
+     "see axis_state, the alarms and the limits"},
     {result, 10, "not_new", "it repeats what was written before, and did nothing",
      "the same number twice without an id, a level that stayed 1", "write 0 first, or use a new command_id"},
     {result, 11, "not_reached",

@@ -99,6 +99,20 @@ class FirstContact(Story):
         self.assertLess(set(regular), set(read(DeviceInformation.Extended)))
         self.assertEqual(read(DeviceInformation.Specific, 2)[2], basic[2])
 
+    def test_map_tells_as_which_listener_shows_it(self):
+        flat, low_first, per_axis = (f"127.0.0.1:{port}" for port in self.ports)
+        for listener, order in ((flat, "high-first"), (low_first, "low-first"), (per_axis, "high-first")):
+            with self.subTest(listener=listener):
+                done = self.command_line("map", self.config, "--format", "json", "--listener", listener)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(json.loads(done.stdout)["word_order"], order)
+                for other in {flat, low_first, per_axis} - {listener}:
+                    self.assertIn(f"{other} shows it otherwise", done.stderr)
+                self.assertEqual("unit N shows axis N alone" in done.stderr, listener == per_axis)
+        done = self.command_line("map", self.config, "--listener", "127.0.0.1:1")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn(f"{self.config}: /modbus_tcp: no listener has", done.stderr)
+
     def test_every_address_that_map_prints_is_served(self):
         listing = self.listed()
         self.assertEqual((listing["map_version"], listing["word_order"]), (1, "high-first"))

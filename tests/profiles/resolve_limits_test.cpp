@@ -33,14 +33,18 @@ TEST(ResolvedLimits, EveryValueWithinTheLimitsFitsTheObjectOnBothEnds) {
   }
 }
 
-// 3.3 Zeros: 0 is no speed and no ramp, nor is what a drive would hold as 0.
-TEST(ResolvedLimits, SpeedsAndRampsStartAtTheLeastThatTheDriveHolds) {
-  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
-  for (const Quantity q : {Quantity::profile_velocity, Quantity::profile_acceleration, Quantity::max_velocity,
-                           Quantity::homing_speed_zero}) {
-    const Binding& bound = binding(model, q);
-    EXPECT_GE(bound.to_raw(bound.limits.min, model.object(bound.object)).value_or(0), 1) << row(q).name;
-    EXPECT_GT(bound.limits.min, 0) << row(q).name;
+// 3.3 Zeros: 0 is no speed, no ramp and no max_torque, nor is what a drive would hold as 0.
+TEST(ResolvedLimits, SpeedsRampsAndTorqueStartAtTheLeastThatTheDriveHolds) {
+  ResolveInput input = kinco_axis();
+  input.constants["rated_current_a"] = Rational(4);
+  for (const char* profile : {"kinco-jd", "kinco-md"}) {
+    const DriveModel model = resolved(shipped(profile), input);
+    for (const Quantity q : {Quantity::profile_velocity, Quantity::profile_acceleration, Quantity::max_velocity,
+                             Quantity::homing_speed_zero, Quantity::max_torque}) {
+      const Binding& bound = binding(model, q);
+      EXPECT_GE(bound.to_raw(bound.limits.min, model.object(bound.object)).value_or(0), 1) << profile << row(q).name;
+      EXPECT_GT(bound.limits.min, 0) << profile << row(q).name;
+    }
   }
 }
 
@@ -59,7 +63,7 @@ TEST(ResolvedLimits, TheAxisLimitsNarrowWhatAClientMayWrite) {
   EXPECT_EQ(binding(model, Quantity::max_velocity).limits.max, 1500000);
   EXPECT_EQ(binding(model, Quantity::profile_deceleration).limits.max, 6000);
   EXPECT_EQ(binding(model, Quantity::target_torque).limits, (Range{-800, 800}));
-  EXPECT_EQ(binding(model, Quantity::max_torque).limits, (Range{0, 800}));
+  EXPECT_EQ(binding(model, Quantity::max_torque).limits, (Range{3, 800}));
   EXPECT_EQ(binding(model, Quantity::quick_stop_deceleration).limits.min, 3000);
   EXPECT_TRUE(model.axes[0].configured_torque_limit);
 }

@@ -27,7 +27,9 @@ bool hangups_are_ignored() {
 }
 
 EndSignals::EndSignals(boost::asio::io_context& io, const Log& log)
-    : log_(log), has_terminal_(has_controlling_terminal()), signals_(io, SIGINT, SIGTERM) {
+    : log_(log), has_terminal_(has_controlling_terminal()), signals_(io, SIGINT, SIGTERM, SIGQUIT) {
+  // Nobody who sends them means the end, which is what they do by themselves.
+  for (const int signal : {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF}) std::signal(signal, SIG_IGN);
   if (!hangups_are_ignored()) signals_.add(SIGHUP);
 }
 

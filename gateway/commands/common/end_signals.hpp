@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The signals that end the gateway: SIGTERM and SIGINT; SIGHUP where the process was started from a terminal, which is
-// then gone. Promises that the first one begins the end on purpose, and a second one ends the process at once; that a
-// SIGHUP to a service asks for a reload, and one that whoever started the process has it ignore (nohup) is ignored;
-// that one which comes while the process still starts is answered then, and kills nothing. Never decides what becomes
-// of the drives.
+// The signals that end the gateway: SIGTERM, SIGINT and SIGQUIT; SIGHUP where the process was started from a terminal,
+// which is then gone. Promises that the first one begins the end on purpose, and a second one ends the process at once;
+// that a SIGHUP to a service asks for a reload, and one that whoever started the process has it ignore (nohup) is
+// ignored; that one which comes while the process still starts is answered then, and kills nothing; that SIGUSR1,
+// SIGUSR2 and the signals of timers end nothing. Never decides what becomes of the drives.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

@@ -88,6 +88,8 @@ Hand::Hand(const HandArguments& arguments, HostPort place, boost::asio::io_conte
         pump();
       }) {
   if (!hangups_are_ignored()) signals_.add(SIGHUP);
+  // They would end this program, and the motor would turn on.
+  for (const int signal : {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU}) signals_.add(signal);
 }
 
 HandPlan Hand::run() {

@@ -23,12 +23,13 @@ bool is_directed(const QuantityRow& row) {
 constexpr std::string_view kPosition = "position", kVelocity = "velocity", kAcceleration = "acceleration",
                            kTorque = "torque", kQuickStop = "quick_stop_deceleration_min";
 
-/// A speed or a ramp that the drive would hold as 0 is none: 0 means "leave as it is" (design 3.3 Zeros), and a drive
-/// that is told to slow down at 0 may turn on.
+/// A speed, a ramp or a max_torque that the drive would hold as 0 is none: 0 means "leave as it is" (design 3.3 Zeros),
+/// and a drive that is told to slow down at 0, or without torque, may turn on.
 Range numbers_of_write(const QuantityRow& row, const Object& object, const ObjectDef& def) {
   Range out = intersection(object.numbers(), def.range());
   const bool rate = row.type == RegisterType::u32 && (row.kind == Kind::velocity || row.kind == Kind::acceleration);
-  if (rate && row.writable) out.min = std::max<std::int64_t>(out.min, 1);
+  const bool torque = row.type == RegisterType::u16 && row.kind == Kind::torque;
+  if ((rate || torque) && row.writable) out.min = std::max<std::int64_t>(out.min, 1);
   return out;
 }
 

@@ -27,5 +27,24 @@ TEST(EndSignals, OneThatComesBeforeTheLoopRunsEndsItOnPurpose) {
   EXPECT_EQ(ends, (std::vector<bool>{false, true}));
 }
 
+TEST(EndSignals, WhatNobodyMeansAsTheEndEndsNothing) {
+  boost::asio::io_context io(1);
+  const Log log([](LogLevel, std::string_view, std::string_view) {});
+  EndSignals signals(io, log);
+  int ends = 0;
+  signals.start(
+      [&](bool) {
+        ++ends;
+        io.stop();
+      },
+      [] {});
+  for (const int signal : {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF}) ASSERT_EQ(std::raise(signal), 0);
+  io.poll();
+  EXPECT_EQ(ends, 0);
+  ASSERT_EQ(std::raise(SIGQUIT), 0);
+  io.run();
+  EXPECT_EQ(ends, 1);
+}
+
 }  // namespace
 }  // namespace axisgate::app
