@@ -87,6 +87,8 @@ bool put_members(const CommandRecord& record, const AxisImage& axis, const DdsUn
     if (!value) return false;
     // A button that is held tells the same velocity again and again.
     const auto velocity = static_cast<std::uint32_t>(*value);
+    // Refused before it is written: that would claim the axis for a jog that cannot begin.
+    if (velocity == 0 && is_jog(command_of(record))) return false;
     if (!held || velocity != axis.jog_velocity) batch.jog_velocity = velocity;
   }
   return true;

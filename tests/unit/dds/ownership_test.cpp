@@ -59,6 +59,20 @@ TEST_F(Owners, ADdsWritersAxisIsNoModbusClients) {
   EXPECT_TRUE(rig.has_event("dds 192.168.1.7 010f01000000000000000000:000001 owns the axis"));
 }
 
+// 3.5: owned from the first accepted write.
+TEST_F(Owners, AJogThatIsRefusedTakesNothing) {
+  const auto weak = rig.writer(1, 1, 5), strong = rig.writer(3, 1, 6);
+  run_by(weak);
+  for (const std::uint8_t direction : {std::uint8_t{31}, std::uint8_t{32}})
+    for (const double velocity : {0.0, 1e-5}) {
+      dds::CommandRecord jog = command(strong, direction, 0);
+      jog.mask = dds::kHasJogVelocity;
+      jog.jog_velocity = velocity;
+      EXPECT_EQ(rig.ask(jog).result, kBadValue);
+      EXPECT_EQ(rig.run_at(weak, 2).result, kDone);
+    }
+}
+
 // It was accepted when the axis was its writer's, and waits for the wire.
 TEST_F(Owners, WhatAWeakerWriterHasAskedDoesNotBeginUnderTheStrongerOne) {
   const auto weak = rig.writer(1, 1, 5), strong = rig.writer(3, 1, 6);
