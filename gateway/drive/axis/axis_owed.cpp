@@ -58,9 +58,8 @@ bool Axis::may_be_enabled() const { return core_.turn.link != LinkState::online 
 void Axis::on_restarted() {
   core_.motion.disarm();
   core_.begin_mode();
-  // What said that it has started may turn on all the same (NMT reset communication): its button counts until it is
-  // seen not to.
-  jog_.carry();
+  // No end of a jog: what has said that it starts may turn on all the same (NMT reset communication), and its button
+  // counts until it is seen not to.
   owed_.restarted();
 }
 

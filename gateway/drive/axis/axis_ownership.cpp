@@ -165,9 +165,9 @@ BatchResult Axis::nothing_asked(const WriteBatch& batch) {
   return {};
 }
 
-// A gateway that died has told nobody that a button was held, and another master may let go on what had ended. What
-// runs by no command of ours may be a jog: whoever lets a button go then means it. The iD286pro does not tell in which
-// mode it runs, nor does a Keya on CANopen.
+// A gateway that died has told nobody that a button was held, and what runs since before may be its jog. So may what
+// another master has let go on since a jog has ended without a halt. Whoever lets a button go means it. The iD286pro
+// does not tell in which mode it runs, nor does a Keya on CANopen.
 bool Axis::may_be_jog() const {
   const AxisFacts facts = core_.facts();
   if (jog_left_ && runs_unwatched()) return true;
