@@ -112,6 +112,23 @@ TEST_P(ForeignMaster, AMoveEndsAtItsOwnTargetAndAtItsOwnSpeedWhateverTheDriveWas
   EXPECT_LE(fastest, kSpeed + kSpeed / 50);
 }
 
+// As after a restart that nobody has seen: 3.4 wants the method "written or configured since bring-up".
+TEST_P(ForeignMaster, AHomingGoesByNoMethodThatTheDriveDoesNotHoldAnyMore) {
+  constexpr std::int64_t kHomeSwitch = 19;  // CiA 402, as 17
+  constexpr std::uint8_t kNegativeLimit = 17;
+  ready();
+  ASSERT_EQ(plant_->a.row(row::homing_method, kHomeSwitch), kOk);
+  plant_->run(1s);
+  sends(kSdoRequest, {0x2F, 0x98, 0x60, 0, kNegativeLimit, 0, 0, 0});
+  plant_->run(1s);
+  EXPECT_EQ(plant_->a.command(kHome).exception, kBadValue);
+  plant_->run(500ms);
+  EXPECT_TRUE(plant_->stands());
+  EXPECT_EQ(plant_->a.row(row::homing_method, kHomeSwitch), kOk);
+  ASSERT_EQ(plant_->a.command(0), kOk);
+  EXPECT_EQ(plant_->a.command(kHome), kOk);
+}
+
 // The jog had ended with the boot-up, and its motor turned on: no button was known to be held any more.
 TEST_P(ForeignMaster, AJogEndsWithItsButtonAlsoWhereCommunicationHasBegunAnew) {
   for (const bool lets_go : {true, false})

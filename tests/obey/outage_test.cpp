@@ -244,31 +244,6 @@ TEST_P(Outage, OfAClientDoesNotTakeBackWhatItSent) {
   EXPECT_TRUE(plant.comes_to_stand());
 }
 
-// 3.4: a homing's method is "written or configured since bring-up". A restart that is over soon has none.
-class ForgottenMethod : public testing::TestWithParam<Subject> {};
-
-TEST_P(ForgottenMethod, IsWrittenAgainBeforeAHoming) {
-  constexpr std::int64_t kHomeSwitch = 19;  // CiA 402
-  for (const Duration off : {100ms, 200ms, 300ms, 500ms, 1000ms, 3000ms}) {
-    SCOPED_TRACE(off / 1ms);
-    Plant plant(GetParam());
-    plant.ready();
-    ASSERT_EQ(plant.a.row(row::homing_method, kHomeSwitch), kOk);
-    ASSERT_EQ(plant.a.command(kDisable), kOk);
-    plant.run(2s);
-    plant.restart_drive(off);
-    plant.run(6s);
-    if (plant.a.word(row::homing_method) == kHomeSwitch) continue;  // it holds it still
-    ASSERT_EQ(plant.a.command(0), kOk);
-    ASSERT_EQ(plant.a.command(kEnable), kOk);
-    EXPECT_EQ(plant.a.command(kHome).exception, kBadValue);
-    plant.run(1s);
-    EXPECT_TRUE(plant.stands());
-    EXPECT_EQ(plant.a.row(row::homing_method, kHomeSwitch), kOk);
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Every, ForgottenMethod, testing::ValuesIn(subjects(has_homing)), named);
 INSTANTIATE_TEST_SUITE_P(Every, Outage, testing::ValuesIn(kSubjects), named);
 INSTANTIATE_TEST_SUITE_P(Every, LostExchange,
                          testing::ValuesIn(subjects([](Subject s) { return !commands_by_pdo(s); })), named);
