@@ -116,7 +116,8 @@ void CableWatch::check_command(const CableFrame& frame) {
   if (outstanding()) violated_("an NMT command while a request was outstanding");
   const bool for_axis_1 = frame.bytes[1] == 0 || frame.bytes[1] == node_of_axis_1_;
   const bool stopped = plant_.stage.can_node(0).state() == simulated::NmtState::stopped;
-  if (for_axis_1 && !stopped && plant_.motor().enabled.value_or(false))
+  const bool anothers = plant_.stage.runtime().now() < anothers_until_;  // whose enable a bring-up has not seen yet
+  if (for_axis_1 && !stopped && !anothers && plant_.motor().enabled.value_or(false))
     violated_("an NMT command to a node with an enabled motor");
 }
 

@@ -37,6 +37,8 @@ class CableWatch {
   /// The answer to the next start or enable is lost, whenever that comes within `time`.
   void lie_in_wait(Duration time) { in_wait_until_ = plant_.stage.runtime().now() + time; }
   [[nodiscard]] bool lies_in_wait() { return plant_.stage.runtime().now() < in_wait_until_; }
+  /// Another master may have enabled the motor in the middle of a bring-up.
+  void commanded_by_another() { anothers_until_ = plant_.stage.runtime().now() + std::chrono::seconds(2); }
   /// After each step of the run.
   void look();
 
@@ -83,6 +85,7 @@ class CableWatch {
   std::array<bool, kNodes> enabled_{};
   std::vector<Credit> credits_;
   Instant in_wait_until_ = axisgate::kLongAgo;
+  Instant anothers_until_ = axisgate::kLongAgo;
   std::deque<Kept> kept_;
   Traffic traffic_;
 };

@@ -293,6 +293,9 @@ void Play::act(const Step& step) {
     case Deed::button:
       hold_button(step);
       break;
+    case Deed::other_master:
+      be_commanded_by_another(step);
+      break;
     default:
       if (step.deed >= Deed::cut)
         outage(step);

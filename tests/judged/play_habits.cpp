@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the programs that are out there do again and again, each in several requests.
+#include "tests/judged/foreign_frames.hpp"
 #include "tests/judged/playing.hpp"
 
 namespace axisgate::test::judged {
@@ -165,6 +166,7 @@ void Play::press_out_of_sight(const Step& step) {
   const bool jogs = step.id == kHeld && obey::has_speeds(program_.subject);
   if (jogs) {
     send(step.client, one_coil(button, false), false);
+    if (step.speed % 2 == 1) return jog_unanswered(step, button);
     send(step.client, one_coil(button, true), step.at_once);
   } else if (step.id >= kStarted) {
     Step start = press(step, Deed::order);
@@ -184,6 +186,39 @@ void Play::press_out_of_sight(const Step& step) {
     send(step.client, writers_->write_of(let_go), step.on);
   pass(std::min(kLengths.at(step.length), kLongestHabitMs));
   mend();
+}
+
+// The drive jogs, and its acknowledgement is lost: the button that is let go ends what may be a jog.
+void Play::jog_unanswered(const Step& step, std::uint16_t button) {
+  constexpr std::int64_t kQuietMs = 3000;
+  if (!plant_.stage.gateway_runs() || !wire_whole_) return;
+  begin_trouble();
+  watches_->cable.lie_in_wait(std::chrono::milliseconds(kLongestHabitMs));
+  send(step.client, one_coil(button, true), false);
+  pass(kPauses.at(step.length % kPauses.size()));
+  send(step.client, one_coil(button, false), step.on);
+  pass(kQuietMs);
+}
+
+// What it makes of the motor is its own affair; stops, leases and buttons act all the same.
+void Play::be_commanded_by_another(const Step& step) {
+  constexpr std::array<std::int64_t, 4> kOwnMs{20, 200, 1000, 3000};
+  const std::vector<ForeignFrame> frames = foreign_frames(program_.subject, step);
+  if (frames.empty() || !plant_.stage.gateway_runs() || !wire_whole_ || over()) return;
+  begin_trouble();
+  watches_->line_is_troubled(true);
+  outcome_.story.push_back(stamp() + ": another master: " + text(frames));
+  for (const ForeignFrame& frame : frames) {
+    contract_->commanded_by_another();
+    plant_.other_master_sends(frame.id, frame.bytes);
+    pass(kStepMs);
+  }
+  contract_->commanded_by_another();
+  watches_->cable.commanded_by_another();
+  pass(kOwnMs.at(step.position % kOwnMs.size()));
+  if (step.on)
+    send(step.client, writers_->write_of({.deed = Deed::command, .client = step.client, .command = kStops}),
+         step.at_once);
 }
 
 // Design 4: a DDS master begins something and stays, or falls silent, or is gone; mostly another writer comes then.

@@ -7,7 +7,6 @@
 
 #include "tests/judged/beginning.hpp"
 #include "tests/judged/playing.hpp"
-#include "tests/judged/shown.hpp"
 
 namespace axisgate::test::judged {
 
@@ -84,6 +83,8 @@ void Play::collect() {
       if (!contract_->answered(open.request, *answer)) {
         line += "  <-- NO READING HAS THIS ANSWER";
         violated("no reading has this answer; expected: " + contract_->expected());
+      } else if (const auto wrong = wrong_beside(open)) {
+        violated(std::string("to ") + kNames.at(open.client) + " by function 23 " + *wrong);
       } else {
         line += "\n      then, " + std::to_string(contract_->worlds().size()) + " readings: " + contract_->expected();
       }
@@ -99,9 +100,17 @@ void Play::collect() {
     if (!over() && std::ranges::none_of(open_, [&](const Open& open) { return open.client == client; })) read(client);
 }
 
+// What the read of a function 23 shows is of after its write.
+std::optional<std::string> Play::wrong_beside(const Open& open) {
+  if (open.read.size() != obey::shown::count || open.posted) return {};
+  return wrong_in(shown_by(open.read), open.client, *contract_, seen_);
+}
+
 // 3.3, "posted": "answered after the checks, the outcome in 25, 26, 30". Empty: nobody can tell.
 std::optional<std::set<int>> Play::answer_to(Open& open) {
   if (!open.checked) {
+    if (!is_dds(open.client))
+      if (const auto answer = clients_.modbus(open.client).answer_of(open.number)) open.read = answer->words;
     const std::optional<std::set<int>> answer = clients_.answer_of(open.client, open.number);
     if (!open.posted || !answer || !answer->contains(0)) return answer;
     open.checked = true;
@@ -171,12 +180,19 @@ void Play::beat_in_vain(std::size_t writer, bool too_old) {
   if (!over() && clients_.connected(kModbus + writer)) clients_.dds().beat_in_vain(writer, too_old);
 }
 
+Shown Play::shown_by(std::vector<std::uint16_t> words) const {
+  return {.words = std::move(words),
+          .low_word_first = plant_.listener.low_word_first,
+          .float_numbers = plant_.listener.float_numbers,
+          .statusword_tells = obey::is_cia402(program_.subject)};
+}
+
 // 3.2: what is shown as valid was true at its age.
 void Play::read(std::size_t client) {
   if (!clients_.connected(client)) return;
   look();
   contract_->asked(client);
-  const Answer answer = clients_.modbus(client).answer_to_read(0, Shown::kRegisters);
+  const Answer answer = clients_.modbus(client).answer_to_read(0, obey::shown::count);
   if (!answer.ok()) {
     // 3.2: listener option "offline_reads": "exception" answers 0x0B instead.
     constexpr int kNoAnswer = 11;
@@ -184,10 +200,7 @@ void Play::read(std::size_t client) {
     if (!fits || answer.exception != kNoAnswer) violated("a read was answered with " + testing::PrintToString(answer));
     return;
   }
-  Shown shown{.words = answer.words,
-              .low_word_first = plant_.listener.low_word_first,
-              .float_numbers = plant_.listener.float_numbers,
-              .statusword_tells = obey::is_cia402(program_.subject)};
+  const Shown shown = shown_by(answer.words);
   look();
   const bool open = std::ranges::any_of(open_, [client](const Open& each) { return each.client == client; });
   if (told_.at(client) && !open && !result_fits(*told_.at(client), shown.words[obey::shown::result]))

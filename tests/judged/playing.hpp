@@ -15,6 +15,7 @@
 #include "tests/judged/history.hpp"
 #include "tests/judged/plague.hpp"
 #include "tests/judged/play.hpp"
+#include "tests/judged/shown.hpp"
 #include "tests/judged/watches.hpp"
 #include "tests/judged/writers.hpp"
 
@@ -53,6 +54,7 @@ class Play {
     bool pending = false;    ///< register 25 has said so
     bool under_way = false;  ///< perhaps: register 25 may have told of an older one
     std::optional<obey::RequestNumber> asked_for_result{};
+    std::vector<std::uint16_t> read{};  ///< registers 0 to 38, by the same request (function 23)
   };
 
   [[nodiscard]] std::int64_t now_ms() { return elapsed_ms(began_, plant_.stage.runtime().now()); }
@@ -65,6 +67,7 @@ class Play {
   void look();
   void collect();
   void never_answered(const Open& open);
+  [[nodiscard]] std::optional<std::string> wrong_beside(const Open& open);
   std::optional<std::set<int>> answer_to(Open& open);
   void lose_sight_of_posted(std::size_t client);
   void write_halves(const Step& step);
@@ -78,6 +81,8 @@ class Play {
   void take_away(const Step& step);
   void insist(const Step& step);
   void press_out_of_sight(const Step& step);
+  void be_commanded_by_another(const Step& step);
+  void jog_unanswered(const Step& step, std::uint16_t button);
   void follow_each_other(const Step& step);
   void jog_by_dds(const Step& step);
   void say_once_more(const Step& step);
@@ -92,6 +97,7 @@ class Play {
   void mend();
   void replace(std::size_t client, bool silently);
   void read(std::size_t client);
+  [[nodiscard]] Shown shown_by(std::vector<std::uint16_t> words) const;
   void violated(std::string what);
   [[nodiscard]] bool over() const { return outcome_.violation.has_value(); }
   [[nodiscard]] std::string stamp();

@@ -33,7 +33,8 @@ rc::Gen<Deed> deed(Weather weather) {
                                                      {1, Deed::twice},
                                                      {1, Deed::restart},
                                                      {1, Deed::trip},
-                                                     {2, Deed::crash}});
+                                                     {2, Deed::crash},
+                                                     {3, Deed::other_master}});
   return rc::gen::weightedOneOf<Deed>({{8, rc::gen::weightedElement<Deed>(calm)}, {1, rough}});
 }
 
@@ -51,13 +52,13 @@ rc::Gen<Step> step(Weather weather) {
       rc::gen::set(&Step::pause, below(kPauses.size())));
 }
 
-constexpr std::array<const char*, 44> kDeeds{
+constexpr std::array<const char*, 45> kDeeds{
     "wait",       "command",    "command by id", "order",     "image",       "zeros",   "target",   "parameter",
     "mode block", "word block", "word",          "coil",      "start coils", "cross",   "again",    "scan",
     "button",     "tool",       "monitor",       "insist",    "rival",       "read",    "object",   "look up",
     "halves",     "bystander",  "sample",        "once more", "new writer",  "masters", "DDS dies", "DDS jog",
     "release",    "reconnect",  "vanish",        "lost",      "cut",         "unplug",  "lose",     "late",
-    "twice",      "restart",    "trip",          "crash"};
+    "twice",      "restart",    "trip",          "crash",     "other master"};
 
 }  // namespace
 

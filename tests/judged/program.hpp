@@ -65,6 +65,7 @@ enum class Deed : std::uint8_t {
   restart,        ///< the drive's power
   trip,           ///< the drive has a fault
   crash,          ///< the gateway dies and is started again
+  other_master,   ///< on the CAN bus somebody else commands the drive, or begins its communication anew
 };
 
 struct Step {

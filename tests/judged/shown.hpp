@@ -15,7 +15,6 @@ namespace axisgate::test::judged {
 
 /// Registers 0 to 38 as one client has read them.
 struct Shown {
-  static constexpr std::uint16_t kRegisters = 39;
   std::vector<std::uint16_t> words{};
   bool low_word_first = false;
   bool float_numbers = false;

@@ -6,6 +6,7 @@ namespace axisgate::test::judged {
 using namespace model;
 
 namespace {
+constexpr std::int64_t kEnabledWord = 15;
 constexpr std::int64_t kMoveNow = 63;                   // start, and change at once
 constexpr std::uint8_t kHomeCoil = 23, kReleases = 22;  // of Step::number
 /// Of Step::number as well: the flaws of a sample, from the first one on.
@@ -80,6 +81,9 @@ Write Writers::registers(const Step& step) {
       break;
     default:
       rows[row::controlword] = next_word(step, writer);
+      // A word that would undo the stop beside it (3.3: one request has a fixed order).
+      if (is_stop(rows[row::command]) && step.length % 2 == 1 && flavour_ != Flavour::both)
+        rows[row::controlword] = writer.word = flavour_ == Flavour::moves && step.on ? kMoveNow : kEnabledWord;
   }
   return block(first, last, {rows.lower_bound(first), rows.upper_bound(last)}, function);
 }

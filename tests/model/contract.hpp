@@ -246,6 +246,8 @@ class Contract {
   void trouble_begins();
   void trouble_ends();
   void drive_restarted();
+  /// By another master: from here on its motor may do anything until a stop, a lease or a button ends it.
+  void commanded_by_another();
   void drive_tripped();
   void gateway_died();
   void gateway_started();
@@ -310,6 +312,8 @@ class Contract {
   int way_ = 0;  ///< 1, -1: it has been turning this way, and was judged; 0: it stands
   int requests_ = 0;
   bool trouble_ = false;
+  std::int64_t anothers_until_ms_ = kLongAgo;  ///< so long the motor may be enabled by another master
+  bool was_anothers_ = false;                  ///< since the trouble began
   bool gateway_is_new_ = false;
   std::int64_t unanswered_ms_ = kLongAgo;  ///< the last request that will never be answered
   bool lost_count_ = false;

@@ -33,8 +33,6 @@ class Readings {
 
 /// So long an enable or a stop is on its way that nobody has seen yet.
 inline constexpr std::int64_t kUnderWayMs = 1000;
-/// 3.4 Stops: "Asserted stops are commands 2, 3, 4 and coils 2, 3 = 1, nothing else."
-[[nodiscard]] constexpr bool is_stop(std::int64_t command) { return command >= 2 && command <= 4; }
 /// 3.4: stops act "without taking the lease", release "gives the lease back": whether set-points beside one take it is
 /// not said.
 [[nodiscard]] constexpr bool takes_no_lease(std::int64_t command) { return is_stop(command) || command == kRelease; }

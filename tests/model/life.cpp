@@ -223,13 +223,15 @@ void Contract::trouble_ends() {
       more.back().ladder = 0;
     }
     if (!options_.leases || !world.enabled || world.owner) continue;
+    // One that another master has enabled was not found so.
+    if (was_anothers_) more.push_back(world);
     world.found = true;  // 3.5 Signs of life: "an adopted axis [is taken over] by any write but an all-zero block"
     if (gateway_is_new_ || world.lease_ends_ms == kNever) world.lease_until(sight_.now_ms + options_.lease_ms);
     world.lease_unsure = true;
     more.push_back(world);
     expire(more.back());
   }
-  gateway_is_new_ = false;
+  gateway_is_new_ = was_anothers_ = false;
   worlds_.insert(worlds_.end(), more.begin(), more.end());
   keep_different();
 }
@@ -244,6 +246,20 @@ void Contract::drive_restarted() {
     world.other_mode = true;  // which one it begins with is its own affair
     changed(world, before);
   }
+}
+
+// What another master commands the contract does not say; that stops, leases and buttons act, it does.
+void Contract::commanded_by_another() {
+  constexpr std::int64_t kObeysMs = 40;
+  for (World& world : worlds_) {
+    const World before = world;
+    world.motor = Motor::unknown;
+    world.broken = world.other_mode = true;
+    world.ladder = 0;
+    changed(world, before);
+  }
+  was_anothers_ = true;
+  anothers_until_ms_ = sight_.now_ms + kObeysMs;
 }
 
 void Contract::drive_tripped() {

@@ -49,6 +49,10 @@ bool Contract::settled() const {
 // P: "No drive is ever enabled but by an explicit command" (section 7, point 7).
 bool Contract::enabling_fits(World& world, const Sight& sight) const {
   if (!sight.enabled || !was_enabled_) return true;
+  if (sight.now_ms <= anothers_until_ms_) {
+    world.enabled = *sight.enabled;
+    return true;
+  }
   if (*sight.enabled && !*was_enabled_)
     return world.enabled || sight.now_ms - world.enable_asked_ms <= kEnableMs || !world.pending.empty();
   if (!*sight.enabled && *was_enabled_ && world.enabled && !world.latched) {
@@ -62,6 +66,10 @@ bool Contract::enabling_fits(World& world, const Sight& sight) const {
     world.ladder = 0;
     changed(world, before);
   }
+  // "Done" (3.4, command 1) was not said of what is not.
+  if (!*sight.enabled && world.enabled && !world.latched && !world.broken && !world.faulted && settled(world) &&
+      sight.now_ms > world.taken_back_by_ms)
+    return false;
   // Disabled long ago, by a command: torque is off.
   if (*sight.enabled && !world.enabled && !world.latched && !world.broken && settled(world)) return false;
   return true;

@@ -26,7 +26,9 @@ inline constexpr std::uint16_t controlword = 40, mode = 41, target_position = 42
 inline constexpr std::int64_t kEnable = 1, kDisable = 2, kQuickStop = 3, kHalt = 4, kMove = 6, kRelative = 7, kRun = 8,
                               kTorque = 9, kHome = 10, kSetPosition = 11, kSave = 12, kRelease = 13, kTakeOver = 14,
                               kJogForward = 31, kJogReverse = 32, kJogEnd = 33;  // the last three by DDS alone
-inline constexpr std::int64_t kPositionMode = 1, kVelocityMode = 3;              ///< of row 41
+/// 3.4 Stops: "Asserted stops are commands 2, 3, 4 and coils 2, 3 = 1, nothing else."
+[[nodiscard]] constexpr bool is_stop(std::int64_t command) { return command >= kDisable && command <= kHalt; }
+inline constexpr std::int64_t kPositionMode = 1, kVelocityMode = 3;  ///< of row 41
 /// Of positions, in 1/10000 turn: a count of the coarsest encoder, and rounding.
 inline constexpr std::int64_t kClose = 8;
 

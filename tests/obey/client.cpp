@@ -47,8 +47,8 @@ std::vector<std::uint8_t> pdu_of(const Write& write, std::uint16_t base) {
   const std::uint32_t address = std::uint32_t{base} + write.first;
   const auto count = static_cast<std::uint32_t>(write.words.size());
   if (write.function == fc::read_write) {
-    add16(pdu, address);
-    add16(pdu, 1);
+    add16(pdu, base);
+    add16(pdu, shown::count);
   }
   add16(pdu, address);
   switch (write.function) {
@@ -223,7 +223,7 @@ void Client::Connection::take_answer(const std::vector<std::uint8_t>& adu) {
     answer.exception = adu.at(kMbap + 1);
   else if (adu[kMbap] != asked.function)
     throw std::runtime_error("an answer with another function code");
-  else if (asked.function == 3)
+  else if (asked.function == 3 || asked.function == fc::read_write)
     for (std::size_t i = kMbap + 2; i + 1 < adu.size(); i += 2) answer.words.push_back(load_be16(adu, i));
   else if (asked.function == kReference)
     answer.words.assign(adu.begin() + kMbap + kReferenceHead, adu.end());

@@ -31,7 +31,7 @@ inline constexpr std::uint8_t kOk = 0, kNoSuchRow = 2, kBadValue = 3, kFailed = 
 namespace shown {
 inline constexpr std::uint16_t statusword = 0, position = 2, supported = 20, result = 25, detail = 26, owner = 28,
                                lease_remaining = 29, id_seen = 30, axis_state = 31, motion_state = 32, motion_id = 33,
-                               supported_commands = 36, supported_modes = 38;
+                               supported_commands = 36, supported_modes = 38, count = 39;
 }  // namespace shown
 inline constexpr std::int64_t kNotOwner = 7, kNotNew = 10, kNobody = 0, kMe = 1, kAnother = 2;
 inline constexpr std::int64_t kStandstill = 1, kStopLatched = 5;  ///< axis_state

@@ -23,14 +23,7 @@ class ForeignMaster : public testing::TestWithParam<Subject> {
     plant_.emplace(GetParam(), std::move(options));
     plant_->ready();
   }
-  void sends(std::uint32_t id, const std::vector<std::uint8_t>& bytes) {
-    auto& link = plant_->stage.can_link(0);
-    simulated::BusFrame frame;
-    frame.id = id;
-    frame.size = static_cast<std::uint8_t>(bytes.size());
-    std::copy(bytes.begin(), bytes.end(), frame.data.begin());
-    link.line().from_host(frame, link.time_of(plant_->stage.runtime().now()));
-  }
+  void sends(std::uint32_t id, const std::vector<std::uint8_t>& bytes) { plant_->other_master_sends(id, bytes); }
   /// 4 bytes, expedited (CiA 301 7.2.4.3.3).
   void writes(std::uint16_t index, std::uint32_t value) {
     const auto byte = [](std::uint32_t from, int at) { return static_cast<std::uint8_t>(from >> (8 * at)); };

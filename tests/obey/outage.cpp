@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a plant can suffer, the same for every drive and protocol.
+#include <algorithm>
 #include <type_traits>
 
 #include "tests/obey/plant.hpp"
@@ -19,6 +20,15 @@ DriveFault fault_of(Strike how) {
 }
 
 }  // namespace
+
+void Plant::other_master_sends(std::uint32_t id, const std::vector<std::uint8_t>& bytes) {
+  auto& link = stage.can_link(0);
+  simulated::BusFrame frame;
+  frame.id = id;
+  frame.size = static_cast<std::uint8_t>(bytes.size());
+  std::copy(bytes.begin(), bytes.end(), frame.data.begin());
+  link.line().from_host(frame, link.time_of(stage.runtime().now()));
+}
 
 void Plant::unplug(bool bus_off) {
   stage.at_link(0, [bus_off](auto& link) {

@@ -94,6 +94,8 @@ class Plant {
   void restart_drive(Duration off = {});
   /// A fault whose cause is gone already.
   void trip_drive();
+  /// A frame of another master on the CAN bus, with a standard identifier and at most 8 bytes.
+  void other_master_sends(std::uint32_t id, const std::vector<std::uint8_t>& bytes);
   /// The gateway's process dies: nothing more is sent, all connections are gone. Cables, drives and motor live on.
   void crash_gateway();
   /// It will die while it sends: so many bytes from now on, on CAN frames, still leave it. crash_gateway() buries it.
