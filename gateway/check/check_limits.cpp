@@ -49,6 +49,13 @@ void warn_about(const AxisConfig& config, const drive::AxisModel& axis, const dr
          fmt::format("does not reach homing: of {} no homing speed is known that could be written; set a safe one in "
                      "the drive itself",
                      drive.title));
+  const bool moves_at_its_own = axis.supports(Command::move_absolute) && axis.takes(Quantity::target_velocity) &&
+                                !axis.takes(Quantity::profile_velocity);
+  if (config.limits.velocity && moves_at_its_own)
+    warn(drive::limit_key(Quantity::profile_velocity),
+         fmt::format("does not reach moves: of {} no profile_velocity is known that could be written; set a safe one "
+                     "in the drive itself",
+                     drive.title));
 }
 
 }  // namespace

@@ -37,14 +37,27 @@ std::optional<std::int64_t> Binding::to_register(std::int64_t raw) const {
   return value;
 }
 
+std::optional<std::int64_t> Binding::to_register_or_bound(std::int64_t raw) const {
+  if (!codes.empty() || !scaled) return to_register(raw);
+  const Range held = range_of(row(quantity).type);
+  const bool negative = (raw < 0) != (raw_per_unit.numerator() < 0);
+  return std::clamp(raw_per_unit.inverse().scale(raw).value_or(negative ? held.min : held.max), held.min, held.max);
+}
+
 std::optional<std::int64_t> Binding::to_raw(std::int64_t value, const ObjectDef& object_def) const {
   if (!codes.empty()) {
     const auto code = std::find_if(codes.begin(), codes.end(), [&](const auto& c) { return c.first == value; });
     return code == codes.end() ? std::nullopt : std::optional(code->second);
   }
   if (!scaled) return std::nullopt;
-  const std::optional<std::int64_t> raw = raw_per_unit.scale(value);
-  if (!raw || !object_def.range().holds(*raw)) return std::nullopt;
+  std::optional<std::int64_t> raw = raw_per_unit.scale(value);
+  if (!raw) return std::nullopt;
+  // Where no number of the drive meets the limit: the last one before it.
+  const std::int64_t told = to_register_or_bound(*raw).value_or(value);
+  const std::int64_t up = raw_per_unit.numerator() > 0 ? 1 : -1;
+  if (limits.holds(value) && told > limits.max) *raw -= up;
+  if (limits.holds(value) && told < limits.min) *raw += up;
+  if (!object_def.range().holds(*raw)) return std::nullopt;
   return raw;
 }
 
@@ -161,6 +174,17 @@ bool DriveModel::needs(ObjectId object) const {
            const Binding* position = axis.binding(Quantity::position_actual);
            return position != nullptr && position->object == object;
          });
+}
+
+bool DriveModel::moves_by(ObjectId object) const {
+  const auto counts = [object](const Binding& binding) {
+    const Kind kind = row(binding.quantity).kind;
+    const bool of_motion = kind == Kind::position || kind == Kind::velocity || kind == Kind::acceleration;
+    return binding.object == object && of_motion;
+  };
+  return std::any_of(axes.begin(), axes.end(), [&](const AxisModel& axis) {
+    return std::any_of(axis.bindings.begin(), axis.bindings.end(), counts);
+  });
 }
 
 ObjectId DriveModel::find(bus::ObjectAddress address) const {

@@ -104,6 +104,27 @@ TEST_P(Stops, OfAClientThatHasWrittenNothingBefore) {
   }
 }
 
+// 3.4: a controlword that takes the torque; what a scanner's block has carried all the time is no reason to ignore it.
+TEST_P(Stops, ByASingleWordAlsoWhereABlockOfTheSameClientCarriesIt) {
+  ASSERT_EQ(a_.command(0), kOk);
+  ASSERT_EQ(a_.command(kEnable), kOk);
+  Rows rows = plant_.endless_target();
+  rows.merge(plant_.profile_rows());
+  rows[row::command] = plant_.endless_command();
+  rows[row::command_id] = 7;
+  ASSERT_EQ(a_.command(0, 6), kOk);
+  const Write scanned = block(row::controlword, row::heartbeat, rows);
+  ASSERT_EQ(a_.write(scanned), kOk);
+  ASSERT_TRUE(plant_.turns_within(1s));
+  for (int i = 0; i < 10; ++i) {
+    plant_.run(50ms);
+    ASSERT_EQ(a_.write(scanned), kOk);
+  }
+  EXPECT_EQ(a_.row(row::controlword, 0), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand());
+  EXPECT_FALSE(plant_.motor().enabled.value_or(false));
+}
+
 TEST_P(Stops, AlwaysInASingleWrite) {
   const std::vector<Write> ways{one(row::command, kQuickStop), one(row::command, kQuickStop, fc::mask_write),
                                 one_coil(coil::quick_stop, true), one_coil(coil::quick_stop, true, fc::write_coils),

@@ -116,6 +116,17 @@ TEST_F(Layers, ABaseThatIsNoDriveIsOnlyExtended) {
   EXPECT_FALSE(loaded.base_only);
 }
 
+// 3.4: "Where a drive has no halt, the profile names the replacement, else quick_stop": buttons end a jog by it.
+TEST_F(Layers, WithoutAHaltQuickStopTakesItsPlace) {
+  json own = minimal();
+  own["commands"].erase("halt");
+  const DriveModel model = resolved(load_profile(write("minimal.json", own)), one_axis());
+  ASSERT_EQ(model.axes.size(), 1U);
+  EXPECT_NE(model.axes[0].supported_commands & 1U << static_cast<unsigned>(Command::halt), 0U);
+  ASSERT_TRUE(model.axes[0].command(Command::halt));
+  EXPECT_TRUE(model.axes[0].command(Command::halt)->quick_stop_otherwise);
+}
+
 TEST_F(Layers, AChangeOfTheBaseIsAChangeOfTheProfile) {
   write("minimal.json", minimal());
   const std::string file = derive("mine.json", "minimal");

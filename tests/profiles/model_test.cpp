@@ -49,6 +49,31 @@ TEST(Binding, RoundsHalfAwayFromZeroOnceAtTheEnd) {
   EXPECT_EQ(two.to_register(-3), -2);
 }
 
+// A limit of 900 was 1200 for a drive that counts in 600.
+TEST(Binding, RoundsNothingFromWithinTheLimitsToBeyondThem) {
+  Binding speed = scaled(Quantity::profile_velocity, Rational(1, 600));
+  speed.limits = {0, 900};
+  EXPECT_EQ(speed.to_raw(900, object(2, true)), 1);
+  EXPECT_EQ(speed.to_raw(300, object(2, true)), 1);
+  EXPECT_EQ(speed.to_raw(299, object(2, true)), 0);
+  Binding position = scaled(Quantity::target_position, Rational(-1, 1'000));
+  position.limits = {-1'500, 1'500};
+  EXPECT_EQ(position.to_raw(1'500, object(4, true)), -1);
+  EXPECT_EQ(position.to_raw(-1'500, object(4, true)), 1);
+  position.limits = {1'400, 9'000};
+  EXPECT_EQ(position.to_raw(1'400, object(4, true)), -2);
+  EXPECT_EQ(position.to_raw(9'400, object(4, true)), -9) << "beyond them it is refused elsewhere";
+}
+
+TEST(Binding, GivesTheBoundOfARegisterThatCannotShowIt) {
+  const Binding position = scaled(Quantity::position_actual, Rational(-1, 1'000));
+  EXPECT_EQ(position.to_register_or_bound(-3'000'000), 2'147'483'647);
+  EXPECT_EQ(position.to_register_or_bound(3'000'000), -2'147'483'647);
+  EXPECT_EQ(position.to_register_or_bound(3), -3'000);
+  const Binding huge = scaled(Quantity::position_actual, Rational(1, INT64_MAX));
+  EXPECT_EQ(huge.to_register_or_bound(-2'147'483'647), -2'147'483'647);
+}
+
 TEST(Binding, GivesNoValueWhereARegisterCannotShowIt) {
   const Binding torque = scaled(Quantity::torque_actual, Rational(1, 100));
   EXPECT_EQ(torque.to_register(327), 32700);

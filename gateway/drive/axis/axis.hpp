@@ -173,6 +173,7 @@ class Axis {
   void observe_reference(const AxisFacts& facts);
   void observe_volatile();
   void observe_homing_method();
+  void observe_end_of_fault(const AxisFacts& facts);
   /// A serial drive has restarted between two polls, as that sign tells: what was cached of it is not true any more.
   void on_unseen_restart(const char* sign);
   void stop_by_itself(Command command, bool latches, BatchCallback on_result);
@@ -237,6 +238,7 @@ class Axis {
   std::vector<Due> due_;
   bool reference_invalidated_ = false;
   bool holds_method_ = false;  ///< its drive was seen to hold the homing_method that a client has written
+  bool faulted_ = false;       ///< as seen last
   bool forgotten_ = false;     ///< its drive holds other speeds than it was told, and a start will tell it anew
   struct {
     std::optional<ClientId> client{};

@@ -44,8 +44,12 @@ Duration Axis::usual_position_gap() const {
 
 std::optional<JogTravel> Axis::jog_travel(std::int64_t velocity) const {
   const Binding* target = core_.model.binding(Quantity::target_position);
-  const auto position = core_.value(Quantity::position_actual);
-  if (!core_.homed || target == nullptr || !position) return std::nullopt;
+  const Binding* actual = core_.model.binding(Quantity::position_actual);
+  if (!core_.homed || target == nullptr || actual == nullptr || actual->object == kNoObject) return std::nullopt;
+  // What its register cannot show lies beyond the limits all the same.
+  const ObjectState& state = core_.store[actual->object];
+  const auto position = state.known ? actual->to_register_or_bound(state.number) : std::nullopt;
+  if (!position) return std::nullopt;
   JogTravel travel;
   travel.position = *position;
   travel.velocity = velocity;

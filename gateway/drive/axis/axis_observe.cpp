@@ -10,7 +10,13 @@ namespace axisgate::drive {
 
 void Axis::on_samples() { core_.refresh_virtual(); }
 
-void Axis::on_scale() { shown_.show_model(); }
+// What was accepted stays what it is in register units; the drive's numbers for it are others now.
+void Axis::on_scale() {
+  shown_.show_model();
+  core_.motion.scale_changed();
+  for (auto& [object, told] : core_.told)
+    if (const auto raw = core_.model.binding(told.quantity)->to_raw(told.value, core_.object(object))) told.raw = *raw;
+}
 
 void Axis::observe() {
   const AxisFacts facts = core_.facts();
@@ -19,6 +25,7 @@ void Axis::observe() {
   observe_reference(facts);
   observe_volatile();
   observe_homing_method();
+  observe_end_of_fault(facts);
   bool clamped = false;
   for (const Binding& binding : core_.model.bindings)
     if (binding.object != kNoObject && binding.object != core_.model.controlword)
@@ -54,7 +61,7 @@ void Axis::observe_volatile() {
   const bool forgotten = std::ranges::any_of(core_.told, [this](const auto& told) {
     const ObjectState& state = core_.store[told.first];
     const bool read = state.known && !state.unverified && !state.unsure && !state.clamped;
-    return read && core_.object(told.first).nvm == Nvm::no && state.number != told.second;
+    return read && core_.object(told.first).nvm == Nvm::no && state.number != told.second.raw;
   });
   if (std::exchange(forgotten_, forgotten) || !forgotten) return;
   const bool may_run = holds_motor(core_.facts().state);
@@ -80,6 +87,15 @@ void Axis::observe_homing_method() {
   core_.homing_method.reset();
   host_.event(image_.number, EventKind::warning, 0,
               "the drive does not hold the homing_method that was written: write it again before a homing");
+}
+
+// 3.4: a fault ends every motion for good, and a fault_reset never enables. A drive with a state machine of its own may
+// go on by itself as soon as its cause is gone.
+void Axis::observe_end_of_fault(const AxisFacts& facts) {
+  if (!core_.is_virtual() || !core_.reachable()) return;
+  if (!std::exchange(faulted_, facts.faulted()) || !facts.enabled() || enable_is_asked()) return;
+  host_.event(image_.number, EventKind::warning, 0, "enabled by the drive itself when its fault was over: disabled");
+  owed_.accepted(StopKind::disable, core_.store.exchange());
 }
 
 void Axis::on_unseen_restart(const char* sign) {

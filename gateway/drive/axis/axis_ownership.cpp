@@ -266,7 +266,9 @@ std::optional<BatchResult> Axis::take_over(const WriteBatch& batch, BatchCallbac
 
 bool Axis::writes_wait() const {
   return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
-    return !p.command_sequence->is_stop() && !reads_alone(p.command_sequence->batch());
+    const WriteBatch& batch = p.command_sequence->batch();
+    const bool only_clears = batch.command == Command::fault_reset && !batch.controlword;  // which enables nothing
+    return !p.command_sequence->is_stop() && !reads_alone(batch) && !only_clears;
   });
 }
 

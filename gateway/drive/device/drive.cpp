@@ -255,6 +255,7 @@ void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResul
   const DriveReads::Taken taken = reads_.take(exchange, result, on_wire_.read, turn_.now);
   for (const std::string& object : taken.unlike)
     event(axes_.front()->core().model.number, EventKind::warning, 0, object);
+  if (!taken.unlike.empty() && turn_.link != LinkState::setup) judge_profile();
   if (taken.scales)
     for (auto& axis : axes_) axis->on_scale();
   if (taken.samples)

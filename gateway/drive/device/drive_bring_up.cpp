@@ -100,7 +100,8 @@ void Drive::judge_profile() {
   std::string lacks;
   for (std::size_t i = 0; i < model_.objects.size(); ++i) {
     const auto id = static_cast<ObjectId>(i);
-    if (store_[id].refused && model_.needs(id)) lacks += (lacks.empty() ? "" : ", ") + lacking(id);
+    const bool another = store_[id].unlike && model_.moves_by(id);
+    if (another || (store_[id].refused && model_.needs(id))) lacks += (lacks.empty() ? "" : ", ") + lacking(id);
   }
   tell_mismatch(lacks);
 }

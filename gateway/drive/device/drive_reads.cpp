@@ -189,7 +189,7 @@ void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField
   } else if (asked.resync || asked_width(exchange, field.object) != object.size) {
     return;  // the mailbox asks in its client's width: what comes proves nothing of the profile
   } else if (!store_[id].refused) {
-    store_.refused(id);
+    store_.unlike(id);
     if (!model_.needs_for_state(id)) plan_.drop(id);
     taken.unlike.push_back(object.name + ": the drive answers " + std::to_string(field.size) +
                            " bytes, the profile says " + std::to_string(object.size) + ": not used");

@@ -17,6 +17,8 @@ constexpr std::uint32_t kInvalid = 0x80000000;  // bit 31: the PDO does not exis
 constexpr std::uint32_t kIdBits = 0x1FFFFFFF;
 constexpr std::array<std::uint32_t, 4> kPredefined{0x180, 0x280, 0x380, 0x480};
 
+constexpr const char* kOtherMapping = "does not read back as it was mapped";
+
 std::uint32_t predefined_cob_id(std::uint8_t number, std::uint8_t node) { return kPredefined.at(number - 1U) + node; }
 
 std::uint32_t raw_of(const bus::ExchangeResult& result) { return result.fields.empty() ? 0 : result.fields[0].raw; }
@@ -120,6 +122,8 @@ std::optional<bus::Exchange> NodeSetup::next() const {
       return parameter(write, kCobId, 4, cob_id_);
     case Step::read_count:
       return mapping(read, 0, 1);
+    case Step::read_entry:
+      return mapping(read, static_cast<std::uint8_t>(entry_at_ + 1), 4);
     case Step::start:
       return nmt(model_.node, NmtCommand::start);
     case Step::over:
@@ -231,9 +235,13 @@ void NodeSetup::on_result(const bus::ExchangeResult& result) {
       step_ = Step::read_count;
       return;
     case Step::read_count:
-      if (refused(result) || raw_of(result) != taken_.objects.size())
-        return give_up("does not read back as it was mapped");
-      step_ = Step::read_enabled;
+      if (refused(result) || raw_of(result) != taken_.objects.size()) return give_up(kOtherMapping);
+      entry_at_ = 0;
+      step_ = Step::read_entry;
+      return;
+    case Step::read_entry:
+      if (refused(result) || raw_of(result) != mapping_entry(taken_.objects[entry_at_])) return give_up(kOtherMapping);
+      if (++entry_at_ == taken_.objects.size()) step_ = Step::read_enabled;
       return;
     case Step::read_enabled:
       return check_enabled(result);

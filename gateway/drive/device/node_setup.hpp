@@ -75,6 +75,7 @@ class NodeSetup {
     event,
     enable,
     read_count,
+    read_entry,  ///< each one that was taken: a drive may acknowledge a mapping and keep its own
     read_enabled,
     start,
     over,

@@ -92,6 +92,11 @@ class Motion {
   void owner_changed();
   /// The mode was changed: what ran in the mode before is over.
   void mode_changed();
+  /// The drive counts otherwise from now on: what was asked for in its numbers is what the registers show of it.
+  void scale_changed() {
+    for (auto& wanted : wanted_)
+      if (wanted) wanted->exact.reset();
+  }
   /// How often velocity and torque were made void until now.
   [[nodiscard]] std::uint64_t ends() const { return ends_; }
   /// How often a fault, and the loss of the drive, were seen.

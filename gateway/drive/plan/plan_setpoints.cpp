@@ -218,7 +218,7 @@ void note_told(AxisCore& core, const Setpoint& sp) {
   const Binding* binding = core.model.binding(sp.quantity);
   if (!is_speed(sp.quantity) || binding == nullptr || binding->object == kNoObject) return;
   const auto raw = sp.exact ? sp.exact : binding->to_raw(sp.value, core.object(binding->object));
-  if (raw) core.told.insert_or_assign(binding->object, *raw);
+  if (raw) core.told.insert_or_assign(binding->object, AxisCore::Told{sp.quantity, sp.value, *raw});
 }
 
 }  // namespace
@@ -382,8 +382,8 @@ void add_speeds(const AxisCore& core, int mode, Plan& plan) {
     const auto told = core.told.find(binding->object);
     if (told != core.told.end() && !state.clamped) {
       // After a mode change it is taken to be as it was: what a start takes longer is a button's time.
-      if (!state.known || state.out_of_sight || state.number != told->second)
-        static_cast<void>(add_write(core, each, {0, told->second}, plan));
+      if (!state.known || state.out_of_sight || state.number != told->second.raw)
+        static_cast<void>(add_write(core, each, {told->second.value, told->second.raw}, plan));
       continue;
     }
     const auto held = core.value(each);

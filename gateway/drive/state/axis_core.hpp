@@ -46,9 +46,14 @@ struct AxisCore {
     std::uint64_t invalidations = 0;
   };
   std::optional<SentTo> sent_to{};
-  /// Speeds and ramps in the drive's numbers as a client has asked for them last. Every start goes by them (design 3.3,
-  /// set-points), also where the drive has restarted since and holds its own.
-  std::map<ObjectId, std::int64_t> told{};
+  /// A speed or ramp as a client has asked for it last. Every start goes by it (design 3.3, set-points), also where the
+  /// drive has restarted since and holds its own.
+  struct Told {
+    Quantity quantity{};
+    std::int64_t value = 0;  ///< in register units
+    std::int64_t raw = 0;    ///< in the drive's numbers
+  };
+  std::map<ObjectId, Told> told{};
   NvmBudget nvm{};
 
   /// link_state online or suspect.

@@ -87,6 +87,7 @@ LoadedProfile load_profile(const std::string& path, const std::vector<std::strin
   check_protocols(reading);
   check_keepalive(reading);
   check_unasked_writes(reading);
+  check_stops_start_nothing(reading);
   read_constant_rules(reading);
   check_state_places(reading);
   for (SchemaFault& fault : faults) {

@@ -19,6 +19,9 @@ bool may_move(Command command) {
   return !is_stop(command) && command != Command::fault_reset && command != Command::save_parameters;
 }
 
+/// Nor does set_position, although the axis holds torque in it.
+bool moves_nothing(Command command) { return !may_move(command) || command == Command::set_position; }
+
 template <class Check>
 void each_step(const CommandSpec& command, Check&& check) {
   for (const StepSpec& step : command.steps) check(step);
@@ -162,6 +165,39 @@ void check_turns_nothing(Reading& reading, const CommandSpec& command) {
         reading.fault(pointer_to(step.pointer, "value"),
                       "would turn the motor: " + std::string(row(target).name) + " must be 0 in this command");
   });
+}
+
+// Of a drive with a state machine of its own nothing else tells what a number does.
+void check_stops_start_nothing(Reading& reading) {
+  if (!reading.profile.state.is_virtual) return;
+  const std::vector<CommandSpec>& commands = reading.profile.commands;
+  const auto writes_it = [&](const CommandSpec& command, const std::string& object, std::int64_t number) {
+    bool found = false;
+    const auto is_it = [number](const ValueSpec& value) {
+      const auto* its = std::get_if<std::int64_t>(&value);
+      return its != nullptr && *its == number;
+    };
+    each_step(command, [&](const StepSpec& step) {
+      found = found || (step.verb == Step::Verb::write && share_an_object(reading, object, step.object) &&
+                        std::any_of(step.values.begin(), step.values.end(), is_it));
+    });
+    return found;
+  };
+  const auto check = [&](const StepSpec& step) {
+    if (step.verb != Step::Verb::write) return;
+    for (const ValueSpec& value : step.values) {
+      const auto* number = std::get_if<std::int64_t>(&value);
+      if (number == nullptr || *number == 0) continue;
+      const auto mover = std::find_if(commands.begin(), commands.end(), [&](const CommandSpec& command) {
+        return !moves_nothing(command.command) && writes_it(command, step.object, *number);
+      });
+      if (mover != commands.end())
+        reading.fault(pointer_to(step.pointer, "value"),
+                      "is what enables or moves the motor in " + mover->pointer + ": give the one that does not");
+    }
+  };
+  for (const CommandSpec& command : commands)
+    if (moves_nothing(command.command)) each_step(command, check);
 }
 
 void check_unasked_writes(Reading& reading) {

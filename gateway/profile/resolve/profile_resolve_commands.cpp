@@ -109,13 +109,15 @@ void resolve_commands(Resolving& r, bus::AxisSlot slot) {
   for (std::uint8_t number = 1; number <= kLastCommand; ++number) {
     const auto command = static_cast<Command>(number);
     const CommandSpec* spec = spec_for(r.profile, command, r.input.protocol);
-    if (spec == nullptr) continue;
-    if (spec->as_absolute) {
+    if (spec == nullptr && command != Command::halt) continue;
+    if (spec != nullptr && spec->as_absolute) {
       // Without steps of its own the planner carries it out as the absolute move it comes to.
       if (axis.command(Command::move_absolute)) axis.supported_commands |= 1U << number;
       continue;
     }
-    axis.commands[number] = command_from(r, *spec, slot);
+    if (spec != nullptr) axis.commands[number] = command_from(r, *spec, slot);
+    // "Where a drive has no halt, the profile names the replacement, else quick_stop" (design 3.4).
+    if (command == Command::halt && !axis.commands[number]) axis.commands[number].emplace().quick_stop_otherwise = true;
     if (axis.commands[number]) axis.supported_commands |= 1U << number;
   }
 }

@@ -142,6 +142,20 @@ TEST(Check, WarnsOfHomingThatNoLimitReaches) {
   EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach homing")));
 }
 
+TEST(Check, WarnsOfMovesThatNoLimitReaches) {
+  LoadedConfig loaded = one_axis();
+  drive::AxisModel& model = loaded.models[0][0].axes[0];
+  model.supported |= bit(Quantity::target_velocity) | bit(Quantity::profile_velocity);
+  model.writable |= bit(Quantity::target_velocity);
+  model.supported_commands |= 1U << static_cast<unsigned>(Command::move_absolute);
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach moves")));
+  loaded.config.buses[0].drives[0].axes[0].limits.velocity = 600'000;
+  EXPECT_THAT(check(loaded).text, HasSubstr("/limits/velocity: does not reach moves: of Kinco JD no profile_velocity "
+                                            "is known that could be written; set a safe one in the drive itself\n"));
+  model.writable |= bit(Quantity::profile_velocity);
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach moves")));
+}
+
 TEST(Check, RepeatsTheWarnings) {
   LoadedConfig loaded = one_axis();
   loaded.warnings.push_back("gateway.json: /modbus_tcp/0/listen: everybody may read");

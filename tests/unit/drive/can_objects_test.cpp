@@ -57,6 +57,38 @@ TEST_F(CanObjects, ANameLongerThanFourBytesIsReadWhole) {
   EXPECT_EQ(result.object_size, 0);
 }
 
+// It counts its speeds in another width, and otherwise: it moved 6.6 times too fast and too far, and was told done.
+TEST(CanProfile, ADriveOfTheOtherTypeInItsPlaceIsNotMoved) {
+  GatewayStage::Line line = can_line_of({options_of(CanType::jd, 1)}, 1);
+  line.can_drives[0].profile = "kinco-md";
+  CanRig rig(std::move(line));
+  ASSERT_TRUE(rig.settles([&] { return (rig.axis().alarms & bit(AxisAlarm::profile_mismatch)) != 0; }));
+  EXPECT_TRUE(rig.told("profile_mismatch: the device refuses velocity_actual"));
+  EXPECT_NE(rig.stage.command(1, Command::enable).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.stage.command(1, Command::disable).outcome.code, Errc::ok) << "stops apart";
+}
+
+// An engineer has given the disabled drive another gear: its numbers for what was accepted are others now.
+TEST(CanScale, AStartGoesByTheAcceptedSpeedAlsoWhereTheDriveCountsOtherwiseSince) {
+  constexpr std::uint16_t kFeed = 0x6092;
+  CanRig rig({CanType::leadshine});
+  rig.online();
+  ASSERT_EQ(rig.stage.ask(1, setpoints({{Quantity::profile_velocity, 600'000}})).outcome.code, Errc::ok);
+  WriteBatch feed = reading(kFeed, 1, 4);
+  feed.object->write = true;
+  feed.object->data = 1'000;
+  ASSERT_EQ(rig.stage.ask(1, feed).outcome.code, Errc::ok);
+  rig.stage.run(3s);
+  rig.enable();
+  rig.mark();
+  const WriteBatch move = with_command(Command::move_absolute, {{Quantity::target_position, -30'000}});
+  ASSERT_EQ(rig.stage.ask(1, move).outcome.code, Errc::ok);
+  const auto writes = rig.writes();
+  const auto speed = std::find_if(writes.begin(), writes.end(), [](const auto& w) { return w.index == 0x6081; });
+  ASSERT_NE(speed, writes.end());
+  EXPECT_EQ(speed->data, 10'000U);
+}
+
 TEST_F(CanObjects, AShortOneIsANumberWhateverItsSize) {
   const BatchResult mode = rig.stage.ask(1, reading(0x6061));
   EXPECT_EQ(mode.outcome.code, Errc::ok);

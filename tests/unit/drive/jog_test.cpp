@@ -104,6 +104,30 @@ TEST(JogOnAnAxis, IsRefusedWhereItCouldNotEndBeforeTheLimit) {
   EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
 }
 
+// Where its register cannot show the position any more, the limits are further away still.
+TEST(JogOnAnAxis, GoesNoFurtherWhereItStandsBeyondWhatItsRegisterCanShow) {
+  RigOptions options = leased();
+  options.axis.units_per_rev = Rational(10'000'000);
+  options.axis.position_limits = Range{-2'000'000'000, 2'000'000'000};
+  options.axis.homing_method = 35;
+  JoggedAxis axis(options);
+  EXPECT_EQ(axis.command(axis.plc, Command::home), Errc::ok);
+  ASSERT_TRUE(axis.rig.stage.run_until([&] {
+    axis.plc->last_request = axis.rig.stage.runtime().now();
+    return axis.rig.axis().has(AxisInput::homed);
+  }));
+  EXPECT_EQ(axis.ask(axis.plc, with_command(Command::run_velocity, {{Quantity::target_velocity, 3'000'000}})),
+            Errc::ok);
+  axis.keep(axis.plc, 6s);
+  EXPECT_EQ(axis.command(axis.plc, Command::halt), Errc::ok);
+  axis.keep(axis.plc, 3s);
+  ASSERT_FALSE(axis.rig.axis()[Quantity::position_actual].valid);
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::state_unsuitable);
+  EXPECT_EQ(axis.command(axis.plc, Command::jog_reverse), Errc::ok);
+  axis.hold(Command::jog_reverse, 1s);
+  EXPECT_LT(axis.speed(), 0) << "back is open";
+}
+
 TEST(JogOnAnAxis, EndsAtThePositionLimitOfAHomedAxis) {
   for (const bool of_the_drive : {false, true}) {
     RigOptions options = leased();

@@ -347,5 +347,20 @@ TEST(KeepAliveRule, AFrameOfBothMotorsCountsForBoth) {
   EXPECT_EQ(keep.due(1), start + kKeepAlivePeriod / 2);
 }
 
+// 3.4: "A fault ... end[s] every motion for good": a drive that goes on by itself once the cause is gone is disabled.
+TEST_P(KeyaKeepAlive, AFaultThatPassesByItselfLeavesNoTorque) {
+  KeyaRig rig({.speech = GetParam()});
+  rig.online();
+  rig.enable_and_run(0);
+  rig.motor(0).faults = 0x0040;
+  ASSERT_TRUE(rig.run_until([&] { return rig.axis(0).has(AxisInput::fault); }));
+  EXPECT_TRUE(rig.motor(0).enabled);
+  rig.motor(0).faults = 0;
+  EXPECT_TRUE(rig.run_until([&] { return !rig.motor(0).enabled; }));
+  rig.run(1s);
+  EXPECT_FALSE(rig.motor(0).enabled);
+  EXPECT_FALSE(rig.enabled(0));
+}
+
 }  // namespace
 }  // namespace axisgate::test

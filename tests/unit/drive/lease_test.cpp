@@ -232,5 +232,19 @@ TEST(Lease, AnOwnersSixInABlockIsAStop) {
   EXPECT_FALSE(axis.rig.turns());
 }
 
+// 3.5: on_expiry "acts only if the axis is enabled". The answer spoke of another client that nobody was.
+TEST(Lease, ThatRunsOutBesideAFaultResetStopsNothing) {
+  constexpr std::uint16_t kTooHigh = 0x0020;  // the supply
+  RigOptions options = leased();
+  options.lease->timeout = 500ms;
+  LeasedAxis axis(options);
+  axis.run(axis.plc);
+  axis.rig.motor().inject_fault(1, kTooHigh);
+  axis.keep(axis.plc, 2s);
+  EXPECT_EQ(axis.command(axis.plc, Command::fault_reset), Errc::not_reached);
+  EXPECT_FALSE(axis.rig.axis().has(AxisInput::stop_latched));
+  EXPECT_FALSE(axis.rig.has_event(EventKind::lease, "quick stop"));
+}
+
 }  // namespace
 }  // namespace axisgate::test

@@ -161,11 +161,13 @@ TEST(NodeSetup, ATpdoThatTheDriveDoesNotHaveIsPolled) {
 }
 
 TEST(NodeSetup, ATpdoWhoseMappingDoesNotReadBackIsNotTrusted) {
-  for (const bus::ObjectAddress forgotten : {bus::ObjectAddress{0x1A00, 0}, bus::ObjectAddress{0x1800, 1}}) {
-    const DriveModel model = model_with({tpdo(1, {kStatusword})});
+  for (const bus::ObjectAddress forgotten :
+       {bus::ObjectAddress{0x1A00, 0}, bus::ObjectAddress{0x1A00, 2}, bus::ObjectAddress{0x1800, 1}}) {
+    const DriveModel model = model_with({tpdo(1, {kStatusword, kPosition})});
     Dictionary drive;
     drive.values[{0x1800, 1}] = 0x80000183;
     drive.values[{0x1A00, 0}] = 0;
+    drive.values[{0x1A00, 2}] = 0x60640010;  // position_actual, but 2 bytes of it
     drive.forgets.insert(forgotten);
     const NodeSetup setup = carried_out(model, drive);
     EXPECT_THAT(setup.mapped(), IsEmpty());

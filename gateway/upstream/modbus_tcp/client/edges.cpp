@@ -59,9 +59,8 @@ Verdict EdgeMemory::judge_single(const Item& item, const Kind& kind, const Writi
   const Endings& endings = endings_of(writing);
   const Endings::Point since = item.acted.value_or(0);
   const bool interrupted = item.acted && endings.interrupted(since, writing.client);
-  if ((rearmed && !interrupted) || kind.unserved) return Verdict::acts;
-  // A stop too many is the smaller harm.
-  if (kind.stop_word) return interrupted ? Verdict::acts : Verdict::nothing;
+  // A stop too many is the smaller harm: a scanner's block may carry the same word all the time.
+  if ((rearmed && !interrupted) || kind.unserved || kind.stop_word) return Verdict::acts;
   const bool changed = item.targets != writing.targets;
   const bool over = !item.acted || endings.ended(since, writing.client);
   return kind.relative || ((changed || over) && !kind.is_so) ? Verdict::not_new : Verdict::nothing;
