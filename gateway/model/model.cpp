@@ -176,17 +176,6 @@ bool DriveModel::needs(ObjectId object) const {
          });
 }
 
-bool DriveModel::moves_by(ObjectId object) const {
-  const auto counts = [object](const Binding& binding) {
-    const Kind kind = row(binding.quantity).kind;
-    const bool of_motion = kind == Kind::position || kind == Kind::velocity || kind == Kind::acceleration;
-    return binding.object == object && of_motion;
-  };
-  return std::any_of(axes.begin(), axes.end(), [&](const AxisModel& axis) {
-    return std::any_of(axis.bindings.begin(), axis.bindings.end(), counts);
-  });
-}
-
 ObjectId DriveModel::find(bus::ObjectAddress address) const {
   const auto at = std::find_if(objects.begin(), objects.end(), [&](const ObjectDef& candidate) {
     return !candidate.emulated && candidate.address == address;

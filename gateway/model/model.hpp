@@ -116,11 +116,9 @@ struct Binding {
 
   /// Exact, rounded once, half away from zero; no value where it does not fit the register (design 2).
   [[nodiscard]] std::optional<std::int64_t> to_register(std::int64_t raw) const;
-  /// The same, or the bound of the register's type that it lies beyond. No value: how the drive counts is not known
-  /// yet.
+  /// The same, or the bound of the register's type that it lies beyond. No value: the scale is not known yet.
   [[nodiscard]] std::optional<std::int64_t> to_register_or_bound(std::int64_t raw) const;
-  /// What the drive is told for it: rounded as above, but never from within the limits to beyond one of them. No value
-  /// where it does not fit the object.
+  /// Rounded as above, but never from within the limits to beyond them; no value where it does not fit the object.
   [[nodiscard]] std::optional<std::int64_t> to_raw(std::int64_t value, const ObjectDef& object_def) const;
 };
 
@@ -383,8 +381,6 @@ struct DriveModel {
   [[nodiscard]] bool needs_for_state(ObjectId object) const;
   /// Without this object nothing may move: what needs_for_state() says, and the position.
   [[nodiscard]] bool needs(ObjectId object) const;
-  /// A position, a velocity or an acceleration of a motor.
-  [[nodiscard]] bool moves_by(ObjectId object) const;
 };
 
 [[nodiscard]] inline bool is_canopen(const DriveModel& model) { return model.protocol == "canopen"; }

@@ -9,6 +9,21 @@
 #include "gateway/drive/device/requests.hpp"
 
 namespace axisgate::drive {
+namespace {
+
+/// A position, a velocity or an acceleration of a motor.
+bool moves_by(const DriveModel& model, ObjectId object) {
+  const auto counts = [object](const Binding& binding) {
+    const Kind kind = row(binding.quantity).kind;
+    const bool of_motion = kind == Kind::position || kind == Kind::velocity || kind == Kind::acceleration;
+    return binding.object == object && of_motion;
+  };
+  return std::any_of(model.axes.begin(), model.axes.end(), [&](const AxisModel& axis) {
+    return std::any_of(axis.bindings.begin(), axis.bindings.end(), counts);
+  });
+}
+
+}  // namespace
 
 std::optional<bus::Exchange> Drive::next_of_bring_up() {
   const auto next = bring_up_.next(store_);
@@ -100,7 +115,7 @@ void Drive::judge_profile() {
   std::string lacks;
   for (std::size_t i = 0; i < model_.objects.size(); ++i) {
     const auto id = static_cast<ObjectId>(i);
-    const bool another = store_[id].unlike && model_.moves_by(id);
+    const bool another = store_[id].unlike && moves_by(model_, id);
     if (another || (store_[id].refused && model_.needs(id))) lacks += (lacks.empty() ? "" : ", ") + lacking(id);
   }
   tell_mismatch(lacks);
