@@ -14,8 +14,12 @@ void Axis::on_samples() { core_.refresh_virtual(); }
 void Axis::on_scale() {
   shown_.show_model();
   core_.motion.scale_changed();
-  for (auto& [object, told] : core_.told)
-    if (const auto raw = core_.model.binding(told.quantity)->to_raw(told.value, core_.object(object))) told.raw = *raw;
+  const auto raw_of = [this](const auto& each) {
+    return core_.model.binding(each.second.quantity)->to_raw(each.second.value, core_.object(each.first));
+  };
+  // What the drive cannot hold any more is forgotten: what it holds is held against the limits.
+  std::erase_if(core_.told, [&](const auto& each) { return !raw_of(each); });
+  for (auto& each : core_.told) each.second.raw = *raw_of(each);
 }
 
 void Axis::observe() {
