@@ -148,6 +148,7 @@ void Play::pass(std::int64_t ms) {
     plant_.run(std::chrono::milliseconds(kStepMs));
     look();
     watch_trouble();
+    watch_acceptance();
     collect();
   }
 }

@@ -58,6 +58,17 @@ void Play::send(std::size_t client, Write write, bool at_once) {
     pass(kStepMs);
 }
 
+// 3.3: "statusword bit 10 and discrete input 5 are 0 from the acceptance of a motion command until" a statusword from
+// after it: what waits behind another request of the same client is not accepted yet.
+void Play::watch_acceptance() {
+  if (contract_->in_trouble() || !plant_.stage.axis(1).has(AxisInput::target_reached)) return;
+  for (Open& open : open_) {
+    const auto same = [&](const Open& other) { return other.client == open.client; };
+    const bool first = &*std::ranges::find_if(open_, same) == &open;
+    if (open.moves && first && now_ms() > open.sent_ms) open.shows_reached = true;
+  }
+}
+
 void Play::collect() {
   std::erase_if(open_, [this](Open& open) {
     if (over()) return false;
@@ -83,6 +94,8 @@ void Play::collect() {
       if (!contract_->answered(open.request, *answer)) {
         line += "  <-- NO READING HAS THIS ANSWER";
         violated("no reading has this answer; expected: " + contract_->expected());
+      } else if (open.shows_reached && answer->contains(0) && !contract_->may_be_over()) {
+        violated("target_reached of the move before was shown while this one began");
       } else if (const auto wrong = wrong_beside(open)) {
         violated(std::string("to ") + kNames.at(open.client) + " by function 23 " + *wrong);
       } else {

@@ -54,6 +54,7 @@ class Play {
     bool pending = false;    ///< register 25 has said so
     bool under_way = false;  ///< perhaps: register 25 may have told of an older one
     std::optional<obey::RequestNumber> asked_for_result{};
+    bool shows_reached = false;         ///< it was accepted, not answered yet, and target_reached was shown
     std::vector<std::uint16_t> read{};  ///< registers 0 to 38, by the same request (function 23)
   };
 
@@ -65,6 +66,7 @@ class Play {
   void die(const Step& step);
   void pass(std::int64_t ms);
   void look();
+  void watch_acceptance();
   void collect();
   void never_answered(const Open& open);
   [[nodiscard]] std::optional<std::string> wrong_beside(const Open& open);

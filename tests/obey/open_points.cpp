@@ -29,6 +29,8 @@ void draw(simulated::LeadshineOptions& options, Random& random) {
   options.leaves_operational_on_loss = random.chance(1, 2);
   options.event_timer = random.chance(1, 2);
   if (random.chance(1, 4)) options.unmappable = {{0x606C, 0}, {0x6077, 0}};
+  constexpr std::array<Duration, 3> kFalls{Duration{}, std::chrono::milliseconds(20), std::chrono::milliseconds(200)};
+  options.reached_falls = kFalls[static_cast<std::size_t>(random.below(kFalls.size()))];
 }
 
 void draw(simulated::KincoCanDrive& drive, Random& random) {

@@ -167,6 +167,7 @@ void LeadshineDrive::halt(std::uint16_t rising, std::uint16_t falling) {
 }
 
 void LeadshineDrive::start_move(std::uint16_t word) {
+  if (target_reached()) reached_until_ = now_ + options_.reached_falls;
   FinePosition target = fine_of(object(0x607A));
   if ((word & relative_bit) != 0) {
     const bool moving = commanded().task() == Task::position;

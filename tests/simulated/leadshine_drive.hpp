@@ -28,6 +28,7 @@ struct LeadshineOptions {
   Time boot_time = std::chrono::seconds(1);
   Time store_time = std::chrono::milliseconds(50);
   bool acknowledges_setpoints = false;  // statusword bit 12 in profile position; "not valid" (C5)
+  Time reached_falls{};                 // so long after its start a move still shows bit 10 of the one before (5.2)
   bool ready_flag = true;               // 3001h tells 20h before the start of an immediate move (Appendix E)
   bool needs_halt_edge = false;         // profile velocity starts with the end of a halt alone (C12)
   std::int64_t mode = 8;                // 6060h at power-up: 8 or 0 (C6)
@@ -165,6 +166,7 @@ class LeadshineDrive final : public CanDevice {
   Time now_{};
   std::int64_t ticks_ = 0;
   Time inside_following_window_{};
+  Time reached_until_{};
   std::optional<Time> boot_until_;
   std::optional<Time> store_until_;
   std::uint64_t stores_ = 0;

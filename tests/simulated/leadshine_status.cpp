@@ -18,6 +18,7 @@ bool LeadshineDrive::target_reached() const {
   if (halted_) return axis_.speed() == 0;
   switch (mode_) {
     case 1: {
+      if (now_ < reached_until_) return true;
       const bool commanded = motion_.task() == Task::position && motion_.target() != axis_.demand();
       return !commanded && std::abs(units_of(axis_.demand() - axis_.actual())) <= object(0x2431);
     }
