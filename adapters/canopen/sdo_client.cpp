@@ -120,9 +120,11 @@ SdoFrames SdoClient::interrupt(std::uint8_t node) {
 }
 
 void SdoClient::restarted(std::uint8_t node) {
-  if (outstanding_ == node) outstanding_.reset();
   Server& server = servers_.at(node);
   server = Server{.block = server.block};
+  if (outstanding_ != node) return;
+  outstanding_.reset();
+  server.owed = 1;  // a request that its boot-up has crossed is answered
 }
 
 void SdoClient::reset() {

@@ -43,7 +43,7 @@ class SdoClient {
   [[nodiscard]] SdoFrames abandon();
   /// The open transfer of a node ends because something else is done with the node. To send to it.
   [[nodiscard]] SdoFrames interrupt(std::uint8_t node);
-  /// The node has started anew: it knows of no transfer, and will not answer what was asked.
+  /// The node has started anew: it knows of no transfer. What was asked is over; its answer may come all the same.
   void restarted(std::uint8_t node);
   /// The link is lost.
   void reset();

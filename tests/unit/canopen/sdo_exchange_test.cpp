@@ -124,6 +124,17 @@ TEST_F(SdoExchange, the_reply_to_a_request_given_up_is_no_second_devices) {
   EXPECT_THAT(kinds(), ElementsAre(Kind::duplicate_node));
 }
 
+TEST_F(SdoExchange, nor_is_the_reply_to_a_request_that_the_boot_up_has_crossed) {
+  wire->send(read_of(0x6041));
+  bring(0x701, "00");
+  wire->abandon();
+  read_status(2);
+  EXPECT_EQ(replies.size(), 1u);
+  EXPECT_THAT(kinds(), ElementsAre(Kind::started));
+  bring(0x581, kStatus);  // one too many
+  EXPECT_THAT(kinds(), ElementsAre(Kind::started, Kind::duplicate_node));
+}
+
 TEST_F(SdoExchange, two_devices_are_told_once_in_ten_seconds) {
   read_status(2);
   read_status(2);
