@@ -44,18 +44,17 @@ void warn_about(const AxisConfig& config, const drive::AxisModel& axis, const dr
                             fmt::join(names, ", "), drive.protocol));
   const bool homes_at_its_own = axis.supports(Command::home) && !axis.takes(Quantity::homing_speed_switch) &&
                                 !axis.takes(Quantity::homing_speed_zero);
-  if (config.limits.velocity && homes_at_its_own)
-    warn(drive::limit_key(Quantity::homing_speed_switch),
-         fmt::format("does not reach homing: of {} no homing speed is known that could be written; set a safe one in "
-                     "the drive itself",
-                     drive.title));
   const bool moves_at_its_own = axis.supports(Command::move_absolute) && axis.takes(Quantity::target_velocity) &&
                                 !axis.takes(Quantity::profile_velocity);
-  if (config.limits.velocity && moves_at_its_own)
-    warn(drive::limit_key(Quantity::profile_velocity),
-         fmt::format("does not reach moves: of {} no profile_velocity is known that could be written; set a safe one "
-                     "in the drive itself",
-                     drive.title));
+  const auto warn_of_own_speed = [&](bool at_its_own, std::string_view motion, std::string_view speed) {
+    if (config.limits.velocity && at_its_own)
+      warn(drive::limit_key(Quantity::target_velocity),
+           fmt::format(
+               "does not reach {}: of {} no {} is known that could be written; set a safe one in the drive itself",
+               motion, drive.title, speed));
+  };
+  warn_of_own_speed(homes_at_its_own, "homing", "homing speed");
+  warn_of_own_speed(moves_at_its_own, "moves", "profile_velocity");
 }
 
 }  // namespace

@@ -128,32 +128,27 @@ TEST(Check, WarnsOfLimitsThatLimitNothing) {
                     Not(HasSubstr("/limits/velocity: "))));
 }
 
-TEST(Check, WarnsOfHomingThatNoLimitReaches) {
+/// What a limit of the velocity does not reach: by this command, whose speed nobody can write.
+void expect_warning_of_own_speed(Command command, Quantity speed, const std::string& motion, const std::string& name) {
   LoadedConfig loaded = one_axis();
   drive::AxisModel& model = loaded.models[0][0].axes[0];
-  model.supported |= bit(Quantity::target_velocity) | bit(Quantity::homing_speed_zero);
+  model.supported |= bit(Quantity::target_velocity) | bit(speed);
   model.writable |= bit(Quantity::target_velocity);
-  model.supported_commands |= 1U << static_cast<unsigned>(Command::home);
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach homing")));
+  model.supported_commands |= 1U << static_cast<unsigned>(command);
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach " + motion)));
   loaded.config.buses[0].drives[0].axes[0].limits.velocity = 600'000;
-  EXPECT_THAT(check(loaded).text, HasSubstr("/limits/velocity: does not reach homing: of Kinco JD no homing speed is "
-                                            "known that could be written; set a safe one in the drive itself\n"));
-  model.writable |= bit(Quantity::homing_speed_zero);
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach homing")));
+  EXPECT_THAT(check(loaded).text, HasSubstr("/limits/velocity: does not reach " + motion + ": of Kinco JD no " + name +
+                                            " is known that could be written; set a safe one in the drive itself\n"));
+  model.writable |= bit(speed);
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach " + motion)));
+}
+
+TEST(Check, WarnsOfHomingThatNoLimitReaches) {
+  expect_warning_of_own_speed(Command::home, Quantity::homing_speed_zero, "homing", "homing speed");
 }
 
 TEST(Check, WarnsOfMovesThatNoLimitReaches) {
-  LoadedConfig loaded = one_axis();
-  drive::AxisModel& model = loaded.models[0][0].axes[0];
-  model.supported |= bit(Quantity::target_velocity) | bit(Quantity::profile_velocity);
-  model.writable |= bit(Quantity::target_velocity);
-  model.supported_commands |= 1U << static_cast<unsigned>(Command::move_absolute);
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach moves")));
-  loaded.config.buses[0].drives[0].axes[0].limits.velocity = 600'000;
-  EXPECT_THAT(check(loaded).text, HasSubstr("/limits/velocity: does not reach moves: of Kinco JD no profile_velocity "
-                                            "is known that could be written; set a safe one in the drive itself\n"));
-  model.writable |= bit(Quantity::profile_velocity);
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach moves")));
+  expect_warning_of_own_speed(Command::move_absolute, Quantity::profile_velocity, "moves", "profile_velocity");
 }
 
 TEST(Check, RepeatsTheWarnings) {

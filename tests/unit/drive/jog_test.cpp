@@ -25,6 +25,14 @@ struct JoggedAxis : LeasedAxis {
       rig.stage.run(100ms);
     }
   }
+  /// And its owner goes on asking meanwhile.
+  bool homes() {
+    EXPECT_EQ(command(plc, Command::home), Errc::ok);
+    return rig.stage.run_until([this] {
+      plc->last_request = rig.stage.runtime().now();
+      return rig.axis().has(AxisInput::homed);
+    });
+  }
   std::int64_t speed() { return rig.axis()[Quantity::velocity_actual].value; }
 };
 
@@ -88,11 +96,7 @@ TEST(JogOnAnAxis, IsRefusedWhereItCouldNotEndBeforeTheLimit) {
   options.axis.position_limits = Range{-30'000, 30'000};
   options.axis.homing_method = 35;
   JoggedAxis axis(options);
-  EXPECT_EQ(axis.command(axis.plc, Command::home), Errc::ok);
-  ASSERT_TRUE(axis.rig.stage.run_until([&] {
-    axis.plc->last_request = axis.rig.stage.runtime().now();
-    return axis.rig.axis().has(AxisInput::homed);
-  }));
+  ASSERT_TRUE(axis.homes());
   WriteBatch slow = setpoints({{Quantity::profile_deceleration, 1'000}});
   slow.jog_velocity = 600'000;
   EXPECT_EQ(axis.ask(axis.plc, slow), Errc::ok);
@@ -111,11 +115,7 @@ TEST(JogOnAnAxis, GoesNoFurtherWhereItStandsBeyondWhatItsRegisterCanShow) {
   options.axis.position_limits = Range{-2'000'000'000, 2'000'000'000};
   options.axis.homing_method = 35;
   JoggedAxis axis(options);
-  EXPECT_EQ(axis.command(axis.plc, Command::home), Errc::ok);
-  ASSERT_TRUE(axis.rig.stage.run_until([&] {
-    axis.plc->last_request = axis.rig.stage.runtime().now();
-    return axis.rig.axis().has(AxisInput::homed);
-  }));
+  ASSERT_TRUE(axis.homes());
   EXPECT_EQ(axis.ask(axis.plc, with_command(Command::run_velocity, {{Quantity::target_velocity, 3'000'000}})),
             Errc::ok);
   axis.keep(axis.plc, 6s);
@@ -137,11 +137,7 @@ TEST(JogOnAnAxis, EndsAtThePositionLimitOfAHomedAxis) {
     const WriteBatch limits =
         setpoints({{Quantity::position_limit_min, -30'000}, {Quantity::position_limit_max, 30'000}});
     EXPECT_EQ(axis.ask(axis.plc, of_the_drive ? limits : WriteBatch{}), Errc::ok);
-    EXPECT_EQ(axis.command(axis.plc, Command::home), Errc::ok);
-    ASSERT_TRUE(axis.rig.stage.run_until([&] {
-      axis.plc->last_request = axis.rig.stage.runtime().now();
-      return axis.rig.axis().has(AxisInput::homed);
-    }));
+    ASSERT_TRUE(axis.homes());
     EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
     axis.hold(Command::jog_forward, 10s);
     EXPECT_FALSE(axis.rig.turns());
@@ -165,11 +161,7 @@ TEST(JogOnAnAxis, EndsAtThePositionLimitAlsoWhereSomebodyWritesAllTheTime) {
   options.axis.position_limits = Range{-300'000, 300'000};
   options.axis.homing_method = 35;
   JoggedAxis axis(options);
-  EXPECT_EQ(axis.command(axis.plc, Command::home), Errc::ok);
-  ASSERT_TRUE(axis.rig.stage.run_until([&] {
-    axis.plc->last_request = axis.rig.stage.runtime().now();
-    return axis.rig.axis().has(AxisInput::homed);
-  }));
+  ASSERT_TRUE(axis.homes());
   WriteBatch fast = setpoints({{Quantity::profile_acceleration, 100'000}, {Quantity::profile_deceleration, 100'000}});
   fast.jog_velocity = 1'500'000;
   EXPECT_EQ(axis.ask(axis.plc, fast), Errc::ok);
