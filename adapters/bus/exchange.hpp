@@ -84,12 +84,19 @@ struct ExchangeResult {
   Errc code = Errc::ok;
   std::uint32_t detail = 0;
   ReplyFields fields{};
-  /// refused_by_drive: not now, but perhaps later (busy, under local control). Else the drive does not have the object.
+  /// refused_by_drive: not now, but perhaps later (busy, under local control). Else the drive does not have the object,
+  /// if it has answered any other rightly.
   bool for_now = false;
   bool more = false;    ///< of a chain: it goes on with Part::next
   ObjectBytes bytes{};  ///< at the end of a chain that read, where the object did not fit a field
   friend bool operator==(const ExchangeResult&, const ExchangeResult&) = default;
 };
+
+/// An abort code (CiA 301 section 7.2.4.3.17) that says what the drive has: it does not know the command, the object
+/// (0602 xxxx) or the sub-index. Every other may pass: the drive starts, is busy, or under somebody else's control.
+[[nodiscard]] constexpr bool abort_may_pass(std::uint32_t code) {
+  return code != 0x05040001 && code >> 16 != 0x0602 && code != 0x06090011;
+}
 
 /// CiA 301 section 7.2.8.3.1: what Access::command may carry.
 enum class NmtCommand : std::uint8_t {

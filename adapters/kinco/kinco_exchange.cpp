@@ -48,6 +48,7 @@ bus::ExchangeResult result_of(const Frame& frame) {
   if (frame.command == Command::error) {
     result.code = Errc::refused_by_drive;
     result.detail = frame.data;
+    result.for_now = bus::abort_may_pass(frame.data);
   } else if (const std::uint8_t size = value_size(frame.command); size != 0) {
     result.fields.push_back({frame.object, size, cut(frame.data, size)});
   }

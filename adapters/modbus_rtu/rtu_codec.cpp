@@ -43,8 +43,8 @@ std::uint32_t value_at(Bytes registers, std::size_t first, std::uint8_t size, bo
   return low_word_first ? (next << 16) | word : (word << 16) | next;
 }
 
-/// Not there, not in limits: it will be the same next time. All other codes, unknown ones included, may pass.
-bool is_for_ever(std::uint8_t code) { return code >= 1 && code <= 3; }
+/// Neither the function nor the register is there. All other codes, unknown ones included, may pass.
+bool is_for_ever(std::uint8_t code) { return code == 1 || code == 2; }
 
 bool is_error_of(std::uint8_t function, Function asked, const RtuNode& node) {
   if (function == (static_cast<std::uint8_t>(asked) | kErrorBit)) return true;

@@ -12,7 +12,8 @@ constexpr std::string_view help =
     "on|off|next [N]|RATE, on Modbus RTU half wrong-length glued too; late MS [on|next [N]|RATE]|off; exception CODE "
     "[on|next "
     "[N]|RATE]|off (Modbus RTU); restart [next [N]|RATE|off]; clear; state; position; restarts; input NUMBER on|off; "
-    "jam on|off; get|writes OBJECT; set OBJECT VALUE (INDEX.SUB, or the register of an id286pro). A Kinco: fault "
+    "jam on|off; get|writes OBJECT; set OBJECT VALUE; mute OBJECT on|off; refuse OBJECT CODE|off (reads of it; "
+    "INDEX.SUB, the register on Modbus RTU, the query code of a Keya on a serial line). A Kinco: fault "
     "2601|2602 BITS; clear 2601|2602 BITS; stores; transitions. An id286pro: fault CODE [hardware]; clear CODE; "
     "enable on|off; eeprom; starts. On CAN: unresponsive lose duplicate wrong-station wrong-length emergencies "
     "on|off|next [N]|RATE; babble [0xID] ...; exception ABORTCODE ...; restart before|after [next [N]]; nmt; "
@@ -163,9 +164,27 @@ std::string Control::switch_fault(const ControlWords& words, const Target& targe
   return "";
 }
 
+// `mute DRIVE OBJECT on|off`, `refuse DRIVE OBJECT CODE|off`: reads of it.
+std::string Control::spoil(const ControlWords& words, const Target& target) {
+  const bool mute = words[0] == "mute";
+  need_words(words, 4, mute ? "mute LINE/STATION OBJECT on|off" : "refuse LINE/STATION OBJECT CODE|off");
+  const bool by_index = words[2].find('.') != std::string::npos;
+  const ObjectKey key = by_index ? object_in(words[2]) : ObjectKey{static_cast<std::uint16_t>(number_in(words[2])), 0};
+  const DriveFaults::Place place{key.index, key.sub};
+  if (words[3] == "off") {
+    target.faults().mend(place);
+  } else if (mute) {
+    if (on_or_off(words[3])) target.faults().spoil(place, {});
+  } else {
+    target.faults().spoil(place, {.refused_with = static_cast<std::uint32_t>(number_in(words[3]))});
+  }
+  return "";
+}
+
 std::string Control::on_drive(const ControlWords& words) {
   const Target target = target_named(words[1]);
   const std::string& command = words[0];
+  if (command == "mute" || command == "refuse") return spoil(words, target);
   if (command == "clear" && words.size() == 2) {
     target.faults().clear();
     return "";

@@ -34,6 +34,7 @@ class Control {
   std::string on_drive(const ControlWords& words);
   std::optional<std::string> ask_drive(PortLine& port, std::size_t position, const ControlWords& words);
   std::string switch_fault(const ControlWords& words, const Target& target);
+  std::string spoil(const ControlWords& words, const Target& target);
   PortLine& port_named(const std::string& name);
   Target target_named(const std::string& text);
 

@@ -15,6 +15,16 @@ CanBytes recorded(const BusFrame& frame) {
   return bytes;
 }
 
+// CiA 301 section 7.2.4.3 and Keya's own protocol: a frame that names an object has its index in bytes 1 and 2, its sub
+// in 3. Segments name none.
+std::optional<DriveFaults::Spoilt> spoilt_by(const DriveFaults& faults, const BusFrame& frame) {
+  constexpr std::uint8_t specifier = 0xE0, download = 0x20, upload = 0x40, block_upload = 0xA0, block_download = 0xC0;
+  const std::uint8_t command = frame.data[0] & specifier;
+  const bool write = command == download || command == block_download;
+  if (frame.remote || frame.size < 4 || (!write && command != upload && command != block_upload)) return std::nullopt;
+  return faults.spoilt({static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8), frame.data[3]}, write);
+}
+
 }  // namespace
 
 void CanLine::request_arrives(std::size_t position, const BusFrame& frame, std::uint64_t tag, Time at) {
@@ -34,8 +44,17 @@ void CanLine::request_arrives(std::size_t position, const BusFrame& frame, std::
     restart(position, at);
     return;
   }
-  if (slot.node->may_refuse(frame) && slot.faults.strikes(DriveFault::exception, random_)) {
-    answer(position, {tag, true, slot.node->refuse(frame, slot.faults.abort_code)}, at, &exchange);
+  std::optional<std::uint32_t> refusal;
+  const bool may_refuse = slot.node->may_refuse(frame);
+  if (may_refuse && slot.faults.strikes(DriveFault::exception, random_)) refusal = slot.faults.abort_code;
+  const auto spoilt = may_refuse ? spoilt_by(slot.faults, frame) : std::nullopt;
+  if (spoilt && !spoilt->refused_with) {
+    journal_.record(std::move(exchange));
+    return;
+  }
+  if (spoilt) refusal = spoilt->refused_with;
+  if (refusal) {
+    answer(position, {tag, true, slot.node->refuse(frame, *refusal)}, at, &exchange);
   } else {
     slot.node->hear(frame, tag, at);
     take_output(position, at, &exchange);

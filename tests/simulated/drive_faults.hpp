@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fault switches of one drive on a line: each a probability per reply, and a number of next replies for tests.
-// Promises that a switch which is off draws no random number, so switching one fault on shifts no other draw before it.
+// And single objects of it that are mute, or refused. Promises that a switch which is off draws no random number, so switching one fault on shifts no other draw before it.
 // Never touches the drive or the line; the line asks it.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tests/simulated/random.hpp"
@@ -59,7 +61,28 @@ class DriveFaults {
   void set_rate(DriveFault fault, double probability) { switches_[number(fault)].rate = probability; }
   void next(DriveFault fault, std::uint64_t times = 1) { switches_[number(fault)].next = times; }
   bool armed(DriveFault fault) const { return switches_[number(fault)].rate > 0 || switches_[number(fault)].next > 0; }
-  void clear() { switches_ = {}; }
+  void clear() {
+    switches_ = {};
+    spoilt_.clear();
+  }
+
+  // One object of the drive, as its requests name it: an object's index and sub, a register, a query code and 0.
+  using Place = std::pair<std::uint16_t, std::uint8_t>;
+  // What becomes of requests for it: no answer, or this refusal (abort code, exception; a Keya on a serial line has
+  // none). Reads alone: what only writes of it meet is a drive of another kind.
+  struct Spoilt {
+    std::optional<std::uint32_t> refused_with;
+    bool writes_too = false;
+  };
+  void spoil(Place place, Spoilt how) { spoilt_[place] = how; }
+  void mend(Place place) { spoilt_.erase(place); }
+  // None: it is as it should be. Of a request for several, the first that is spoilt.
+  std::optional<Spoilt> spoilt(Place place, bool write, std::uint16_t count = 1) const {
+    const auto found = spoilt_.lower_bound(place);
+    if (found == spoilt_.end() || found->first.first >= place.first + count) return std::nullopt;
+    if (count == 1 && found->first != place) return std::nullopt;
+    return write && !found->second.writes_too ? std::nullopt : std::optional(found->second);
+  }
 
   // Does this fault strike now? Uses up one of the `next` ones first.
   bool strikes(DriveFault fault, Random& random) {
@@ -91,6 +114,7 @@ class DriveFaults {
   };
   static std::size_t number(DriveFault fault) { return static_cast<std::size_t>(fault); }
 
+  std::map<Place, Spoilt> spoilt_;
   std::array<Switch, drive_fault_count> switches_{};
   std::array<std::uint64_t, drive_fault_count> struck_{};
 };

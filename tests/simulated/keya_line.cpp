@@ -125,7 +125,9 @@ void KeyaLine::request_arrives(std::size_t position, const KeyaFrame& request, T
     return;
   }
   const auto answer = keya_answer(*slot.drive, options_.wiring, request, at);
-  if (answer && !slot.faults.strikes(DriveFault::lose, random_)) reply(position, *answer, at, exchange);
+  const auto query = keya_query(options_.wiring, request);  // the sheet knows no refusal here: silence it is
+  const bool mute = query && slot.faults.spoilt({*query, 0}, false);
+  if (answer && !mute && !slot.faults.strikes(DriveFault::lose, random_)) reply(position, *answer, at, exchange);
   journal_.record(std::move(exchange));
 }
 

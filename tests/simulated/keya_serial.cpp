@@ -82,6 +82,11 @@ bool keya_hears(const KeyaDrive& drive, KeyaWiring wiring, const KeyaFrame& fram
   return frame.back() == keya_sum(frame) && frame[1] == drive.options().node;
 }
 
+std::optional<std::uint8_t> keya_query(KeyaWiring wiring, const KeyaFrame& frame) {
+  if (frame[0] != keya_start::query) return std::nullopt;
+  return frame[wiring == KeyaWiring::rs485 ? 2 : 1];
+}
+
 std::optional<KeyaFrame> keya_answer(KeyaDrive& drive, KeyaWiring wiring, const KeyaFrame& frame, Time now) {
   drive.advance(now);
   if (frame[0] == keya_start::control) {

@@ -18,6 +18,9 @@ constexpr KeyaInterface interface_of(KeyaWiring wiring) {
 // Is the frame one for this drive? A wrong checksum or another number on RS485 means no.
 bool keya_hears(const KeyaDrive& drive, KeyaWiring wiring, const KeyaFrame& frame);
 
+// Its query code; none: it is no query.
+std::optional<std::uint8_t> keya_query(KeyaWiring wiring, const KeyaFrame& frame);
+
 // Acts on it; nothing: there is no answer.
 std::optional<KeyaFrame> keya_answer(KeyaDrive& drive, KeyaWiring wiring, const KeyaFrame& frame, Time now);
 

@@ -142,6 +142,20 @@ void RtuLine::frame_ends(Time at) {
   }
 }
 
+namespace {
+
+std::uint16_t word_at(const RtuBytes& pdu, std::size_t at) {
+  return at + 1 < pdu.size() ? static_cast<std::uint16_t>(pdu[at] << 8 | pdu[at + 1]) : std::uint16_t{0};
+}
+
+std::optional<DriveFaults::Spoilt> spoilt_by(const DriveFaults& faults, const RtuBytes& pdu) {
+  const bool read = pdu[0] == function::read;
+  const bool many = read || pdu[0] == function::write_several;
+  return faults.spoilt({word_at(pdu, 1), 0}, !read, many ? std::max<std::uint16_t>(word_at(pdu, 3), 1) : 1);
+}
+
+}  // namespace
+
 void RtuLine::request_arrives(std::size_t position, const RtuFrame& request, Time at) {
   Slot& slot = slots_[position];
   RtuExchange exchange{++tags_, at, slot.slave->unit(), seal_rtu(request.unit, request.pdu), {}, {}};
@@ -157,10 +171,14 @@ void RtuLine::request_arrives(std::size_t position, const RtuFrame& request, Tim
     journal_.record(std::move(exchange));
     return;
   }
-  const bool refuses = slot.faults.strikes(DriveFault::exception, random_);
-  RtuBytes pdu = refuses ? slot.slave->refusal(request.pdu, static_cast<RtuException>(slot.faults.exception_code))
+  std::optional<std::uint32_t> refusal;
+  if (slot.faults.strikes(DriveFault::exception, random_)) refusal = slot.faults.exception_code;
+  const auto spoilt = spoilt_by(slot.faults, request.pdu);
+  if (spoilt && spoilt->refused_with) refusal = spoilt->refused_with;
+  RtuBytes pdu = refusal ? slot.slave->refusal(request.pdu, static_cast<RtuException>(*refusal))
                          : slot.slave->answer(request.pdu, exchange.tag, at);
-  if (!broadcast && !slot.faults.strikes(DriveFault::lose, random_)) reply(position, std::move(pdu), at, exchange);
+  const bool mute = spoilt && !spoilt->refused_with;
+  if (!broadcast && !mute && !slot.faults.strikes(DriveFault::lose, random_)) reply(position, std::move(pdu), at, exchange);
   journal_.record(std::move(exchange));
 }
 

@@ -138,7 +138,14 @@ void SerialLine::request_arrives(std::size_t position, const TenByteFrame& reque
     journal_.record(std::move(exchange));
     return;
   }
-  const auto reply = slot.drive->answer(request, exchange.tag, at);
+  const bool write = command_of(request) != FrameCommand::read;
+  const auto spoilt = slot.faults.spoilt({index_of(request), sub_of(request)}, write);
+  auto reply = slot.drive->answer(request, exchange.tag, at);
+  if (spoilt && spoilt->refused_with) {
+    reply = seal(slot.drive->station(), FrameCommand::error, index_of(request), sub_of(request), *spoilt->refused_with);
+  } else if (spoilt) {
+    reply.reset();
+  }
   const bool lost = slot.faults.strikes(DriveFault::lose, random_);
   if (reply && !lost) {
     const bool late = slot.faults.strikes(DriveFault::late, random_);

@@ -210,10 +210,4 @@ std::uint16_t sdo_crc(Bytes bytes) {
   return crc.checksum();
 }
 
-bool is_for_now(std::uint32_t abort_code) {
-  const bool of_the_protocol = (abort_code >> 24) == 0x05 && abort_code != kAbortUnknownCommand;
-  const bool of_the_moment = abort_code >= kAbortNotStored && abort_code <= kAbortDeviceState;
-  return of_the_protocol || of_the_moment || abort_code == kAbortNoData;
-}
-
 }  // namespace axisgate::canopen

@@ -30,9 +30,7 @@ inline constexpr std::uint32_t kAbortSequence = 0x05040003;
 inline constexpr std::uint32_t kAbortCrc = 0x05040004;
 inline constexpr std::uint32_t kAbortOutOfMemory = 0x05040005;
 inline constexpr std::uint32_t kAbortLength = 0x06070010;
-inline constexpr std::uint32_t kAbortNotStored = 0x08000020;
 inline constexpr std::uint32_t kAbortDeviceState = 0x08000022;
-inline constexpr std::uint32_t kAbortNoData = 0x08000024;
 
 using SdoFrame = std::array<Byte, kSdoFrameBytes>;
 
@@ -103,10 +101,5 @@ struct BlockSegment {
 
 /// CRC-16-CCITT of CiA 301 section 7.2.4.3.16: polynomial 0x1021, begun with 0.
 [[nodiscard]] std::uint16_t sdo_crc(Bytes bytes);
-
-/// "Not now, but perhaps later": transfer or storage failed for local reasons, there is no value yet, and every fault
-/// of the protocol itself (05xx xxxx) but a command that the server does not know; none says that the object is not
-/// there.
-[[nodiscard]] bool is_for_now(std::uint32_t abort_code);
 
 }  // namespace axisgate::canopen

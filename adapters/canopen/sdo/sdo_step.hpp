@@ -29,7 +29,7 @@ struct SdoStep {
   bus::ExchangeResult result;
   result.code = Errc::refused_by_drive;
   result.detail = code;
-  result.for_now = is_for_now(code);
+  result.for_now = bus::abort_may_pass(code);
   return result;
 }
 

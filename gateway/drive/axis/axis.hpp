@@ -2,7 +2,7 @@
 // One axis at work: takes write batches, queues them with the bus, carries them out one after another and shows the
 // axis's image. Promises each write batch one result; a stop taken at any time, ahead of everything; callbacks only
 // after the image shows what they tell. Never enables or moves the axis by itself: it stops one whose owner has fallen
-// silent, a jog whose button is let go, and a homing out of time, nothing else.
+// silent, a jog whose button is let go, a homing out of time, and a motion that nobody can watch, nothing else.
 #pragma once
 
 #include <memory>
@@ -52,6 +52,8 @@ class Axis {
   void on_restarted();
   /// It was suspect: it may have restarted unseen.
   void on_invalidated() { reference_invalidated_ = true; }
+  /// The drive, which is there, tells this object no more: a motion that needs it is stopped.
+  void on_blind(ObjectId object);
   void set_alarm(AxisAlarm alarm, bool on);
   /// New samples are in the store: what is made from them is made anew.
   void on_samples();

@@ -320,6 +320,25 @@ void Axis::end_expired_lease() {
   stop_by_itself(action, true, [this](const BatchResult& result) { on_lease_action(result); });
 }
 
+// By its state, its position and its velocity a motion is seen to end, to stand and to keep within its limits: one that
+// is seen no more is stopped as one whose client is gone.
+void Axis::on_blind(ObjectId object) {
+  const auto gives = [&](Quantity quantity) {
+    const Binding* binding = core_.model.binding(quantity);
+    return binding != nullptr && binding->object == object;
+  };
+  const bool shows = core_.model.needs_for_state(object) || gives(Quantity::position_actual) ||
+                     (core_.model.moving ? core_.model.moving->object == object : gives(Quantity::velocity_actual));
+  const bool moves = core_.motion.running() != MotionKind::none || core_.motion.runs_raw() || jog_.active() ||
+                     motion_pending() || core_.facts().moving;
+  if (!shows || !moves || core_.motion.stopping()) return;
+  Command stop = command_of(ownership_.rules().on_expiry);
+  if (stop == Command::none) stop = Command::quick_stop;
+  host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(stop),
+              fmt::format("{} is told no more, and the motion needs it: {}", core_.object(object).name, in_words(stop)));
+  stop_by_itself(stop, true, [](const BatchResult&) {});
+}
+
 // It is owed on: what the drive shows decides when it is sent again.
 void Axis::on_lease_action(const BatchResult& result) {
   if (result.outcome.code == Errc::ok || !core_.facts().enabled()) return;

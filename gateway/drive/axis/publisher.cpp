@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/drive/axis/publisher.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "gateway/drive/plan/planner.hpp"
@@ -227,7 +229,24 @@ Instant stale_deadline(const AxisCore& core, const AxisImage& image) {
   return next;
 }
 
+namespace {
+
+/// What should make the drive notice a dead gateway, and is not in it.
+std::string unarmed(const AxisCore& core) {
+  for (const ObjectWrite& setup : core.drive.setup) {
+    const auto& loss = core.drive.loss_objects;
+    const ObjectState& s = core.store[setup.object];
+    if (std::find(loss.begin(), loss.end(), setup.object) == loss.end() || (s.known && s.number == setup.raw)) continue;
+    return fmt::format(": {} (0x{:04X}) could not be set up", core.object(setup.object).name,
+                       core.object(setup.object).address.index);
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string alarm_text(const AxisCore& core, AxisAlarm alarm) {
+  if (alarm == AxisAlarm::no_comm_watchdog) return std::string(text(alarm)) + unarmed(core);
   for (const Check& check : core.drive.checks) {
     const ObjectState& s = core.store[check.bad.object];
     const bool found = s.known && check.bad.holds(core.object(check.bad.object), static_cast<std::uint32_t>(s.number));

@@ -29,7 +29,8 @@ BringUp::BringUp(const DriveModel& model, Duration timeout)
 
 void BringUp::begin() {
   read_at_ = setup_at_ = 0;
-  setup_written_ = read_back_ = adopted_ = false;
+  setup_written_ = read_back_ = adopted_ = completed_ = false;
+  exchange_tries_ = 0;
   confirm_after_.reset();
   unheld_.clear();
   setup_.reset();
@@ -50,7 +51,7 @@ bool BringUp::any_enabled(const ObjectStore& store) const {
 std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
   while (read_at_ < reads_.size()) {
     const ObjectState& s = store[reads_[read_at_]];
-    // The state is asked for ever: without it there is no axis.
+    // The state is asked for ever: without it there is no axis. What else is asked in vain counts as refused.
     if (!s.known && (!s.refused || model_.needs_for_state(reads_[read_at_]))) return Next{reads_[read_at_], false, 0};
     ++read_at_;
   }
@@ -83,7 +84,8 @@ std::optional<BringUp::Next> BringUp::next_setup(const ObjectStore& store) {
         model_, [&](ObjectId id) { return store[id].known ? std::optional(store[id].number) : std::nullopt; });
   while (setup_at_ < setup_->size()) {
     const ObjectWrite& setup = (*setup_)[setup_at_];
-    if (read_back_) return Next{setup.object, false, 0};
+    if (read_back_ && !store[setup.object].refused) return Next{setup.object, false, 0};
+    read_back_ = false;
     const bool holds = store[setup.object].known && store[setup.object].number == setup.raw;
     if (holds || setup_written_) {
       if (!holds && model_.object(setup.object).readable) unheld_.push_back(setup.object);
@@ -97,6 +99,7 @@ std::optional<BringUp::Next> BringUp::next_setup(const ObjectStore& store) {
 }
 
 void BringUp::answered(const bus::ExchangeResult& result) {
+  exchange_tries_ = 0;
   if (identity_.next())
     identity_.on_result(result);
   else

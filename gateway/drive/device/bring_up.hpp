@@ -37,8 +37,11 @@ class BringUp {
   void write_refused();
   /// The read given by next() was a read-back, and it was answered.
   void read_back_answered() { read_back_ = false; }
-  /// A Next::exchange was answered or refused.
+  /// A Next::exchange was answered or refused, or is given up as unanswered.
   void answered(const bus::ExchangeResult& result);
+  /// A Next::exchange was not answered: true after kExchangeTries, when it is given up.
+  [[nodiscard]] bool unanswered() { return ++exchange_tries_ >= kExchangeTries; }
+  static constexpr int kExchangeTries = 3;
   /// Some axis was found enabled: of its setup nothing is written until leave().
   [[nodiscard]] bool adopted() const { return adopted_; }
   void leave() { adopted_ = false; }
@@ -50,8 +53,11 @@ class BringUp {
   /// It refuses what its profile needs; empty: it has it all. True: that is news, to be told.
   bool found_lacking(const std::string& what) {
     const std::string before = std::exchange(lacks_, what);
+    completed_ = what.empty() && (completed_ || !before.empty());
     return before != what && !what.empty();
   }
+  /// What it lacked is there: its setup, which was left alone, is due.
+  [[nodiscard]] bool completed() const { return completed_; }
   /// It is what the configuration and its profile say.
   [[nodiscard]] bool is_configured() const { return mismatch().empty() && lacks_.empty(); }
   /// Whether a CANopen node stays started.
@@ -78,7 +84,9 @@ class BringUp {
   bool setup_written_ = false;
   bool read_back_ = false;
   bool adopted_ = false;
+  int exchange_tries_ = 0;  ///< in a row
   std::string lacks_;
+  bool completed_ = false;
   std::vector<ObjectId> unheld_;
 };
 

@@ -185,6 +185,7 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
       return;
     }
   }
+  on_given_up();
   const ObjectId written = exchange.access == bus::Access::write ? model_.find(exchange.object) : kNoObject;
   control_.on_result(exchange, result, asked.keeps_alive, asked.read.sent_at, trusted, turn_.now);
   if (asked.job != 0) {
@@ -224,7 +225,7 @@ void Drive::on_timeout(const bus::Exchange& exchange, bool stop_insists) {
   // A stop has its three tries, also at a drive that was silent before it came.
   if (gone && !stop_insists) {
     go_offline();
-  } else if (turn_.link == LinkState::online) {
+  } else if (turn_.link == LinkState::online && !reads_.expects_silence(exchange)) {
     set_state(LinkState::suspect);
   }
 }
@@ -256,6 +257,7 @@ void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResul
   for (const std::string& object : taken.unlike)
     event(axes_.front()->core().model.number, EventKind::warning, 0, object);
   if (!taken.unlike.empty() && turn_.link != LinkState::setup) judge_profile();
+  if (taken.back) judge_given_up();
   if (taken.scales)
     for (auto& axis : axes_) axis->on_scale();
   if (taken.samples)

@@ -122,6 +122,10 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void begin_bring_up(bool restarted);
   void carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result);
   void end_bring_up();
+  /// Of the exchange that has ended: objects may have been given up by it.
+  void on_given_up();
+  void tell_given_up(ObjectId object);
+  void judge_given_up();
   [[nodiscard]] std::string lacking(ObjectId object) const;
   void tell_mismatch(const std::string& lacks);
   void judge_profile();

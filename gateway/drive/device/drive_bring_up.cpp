@@ -41,6 +41,10 @@ std::optional<bus::Exchange> Drive::next_of_bring_up() {
     if (next->exchange->access == bus::Access::command) bring_up_.start().told(turn_.now);
     return next->exchange;
   }
+  if (const Instant again = next->write ? kLongAgo : reads_.tries().again(next->object); turn_.now < again) {
+    bus_.wait(jobs_.setup, again);
+    return std::nullopt;
+  }
   return next->write ? write(next->object, next->number) : read_of(model_, next->object);
 }
 
@@ -70,9 +74,10 @@ void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::Exchange
   if (turn_.link != LinkState::setup) return;
   const auto next = bring_up_.next(store_);
   if (next && next->exchange) {
-    // Lost: asked once more, when the resynchronisation read is answered.
-    if (*next->exchange == exchange && (result.code == Errc::ok || result.code == Errc::refused_by_drive))
-      bring_up_.answered(result);
+    // Lost: asked once more, when the resynchronisation read is answered; but not for ever.
+    const bool told = result.code == Errc::ok || result.code == Errc::refused_by_drive;
+    const bool lost = result.code == Errc::timed_out || result.code == Errc::bad_reply;
+    if (*next->exchange == exchange && (told || (lost && bring_up_.unanswered()))) bring_up_.answered(result);
     return;
   }
   const bool was_write = exchange.access == bus::Access::write;
@@ -86,16 +91,53 @@ void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::Exchange
   }
   const ObjectId asked = model_.find(exchange.object);
   const bool of_state = !was_write && asked != kNoObject && model_.needs_for_state(asked);
-  const bool state_refused =
-      of_state && (result.code == Errc::refused_by_drive || (result.code == Errc::ok && store_[asked].refused));
-  if (state_refused && !result.for_now) tell_mismatch(lacking(asked));
-  // A drive that refuses its statusword is none we can speak for: it stays in setup and is asked again, slowly; and so
-  // is one that is busy.
-  if (state_refused || (!was_write && result.for_now)) bus_.wait(jobs_.setup, turn_.now + std::chrono::seconds(1));
+  // A drive whose statusword has another width is none we can speak for: it stays in setup and is asked again, slowly.
+  if (!of_state || result.code != Errc::ok || !store_[asked].refused) return;
+  tell_mismatch(lacking(asked));
+  bus_.wait(jobs_.setup, turn_.now + std::chrono::seconds(1));
+}
+
+// One line for each object, until it answers again.
+void Drive::tell_given_up(ObjectId id) {
+  const ObjectDef& object = model_.object(id);
+  const auto& refusal = reads_.tries().refusal(id);
+  const Axis& axis = *axes_[object.slot == bus::kNoAxis ? 0 : object.slot];
+  event(axis.core().model.number, EventKind::warning, 0,
+        fmt::format("{} ({}) of node {} {} three times in a row, though the drive answers others: it is for {}; {}",
+                    object.name, place_of(model_, id), model_.node,
+                    refusal ? fmt::format("was refused (0x{:08X})", *refusal) : "was not answered",
+                    uses_of(model_, id),
+                    model_.needs_for_state(id) ? "nothing is known of the axis without it, and it is asked each 2 s"
+                                               : "the axis goes on without it, and it is asked ever more seldom"));
+}
+
+// Without its state there is no axis: a drive that was brought up waits for it again. What moves by it is stopped.
+void Drive::on_given_up() {
+  const auto given_up = reads_.take_given_up();
+  if (given_up.empty()) return;
+  for (const auto& [object, untold] : given_up) {
+    if (untold) tell_given_up(object);
+    if (brought_up())
+      for (auto& axis : axes_) axis->on_blind(object);
+  }
+  const auto tells_state = [this](const ObjectTries::GivenUp& g) { return model_.needs_for_state(g.object); };
+  if (brought_up() && std::any_of(given_up.begin(), given_up.end(), tells_state)) {
+    begin_bring_up(false);
+    for (const ObjectTries::GivenUp& g : given_up)
+      if (tells_state(g)) reads_.keep_given_up(g.object, turn_.now);
+  }
+  judge_given_up();
+}
+
+void Drive::judge_given_up() {
+  if (brought_up()) judge_loss_reaction();
+  if (brought_up() || turn_.link == LinkState::setup) judge_profile();
 }
 
 std::string Drive::lacking(ObjectId object) const {
-  return fmt::format("{} (0x{:04X})", model_.object(object).name, model_.object(object).address.index);
+  const bool mute = reads_.tries().given_up(object) && !reads_.tries().refusal(object);
+  return fmt::format("{}{} (0x{:04X})", mute ? "to answer " : "", model_.object(object).name,
+                     model_.object(object).address.index);
 }
 
 // What its profile needs and it does not have, told once; empty: it has it all.
@@ -116,7 +158,8 @@ void Drive::judge_profile() {
   for (std::size_t i = 0; i < model_.objects.size(); ++i) {
     const auto id = static_cast<ObjectId>(i);
     const bool another = store_[id].unlike && moves_by(model_, id);
-    if (another || (store_[id].refused && model_.needs(id))) lacks += (lacks.empty() ? "" : ", ") + lacking(id);
+    if (another || ((store_[id].refused || reads_.tries().given_up(id)) && model_.needs(id)))
+      lacks += (lacks.empty() ? "" : ", ") + lacking(id);
   }
   tell_mismatch(lacks);
 }
@@ -167,7 +210,7 @@ void Drive::judge_loss_reaction() {
 
 // An enable that is under way, or waits for its turn, would meet the NMT commands of a bring-up.
 bool Drive::may_be_set_up_anew() const {
-  const bool wanted = !end_.begun() && (bring_up_.adopted() || bring_up_.start().is_due(turn_.now));
+  const bool wanted = !end_.begun() && (bring_up_.adopted() || bring_up_.completed() || bring_up_.start().is_due(turn_.now));
   return wanted && std::none_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->enable_is_asked(); });
 }
 

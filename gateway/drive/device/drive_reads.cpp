@@ -14,6 +14,7 @@ DriveReads::DriveReads(DriveModel& model, ObjectStore& store)
       plan_(model),
       resync_(model.resync, model.objects),
       blocks_(model),
+      tries_(model.objects.size()),
       constants_(model.constants.size()),
       mapped_(model.objects.size(), false) {
   for (const ObjectDef& object : model.objects) width_.push_back(object.size);
@@ -24,7 +25,10 @@ DriveReads::DriveReads(DriveModel& model, ObjectStore& store)
 
 void DriveReads::restart(Instant now) {
   store_.forget_all();
-  resync_.answered();
+  resync_.forget();
+  tries_.restart();
+  silent_.reset();
+  answers_ = false;
   plan_.restart(now);
 }
 
@@ -63,7 +67,7 @@ void DriveReads::refresh(Instant now) {
 std::optional<bus::Exchange> DriveReads::resync(Asked& asked, Instant now) {
   const auto candidate = resync_.candidate();
   if (candidate && !resync_.exhausted()) {
-    resync_.resync_sent();
+    resync_.resync_sent(*candidate);
     asked.resync = true;
     return read_of(model_, *candidate);
   }
@@ -90,14 +94,16 @@ bool DriveReads::may_probe(Instant now) {
 bus::Exchange DriveReads::probe(Asked& asked) {
   if (resync_.suspect()) return after_silence(asked, &Asked::probe);
   asked.probe = true;
-  return probe_read(model_);
+  // A drive whose state is mute is there all the same.
+  return probes_++ % 2 == 0 ? probe_read(model_) : other_probe_read(model_);
 }
 
 // --- What comes back -------------------------------------------------------------------------------------------------
 
 void DriveReads::timed_out(const bus::Exchange& exchange, const Asked& asked, Instant now) {
   resync_.lost(exchange, now);
-  if (asked.widened) silent_read_ = exchange;
+  const bool plain = exchange.access == bus::Access::read && !asked.resync && !asked.probe && !asked.counted;
+  if (plain && !silent_) silent_ = {exchange, asked};
   store_.lose_sight();
 }
 
@@ -107,9 +113,8 @@ bool DriveReads::answered(const bus::Exchange& exchange, const bus::ExchangeResu
   const bool proves = result.code == Errc::ok && (asked.resync || asked.probe);
   if (proves) {
     resync_.answered();
-    // It lives, and did not answer a longer read: after the second time that counts as a refusal.
-    if (silent_read_ && asked.resync) static_cast<void>(blocks_.silent(*silent_read_));
-    silent_read_.reset();
+    if (asked.resync) was_silent(now);
+    silent_.reset();
   }
   if (result.code == Errc::ok && asked.counted) resync_.counted_one();
   const bool of_resync = asked.resync || asked.counted || (asked.probe && resync_.suspect());
@@ -123,20 +128,52 @@ bool DriveReads::split(const bus::Exchange& exchange, const bus::ExchangeResult&
     blocks_.answered(exchange);
     return false;
   }
-  return !result.for_now && blocks_.refused(exchange);
+  return result.for_now || !answers_ ? blocks_.silent(exchange) : blocks_.refused(exchange);
 }
 
-// Unsupported: not asked again until the next bring-up. The state is asked for ever: without it there is no axis.
+bool DriveReads::needed(ObjectId object) const {
+  return model_.needs_for_state(object) || object == model_.find(plain_read(model_).object);
+}
+
+// After the second time a block falls in two: which of its objects it is shows in the end.
+void DriveReads::was_silent(Instant now) {
+  if (!silent_) return;
+  const bus::Exchange& exchange = silent_->exchange;
+  if (silent_->asked.widened) {
+    static_cast<void>(blocks_.silent(exchange));
+    return;
+  }
+  const auto count = [&](const bus::ObjectAddress& address) {
+    const ObjectId id = model_.find(address);
+    // It has come by itself meanwhile, by a TPDO: nobody needs the read.
+    if (id != kNoObject && store_[id].sent_at <= silent_->asked.sent_at) in_vain(id, std::nullopt, now);
+  };
+  count(exchange.object);
+  for (const bus::Neighbour& neighbour : exchange.more) count(neighbour.object);
+}
+
+bool DriveReads::expects_silence(const bus::Exchange& exchange) const {
+  const ObjectId id = exchange.access == bus::Access::read ? model_.find(exchange.object) : kNoObject;
+  return id != kNoObject && tries_.given_up(id);
+}
+
+void DriveReads::in_vain(ObjectId object, const ObjectTries::Refusal& refusal, Instant now) {
+  const bool given_up = tries_.in_vain(object, refusal, needed(object), now);
+  if (given_up && !needed(object)) store_.refused(object);
+  if (tries_.again(object) > now) plan_.rest(object, tries_.again(object));
+}
+
+// What the drive does not have is not asked again until the next bring-up; it must have answered something before it is
+// believed, since a drive that still starts may refuse all. Any other refusal may pass.
 void DriveReads::take_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
                               Instant now) {
   const ObjectId id = model_.find(exchange.object);
   if (id == kNoObject) return;
-  if (asked.widened && !result.for_now) return;  // which of them it was is not known yet
-  plan_.done(id, now);
-  for (const bus::Neighbour& neighbour : exchange.more) plan_.done(model_.find(neighbour.object), now);
-  if (result.for_now || plain_read(model_).object == exchange.object || model_.needs_for_state(id)) return;
-  const auto refuse = [this](ObjectId object) {
+  if (asked.widened) return;  // which of them it was is not known yet
+  const bool for_ever = !result.for_now && answers_;
+  const auto refuse = [&](ObjectId object) {
     if (object == kNoObject) return;
+    if (!for_ever || needed(object)) return in_vain(object, result.detail, now);
     store_.refused(object);
     plan_.drop(object);
   };
@@ -165,6 +202,8 @@ DriveReads::Taken DriveReads::take(const bus::Exchange& exchange, const bus::Exc
     return taken;
   }
   for (const bus::ReplyField& field : result.fields) take_field(exchange, field, asked, taken, now);
+  answers_ = answers_ || !result.fields.empty();
+  if (taken.back) plan_.wake(now);
   taken.scales = read_constants();
   taken.samples = true;
   return taken;
@@ -195,6 +234,7 @@ void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField
                            " bytes, the profile says " + std::to_string(object.size) + ": not used");
     return;
   }
+  taken.back = tries_.answered(id) || taken.back;
   plan_.done(id, now);
   for (const ObjectId alias : object.aliases) plan_.done(alias, now);
 }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a drive is read for by the gateway itself, and what becomes of the answers (design 7, points 4 and 6): the poll
-// plan, what is read along in one request, the resynchronisation read after a timeout, and what comes unasked. Pure:
-// exchanges, results and instants go in. Promises that no answer counts while a late one could pass for it, that what
-// the drive refuses is not asked again before the next bring-up, and that a number of another width than the profile's
-// is shown nowhere. Never sends, and never judges whether the drive is there.
+// plan, what is read along in one request, the resynchronisation read after a timeout, what is asked in vain, and what
+// comes unasked. Pure: exchanges, results and instants go in. Promises that no answer counts while a late one could pass
+// for it, that what the drive does not have is not asked again before the next bring-up, that one object which does not
+// answer, or is refused for now, costs the others nothing, and that a number of another width than the profile's is
+// shown nowhere. Never sends, and never judges whether the drive is there.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "gateway/drive/device/object_tries.hpp"
 #include "gateway/drive/device/read_blocks.hpp"
 #include "gateway/drive/device/resync.hpp"
 #include "gateway/drive/state/axis_core.hpp"
@@ -53,6 +55,13 @@ class DriveReads {
   [[nodiscard]] std::uint8_t width(ObjectId object) const { return width_[object]; }
   /// Some axis's statusword is made from it, or is it.
   [[nodiscard]] bool tells_state(ObjectId object) const;
+  /// Objects that were given up since the last call.
+  [[nodiscard]] std::vector<ObjectTries::GivenUp> take_given_up() { return tries_.take_given_up(); }
+  [[nodiscard]] const ObjectTries& tries() const { return tries_; }
+  /// The bring-up that was begun is for its sake.
+  void keep_given_up(ObjectId object, Instant now) { tries_.keep_given_up(object, now); }
+  /// So it was known that nobody answers this read: that says nothing of the drive.
+  [[nodiscard]] bool expects_silence(const bus::Exchange& exchange) const;
 
   // --- Late replies --------------------------------------------------------------------------------------------------
 
@@ -81,6 +90,7 @@ class DriveReads {
   bool answered(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked, Instant now);
   struct Taken {
     bool samples = false;               ///< there are new ones
+    bool back = false;                  ///< an object that was given up has answered
     bool scales = false;                ///< a constant of the drive was read: scales and limits have changed
     std::vector<std::string> unlike{};  ///< objects of another width than the profile says, to be told
   };
@@ -112,6 +122,11 @@ class DriveReads {
   void take_field(const bus::Exchange& exchange, const bus::ReplyField& field, const Asked& asked, Taken& taken,
                   Instant now);
   void take_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked, Instant now);
+  /// Without it there is no axis: it is asked for ever.
+  [[nodiscard]] bool needed(ObjectId object) const;
+  void in_vain(ObjectId object, const ObjectTries::Refusal& refusal, Instant now);
+  /// The drive lives, and did not answer this read.
+  void was_silent(Instant now);
   [[nodiscard]] bool read_constants();
 
   DriveModel& model_;
@@ -119,7 +134,16 @@ class DriveReads {
   PollPlan plan_;
   Resync resync_;
   ReadBlocks blocks_;
-  std::optional<bus::Exchange> silent_read_{};  ///< of a block, given up; whether the drive lives is not known yet
+  ObjectTries tries_;
+  /// A read that was not answered; whether the drive lives is not known yet.
+  struct Silent {
+    bus::Exchange exchange;
+    Asked asked;
+  };
+  std::optional<Silent> silent_{};
+  /// The drive has answered a read since it came up: what it refuses from now on it may not have.
+  bool answers_ = false;
+  std::size_t probes_ = 0;  ///< of a drive that owes nothing
   std::vector<std::optional<Rational>> constants_;
   std::vector<std::uint8_t> width_;
   std::vector<bool> mapped_;  ///< objects that come by TPDO

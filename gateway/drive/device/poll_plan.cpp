@@ -118,7 +118,7 @@ void PollPlan::first(ObjectId object) {
 
 const PollPlan::Entry* PollPlan::earliest() const {
   const auto found =
-      std::min_element(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.due < b.due; });
+      std::min_element(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.asked_at() < b.asked_at(); });
   return found == entries_.end() ? nullptr : &*found;
 }
 
@@ -129,18 +129,18 @@ PollPlan::Entry* PollPlan::entry(ObjectId object) {
 
 std::optional<ObjectId> PollPlan::next(Instant now) const {
   const Entry* e = earliest();
-  if (e == nullptr || e->due > now) return std::nullopt;
+  if (e == nullptr || e->asked_at() > now) return std::nullopt;
   return e->object;
 }
 
 bool PollPlan::due(ObjectId object, Instant now) const {
   return std::any_of(entries_.begin(), entries_.end(),
-                     [&](const Entry& e) { return e.object == object && e.due <= now; });
+                     [&](const Entry& e) { return e.object == object && e.asked_at() <= now; });
 }
 
 Instant PollPlan::next_due() const {
   const Entry* e = earliest();
-  return e == nullptr ? kNever : e->due;
+  return e == nullptr ? kNever : e->asked_at();
 }
 
 void PollPlan::done(ObjectId object, Instant now) {
@@ -165,6 +165,19 @@ void PollPlan::drop(ObjectId object) {
   if (e == nullptr) return;
   e->due = kNever;
   e->dropped = true;
+}
+
+void PollPlan::rest(ObjectId object, Instant until) {
+  Entry* e = entry(object);
+  if (e != nullptr && !e->dropped) e->due = e->rests = until;
+}
+
+void PollPlan::wake(Instant now) {
+  for (Entry& e : entries_) {
+    if (e.rests <= now || e.dropped) continue;
+    e.due = std::min(e.due, now);
+    e.rests = kLongAgo;
+  }
 }
 
 void PollPlan::written(ObjectId object, Instant now) {

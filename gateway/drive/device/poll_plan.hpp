@@ -4,6 +4,7 @@
 // Never reads anything, and knows no clock but the instants it is given.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -49,6 +50,10 @@ class PollPlan {
   void done(ObjectId object, Instant now);
   /// The drive does not have it: never due again until restart().
   void drop(ObjectId object);
+  /// It is asked in vain: due then and, whatever wants it sooner, not before.
+  void rest(ObjectId object, Instant until);
+  /// Whatever rests is due at once.
+  void wake(Instant now);
   /// A write of it was acknowledged: if it is of class once, it is read once more as soon as its turn comes.
   void written(ObjectId object, Instant now);
   /// What the drive holds was invalidated: those of class once are read again, one by one, so that the others keep
@@ -66,6 +71,9 @@ class PollPlan {
     Duration beat;                     ///< its period where it does not come by TPDO
     Duration silence{};                ///< it comes by TPDO, and is read after so long without one; 0: it does not
     Duration limit = Duration::max();  ///< of that silence, and of the time between two such reads
+    Instant rests = kLongAgo;          ///< until then it is not asked, whenever it is due
+
+    [[nodiscard]] Instant asked_at() const { return std::max(due, rests); }
   };
   static constexpr Duration kRefreshPause = std::chrono::milliseconds(20);
   [[nodiscard]] const Entry* earliest() const;

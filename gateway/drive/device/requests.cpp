@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/drive/device/requests.hpp"
 
+#include "gateway/drive/device/poll_plan.hpp"
 #include "gateway/drive/device/resync.hpp"
 
 namespace axisgate::drive {
@@ -26,6 +27,16 @@ bus::Exchange plain_read(const DriveModel& model) { return read_of(model, model.
 bus::Exchange probe_read(const DriveModel& model) {
   const bool packed = !model.composed.empty() && !model.resync.candidates.empty();
   return packed ? read_of(model, model.resync.candidates.front()) : plain_read(model);
+}
+
+bus::Exchange other_probe_read(const DriveModel& model) {
+  const bus::Exchange first = probe_read(model);
+  const auto other = [&](ObjectId id) { return model.object(id).readable && model.object(id).address != first.object; };
+  for (const ResyncRead& read : model.resync.candidates)
+    if (other(read.object)) return read_of(model, read.object);
+  for (const PollItem& item : poll_items(model))
+    if (other(item.object)) return read_of(model, item.object);
+  return first;
 }
 
 }  // namespace axisgate::drive

@@ -15,5 +15,7 @@ namespace axisgate::drive {
 [[nodiscard]] bus::Exchange plain_read(const DriveModel& model);
 /// A read that shows that the drive is there.
 [[nodiscard]] bus::Exchange probe_read(const DriveModel& model);
+/// Another object than that of probe_read(), where the drive has one.
+[[nodiscard]] bus::Exchange other_probe_read(const DriveModel& model);
 
 }  // namespace axisgate::drive

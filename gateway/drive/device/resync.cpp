@@ -64,9 +64,35 @@ bool Resync::is_refused(const Likeness& like) const {
 }
 
 std::optional<ResyncRead> Resync::candidate() const {
-  for (const ResyncRead& read : facts_.candidates)
-    if (owed(of(read)) == 0 && !is_refused(of(read))) return read;
-  return std::nullopt;
+  std::optional<ResyncRead> mute;
+  for (std::size_t i = 0; i < facts_.candidates.size(); ++i) {
+    const ResyncRead& read = facts_.candidates[i];
+    if (owed(of(read)) != 0 || is_refused(of(read))) continue;
+    if (!mute_[i]) return read;
+    if (!mute) mute = read;
+  }
+  return mute;
+}
+
+void Resync::resync_sent(const ResyncRead& read) {
+  ++resyncs_;
+  const auto same = [&](const ResyncRead& r) { return r.object == read.object && r.registers == read.registers; };
+  const auto at = std::find_if(facts_.candidates.begin(), facts_.candidates.end(), same) - facts_.candidates.begin();
+  if (sent_.size() < sent_.capacity()) sent_.push_back(static_cast<std::size_t>(at));
+}
+
+void Resync::answered() {
+  for (const std::size_t at : sent_) mute_[at] = at != sent_.back();
+  forget();
+}
+
+void Resync::forget() {
+  suspect_ = false;
+  lost_.clear();
+  refused_.clear();
+  counting_.reset();
+  sent_.clear();
+  resyncs_ = 0;
 }
 
 bool Resync::counts_out() const {

@@ -23,30 +23,28 @@ class Resync {
   /// out in the length that was lost least.
   static constexpr int kMaxOwed = 64;
 
-  Resync(const ResyncProperties& facts, const std::vector<ObjectDef>& objects) : facts_(facts), objects_(objects) {}
+  Resync(const ResyncProperties& facts, const std::vector<ObjectDef>& objects)
+      : facts_(facts), objects_(objects), mute_(facts.candidates.size(), false) {}
 
   /// This exchange was given up.
   void lost(const bus::Exchange& exchange, Instant now);
-  /// The resynchronisation read was answered: a drive answers in order, so nothing older is left.
-  void answered() {
-    suspect_ = false;
-    lost_.clear();
-    refused_.clear();
-    counting_.reset();
-    resyncs_ = 0;
-  }
+  /// The resynchronisation read was answered: a drive answers in order, so nothing older is left. Of those that were
+  /// sent since the loss the last one has answered, and what the others read may be mute.
+  void answered();
+  /// Nothing counts as owed any more, for another reason.
+  void forget();
   [[nodiscard]] bool suspect() const { return suspect_; }
   /// All resynchronisation reads are used up.
   [[nodiscard]] bool exhausted() const { return resyncs_ >= kMaxResyncs; }
   /// The read that is the next resynchronisation read; none: no distinguishable one is left.
   [[nodiscard]] std::optional<ResyncRead> candidate() const;
-  void resync_sent() { ++resyncs_; }
+  void resync_sent(const ResyncRead& read);
   /// From then on every reply still owed by the drive would break its worst_reply: a plain read is safe.
   [[nodiscard]] Instant silent_until() const {
     return last_lost_ == kLongAgo ? kLongAgo : last_lost_ + facts_.worst_reply;
   }
   /// Silence was kept until silent_until(), and nothing else tells replies apart: nothing counts as owed any more.
-  void waited_out() { answered(); }
+  void waited_out() { forget(); }
 
   /// After the silence replies are told apart still: by counting, or by a length that is owed no more.
   [[nodiscard]] bool counts_out() const;
@@ -85,6 +83,8 @@ class Resync {
   boost::container::static_vector<Lost, kMaxLost> lost_;
   boost::container::static_vector<Likeness, kMaxLost> refused_;
   std::optional<Counting> counting_{};
+  std::vector<bool> mute_;  ///< candidates that did not answer although the drive did: those that do come first
+  boost::container::static_vector<std::size_t, kMaxResyncs> sent_;  ///< candidates asked since the loss
   Instant last_lost_ = kLongAgo;
   int resyncs_ = 0;
   bool suspect_ = false;

@@ -72,11 +72,11 @@ TEST(Resync, NeverUsesAnObjectWhoseReplyMayStillCome) {
   resync.lost(reading(0x2001), kStart);
   EXPECT_TRUE(resync.suspect());
   EXPECT_EQ(resync.candidate().value().object, 2);
-  resync.resync_sent();
+  resync.resync_sent(*resync.candidate());
   resync.lost(reading(0x2002), kStart + 100ms);
   EXPECT_EQ(resync.candidate().value().object, 3);
   EXPECT_FALSE(resync.exhausted());
-  resync.resync_sent();
+  resync.resync_sent(*resync.candidate());
   EXPECT_TRUE(resync.exhausted());
   resync.lost(reading(0x2003), kStart + 200ms);
   EXPECT_FALSE(resync.candidate().has_value());
@@ -91,7 +91,7 @@ TEST(Resync, AnAnsweredOneProvesThatNothingOlderIsLeft) {
   Resync resync(model.resync, model.objects);
   resync.lost(reading(0x2001), kStart);
   resync.lost(reading(0x2004), kStart);
-  resync.resync_sent();
+  resync.resync_sent(*resync.candidate());
   resync.answered();
   EXPECT_FALSE(resync.suspect());
   resync.lost(reading(0x2000), kStart + 1s);

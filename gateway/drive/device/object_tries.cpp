@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/device/object_tries.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace axisgate::drive {
+
+void ObjectTries::restart() {
+  for (Entry& e : entries_) e = {.told = e.told};
+  given_up_.clear();
+}
+
+void ObjectTries::keep_given_up(ObjectId object, Instant now) {
+  entries_[object] = {.tries = kTries, .pause = kFirstPause, .again = now + kFirstPause, .told = true};
+}
+
+bool ObjectTries::in_vain(ObjectId object, const Refusal& refusal, bool needed, Instant now) {
+  Entry& e = entries_[object];
+  e.refusal = refusal;
+  const bool was_given_up = e.tries == kTries;
+  if (!was_given_up && ++e.tries < kTries) {
+    if (refusal) e.again = now + kRefusedPause;
+    return false;
+  }
+  const Duration longest = needed ? kLongestNeeded : kLongestPause;
+  e.pause = e.pause == Duration{} ? kFirstPause : std::min(2 * e.pause, longest);
+  e.again = now + e.pause;
+  if (!was_given_up) given_up_.push_back({object, !std::exchange(e.told, true)});
+  return true;
+}
+
+bool ObjectTries::answered(ObjectId object) {
+  const bool was_given_up = given_up(object);
+  entries_[object] = {};
+  std::erase_if(given_up_, [object](const GivenUp& g) { return g.object == object; });
+  if (!was_given_up) return false;
+  for (Entry& e : entries_) {
+    e.again = kLongAgo;
+    e.pause = {};
+  }
+  return true;
+}
+
+std::vector<ObjectTries::GivenUp> ObjectTries::take_given_up() { return std::exchange(given_up_, {}); }
+
+std::string place_of(const DriveModel& model, ObjectId object) {
+  const bus::ObjectAddress& at = model.object(object).address;
+  return model.protocol == "modbus-rtu" ? fmt::format("register {}", at.index)
+                                        : fmt::format("0x{:04X}:{:02X}", at.index, at.sub);
+}
+
+std::string uses_of(const DriveModel& model, ObjectId object) {
+  std::vector<std::string> uses;
+  const auto add = [&uses](std::string use) {
+    if (std::find(uses.begin(), uses.end(), use) == uses.end()) uses.push_back(std::move(use));
+  };
+  for (const AxisModel& axis : model.axes) {
+    if (axis.needs_for_state(object)) add(fmt::format("the state of axis {}", axis.number));
+    for (const Binding& binding : axis.bindings) {
+      const bool of_bits = std::any_of(binding.bits.begin(), binding.bits.end(),
+                                       [object](const BitField& field) { return field.object == object; });
+      if (binding.object == object || of_bits) add(std::string(row(binding.quantity).name));
+    }
+    if (std::find(axis.fault_words.begin(), axis.fault_words.end(), object) != axis.fault_words.end())
+      add("the causes of faults");
+  }
+  for (const Check& check : model.checks)
+    if (check.bad.object == object) add("the check " + check.name);
+  if (std::find(model.loss_objects.begin(), model.loss_objects.end(), object) != model.loss_objects.end())
+    add("what stops the drive when the gateway dies");
+  for (const ObjectWrite& setup : model.setup)
+    if (setup.object == object) add("the set-up");
+  const std::vector<ObjectId> constants = constant_objects(model);
+  if (std::find(constants.begin(), constants.end(), object) != constants.end()) add("the axis's scales");
+  if (uses.empty()) add("its commands");
+  return fmt::format("{}", fmt::join(uses, ", "));
+}
+
+}  // namespace axisgate::drive
