@@ -47,8 +47,8 @@ void CanLine::request_arrives(std::size_t position, const BusFrame& frame, std::
   std::optional<std::uint32_t> refusal;
   const bool may_refuse = slot.node->may_refuse(frame);
   if (may_refuse && slot.faults.strikes(DriveFault::exception, random_)) refusal = slot.faults.abort_code;
-  const auto spoilt = may_refuse ? spoilt_by(slot.faults, frame) : std::nullopt;
-  if (spoilt && !spoilt->refused_with) {
+  const auto spoilt = answerable ? spoilt_by(slot.faults, frame) : std::nullopt;
+  if (spoilt && (!spoilt->refused_with || !may_refuse)) {
     journal_.record(std::move(exchange));
     return;
   }

@@ -136,8 +136,84 @@ TEST_P(MuteObject, WhileOnlineCostsItselfAlone) {
   }
 }
 
+// Whose end, limits and stop are told by what is mute: nobody can answer for it any more.
+TEST_P(MuteObject, ThatAMotionNeedsStopsTheMotor) {
+  for (const Readable& object : readable(GetParam())) {
+    const bool position = object.name == "position_actual" || object.name == "A.position";
+    if ((!object.tells_state && !position) || object.unasked) continue;
+    TableRig rig(GetParam());
+    if (drive::is_canopen(model(rig))) continue;  // both come by TPDO, whoever reads them or not
+    SCOPED_TRACE(object.name);
+    rig.online();
+    ASSERT_EQ(rig.command(Command::enable).outcome.code, Errc::ok);
+    ASSERT_EQ(rig.ask(rig.motion()).outcome.code, Errc::ok);
+    rig.stage.run(1s);
+    ASSERT_TRUE(rig.turns());
+    faults(rig).spoil(object.place, {});
+    EXPECT_TRUE(rig.stage.run_until([&] { return !rig.turns(); }, 15s)) << "it turns on, and nobody sees it";
+    EXPECT_GE(lines_with(rig, "is told no more, and the motion needs it"), 1U);
+    faults(rig).mend(object.place);
+    EXPECT_TRUE(rig.stage.run_until([&] { return online(rig); }, 62s));
+    rig.stage.run(2s);
+    EXPECT_FALSE(rig.turns()) << "nothing resumes";
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(EachDrive, MuteObject, testing::ValuesIn(kEach),
                          [](const auto& of) { return name(of.param); });
+
+// A drive that has just started, or is busy, refuses what it has.
+using Refused = std::tuple<Subject, std::uint32_t>;
+class RefusedForNow : public testing::TestWithParam<Refused> {};
+
+TEST_P(RefusedForNow, IsBackWithoutARestart) {
+  const auto [subject, code] = GetParam();
+  for (const Readable& object : readable(subject)) {
+    SCOPED_TRACE(object.name);
+    TableRig whole(subject);
+    whole.online();
+    whole.stage.run(2s);
+    TableRig rig(subject);
+    faults(rig).spoil(object.place, {.refused_with = code});
+    rig.stage.run(4s);
+    faults(rig).mend(object.place);
+    const auto as_it_should_be = [&] {
+      return online(rig) && rig.axis().supported == whole.axis().supported &&
+             (whole.axis().valid_bits() & ~rig.axis().valid_bits()) == 0;
+    };
+    EXPECT_TRUE(rig.stage.run_until(as_it_should_be, 10s));
+  }
+}
+
+std::string refused_name(const testing::TestParamInfo<Refused>& of) {
+  return name(std::get<0>(of.param)) + "With" + std::to_string(std::get<1>(of.param));
+}
+
+INSTANTIATE_TEST_SUITE_P(Rtu, RefusedForNow,
+                         testing::Combine(testing::Values(Subject::id286pro, Subject::jd_rtu), testing::Values(4, 6)),
+                         refused_name);
+INSTANTIATE_TEST_SUITE_P(ByAbort, RefusedForNow,
+                         testing::Combine(testing::Values(Subject::leadshine, Subject::jd_can, Subject::jd_serial,
+                                                          Subject::keya_canopen_speed),
+                                          testing::Values(0x08000000U, 0x06060000U, 0x08000023U, 0x06040043U)),
+                         refused_name);
+
+// Until it has answered anything, "there is no such object" says nothing of the drive.
+TEST(RefusedAtItsStart, ByADriveThatStillStartsIsNotForEver) {
+  for (const Subject subject : {Subject::id286pro, Subject::jd_rtu, Subject::leadshine, Subject::jd_serial}) {
+    SCOPED_TRACE(name(subject));
+    TableRig rig(subject);
+    const bool by_code = subject == Subject::id286pro || subject == Subject::jd_rtu;
+    const std::uint32_t not_there = by_code ? 2 : 0x06020000;
+    const std::vector<Readable> all = readable(subject);
+    for (const Readable& object : all) faults(rig).spoil(object.place, {.refused_with = not_there});
+    rig.stage.run(3s);
+    for (const Readable& object : all) faults(rig).mend(object.place);
+    EXPECT_TRUE(rig.stage.run_until([&] { return online(rig); }, 10s));
+    rig.stage.run(1s);
+    EXPECT_NE(rig.axis().supported & bit(Quantity::position_actual), 0U);
+  }
+}
 
 }  // namespace
 }  // namespace axisgate::test
