@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fault switches of one drive on a line: each a probability per reply, and a number of next replies for tests.
-// And single objects of it that are mute, or refused. Promises that a switch which is off draws no random number, so switching one fault on shifts no other draw before it.
-// Never touches the drive or the line; the line asks it.
+// And single objects of it that are mute, or refused. Promises that a switch which is off draws no random number, so
+// switching one fault on shifts no other draw before it. Never touches the drive or the line; the line asks it.
 #pragma once
 
 #include <algorithm>

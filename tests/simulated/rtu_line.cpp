@@ -178,7 +178,8 @@ void RtuLine::request_arrives(std::size_t position, const RtuFrame& request, Tim
   RtuBytes pdu = refusal ? slot.slave->refusal(request.pdu, static_cast<RtuException>(*refusal))
                          : slot.slave->answer(request.pdu, exchange.tag, at);
   const bool mute = spoilt && !spoilt->refused_with;
-  if (!broadcast && !mute && !slot.faults.strikes(DriveFault::lose, random_)) reply(position, std::move(pdu), at, exchange);
+  if (!broadcast && !mute && !slot.faults.strikes(DriveFault::lose, random_))
+    reply(position, std::move(pdu), at, exchange);
   journal_.record(std::move(exchange));
 }
 

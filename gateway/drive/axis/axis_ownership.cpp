@@ -334,8 +334,9 @@ void Axis::on_blind(ObjectId object) {
   if (!shows || !moves || core_.motion.stopping()) return;
   Command stop = command_of(ownership_.rules().on_expiry);
   if (stop == Command::none) stop = Command::quick_stop;
-  host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(stop),
-              fmt::format("{} is told no more, and the motion needs it: {}", core_.object(object).name, in_words(stop)));
+  host_.event(
+      image_.number, EventKind::command, static_cast<std::uint32_t>(stop),
+      fmt::format("{} is told no more, and the motion needs it: {}", core_.object(object).name, in_words(stop)));
   stop_by_itself(stop, true, [](const BatchResult&) {});
 }
 

@@ -30,7 +30,12 @@ BringUp::BringUp(const DriveModel& model, Duration timeout)
 void BringUp::begin() {
   read_at_ = setup_at_ = 0;
   setup_written_ = read_back_ = adopted_ = completed_ = false;
-  exchange_tries_ = 0;
+  exchange_tries_ = write_tries_ = 0;
+  write_again_ = kLongAgo;
+  refused_for_now_.clear();
+  amend_pause_ = {};
+  amend_due_ = kNever;
+  amending_ = false;
   confirm_after_.reset();
   unheld_.clear();
   setup_.reset();
@@ -49,6 +54,7 @@ bool BringUp::any_enabled(const ObjectStore& store) const {
 }
 
 std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
+  if (amending_) return any_enabled(store) ? std::nullopt : next_setup(store);
   while (read_at_ < reads_.size()) {
     const ObjectState& s = store[reads_[read_at_]];
     // The state is asked for ever: without it there is no axis. What else is asked in vain counts as refused.
@@ -91,6 +97,7 @@ std::optional<BringUp::Next> BringUp::next_setup(const ObjectStore& store) {
       if (!holds && model_.object(setup.object).readable) unheld_.push_back(setup.object);
       ++setup_at_;
       setup_written_ = false;
+      write_tries_ = 0;
       continue;
     }
     return Next{setup.object, true, setup.raw};
@@ -111,9 +118,35 @@ void BringUp::written() {
   read_back_ = setup_ && setup_at_ < setup_->size() && model_.object((*setup_)[setup_at_].object).readable;
 }
 
-void BringUp::write_refused() {
-  setup_written_ = true;
+void BringUp::write_refused(bool for_now, Instant now) {
   read_back_ = false;
+  const int tries = amending_ ? 1 : kWriteTries;
+  if (for_now && ++write_tries_ < tries) {
+    write_again_ = now + write_tries_ * kFirstPause;
+    return;
+  }
+  setup_written_ = true;
+  if (!for_now || !setup_ || setup_at_ >= setup_->size()) return;
+  refused_for_now_.push_back((*setup_)[setup_at_]);
+  amend_due_ = now + std::max(amend_pause_, kFirstPause);
+}
+
+void BringUp::begin_amending(Instant now) {
+  amending_ = true;
+  amend_pause_ = std::clamp(2 * amend_pause_, kFirstPause, kLongestPause);
+  amend_due_ = kNever;
+  read_back_ = setup_written_ = false;
+  setup_ = std::exchange(refused_for_now_, {});
+  setup_at_ = 0;
+  write_again_ = now;
+  unheld_.clear();
+}
+
+void BringUp::end_amending(Instant now) {
+  if (!std::exchange(amending_, false)) return;
+  refused_for_now_.insert(refused_for_now_.end(), setup_->begin() + static_cast<std::ptrdiff_t>(setup_at_),
+                          setup_->end());
+  if (!refused_for_now_.empty()) amend_due_ = now + amend_pause_;
 }
 
 }  // namespace axisgate::drive

@@ -33,8 +33,21 @@ class BringUp {
   [[nodiscard]] std::optional<Next> next(const ObjectStore& store);
   /// The write given by next() was acknowledged, or its outcome is unknown: it is read back next.
   void written();
-  /// The drive refused the write given by next().
-  void write_refused();
+  /// The drive refused the write given by next(). `for_now`: it is tried kWriteTries times, ever later.
+  void write_refused(bool for_now, Instant now);
+  static constexpr int kWriteTries = 3;
+  static constexpr Duration kFirstPause = std::chrono::milliseconds(500), kLongestPause = std::chrono::seconds(60);
+  /// The write given by next() is not to be sent before.
+  [[nodiscard]] Instant write_again() const { return write_again_; }
+  /// A drive that is brought up refused some of its setup for now: when it is tried again; kNever: it did not.
+  [[nodiscard]] Instant amend_due() const { return amend_due_; }
+  /// From now on next() gives what was refused for now, once each, and nothing else.
+  void begin_amending(Instant now);
+  [[nodiscard]] bool amending() const { return amending_; }
+  /// What is left of it is tried again later.
+  void end_amending(Instant now);
+  /// The read given by next() is of what was just written: it does not wait for its turn.
+  [[nodiscard]] bool reads_back() const { return read_back_; }
   /// The read given by next() was a read-back, and it was answered.
   void read_back_answered() { read_back_ = false; }
   /// A Next::exchange was answered or refused, or is given up as unanswered.
@@ -85,6 +98,12 @@ class BringUp {
   bool read_back_ = false;
   bool adopted_ = false;
   int exchange_tries_ = 0;  ///< in a row
+  int write_tries_ = 0;
+  Instant write_again_ = kLongAgo;
+  std::vector<ObjectWrite> refused_for_now_;
+  Duration amend_pause_{};
+  Instant amend_due_ = kNever;
+  bool amending_ = false;
   std::string lacks_;
   bool completed_ = false;
   std::vector<ObjectId> unheld_;

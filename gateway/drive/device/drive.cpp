@@ -311,10 +311,13 @@ void Drive::bring_up_to_date() {
       for (const Check& check : model_.checks) axis->set_alarm(check.alarm, false);
     judge_checks();
     leave_adoption();
+    amend_setup();
   }
   const bool duplicated = presence_.duplicated(turn_.now);
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::duplicate_node, duplicated);
-  Instant next = std::min(duplicated ? presence_.duplicate_until() : kNever, bring_up_.start().deadline(turn_.now));
+  const Instant amends = brought_up() && jobs_.setup == 0 ? bring_up_.amend_due() : kNever;
+  Instant next =
+      std::min({duplicated ? presence_.duplicate_until() : kNever, bring_up_.start().deadline(turn_.now), amends});
   for (auto& axis : axes_) {
     axis->publish();
     next = std::min({next, axis->next_deadline(), stale_deadline(axis->core(), axis->image())});

@@ -126,6 +126,8 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void on_given_up();
   void tell_given_up(ObjectId object);
   void judge_given_up();
+  void amend_setup();
+  void end_amending();
   [[nodiscard]] std::string lacking(ObjectId object) const;
   void tell_mismatch(const std::string& lacks);
   void judge_profile();
@@ -140,6 +142,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void on_emergency(const bus::UnsolicitedEvent& unsolicited);
   void left_operational(bus::NodeState state);
   [[nodiscard]] bool may_be_set_up_anew() const;
+  [[nodiscard]] bool enable_is_asked() const;
   void map_values();
   void watch_positions();
   void unmap_values();

@@ -26,7 +26,12 @@ bool moves_by(const DriveModel& model, ObjectId object) {
 }  // namespace
 
 std::optional<bus::Exchange> Drive::next_of_bring_up() {
-  const auto next = bring_up_.next(store_);
+  const bool amends = bring_up_.amending();
+  const auto next = amends && enable_is_asked() ? std::nullopt : bring_up_.next(store_);
+  if (!next && amends) {
+    end_amending();
+    return std::nullopt;
+  }
   if (!next) {
     // A drive that was found faulted comes online with the cause of it.
     if (causes_are_open()) {
@@ -41,7 +46,8 @@ std::optional<bus::Exchange> Drive::next_of_bring_up() {
     if (next->exchange->access == bus::Access::command) bring_up_.start().told(turn_.now);
     return next->exchange;
   }
-  if (const Instant again = next->write ? kLongAgo : reads_.tries().again(next->object); turn_.now < again) {
+  const Instant read_again = bring_up_.reads_back() ? kLongAgo : reads_.tries().again(next->object);
+  if (const Instant again = next->write ? bring_up_.write_again() : read_again; turn_.now < again) {
     bus_.wait(jobs_.setup, again);
     return std::nullopt;
   }
@@ -71,7 +77,7 @@ void Drive::begin_bring_up(bool restarted) {
 }
 
 void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
-  if (turn_.link != LinkState::setup) return;
+  if (turn_.link != LinkState::setup && !bring_up_.amending()) return;
   const auto next = bring_up_.next(store_);
   if (next && next->exchange) {
     // Lost: asked once more, when the resynchronisation read is answered; but not for ever.
@@ -83,9 +89,12 @@ void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::Exchange
   const bool was_write = exchange.access == bus::Access::write;
   if (was_write) {
     if (result.code == Errc::refused_by_drive)
-      bring_up_.write_refused();
+      bring_up_.write_refused(result.for_now, turn_.now);
     else
       bring_up_.written();
+    // Whether it can be read is another question now.
+    if (const ObjectId id = model_.find(exchange.object); result.code == Errc::ok && store_[id].refused)
+      store_.forget(id);
   } else if (result.code == Errc::ok) {
     bring_up_.read_back_answered();
   }
@@ -105,8 +114,7 @@ void Drive::tell_given_up(ObjectId id) {
   event(axis.core().model.number, EventKind::warning, 0,
         fmt::format("{} ({}) of node {} {} three times in a row, though the drive answers others: it is for {}; {}",
                     object.name, place_of(model_, id), model_.node,
-                    refusal ? fmt::format("was refused (0x{:08X})", *refusal) : "was not answered",
-                    uses_of(model_, id),
+                    refusal ? fmt::format("was refused (0x{:08X})", *refusal) : "was not answered", uses_of(model_, id),
                     model_.needs_for_state(id) ? "nothing is known of the axis without it, and it is asked each 2 s"
                                                : "the axis goes on without it, and it is asked ever more seldom"));
 }
@@ -210,8 +218,28 @@ void Drive::judge_loss_reaction() {
 
 // An enable that is under way, or waits for its turn, would meet the NMT commands of a bring-up.
 bool Drive::may_be_set_up_anew() const {
-  const bool wanted = !end_.begun() && (bring_up_.adopted() || bring_up_.completed() || bring_up_.start().is_due(turn_.now));
-  return wanted && std::none_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->enable_is_asked(); });
+  const bool due = bring_up_.adopted() || bring_up_.completed() || bring_up_.start().is_due(turn_.now);
+  return due && !end_.begun() && !enable_is_asked();
+}
+
+bool Drive::enable_is_asked() const {
+  return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->enable_is_asked(); });
+}
+
+// What the drive refused of its setup for now: a heartbeat it must send, or what makes it notice a dead gateway. Tried
+// again beside what clients do, as long as no motor of it is enabled; the axis stays online.
+void Drive::amend_setup() {
+  if (bring_up_.amending() && jobs_.setup == 0) bring_up_.end_amending(turn_.now);  // it was given up with the queue
+  const bool may = turn_.link == LinkState::online && jobs_.setup == 0 && !end_.begun() && !enable_is_asked();
+  if (!may || turn_.now < bring_up_.amend_due()) return;
+  bring_up_.begin_amending(turn_.now);
+  jobs_.setup = queue_own(bus::Priority::setup);
+}
+
+void Drive::end_amending() {
+  bus_.finish(std::exchange(jobs_.setup, 0));
+  bring_up_.end_amending(turn_.now);
+  judge_loss_reaction();
 }
 
 // Full bring-up at the first disabled state after an adoption, or after the node left operational.

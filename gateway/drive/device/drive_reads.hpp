@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a drive is read for by the gateway itself, and what becomes of the answers (design 7, points 4 and 6): the poll
 // plan, what is read along in one request, the resynchronisation read after a timeout, what is asked in vain, and what
-// comes unasked. Pure: exchanges, results and instants go in. Promises that no answer counts while a late one could pass
-// for it, that what the drive does not have is not asked again before the next bring-up, that one object which does not
-// answer, or is refused for now, costs the others nothing, and that a number of another width than the profile's is
-// shown nowhere. Never sends, and never judges whether the drive is there.
+// comes unasked. Pure: exchanges, results and instants go in. Promises that no answer counts while a late one could
+// pass for it, that what the drive does not have is not asked again before the next bring-up, that one object which
+// does not answer, or is refused for now, costs the others nothing, and that a number of another width than the
+// profile's is shown nowhere. Never sends, and never judges whether the drive is there.
 #pragma once
 
 #include <string>

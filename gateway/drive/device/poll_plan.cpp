@@ -117,8 +117,8 @@ void PollPlan::first(ObjectId object) {
 }
 
 const PollPlan::Entry* PollPlan::earliest() const {
-  const auto found =
-      std::min_element(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.asked_at() < b.asked_at(); });
+  const auto found = std::min_element(entries_.begin(), entries_.end(),
+                                      [](const Entry& a, const Entry& b) { return a.asked_at() < b.asked_at(); });
   return found == entries_.end() ? nullptr : &*found;
 }
 

@@ -92,9 +92,9 @@ TEST(SdoCodec, the_crc_is_the_one_of_the_standard) {
 }
 
 TEST(SdoCodec, all_but_what_says_what_the_drive_has_may_pass) {
-  for (const std::uint32_t code : {0x08000000U, 0x08000020U, 0x08000021U, 0x08000022U, 0x08000023U, 0x08000024U,
-                                   0x06060000U, 0x06040043U, 0x06090030U, 0x06070010U, 0x06010002U, 0x05040000U,
-                                   0x05040005U, 0x05030000U, 0x00000000U}) {
+  for (const std::uint32_t code :
+       {0x08000000U, 0x08000020U, 0x08000021U, 0x08000022U, 0x08000023U, 0x08000024U, 0x06060000U, 0x06040043U,
+        0x06090030U, 0x06070010U, 0x06010002U, 0x05040000U, 0x05040005U, 0x05030000U, 0x00000000U}) {
     EXPECT_TRUE(bus::abort_may_pass(code)) << std::hex << code;
   }
   for (const std::uint32_t code : {0x06020000U, 0x06020001U, 0x06090011U, 0x05040001U}) {

@@ -118,7 +118,7 @@ struct SetupRun {
       log.push_back(std::string(next->write ? "write " : "read ") + model.objects[next->object].name);
       if (next->write) {
         if (refuse_writes) {
-          bring_up.write_refused();
+          bring_up.write_refused(false, kLongAgo);
         } else {
           if (!ignore_writes) held = next->number;
           bring_up.written();

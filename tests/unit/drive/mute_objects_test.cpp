@@ -17,9 +17,9 @@ using testing::Ge;
 using testing::Le;
 using Place = simulated::DriveFaults::Place;
 
-constexpr std::array kEach{Subject::id286pro,       Subject::jd_rtu,        Subject::md_rtu,
-                           Subject::leadshine,      Subject::jd_can,        Subject::md_can,
-                           Subject::jd_serial,      Subject::md_serial,     Subject::keya_can_speed,
+constexpr std::array kEach{Subject::id286pro,         Subject::jd_rtu,           Subject::md_rtu,
+                           Subject::leadshine,        Subject::jd_can,           Subject::md_can,
+                           Subject::jd_serial,        Subject::md_serial,        Subject::keya_can_speed,
                            Subject::keya_rs232_speed, Subject::keya_rs485_speed, Subject::keya_canopen_speed};
 
 bool asks_by_code(Subject s) { return s == Subject::keya_rs232_speed || s == Subject::keya_rs485_speed; }
@@ -132,7 +132,8 @@ TEST_P(MuteObject, WhileOnlineCostsItselfAlone) {
     EXPECT_EQ(rig.axis().supported & rig.axis().valid_bits() & ~valid, 0U);
     faults(rig).mend(object.place);
     EXPECT_TRUE(rig.stage.run_until(
-        [&] { return online(rig) && rig.axis().supported == supported && (valid & ~rig.axis().valid_bits()) == 0; }, 62s));
+        [&] { return online(rig) && rig.axis().supported == supported && (valid & ~rig.axis().valid_bits()) == 0; },
+        62s));
   }
 }
 
@@ -197,6 +198,28 @@ INSTANTIATE_TEST_SUITE_P(ByAbort, RefusedForNow,
                                                           Subject::keya_canopen_speed),
                                           testing::Values(0x08000000U, 0x06060000U, 0x08000023U, 0x06040043U)),
                          refused_name);
+
+// What makes a Leadshine notice a dead gateway, and a Kinco send its heartbeat: refused until after it came online.
+TEST(RefusedSetup, IsWrittenWhenTheDriveTakesIt) {
+  for (const auto& [subject, place] :
+       {std::pair{Subject::leadshine, Place{0x1016, 1}}, {Subject::jd_can, Place{0x1017, 0}}}) {
+    SCOPED_TRACE(name(subject));
+    TableRig rig(subject);
+    faults(rig).spoil(place, {.refused_with = 0x08000022, .writes_too = true});
+    ASSERT_TRUE(rig.stage.run_until([&] { return online(rig); }, 20s));
+    rig.stage.run(5s);
+    faults(rig).mend(place);
+    const auto held = [&] {
+      const auto bytes = rig.stage.can_node(0).peek({place.first, place.second}, {});
+      return bytes && simulated::little_endian(*bytes) != 0;
+    };
+    EXPECT_FALSE(held());
+    EXPECT_TRUE(rig.stage.run_until(held, 62s));
+    rig.stage.run(1s);
+    EXPECT_TRUE(online(rig));
+    EXPECT_FALSE(rig.axis().alarms & bit(AxisAlarm::no_comm_watchdog)) << testing::PrintToString(rig.stage.log());
+  }
+}
 
 // Until it has answered anything, "there is no such object" says nothing of the drive.
 TEST(RefusedAtItsStart, ByADriveThatStillStartsIsNotForEver) {
