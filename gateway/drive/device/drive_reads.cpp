@@ -199,7 +199,7 @@ void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField
     store_.read(id, narrow.number(field.raw), asked.sent_at);
   } else if (wide) {
     store_.read(id, *wide, asked.sent_at);
-    if (!std::exchange(wide_told_, true))
+    if (!asked.probe && !std::exchange(wide_told_, true))
       taken.unlike.push_back(width_text(object, field) +
                              ": the bytes above are empty: taken, and so is whatever else "
                              "this drive answers so");
