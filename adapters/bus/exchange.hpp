@@ -64,6 +64,8 @@ struct Exchange {
   /// Any other exchange with a node that has a chain open ends that chain (CiA 301: abort 0x08000022).
   Part part = Part::whole;
   ObjectBytes bytes{};  ///< Part::first of a write: all that is written, in the object's own order
+  /// CANopen reads: the bytes of an answer that does not say how many it has; 0: `size` of them, or else four.
+  std::uint8_t unsaid = 0;
   friend bool operator==(const Exchange&, const Exchange&) = default;
 };
 

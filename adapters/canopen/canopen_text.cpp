@@ -15,8 +15,6 @@ namespace {
 
 using Kind = SdoReply::Kind;
 
-std::string object_text(bus::ObjectAddress object) { return fmt::format("{:04X}:{:02X}", object.index, object.sub); }
-
 /// As many digits as there are bytes.
 std::string value_text(Bytes bytes) {
   if (bytes.empty() || bytes.size() > kExpeditedBytes) return hex_text(bytes);
@@ -127,6 +125,8 @@ std::string request_text(Bytes bytes) {
 }
 
 }  // namespace
+
+std::string object_text(bus::ObjectAddress object) { return fmt::format("{:04X}:{:02X}", object.index, object.sub); }
 
 std::string describe(const can::CanFrame& frame) {
   const auto id = frame.extended ? std::nullopt : cob_id(frame.id);

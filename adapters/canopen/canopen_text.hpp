@@ -6,9 +6,13 @@
 
 #include <string>
 
+#include "adapters/bus/exchange.hpp"
 #include "adapters/can/can_frame.hpp"
 
 namespace axisgate::canopen {
+
+/// "6041:00".
+[[nodiscard]] std::string object_text(bus::ObjectAddress object);
 
 [[nodiscard]] std::string describe(const can::CanFrame& frame);
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adapters/canopen/canopen_wire.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bitset>
 #include <cassert>
 #include <optional>
 #include <utility>
@@ -9,6 +12,7 @@
 #include "adapters/can/can_line.hpp"
 #include "adapters/canopen/canopen_text.hpp"
 #include "adapters/canopen/heartbeat_plan.hpp"
+#include "adapters/canopen/nmt.hpp"
 #include "adapters/canopen/sdo_client.hpp"
 #include "adapters/canopen/unasked.hpp"
 
@@ -33,9 +37,13 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   void set_decode(bool on) override { line_.set_decode(on); }
 
  private:
+  /// A drive that answers another object than it is asked is told so often at most.
+  static constexpr Duration kTellInsteadAgain = std::chrono::minutes(1);
   struct Node {
     std::uint8_t number = 0;
     Unasked unasked;
+    Instant tell_instead_at = kLongAgo;
+    std::uint32_t instead_untold = 0;
   };
 
   void on_link_up() override;
@@ -50,13 +58,18 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   void transmit(std::uint8_t node, const SdoFrames& frames);
   void on_reply_frame(Node& node, Bytes bytes, Instant now);
   void tell(Node& node, const Unasked::News& news);
+  void tell_instead(Node& node, const SdoClient::Instead& instead);
+  void meet_stranger(const CobId& id, Bytes bytes);
   void watch_nodes(Instant now);
   [[nodiscard]] Node* find(std::uint8_t number);
 
   CanopenSettings settings_;
+  std::string log_source_;
+  const Log& log_;
   Runtime& runtime_;
   bus::WireEvents* events_ = nullptr;
   std::vector<Node> nodes_;
+  std::bitset<kLastNode + 1> strangers_;  ///< nodes of no drive that were heard
   SdoClient sdo_;
   HeartbeatPlan heartbeat_;
   PeriodPlan sync_;
@@ -71,6 +84,8 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
 
 CanopenWire::CanopenWire(CanopenSettings settings, std::unique_ptr<can::CanLink> link, Runtime& runtime, const Log& log)
     : settings_(std::move(settings)),
+      log_source_("bus " + settings_.name),
+      log_(log),
       runtime_(runtime),
       sdo_(settings_.timeout),
       heartbeat_(settings_.own_heartbeat),
@@ -141,8 +156,10 @@ void CanopenWire::abandon() {
   owed_.reset();
   const auto node = sdo_.outstanding_node();
   if (!node) return;
-  const SdoFrames frames = sdo_.abandon();
-  if (line_.up()) transmit(*node, frames);
+  const SdoClient::Abandoned abandoned = sdo_.abandon();
+  if (line_.up()) transmit(*node, abandoned.frames);
+  Node* found = find(*node);
+  if (found != nullptr && abandoned.instead) tell_instead(*found, *abandoned.instead);
 }
 
 void CanopenWire::map_process_data(std::uint8_t node, std::uint8_t number, const bus::ProcessMap& objects) {
@@ -192,9 +209,12 @@ void CanopenWire::on_link_down(std::string_view why) {
 void CanopenWire::on_frame(const can::CanFrame& frame, Instant received) {
   line_.count(frame);
   const auto id = frame.extended || frame.remote ? std::nullopt : cob_id(frame.id);
-  Node* node = line_.up() && id ? find(id->node) : nullptr;
-  // Another master's guarding, a node nobody configured: not ours to judge.
-  if (node == nullptr) return;
+  if (!line_.up() || !id) return;  // another master's guarding is not ours to judge
+  Node* node = find(id->node);
+  if (node == nullptr) {
+    if (!strangers_.test(id->node)) meet_stranger(*id, frame.bytes());
+    return;
+  }
   const Instant now = std::min(received, runtime_.now());
   if (id->service == Service::sdo_reply) {
     line_.tell(frame);
@@ -241,6 +261,31 @@ void CanopenWire::tell(Node& node, const Unasked::News& news) {
   if (news.bad) line_.count_bad_frame();
   if (news.guard) line_.send(guard_frame(node.number));
   for (const bus::UnsolicitedEvent& unsolicited : news.unsolicited_events) events_->on_unsolicited(unsolicited);
+}
+
+void CanopenWire::tell_instead(Node& node, const SdoClient::Instead& instead) {
+  const Instant now = runtime_.now();
+  if (now < node.tell_instead_at) {
+    ++node.instead_untold;
+    return;
+  }
+  node.tell_instead_at = now + kTellInsteadAgain;
+  std::string more;
+  if (const std::uint32_t times = std::exchange(node.instead_untold, 0); times > 0)
+    more = fmt::format(" ({} more like it were left out)", times);
+  log_.write(LogLevel::warning, log_source_,
+             fmt::format("node {} was asked for {} and answered {}: its answer is not taken{}", node.number,
+                         object_text(instead.asked), object_text(instead.answered), more));
+}
+
+/// It may be a drive whose number is not the one in the configuration; it may as well be another master's.
+void CanopenWire::meet_stranger(const CobId& id, Bytes bytes) {
+  const bool lives = id.service == Service::error_control && decode_error_control(bytes);
+  const bool complains = id.service == Service::emergency && bytes.size() == can::kMaxFrameBytes;
+  if (!lives && !complains) return;
+  strangers_.set(id.node);
+  log_.write(LogLevel::info, log_source_,
+             fmt::format("node {} is heard on this bus, and no drive of the configuration has this number", id.node));
 }
 
 void CanopenWire::on_timer() {

@@ -38,7 +38,8 @@ struct CanopenSettings {
 
 /// What the wire says of an exchange, beside wire.hpp's rules:
 /// - An NMT command is sent at once and ends ok in the next turn of the loop.
-/// - A value comes with the width that the drive sent, whatever was asked for: the profile's type judges it.
+/// - A value comes with the width that the drive sent, whatever was asked for: the profile's type judges it. Where the
+///   drive says no width, it is the one of Exchange::unsaid.
 /// - Part::whole of an object that is longer than four bytes, or has three: refused, detail 0x06070010.
 /// - An object over kMaxObjectBytes: refused, detail 0x05040005, and not `for_now`.
 /// - Wrong CRC, a length other than the server said, blocks that never arrive: bad_reply; the detail is the abort sent.

@@ -38,11 +38,13 @@ std::optional<CobId> cob_id(std::uint32_t id) {
 std::vector<can::CanFilter> filters_for(const std::vector<std::uint8_t>& nodes) {
   std::vector<can::CanFilter> filters;
   const auto pass = [&](std::uint32_t id) { filters.push_back({.id = id, .mask = can::kMaxStandardId}); };
+  filters.push_back({.id = error_control_id(0), .mask = can::kMaxStandardId & ~std::uint32_t{kLastNode}});
+  // 081h to 0FFh: SYNC, which lies before them, comes a thousand times a second where another master needs it.
+  for (std::uint8_t first = 1; first < kLastNode; first = static_cast<std::uint8_t>(first << 1))
+    filters.push_back({.id = emergency_id(first), .mask = can::kMaxStandardId & ~(std::uint32_t{first} - 1)});
   for (const std::uint8_t node : nodes) {
-    pass(emergency_id(node));
     for (std::uint8_t number = 1; number <= kTpdos; ++number) pass(tpdo_id(number, node));
     pass(sdo_reply_id(node));
-    pass(error_control_id(node));
   }
   assert(filters.size() <= can::kMaxFilters);
   return filters;

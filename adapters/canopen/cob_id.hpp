@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The predefined connection set of CiA 301 section 7.3.5: which COB-ID carries what of which node.
 // Promises that every id of the set is told apart, and that the filters let through what the configured nodes send by
-// it and nothing else. Never knows an id that was moved elsewhere: the profiles leave them where they are.
+// it, of any other node its signs of life and errors, which are few, and nothing else. Never knows an id that was moved
+// elsewhere: the profiles leave them where they are.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +46,8 @@ struct CobId {
 /// No value: an id outside the set.
 [[nodiscard]] std::optional<CobId> cob_id(std::uint32_t id);
 
-/// What the link hands over: the EMCY, TPDO 1 to 4, SDO reply and error control ids of these nodes.
+/// What the link hands over: the TPDO 1 to 4 and SDO reply ids of these nodes; EMCY and error control of
+/// any node.
 [[nodiscard]] std::vector<can::CanFilter> filters_for(const std::vector<std::uint8_t>& nodes);
 
 }  // namespace axisgate::canopen

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The SDO client of one bus: one exchange outstanding, and for each node at most one open transfer.
 // Promises that a reply ends only the exchange that asked for it; that a transfer which something else interrupts, or
-// which is given up, is aborted at its server; that a second reply to a finished request is told.
+// which is given up, is aborted at its server; that a second reply to a finished request is told; that an abort which
+// names no object is believed only where nothing else is left that it could answer.
 // Never sends: it says what to send. Never looks at a clock.
 #pragma once
 
 #include <array>
+#include <boost/container/static_vector.hpp>
 #include <optional>
 #include <variant>
 
@@ -39,8 +41,17 @@ class SdoClient {
   };
   [[nodiscard]] Heard take(std::uint8_t node, Bytes bytes, Instant now);
 
+  /// What a server was asked for and what it answered in its place.
+  struct Instead {
+    bus::ObjectAddress asked;
+    bus::ObjectAddress answered;
+  };
+  struct Abandoned {
+    SdoFrames frames{};
+    std::optional<Instead> instead{};
+  };
   /// The exchange outstanding timed out; its transfer is over. To send to its node.
-  [[nodiscard]] SdoFrames abandon();
+  [[nodiscard]] Abandoned abandon();
   /// The open transfer of a node ends because something else is done with the node. To send to it.
   [[nodiscard]] SdoFrames interrupt(std::uint8_t node);
   /// The node has started anew: it knows of no transfer. What was asked is over; its answer may come all the same.
@@ -52,6 +63,8 @@ class SdoClient {
 
  private:
   using Transfer = std::variant<SdoUpload, SdoDownload>;
+  /// A drive is taken for gone after three requests that it has not answered.
+  static constexpr std::size_t kMaxGivenUp = 8;
   struct Finished {
     SdoReply reply;
     Instant at;
@@ -61,9 +74,20 @@ class SdoClient {
     std::optional<Transfer> transfer{};
     std::optional<Finished> finished{};
     std::uint8_t owed = 0;  ///< replies to requests that were given up
+    /// Objects of requests that were given up, or ended by an abort of ours, which may still be answered. A server
+    /// answers in order: the answer to another object shows that nothing of it comes any more.
+    boost::container::static_vector<bus::ObjectAddress, kMaxGivenUp> given_up{};
+    bool gave_up_more = false;                     ///< than `given_up` holds: until the node or the link starts anew
+    std::optional<bus::ObjectAddress> stranger{};  ///< answered, while another object was waited for
+
+    [[nodiscard]] bool may_still_answer() const { return gave_up_more || !given_up.empty(); }
+    [[nodiscard]] bool may_still_answer(bus::ObjectAddress object) const;
+    void give_up(bus::ObjectAddress object);
+    void answered(bus::ObjectAddress object);
   };
 
   [[nodiscard]] static bus::ObjectAddress object_of(const Transfer& transfer);
+  [[nodiscard]] static SdoFrame named(const Server& server, Bytes bytes);
   [[nodiscard]] Heard not_mine(Server& server, bool waited_for, Bytes bytes, Instant now) const;
 
   Duration duplicate_window_;

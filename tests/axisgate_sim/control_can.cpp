@@ -50,6 +50,21 @@ std::optional<std::string> ask_leadshine(LeadshineDrive& drive, const ControlWor
   return std::nullopt;
 }
 
+// Of one object alone, where one is named.
+void spoil_answers(SdoFaults& faults, const ControlWords& words) {
+  constexpr const char* form =
+      "sdo LINE/NODE unsized|wide|wide-sign|unnamed-abort|other-object [INDEX.SUB] on|off|next [N]|RATE";
+  if (words.size() < 4) refuse_word(std::string("write ") + form);
+  const auto fault = sdo_fault_named(words[2]);
+  if (!fault) refuse_word("'" + words[2] + "' is nothing that an SDO server does: write " + form);
+  // A rate has a point too: 0.25, which is no object.
+  const bool one = words.size() > 4 && words[3] != "next";
+  const auto only = one ? std::optional(object_in(words[3])) : std::nullopt;
+  const Strikes strikes = strikes_in(words, one ? 4 : 3);
+  faults.next(*fault, strikes.next.value_or(0), only);
+  if (!strikes.next) faults.set_rate(*fault, strikes.rate, only);
+}
+
 std::optional<std::string> ask_node(CanopenNode& node, const ControlWords& words, Time now) {
   const std::string& command = words[0];
   if (command == "nmt") return " " + std::string(name_of(node.state()));
@@ -86,6 +101,10 @@ std::optional<std::string> ask_can(Simulator& simulator, PortLine& port, std::si
     const bool on = on_or_off(words[2]);
     if (command == "connect") bus.connect(position, on);
     if (command == "duplicate-node") simulator.set_duplicate(port, position, on);
+    return "";
+  }
+  if (command == "sdo" && bus.canopen(position) != nullptr) {
+    spoil_answers(bus.faults(position).sdo, words);
     return "";
   }
   if (KeyaDrive* keya = bus.keya(position)) {

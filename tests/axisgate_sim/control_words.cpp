@@ -72,16 +72,21 @@ void need_words(const ControlWords& words, std::size_t count, const char* form) 
   if (words.size() != count) refuse_word(std::string("write ") + form);
 }
 
-void set_fault_switch(DriveFaults& faults, DriveFault fault, const ControlWords& words, std::size_t at) {
+Strikes strikes_in(const ControlWords& words, std::size_t at) {
   const std::string how = words.size() > at ? words[at] : "on";
-  if (how == "next") {
-    faults.next(fault, words.size() > at + 1 ? static_cast<std::uint64_t>(number_in(words[at + 1])) : 1);
-  } else if (how == "off") {
-    faults.set_rate(fault, 0);
-    faults.next(fault, 0);
-  } else {
-    faults.set_rate(fault, how == "on" ? 1 : rate_in(how));
+  if (how == "next") return {0, words.size() > at + 1 ? static_cast<std::uint64_t>(number_in(words[at + 1])) : 1};
+  if (how == "off" || how == "on") return {how == "on" ? 1.0 : 0.0, std::nullopt};
+  return {rate_in(how), std::nullopt};
+}
+
+void set_fault_switch(DriveFaults& faults, DriveFault fault, const ControlWords& words, std::size_t at) {
+  const Strikes strikes = strikes_in(words, at);
+  if (strikes.next) {
+    faults.next(fault, *strikes.next);
+    return;
   }
+  faults.set_rate(fault, strikes.rate);
+  if (strikes.rate == 0) faults.next(fault, 0);
 }
 
 }  // namespace axisgate::simulated

@@ -4,6 +4,7 @@
 // Never knows a line or a drive.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,12 @@ int error_word_in(const std::string& text);
 std::string in_hex(std::int64_t value);
 void need_words(const ControlWords& words, std::size_t count, const char* form);
 
+struct Strikes {
+  double rate = 0;
+  std::optional<std::uint64_t> next;  // instead of the rate
+};
 // on, off, next [N] or a rate, from words[at] on.
+Strikes strikes_in(const ControlWords& words, std::size_t at);
 void set_fault_switch(DriveFaults& faults, DriveFault fault, const ControlWords& words, std::size_t at);
 
 }  // namespace axisgate::simulated

@@ -80,6 +80,10 @@ void CanLine::take_output(std::size_t position, Time at, CanExchange* exchange) 
 void CanLine::answer(std::size_t position, const CanOutput& output, Time at, CanExchange* exchange) {
   Slot& slot = slots_[position];
   BusFrame frame = output.frame;
+  if (!frame.extended && !frame.remote && frame.id == cob::sdo_reply + slot.node->node()) {
+    const CanView bytes = bytes_of(frame);
+    frame = bus_frame(frame.id, slot.faults.sdo.spoil({bytes.begin(), bytes.end()}, random_));
+  }
   const Time ready = std::max(at + options_.reply_delay, slot.free_at);
   const bool lost = slot.faults.strikes(DriveFault::lose, random_);
   const Time late = slot.faults.strikes(DriveFault::late, random_) ? slot.faults.late_by : Time{};

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tests/simulated/random.hpp"
+#include "tests/simulated/sdo_faults.hpp"
 #include "tests/simulated/time.hpp"
 
 namespace axisgate::simulated {
@@ -56,6 +57,7 @@ class DriveFaults {
   std::uint32_t abort_code = 0x08000000;
   std::uint32_t babble_id = 0;  // CAN: whose frames; 0: those of the drive's own error control
   std::uint16_t emergency_code = 0x8110;
+  SdoFaults sdo;                     // CAN: of its SDO server
   std::optional<bool> restart_acts;  // is the request carried out before the restart? none: by chance
 
   void set_rate(DriveFault fault, double probability) { switches_[number(fault)].rate = probability; }
@@ -63,6 +65,7 @@ class DriveFaults {
   bool armed(DriveFault fault) const { return switches_[number(fault)].rate > 0 || switches_[number(fault)].next > 0; }
   void clear() {
     switches_ = {};
+    sdo.clear();
     spoilt_.clear();
   }
 

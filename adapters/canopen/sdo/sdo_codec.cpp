@@ -56,8 +56,11 @@ std::optional<SdoReply> decode_upload(Bytes bytes) {
   const bool size_given = (bytes[0] & 0x01) != 0;
   SdoReply reply{.kind = expedited ? Kind::value : Kind::upload_begins, .object = object_of(bytes)};
   if (expedited) {
-    const std::size_t unused = size_given ? (bytes[0] >> 2) & 0x03U : 0;
-    return take_data(reply, bytes, 4, kExpeditedBytes - unused);
+    reply.unsized = !size_given;
+    const std::size_t there = std::min(bytes.size() - 4, kExpeditedBytes);
+    const std::size_t count = size_given ? kExpeditedBytes - ((bytes[0] >> 2) & 0x03U) : there;
+    if (count == 0) return std::nullopt;
+    return take_data(reply, bytes, 4, count);
   }
   if (!size_given) return reply;
   if (bytes.size() < kSdoFrameBytes) return std::nullopt;

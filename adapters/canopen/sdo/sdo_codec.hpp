@@ -80,6 +80,7 @@ struct SdoReply {
   std::uint16_t checksum = 0;           ///< block_upload_ends
   std::uint32_t code = 0;               ///< aborted
   std::optional<std::uint32_t> size{};  ///< of the whole object, where the server says it
+  bool unsized = false;                 ///< value: the server does not say how many bytes of `data` are the object's
   boost::container::static_vector<Byte, kSegmentBytes> data{};
   friend bool operator==(const SdoReply&, const SdoReply&) = default;
 };

@@ -64,9 +64,7 @@ std::optional<SdoStep> SdoUpload::take(Bytes bytes) {
 std::optional<SdoStep> SdoUpload::on_initiate(const SdoReply& reply) {
   switch (reply.kind) {
     case Kind::value:
-      awaited_ = Awaited::nothing;
-      data_.assign(reply.data.begin(), reply.data.end());
-      return content();
+      return on_value(reply);
     case Kind::upload_begins:
       return on_begun(reply, false);
     case Kind::block_upload_begins:
@@ -77,22 +75,41 @@ std::optional<SdoStep> SdoUpload::on_initiate(const SdoReply& reply) {
   }
 }
 
+/// What stands above the object in an answer without a size is nobody's.
+std::optional<SdoStep> SdoUpload::on_value(const SdoReply& reply) {
+  const std::size_t size = reply.unsized ? unsaid_ : reply.data.size();
+  if (reply.data.size() < size) return std::nullopt;
+  awaited_ = Awaited::nothing;
+  data_.assign(reply.data.begin(), reply.data.begin() + static_cast<std::ptrdiff_t>(size));
+  return content();
+}
+
 SdoStep SdoUpload::on_begun(const SdoReply& reply, bool in_blocks) {
   awaited_ = Awaited::nothing;
-  if (whole_) return aborting(object_, kAbortDeviceState, refused(kAbortLength));
+  if (whole_ && reply.size.value_or(0) > kExpeditedBytes) return no_field();
   if (reply.size.value_or(0) > kMaxObjectBytes) return too_long();
   in_blocks_ = in_blocks;
   crc_ = reply.crc;
   size_ = reply.size;
   data_.reserve(size_.value_or(0));
-  return paused();
+  return whole_ ? ask_for_segment() : paused();
 }
+
+/// Within the same exchange.
+SdoStep SdoUpload::ask_for_segment() {
+  SdoStep step;
+  step.frames = next();
+  return step;
+}
+
+SdoStep SdoUpload::no_field() const { return aborting(object_, kAbortDeviceState, refused(kAbortLength)); }
 
 SdoStep SdoUpload::on_segment(const SdoReply& reply) {
   awaited_ = Awaited::nothing;
   toggle_ = !toggle_;
   data_.insert(data_.end(), reply.data.begin(), reply.data.end());
   if (data_.size() > kMaxObjectBytes) return too_long();
+  if (whole_ && (!reply.last || data_.size() > kExpeditedBytes)) return no_field();
   const bool fits = !size_ || (reply.last ? data_.size() == *size_ : data_.size() <= *size_);
   if (!fits) return broken(object_, kAbortLength);
   return reply.last ? content() : paused();

@@ -13,6 +13,15 @@ std::uint32_t abort_code(const DriveModel& drive, std::uint32_t detail) {
   return drive.resync.by_length && detail == kModbusIllegalAddress ? kNoSuchObject : kGeneral;
 }
 
+/// Of an answer that does not say how many bytes it has: the profile's, where it has the object.
+std::uint8_t unsaid_width(const DriveModel& drive, const ObjectRequest& request) {
+  if (!is_canopen(drive)) return 0;
+  const ObjectId id = drive.find({request.index, request.subindex});
+  if (id != kNoObject) return drive.object(id).size;
+  const bool counted = request.count == 1 || request.count == 2 || request.count == 4;
+  return request.size == 0 && counted ? static_cast<std::uint8_t>(request.count) : request.size;
+}
+
 }  // namespace
 
 bool MailboxAccess::is_needless(const AxisCore& core, const ObjectRequest& request) {
@@ -31,6 +40,7 @@ bus::Exchange MailboxAccess::next(const DriveModel& drive, const ObjectRequest& 
                          request.write ? wire_bits(request.data, request.size) : 0};
   if (request.size == 0 && drive.resync.by_length)
     exchange.size = static_cast<std::uint8_t>(request.count == 0 ? 2 : request.count);
+  if (!request.write) exchange.unsaid = unsaid_width(drive, request);
   if (request.size == 0 && is_canopen(drive)) {
     exchange.part = chain_open_ ? bus::Part::next : bus::Part::first;
     if (!chain_open_) exchange.bytes = request.bytes;

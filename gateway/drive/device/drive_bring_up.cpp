@@ -5,25 +5,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "gateway/drive/device/answer_width.hpp"
 #include "gateway/drive/device/drive.hpp"
 #include "gateway/drive/device/requests.hpp"
 
 namespace axisgate::drive {
-namespace {
-
-/// A position, a velocity or an acceleration of a motor.
-bool moves_by(const DriveModel& model, ObjectId object) {
-  const auto counts = [object](const Binding& binding) {
-    const Kind kind = row(binding.quantity).kind;
-    const bool of_motion = kind == Kind::position || kind == Kind::velocity || kind == Kind::acceleration;
-    return binding.object == object && of_motion;
-  };
-  return std::any_of(model.axes.begin(), model.axes.end(), [&](const AxisModel& axis) {
-    return std::any_of(axis.bindings.begin(), axis.bindings.end(), counts);
-  });
-}
-
-}  // namespace
 
 std::optional<bus::Exchange> Drive::next_of_bring_up() {
   const bool amends = bring_up_.amending();

@@ -2,7 +2,9 @@
 #include "gateway/drive/device/drive_reads.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "gateway/drive/device/answer_width.hpp"
 #include "gateway/drive/device/requests.hpp"
 #include "gateway/model/scale.hpp"
 
@@ -29,6 +31,7 @@ void DriveReads::restart(Instant now) {
   tries_.restart();
   silent_.reset();
   answers_ = false;
+  wide_told_ = false;
   plan_.restart(now);
 }
 
@@ -191,6 +194,11 @@ std::uint8_t asked_width(const bus::Exchange& exchange, const bus::ObjectAddress
   return exchange.size;
 }
 
+std::string width_text(const ObjectDef& object, const bus::ReplyField& field) {
+  return object.name + ": the drive answers " + std::to_string(field.size) + " bytes, the profile says " +
+         std::to_string(object.size);
+}
+
 }  // namespace
 
 DriveReads::Taken DriveReads::take(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
@@ -214,8 +222,11 @@ void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField
   const ObjectId id = model_.find(field.object);
   if (id == kNoObject) return;
   const ObjectDef& object = model_.object(id);
-  // A width other than the profile's is a wrong profile, not a value (JD sheet, K7): it is not shown. A
-  // resynchronisation read reads registers as they come.
+  const std::uint8_t asked_for = asked_width(exchange, field.object);
+  const bool proves = !asked.resync && (asked_for == object.size || (object.any_width && asked_for == 0));
+  const auto wide = proves ? narrowed(model_, id, field) : std::nullopt;
+  // A width other than the profile's is a wrong profile, not a value (JD sheet, K7): it is not shown, unless the drive
+  // merely says more than it has. A resynchronisation read reads registers as they come.
   if (field.size == object.size) {
     width_[id] = field.size;
     store_.read(id, object.number(field.raw), asked.sent_at);
@@ -225,13 +236,18 @@ void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField
     narrow.size = field.size;
     narrow.is_signed = object.is_signed;
     store_.read(id, narrow.number(field.raw), asked.sent_at);
-  } else if (asked.resync || asked_width(exchange, field.object) != object.size) {
+  } else if (wide) {
+    store_.read(id, *wide, asked.sent_at);
+    if (!asked.probe && !std::exchange(wide_told_, true))
+      taken.unlike.push_back(width_text(object, field) +
+                             ": the bytes above are empty: taken, and so is whatever else "
+                             "this drive answers so");
+  } else if (!proves) {
     return;  // the mailbox asks in its client's width: what comes proves nothing of the profile
   } else if (!store_[id].refused) {
     store_.unlike(id);
     if (!model_.needs_for_state(id)) plan_.drop(id);
-    taken.unlike.push_back(object.name + ": the drive answers " + std::to_string(field.size) +
-                           " bytes, the profile says " + std::to_string(object.size) + ": not used");
+    taken.unlike.push_back(width_text(object, field) + ": not used");
     return;
   }
   taken.back = tries_.answered(id) || taken.back;

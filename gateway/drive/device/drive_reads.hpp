@@ -92,7 +92,7 @@ class DriveReads {
     bool samples = false;               ///< there are new ones
     bool back = false;                  ///< an object that was given up has answered
     bool scales = false;                ///< a constant of the drive was read: scales and limits have changed
-    std::vector<std::string> unlike{};  ///< objects of another width than the profile says, to be told
+    std::vector<std::string> unlike{};  ///< objects of another width than the profile says, taken or not, to be told
   };
   /// Of an answer that counts: what it tells goes into the store.
   [[nodiscard]] Taken take(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
@@ -146,6 +146,7 @@ class DriveReads {
   std::size_t probes_ = 0;  ///< of a drive that owes nothing
   std::vector<std::optional<Rational>> constants_;
   std::vector<std::uint8_t> width_;
+  bool wide_told_ = false;    ///< since bring-up: that it answers more bytes than an object has
   std::vector<bool> mapped_;  ///< objects that come by TPDO
   std::uint64_t invalidations_seen_ = 0;
 };

@@ -8,7 +8,9 @@ namespace axisgate::drive {
 
 bus::Exchange read_of(const DriveModel& model, ObjectId object) {
   const ObjectDef& def = model.object(object);
-  return {model.node, bus::Access::read, def.address, def.any_width ? std::uint8_t{0} : def.size, 0};
+  bus::Exchange exchange{model.node, bus::Access::read, def.address, def.any_width ? std::uint8_t{0} : def.size, 0};
+  exchange.unsaid = def.any_width ? def.size : std::uint8_t{0};
+  return exchange;
 }
 
 bus::Exchange read_of(const DriveModel& model, const ResyncRead& read) {

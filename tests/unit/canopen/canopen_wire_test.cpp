@@ -13,9 +13,9 @@ using Kind = bus::UnsolicitedEvent::Kind;
 using CanopenWireTest = CanopenWireStage;
 
 TEST_F(CanopenWireTest, asks_the_link_for_what_its_nodes_send_and_counts_what_the_link_lost) {
-  EXPECT_EQ(link->filters.size(), 2u * 7u);
+  EXPECT_EQ(link->filters.size(), 8u + 2u * 5u);
   EXPECT_THAT(link->filters, testing::Contains(can::CanFilter{.id = 0x581}));
-  EXPECT_THAT(link->filters, testing::Contains(can::CanFilter{.id = 0x702}));
+  EXPECT_THAT(link->filters, testing::Contains(can::CanFilter{.id = 0x482}));
   link->troubles.lost_in = 5;
   link->troubles.bad_bytes = 3;
   EXPECT_EQ(wire->statistics().dropped_bytes, 8u);

@@ -40,6 +40,7 @@ TEST(SdoCodec, requests_are_what_the_standard_prints) {
 SdoReply::Kind kind_of(const char* hex) { return decode_reply(from_hex(hex)).value().kind; }
 
 TEST(SdoCodec, replies_say_what_the_standard_says) {
+  const SdoReply kUnsized{.kind = Kind::value, .object = kObject, .unsized = true, .data = {0x11, 0x22, 0x33, 0x44}};
   const std::pair<const char*, SdoReply> kReplies[] = {
       {"60 34 12 05 00 00 00 00", {.kind = Kind::downloaded, .object = kObject}},
       {"80 34 12 05 00 00 04 05", {.kind = Kind::aborted, .object = kObject, .code = 0x05040000}},
@@ -47,8 +48,8 @@ TEST(SdoCodec, replies_say_what_the_standard_says) {
       {"4B 34 12 05 11 22 33 44", {.kind = Kind::value, .object = kObject, .data = {0x11, 0x22}}},
       {"47 34 12 05 11 22 33 44", {.kind = Kind::value, .object = kObject, .data = {0x11, 0x22, 0x33}}},
       {"43 34 12 05 11 22 33 44", {.kind = Kind::value, .object = kObject, .data = {0x11, 0x22, 0x33, 0x44}}},
-      {"42 34 12 05 11 22 33 44", {.kind = Kind::value, .object = kObject, .data = {0x11, 0x22, 0x33, 0x44}}},
-      {"4E 34 12 05 11 22 33 44", {.kind = Kind::value, .object = kObject, .data = {0x11, 0x22, 0x33, 0x44}}},
+      {"42 34 12 05 11 22 33 44", kUnsized},
+      {"4E 34 12 05 11 22 33 44", kUnsized},
       {"41 34 12 05 1A 00 00 00", {.kind = Kind::upload_begins, .object = kObject, .size = 0x1A}},
       {"40 34 12 05 1A 00 00 00", {.kind = Kind::upload_begins, .object = kObject}},
       {"1B 01 02 03 00 00 00 00", {.kind = Kind::segment, .toggle = true, .last = true, .data = {1, 2}}},
@@ -68,12 +69,13 @@ TEST(SdoCodec, replies_say_what_the_standard_says) {
 
 TEST(SdoCodec, short_frames_are_taken_as_far_as_they_carry_what_they_say) {
   EXPECT_EQ(decode_reply(from_hex("4B 41 60 00 37 02"))->data.size(), 2u);
+  EXPECT_EQ(decode_reply(from_hex("42 41 60 00 37 02"))->data.size(), 2u);
   EXPECT_EQ(kind_of("60 40 60 00 0F 00"), Kind::downloaded);
   EXPECT_EQ(kind_of("60 40 60 00"), Kind::downloaded);
   EXPECT_EQ(decode_reply(from_hex("0D AA"))->data.size(), 1u);
-  for (const char* hex :
-       {"", "43 41 60 00 37 02", "4B 41 60 00 37", "60 40 60", "80 41 60 00 00 00 02", "00 01 02", "41 08 10 00 05",
-        "A4 00 20 00", "A2 10", "C6 00 20 00 09", "C1 00", "E0 00 00 00 00 00 00 00", "A3 00 00 00 00 00 00 00"}) {
+  for (const char* hex : {"", "42 41 60 00", "43 41 60 00 37 02", "4B 41 60 00 37", "60 40 60", "80 41 60 00 00 00 02",
+                          "00 01 02", "41 08 10 00 05", "A4 00 20 00", "A2 10", "C6 00 20 00 09", "C1 00",
+                          "E0 00 00 00 00 00 00 00", "A3 00 00 00 00 00 00 00"}) {
     EXPECT_FALSE(decode_reply(from_hex(hex))) << hex;
   }
 }
@@ -156,17 +158,18 @@ TEST(CobIds, of_the_set_are_told_apart_and_no_other_is_taken) {
   }
 }
 
-TEST(Filters, let_through_what_the_nodes_send_and_nothing_else) {
+TEST(Filters, let_through_what_the_nodes_send_and_of_others_that_they_live_or_have_an_error) {
   const auto filters = filters_for({1, 5});
   const auto passes = [&](std::uint32_t id) {
     return std::ranges::any_of(filters, [&](const can::CanFilter& f) { return f.passes(can::data_frame(id, {})); });
   };
   std::vector<std::uint32_t> passing;
   for (std::uint32_t id = 0; id <= can::kMaxStandardId; ++id) {
-    if (passes(id)) passing.push_back(id);
+    const bool of_any_node = (id > 0x080 && id <= 0x0FF) || (id & ~0x7FU) == 0x700;
+    EXPECT_TRUE(passes(id) || !of_any_node) << id;
+    if (passes(id) && !of_any_node) passing.push_back(id);
   }
-  EXPECT_THAT(passing, testing::ElementsAre(0x081, 0x085, 0x181, 0x185, 0x281, 0x285, 0x381, 0x385, 0x481, 0x485, 0x581,
-                                            0x585, 0x701, 0x705));
+  EXPECT_THAT(passing, testing::ElementsAre(0x181, 0x185, 0x281, 0x285, 0x381, 0x385, 0x481, 0x485, 0x581, 0x585));
 }
 
 // --- Frames in words -------------------------------------------------------------------------------------------------

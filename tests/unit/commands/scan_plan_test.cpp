@@ -157,6 +157,18 @@ TEST_F(Scan, AWidthThatNobodyPrintedMayBeAny) {
   EXPECT_EQ(fit.has, fit.of);
 }
 
+TEST_F(Scan, AServerThatSaysNoSizesOrAnswersAllInFourBytesFitsByWhatItHas) {
+  Node& node = nodes_[1];
+  node.add(profile("leadshine-ld2-can"));
+  for (auto& [address, field] : node.objects) field.size = 4;
+  ScanPlan plan(shipped_);
+  run(plan);
+  ASSERT_FALSE(plan.found().at(0).fits.empty());
+  const ScanFit fit = plan.found()[0].fits[0];
+  EXPECT_EQ(fit.profile, "leadshine-ld2-can");
+  EXPECT_EQ(fit.has, fit.of);
+}
+
 TEST_F(Scan, WhoIsHeardIsAskedFirst) {
   nodes_[100] = {};
   nodes_[3] = {};

@@ -176,7 +176,14 @@ void ScanPlan::knock_on_next() {
   step_ = Step::over;
 }
 
+// A server that says no sizes, or answers all in four bytes, says of no object how wide it is.
+bool ScanPlan::tells_widths() const {
+  constexpr std::uint8_t kWidest = 4;
+  return std::any_of(tried_.begin(), tried_.end(), [](const Tried& it) { return it.size.value_or(kWidest) < kWidest; });
+}
+
 std::vector<ScanFit> ScanPlan::fits() const {
+  const bool told = tells_widths();
   std::vector<ScanFit> out;
   for (const drive::Profile& profile : profiles_) {
     ScanFit fit{profile.name, 0, 0};
@@ -188,7 +195,10 @@ std::vector<ScanFit> ScanPlan::fits() const {
       if (tried == tried_.end()) continue;
       ++fit.of;
       const std::uint8_t size = place->type.value_or(object.type).size;
-      if (tried->size && (*tried->size == size || (object.any_width && *tried->size < size))) ++fit.has;
+      const auto fits_in = [&](std::uint8_t answered) {
+        return answered == size || (object.any_width && answered < size) || (!told && answered > size);
+      };
+      if (tried->size && fits_in(*tried->size)) ++fit.has;
     }
     if (fit.of > 0 && 2 * fit.has >= fit.of) out.push_back(std::move(fit));
   }

@@ -82,6 +82,7 @@ class ScanPlan {
   void begin(Step step);
   void take_name(const bus::ExchangeResult& result);
   void end_node();
+  [[nodiscard]] bool tells_widths() const;
   [[nodiscard]] std::vector<ScanFit> fits() const;
 
   std::vector<drive::Profile> profiles_;

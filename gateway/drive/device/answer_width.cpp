@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/device/answer_width.hpp"
+
+#include <algorithm>
+
+namespace axisgate::drive {
+
+bool moves_by(const DriveModel& model, ObjectId object) {
+  const auto same = [&](ObjectId bound) {
+    if (bound == object) return true;
+    const auto& aliases = model.object(object).aliases;
+    return std::find(aliases.begin(), aliases.end(), bound) != aliases.end();
+  };
+  const auto counts = [&](const Binding& binding) {
+    const Kind kind = row(binding.quantity).kind;
+    const bool of_motion = kind == Kind::position || kind == Kind::velocity || kind == Kind::acceleration;
+    return of_motion && same(binding.object);
+  };
+  return std::any_of(model.axes.begin(), model.axes.end(), [&](const AxisModel& axis) {
+    return std::any_of(axis.bindings.begin(), axis.bindings.end(), counts);
+  });
+}
+
+std::optional<std::int64_t> narrowed(const DriveModel& model, ObjectId id, const bus::ReplyField& field) {
+  const ObjectDef& object = model.object(id);
+  if (!is_canopen(model) || field.size <= object.size || moves_by(model, id)) return std::nullopt;
+  ObjectDef wide;
+  wide.size = field.size;
+  wide.is_signed = object.is_signed;
+  const std::int64_t number = object.number(field.raw);
+  const bool zeros = (std::uint64_t{field.raw} >> (8U * object.size)) == 0;
+  if (!zeros && wide.number(field.raw) != number) return std::nullopt;
+  return number;
+}
+
+}  // namespace axisgate::drive
