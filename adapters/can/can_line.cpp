@@ -38,7 +38,8 @@ void CanLine::log_frame(std::string_view direction, const CanFrame& frame, std::
   constexpr int kStandardDigits = 3, kExtendedDigits = 8;
   log_.write(LogLevel::info, log_source_,
              fmt::format("{} {:0{}X} {}  {}{}", direction, frame.id, frame.extended ? kExtendedDigits : kStandardDigits,
-                         frame.remote ? "remote" : hex_text(frame.bytes()), describe_(frame), remark));
+                         frame.remote ? "remote" : hex_text(frame.bytes()), describe_(frame), remark),
+             LogPace::each);
 }
 
 }  // namespace axisgate::can

@@ -177,7 +177,8 @@ void KeyaSerialWire::hear(Heard heard, News& news) {
 }
 
 void KeyaSerialWire::tell(const News& news, std::uint32_t dropped) {
-  if (decode_ && dropped > 0) log_.write(LogLevel::info, log_source_, fmt::format("<- skipped {} bytes", dropped));
+  if (decode_ && dropped > 0)
+    log_.write(LogLevel::info, log_source_, fmt::format("<- skipped {} bytes", dropped), LogPace::each);
   if (news.answer) {
     watch_.on_answer();
   } else if (dropped > 0) {
@@ -192,7 +193,7 @@ void KeyaSerialWire::tell(const News& news, std::uint32_t dropped) {
 }
 
 void KeyaSerialWire::log_frame(std::string_view direction, Bytes bytes, std::string_view text) const {
-  log_.write(LogLevel::info, log_source_, fmt::format("{} {}  {}", direction, hex_text(bytes), text));
+  log_.write(LogLevel::info, log_source_, fmt::format("{} {}  {}", direction, hex_text(bytes), text), LogPace::each);
 }
 
 }  // namespace

@@ -76,7 +76,8 @@ void KincoWire::on_bytes(Bytes bytes) {
     }
   }
   const std::uint32_t dropped = receiver_.dropped_bytes() - dropped_before;
-  if (decode_ && dropped > 0) log_.write(LogLevel::info, log_source_, fmt::format("<- skipped {} bytes", dropped));
+  if (decode_ && dropped > 0)
+    log_.write(LogLevel::info, log_source_, fmt::format("<- skipped {} bytes", dropped), LogPace::each);
   if (answer) {
     watch_.on_answer();
     // Last: the bus may send its next request from inside this call.
@@ -89,7 +90,7 @@ void KincoWire::on_bytes(Bytes bytes) {
 void KincoWire::log_frame(std::string_view direction, Bytes bytes, const Frame& frame, std::string_view remark) const {
   if (!decode_) return;
   log_.write(LogLevel::info, log_source_,
-             fmt::format("{} {}  {}{}", direction, hex_text(bytes), describe(frame), remark));
+             fmt::format("{} {}  {}{}", direction, hex_text(bytes), describe(frame), remark), LogPace::each);
 }
 
 }  // namespace axisgate::kinco

@@ -136,7 +136,8 @@ void RtuWire::on_bad_frame(ExchangeNumber, std::size_t bytes) {
   // A run of noise is one bad frame, in however many parts it is told.
   if (!watch_.noisy()) ++statistics_.bad_frames;
   statistics_.dropped_bytes += static_cast<std::uint32_t>(bytes);
-  if (decode_) log_.write(LogLevel::info, log_source_, fmt::format("<- {} bytes that are no frame", bytes));
+  if (decode_)
+    log_.write(LogLevel::info, log_source_, fmt::format("<- {} bytes that are no frame", bytes), LogPace::each);
   watch_.on_noise();
 }
 
@@ -163,7 +164,7 @@ bool RtuWire::knows(std::uint8_t unit) const {
 }
 
 void RtuWire::log_frame(std::string_view direction, Bytes frame, std::string_view words) const {
-  log_.write(LogLevel::info, log_source_, fmt::format("{} {}  {}", direction, hex_text(frame), words));
+  log_.write(LogLevel::info, log_source_, fmt::format("{} {}  {}", direction, hex_text(frame), words), LogPace::each);
 }
 
 }  // namespace axisgate::modbus_rtu

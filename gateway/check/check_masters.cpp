@@ -249,21 +249,28 @@ void hint_at_tools(std::vector<std::string>& out, const LoadedConfig& loaded, co
                   fmt::join(listeners, ", ")));
 }
 
-/// A client by address is kept alive by whatever writes from that computer.
+/// Where a client is an address nobody can tell two programs of it apart: neither who commands, nor who is dead.
 void warn_about_shared_addresses(std::vector<std::string>& out, const LoadedConfig& loaded,
                                  const std::vector<BusBudget>& budgets) {
-  std::vector<AxisNumber> axes;
+  std::vector<AxisNumber> leased, by_writes;
   each_axis(loaded, budgets, [&](const MasteredAxis& axis) {
-    if (axis.config.lease.on && axis.config.lease.renew != LeaseRenewal::heartbeat) axes.push_back(axis.config.number);
+    if (!axis.config.lease.on) return;
+    leased.push_back(axis.config.number);
+    if (axis.config.lease.renew != LeaseRenewal::heartbeat) by_writes.push_back(axis.config.number);
   });
   std::vector<std::string> listeners;
   for (const auto& listener : loaded.config.modbus_tcp)
     if (listener.client_is_address) listeners.push_back(fmt::format("{}:{}", listener.host, listener.port));
-  if (axes.empty() || listeners.empty()) return;
-  out.push_back(fmt::format(
-      "on {} all programs of one computer are one client (\"client\": \"address\"): an HMI that writes from "
-      "the PLC's computer keeps {} alive when the PLC's program is dead; write \"renew\": \"heartbeat\"",
-      fmt::join(listeners, ", "), axes_text(axes)));
+  if (leased.empty() || listeners.empty()) return;
+  const std::string who = fmt::format("on {} two programs of one computer are one client (\"client\": \"address\"): ",
+                                      fmt::join(listeners, ", "));
+  if (by_writes.empty()) {
+    out.push_back(who + "what one of them owns the other commands too, and a heartbeat of either keeps " +
+                  axes_text(leased) + " alive");
+  } else {
+    out.push_back(who + "an HMI that writes from the PLC's computer keeps " + axes_text(by_writes) +
+                  " alive when the PLC's program is dead; write \"renew\": \"heartbeat\"");
+  }
 }
 
 }  // namespace

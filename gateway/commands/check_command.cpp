@@ -36,7 +36,7 @@ void warn_of_lines_with_two_names(const Config& config) {
 }  // namespace
 
 int run(const CheckOptions& options) {
-  const LoadResult result = load_config(options.config, options.profile_folders);
+  const LoadResult result = load_config(options.config, options.profile_folders, drive::Pipes::allowed);
   if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
   const auto& loaded = std::get<LoadedConfig>(result);
   const CheckReport report = check(loaded);

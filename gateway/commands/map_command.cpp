@@ -67,7 +67,7 @@ ListedMap listed(const LoadedConfig& loaded, const Listener& listener) {
 }  // namespace
 
 int run(const MapOptions& options) {
-  const LoadResult result = load_config(options.config, options.profile_folders);
+  const LoadResult result = load_config(options.config, options.profile_folders, drive::Pipes::allowed);
   if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
   const auto& loaded = std::get<LoadedConfig>(result);
   const std::vector<Listener>& listeners = loaded.config.modbus_tcp;

@@ -39,6 +39,9 @@ namespace {
 /// When all drives are done, what their clients are told still has to leave this process.
 constexpr Duration kLastAnswers = std::chrono::milliseconds(50);
 
+/// How often it is looked whether the log has left something out.
+constexpr Duration kLogLooks = std::chrono::seconds(10);
+
 /// Names given with --decode; one that no bus has is a mistake of the command line, not passed over.
 std::optional<ConfigFault> switch_decode_on(Config& config, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
@@ -67,21 +70,32 @@ std::string status_of(const ProcessImage& image) {
 int serve(LoadedConfig loaded, const RunOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not
   Log log = stderr_log(options.decode.empty() ? options.log_level : std::max(options.log_level, LogLevel::debug));
-  for (const StartLine& line : start_lines(loaded, AXISGATE_VERSION)) log.write(LogLevel::info, line.source, line.text);
+  for (const StartLine& line : start_lines(loaded, AXISGATE_VERSION))
+    log.write(LogLevel::info, line.source, line.text, LogPace::each);
   boost::asio::io_context io(1);
   AsioRuntime runtime(io);
+  log.limit([&runtime] { return runtime.now(); });
+  std::unique_ptr<Timer> log_looks;
+  log_looks = runtime.make_timer([&] {
+    log.tell_left_out();
+    log_looks->expires_at(runtime.now() + kLogLooks);
+  });
+  log_looks->expires_at(runtime.now() + kLogLooks);
   EndSignals signals(io, log);
   std::signal(SIGCHLD, SIG_DFL);  // inherited as ignored, it would hide how axisgate-dds ends
   const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(descriptor_needs(loaded.config));
   modbus_tcp::ClientRegistry clients;
   Gateway gateway(loaded.config, loaded.models, runtime, log, device_wires(io, runtime, log));
-  modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log);
+  modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log,
+                            {[&](EventKind kind, std::string text) { gateway.report(kind, std::move(text)); },
+                             [&](bool down) { gateway.report_listener_down(down); }});
   std::optional<dds::DdsServer> dds;
   if (loaded.config.dds) {
     dds.emplace(io, runtime, *loaded.config.dds, gateway.image(), gateway.events(), gateway, log,
                 dds::DdsReports{[&](EventKind kind, std::string text) { gateway.report(kind, std::move(text)); },
                                 [&](bool down) { gateway.report_dds_down(down); },
-                                [&](bool taken) { gateway.report_name_taken(taken); }});
+                                [&](bool taken) { gateway.report_name_taken(taken); },
+                                [&](bool missing) { gateway.report_dds_address_missing(missing); }});
   }
   try {
     server.start(descriptors);
@@ -122,6 +136,7 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   service.ready(status_of(gateway.image()));
   io.run();
   if (dds) dds->stop();
+  log.tell_left_out();
   return 0;
 }
 

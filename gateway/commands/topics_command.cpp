@@ -19,7 +19,7 @@ namespace {
 /// The network of the configuration, or the defaults; an exit code where there is none.
 std::variant<dds::DdsSettings, int> settings_of(const TopicsOptions& options) {
   if (options.config.empty()) return dds::DdsSettings{};
-  LoadResult result = load_config(options.config, options.profile_folders);
+  LoadResult result = load_config(options.config, options.profile_folders, drive::Pipes::allowed);
   if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
   const Config& config = std::get<LoadedConfig>(result).config;
   if (config.dds) return *config.dds;

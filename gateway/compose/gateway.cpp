@@ -14,6 +14,24 @@ LogLevel level_of(EventKind kind) {
   return kind == EventKind::fault || kind == EventKind::warning ? LogLevel::warning : LogLevel::info;
 }
 
+/// What lines, drives and clients can repeat without end comes once a minute; what was done to an axis is told each.
+LogPace pace_of(const Event& event) {
+  if (event.asked_for) return LogPace::each;
+  switch (event.kind) {
+    case EventKind::fault:
+    case EventKind::lease:
+    case EventKind::homed:
+    case EventKind::command:
+      return LogPace::second;
+    case EventKind::warning:
+    case EventKind::link:
+    case EventKind::boot:
+    case EventKind::position_wrapped:
+      break;
+  }
+  return LogPace::minute;
+}
+
 /// "axis 3 lift"; the name that an axis has without one in the configuration is its number.
 std::string source_of(const ProcessImage& image, AxisNumber number) {
   if (number == 0) return "gateway";
@@ -28,7 +46,7 @@ Gateway::Gateway(const Config& config, const Models& models, Runtime& runtime, c
       log_(log),
       make_wire_(std::move(make_wire)),
       events_([this](const Event& e) {
-        log_.write(level_of(e.kind), source_of(image_, e.axis), e.text);
+        log_.write(level_of(e.kind), source_of(image_, e.axis), e.text, pace_of(e));
         image_.changes.mark(0);
       }),
       closing_(runtime.make_timer([this] {
@@ -221,6 +239,7 @@ std::uint16_t Gateway::gateway_alarms() const {
   set(GatewayAlarm::event_loop_slow, slow);
   set(GatewayAlarm::dds_process_down, dds_down_);
   set(GatewayAlarm::name_taken, name_taken_);
+  set(GatewayAlarm::listener_down, listener_down_ || dds_address_missing_);
   set(GatewayAlarm::configuration_changed, file_changed_);
   return out;
 }

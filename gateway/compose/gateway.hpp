@@ -72,10 +72,15 @@ class Gateway final : public CommandPort {
   void report_dds_down(bool down) { dds_down_ = down; }
   /// Another gateway of the DDS domain has our name: gateway alarm "name taken".
   void report_name_taken(bool taken) { name_taken_ = taken; }
+  /// An address that clients shall reach is not there, of Modbus-TCP or of DDS: gateway alarm "listener down".
+  void report_listener_down(bool down) { listener_down_ = down; }
+  void report_dds_address_missing(bool missing) { dds_address_missing_ = missing; }
   /// A file that the gateway was started with is not what it runs with any more; empty: all are again.
   void report_file_changed(const std::string& file);
-  /// An event of the gateway itself, and so a line of the log.
-  void report(EventKind kind, std::string text) { events_.add(runtime_.now(), 0, kind, 0, std::move(text)); }
+  /// An event of the gateway itself, and so a line of the log. `asked_for`: by a person, as a reload is.
+  void report(EventKind kind, std::string text, bool asked_for = false) {
+    events_.add(runtime_.now(), 0, kind, 0, std::move(text), asked_for);
+  }
 
  private:
   struct Place {
@@ -108,6 +113,8 @@ class Gateway final : public CommandPort {
   std::unique_ptr<Timer> let_go_ended_;  ///< takes letting_go_ away in a turn of its own
   bool dds_down_ = false;
   bool name_taken_ = false;
+  bool listener_down_ = false;
+  bool dds_address_missing_ = false;
   bool file_changed_ = false;
 };
 

@@ -40,10 +40,10 @@ void warn_about_unit_ids(const Config& config, ConfigFaults& faults) {
 
 }  // namespace
 
-LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders) {
+LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders, drive::Pipes pipes) {
   ConfigFaults faults(file);
   LoadedConfig loaded;
-  auto read = drive::load_json(file, loaded.config.read);
+  auto read = drive::load_json(file, loaded.config.read, pipes);
   if (const auto* fault = std::get_if<drive::SchemaFault>(&read)) {
     faults.add(fault->pointer, fault->message);
     return faults.faults();

@@ -25,6 +25,7 @@ struct LoadedConfig {
 using LoadResult = std::variant<LoadedConfig, std::vector<ConfigFault>>;
 
 /// `profile_folders` are searched in their order for profiles that are given by name.
-[[nodiscard]] LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders);
+[[nodiscard]] LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders,
+                                     drive::Pipes pipes = drive::Pipes::refused);
 
 }  // namespace axisgate::app

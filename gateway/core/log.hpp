@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // One line an event, to a sink the application chooses: stderr in the product, a vector in tests and simulation.
-// Promises that a line is never longer than kMaxLogLine and that writing one never throws or waits for a disk.
-// Never decides anything: a failing log changes no behaviour.
+// Promises that a line is never longer than kMaxLogLine, that writing one never throws or waits for a disk, and, once
+// it is limited, that nothing outside can fill it. Never decides anything: a failing log changes no behaviour.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
+#include "gateway/core/log_limit.hpp"
+
 namespace axisgate {
 
-enum class LogLevel : std::uint8_t { error, warning, info, debug };
 inline constexpr std::size_t kMaxLogLine = 512;
 
 [[nodiscard]] std::string_view text(LogLevel level);
@@ -33,11 +35,22 @@ class Log {
 
   void set_level(LogLevel most_detailed) { most_detailed_ = most_detailed; }
   [[nodiscard]] bool wants(LogLevel level) const { return sink_ != nullptr && level <= most_detailed_; }
+  /// From here on no kind of line comes more often than its pace allows; lines of debugging are not limited, since
+  /// somebody has asked for them.
+  void limit(std::function<Instant()> now);
   /// `source` says who speaks: "bus lift-serial", "axis 1", "modbus 127.0.0.1:50312".
-  void write(LogLevel level, std::string_view source, std::string_view message) const;
+  void write(LogLevel level, std::string_view source, std::string_view message, LogPace pace = LogPace::minute) const;
   void write(const OpeningFailure& failure) const;
+  /// Of a limited log, from time to time: what was left out and no later line has told of.
+  void tell_left_out() const;
 
  private:
+  struct Limit {
+    std::function<Instant()> now;
+    LogLimit of_kinds{};
+  };
+
+  std::shared_ptr<Limit> limit_;
   Sink sink_;
   LogLevel most_detailed_ = LogLevel::info;
   OnOpeningFailure on_opening_failure_;

@@ -116,6 +116,10 @@ constexpr auto kWords = std::to_array<Word>({
      "more drives or faster polls than the line can carry", "axisgate check prints the plan of each bus"},
     {gateway_alarm, 13, "name taken", "another gateway of the DDS domain has our name and one of our axes",
      "a copied configuration, no \"gateway\" name", "give each gateway a \"gateway\": {\"name\": ...} of its own"},
+    {gateway_alarm, 14, "listener down",
+     "an address that clients shall reach is none of this computer's: it is tried each second",
+     "a network that comes late, an interface without a cable, a wrong address",
+     "see the log; write 0.0.0.0 where any address will do"},
 
     {result, 0, "none", "no command yet; or a block was refused, and command_detail tells where", "", ""},
     {result, 1, "pending", "it waits for its turn or is under way", "", ""},

@@ -272,8 +272,10 @@ only what asks for something renews the lease. What is refused claims nothing.
 | `write` | a write to this axis |
 | `heartbeat` | a changed number in register 56 of the axis, or 8 of the gateway |
 
-**What nobody holds any more.** When the connection of an owner has ended, its lease goes on until its time is over. Any write or
-changed heartbeat of the same address and role takes it over, and nothing happens to the motor. An axis that the gateway finds enabled
+**What nobody holds any more.** When the connection of an owner has ended, its lease goes on until its time is over. A write to this
+axis, or a changed number in its register 56, takes it over, of the same address and role and on a connection that was opened after
+the owner's last request: nothing happens to the motor then. Writes elsewhere, register 8 too, and programs that were connected
+before take nothing over. An axis that the gateway finds enabled
 at its start is *adopted*: any operator's write but a block of zeros takes it over; if none comes in the lease's time, the axis is
 stopped as its `on_expiry` says.
 

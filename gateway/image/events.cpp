@@ -27,8 +27,8 @@ std::string_view text(EventKind kind) {
   return "?";
 }
 
-void EventRing::add(Instant at, AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) {
-  events_.push_back(Event{++added_, at, axis, kind, code, std::move(text)});
+void EventRing::add(Instant at, AxisNumber axis, EventKind kind, std::uint32_t code, std::string text, bool asked_for) {
+  events_.push_back(Event{++added_, at, axis, kind, code, std::move(text), asked_for});
   if (on_event_) on_event_(events_.back());
 }
 

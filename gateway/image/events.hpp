@@ -25,6 +25,7 @@ struct Event {
   EventKind kind = EventKind::link;
   std::uint32_t code = 0;
   std::string text;
+  bool asked_for = false;  ///< by a person, of this process itself: no line of it is left out of the log
 };
 
 inline constexpr std::size_t kMaxEvents = 1000;
@@ -33,7 +34,7 @@ class EventRing {
  public:
   /// `on_event` sees each event once, as it is added (the log).
   explicit EventRing(std::function<void(const Event&)> on_event = {}) : on_event_(std::move(on_event)) {}
-  void add(Instant at, AxisNumber axis, EventKind kind, std::uint32_t code, std::string text);
+  void add(Instant at, AxisNumber axis, EventKind kind, std::uint32_t code, std::string text, bool asked_for = false);
   [[nodiscard]] const boost::circular_buffer<Event>& events() const { return events_; }
   [[nodiscard]] std::uint64_t added() const { return added_; }
 

@@ -34,7 +34,10 @@ struct ClientLife {
   Instant last_request = kLongAgo;  ///< any request, reads included; of an address, accepted writes alone
   Instant heartbeat = kLongAgo;     ///< gateway register 8 was written with another value than before
   bool connected = true;            ///< false: its connection has ended, its leases are orphans
-  bool is_address = false;          ///< listener option "client": "address": a host, with all its connections
+  /// When its connection was opened, the oldest of those that an address has. None: of a DDS writer, whose origin is
+  /// one program.
+  std::optional<Instant> opened{};
+  bool is_address = false;  ///< listener option "client": "address": a host, with all its connections
   /// Of a DDS writer: OWNERSHIP_STRENGTH (DDS 1.4, 2.2.3.10). A stronger one takes an axis from a weaker one.
   std::optional<std::int32_t> strength{};
   /// Its leases are no longer than this, whatever their rules say: it has asked for a shorter one.
@@ -50,6 +53,12 @@ struct ClientLife {
 /// The same program, as far as anybody can tell: a connection that goes on where another one of it has ended.
 [[nodiscard]] inline bool same_hand(const ClientLife& a, const ClientLife& b) {
   return a.origin == b.origin && a.role == b.role;
+}
+
+/// It can be the gone owner's program, come back. One that was connected while the owner still asked is another program
+/// at its address.
+[[nodiscard]] inline bool may_be_back_as(const ClientLife& client, const ClientLife& owner) {
+  return same_hand(client, owner) && !owner.connected && (!client.opened || *client.opened >= owner.last_request);
 }
 
 /// What keeps a lease alive.

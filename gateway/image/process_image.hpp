@@ -34,7 +34,8 @@ enum class GatewayAlarm : std::uint8_t {
   event_loop_slow = 10,
   nvm_budget = 11,
   bus_overloaded = 12,
-  name_taken = 13,  ///< another gateway of the DDS domain publishes an axis under our key
+  name_taken = 13,     ///< another gateway of the DDS domain publishes an axis under our key
+  listener_down = 14,  ///< an address that is to be served is none of this computer's yet
 };
 
 /// Registers 50000 + 100 * b; refreshed by the gateway before a request is answered.

@@ -49,7 +49,7 @@ void Reload::change(LoadedConfig wanted) {
   } catch (const std::exception& error) {
     return refuse({fmt::format("{}: {}", wanted.config.file, error.what())});
   }
-  for (const std::string& warning : wanted.warnings) with_.gateway.report(EventKind::warning, warning);
+  for (const std::string& warning : wanted.warnings) with_.gateway.report(EventKind::warning, warning, true);
   std::vector<StartLine> start = start_lines(wanted, AXISGATE_VERSION);
   Config config = wanted.config;
   with_.gateway.reload(
@@ -101,15 +101,16 @@ void Reload::commit(const ReloadPlan& plan, Config wanted, const std::vector<Sta
   running_ = std::move(wanted);
   std::vector<std::string> lines = plan.changes;
   if (lines.empty()) lines.emplace_back("nothing has changed");
-  with_.gateway.report(EventKind::boot, fmt::format("{} was read anew: {}", running_.file, fmt::join(lines, "; ")));
+  with_.gateway.report(EventKind::boot, fmt::format("{} was read anew: {}", running_.file, fmt::join(lines, "; ")),
+                       true);
   for (const StartLine& line : plan.changes.empty() ? std::vector<StartLine>() : start)
-    with_.log.write(LogLevel::info, line.source, line.text);
+    with_.log.write(LogLevel::info, line.source, line.text, LogPace::each);
   end({true, std::move(lines)});
 }
 
 void Reload::refuse(std::vector<std::string> why_not) {
   for (const std::string& line : why_not)
-    with_.gateway.report(EventKind::warning, "reload refused, and nothing was changed: " + line);
+    with_.gateway.report(EventKind::warning, "reload refused, and nothing was changed: " + line, true);
   end({false, std::move(why_not)});
 }
 

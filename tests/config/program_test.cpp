@@ -165,6 +165,23 @@ TEST_F(Program, AWrongKeyOrValueOfAConfigurationOrAProfileIsNamedWithTheNearestR
               HasSubstr("/quantites: unknown key \"quantites\"; did you mean \"quantities\"?"));
 }
 
+TEST_F(Program, CheckReadsAPipeAndRunDoesNot) {
+  const std::string good = write("good.json", one_drive("/dev/ttyUSB0", 1, ""));
+  const std::string pipe = (folder() / "pipe").string();
+  const std::string fed =
+      "mkfifo " + pipe + "; cat " + good + " >" + pipe + " & while [ ! -p " + pipe + " ]; do :; done; ";
+  const Ended by_file = run("check " + good);
+  const Ended checked = run_command(fed + AXISGATE_PROGRAM + " check " + pipe);
+  EXPECT_EQ(checked.code, by_file.code);
+  EXPECT_NE(by_file.out, "");
+  std::string out = by_file.out;
+  for (std::size_t at = 0; (at = out.find(good)) != std::string::npos;) out.replace(at, good.size(), pipe);
+  EXPECT_EQ(checked.out, out);
+  const Ended ran = run("run " + pipe);
+  EXPECT_EQ(ran.code, 1);
+  EXPECT_THAT(ran.err, HasSubstr("cannot be read: it is no regular file"));
+}
+
 TEST_F(Program, ScanOfWhatIsNotThereEndsWithTheReason) {
   Ended ended = run("scan slcan:" + (folder() / "no-adapter").string());
   EXPECT_EQ(ended.code, 1);

@@ -74,7 +74,7 @@ TEST(Process, NamesTheInterfaceThatIsNotThereAndThoseThatAre) {
   const std::string line = last_line(child);
   EXPECT_THAT(line, HasSubstr("--interface nosuch0"));
   EXPECT_THAT(line, HasSubstr("lo (127.0.0.1)"));
-  EXPECT_EQ(child.exit_code(), kExitParticipant);
+  EXPECT_EQ(child.exit_code(), kExitNoAddress);
 }
 
 TEST(Process, EndsAtItsMemoryLimit) {

@@ -80,9 +80,9 @@ def width(kind):
 class Client:
     """One pymodbus connection. Refusals are raised with their exception code."""
 
-    def __init__(self, port, unit=1):
+    def __init__(self, port, unit=1, host="127.0.0.1"):
         self.unit = unit
-        self.tcp = ModbusTcpClient("127.0.0.1", port=port, timeout=NEVER, retries=0)
+        self.tcp = ModbusTcpClient(host, port=port, timeout=NEVER, retries=0)
         if not self.tcp.connect():
             raise Closed(f"no connection to port {port}")
 

@@ -170,6 +170,7 @@ int Contract::send(std::size_t client, const Write& write) {
   if (lost_count_) return number;
   const SeenBefore seen_before = this->seen_before(client, write);
   asked_[number] = {client, trouble_, sight_.now_ms};
+  if (!is_dds(client)) asked_ms_[client] = sight_.now_ms;
   std::vector<World> worlds;
   std::set<std::string> said;
   add_expired();
@@ -181,7 +182,7 @@ int Contract::send(std::size_t client, const Write& write) {
       World next = world;
       const Seen seen = this->seen();
       // Design 4, age: "stale samples and heartbeats renew nothing"; nor does what may be for another gateway.
-      if (write.flaw == Flaw::none) take_over(next, client);
+      if (write.flaw == Flaw::none) take_over(next, client, readings);
       Judge judge(options_, next, readings, seen, client);
       judge.seen_before(seen_before);
       Pending pending;

@@ -124,10 +124,11 @@ struct Pending {
 
 /// One reading of all that was written and seen so far.
 struct World {
-  std::optional<std::size_t> owner{};      ///< kGhost and more: a connection that is silent for ever
-  bool orphan = false;                     ///< its connection has ended
-  bool retaken = false;                    ///< it was, before the last request
-  bool retake_unsure = false;              ///< whether that request has taken it over nobody can tell
+  std::optional<std::size_t> owner{};       ///< kGhost and more: a connection that is silent for ever
+  bool orphan = false;                      ///< its connection has ended
+  std::int64_t orphan_asked_ms = kLongAgo;  ///< its last request before
+  bool retaken = false;                     ///< it was, before the last request
+  bool retake_unsure = false;               ///< whether that request has taken it over nobody can tell
   std::int64_t lease_ends_ms = kNever;     ///< at the earliest; with an owner, or open to all; kNever: nothing runs out
   std::int64_t lease_ends_by_ms = kNever;  ///< at the latest: of some requests nobody can tell whether they renew it
   bool lease_unsure = false;               ///< it may have run out by now
@@ -175,6 +176,8 @@ struct World {
     lease_unsure = retake_unsure = false;
   }
 };
+
+class Readings;
 
 struct ContractOptions {
   bool leases = false;
@@ -289,7 +292,7 @@ class Contract {
   void changed(World& world, const World& before) const;
   void drop_equal();
   void keep_different();
-  void take_over(World& world, std::size_t client) const;
+  void take_over(World& world, std::size_t client, Readings& readings) const;
   void renew(World& world, std::size_t client) const;
   void heard(std::size_t client);
   void may_have_stopped_for_good();
@@ -302,7 +305,9 @@ class Contract {
   ContractOptions options_;
   std::vector<World> worlds_;
   std::array<AllSaid, kWriters> said_{};
-  std::array<bool, kWriters> graced_{};  ///< its leases were prolonged, and it was not heard since
+  std::array<std::int64_t, kModbus> opened_ms_{};  ///< its connection
+  std::array<std::int64_t, kModbus> asked_ms_{};   ///< its last request of any kind
+  std::array<bool, kWriters> graced_{};            ///< its leases were prolonged, and it was not heard since
   std::map<int, Asked> asked_;
   std::string predicted_;
   Sight sight_{};

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "tests/model/contract.hpp"
+#include "tests/model/judge.hpp"
 
 namespace axisgate::test::model {
 namespace {
@@ -22,10 +23,15 @@ void ended_by_nobody(World& world) {
 
 }  // namespace
 
-// 3.5: "renew": any request; 3.5 Signs of life: "An orphan lease is taken over by any write ... of the same address and
-// role, whatever it asks".
-void Contract::take_over(World& world, std::size_t client) const {
+// 3.5: "renew": any request; 3.5 Signs of life: an orphan lease is taken over by "a write to this axis ... of the same
+// address and role, on a connection opened after the owner's last request".
+void Contract::take_over(World& world, std::size_t client, Readings& readings) const {
   world.retaken = world.owner && world.orphan && options_.address_of(*world.owner) == options_.address_of(client);
+  if (world.retaken && !is_dds(client) && !options_.by_address) {
+    constexpr std::int64_t kSameInstantMs = 1;
+    const std::int64_t later_ms = opened_ms_[client] - world.orphan_asked_ms;
+    world.retaken = later_ms > kSameInstantMs || (later_ms >= -kSameInstantMs && readings.other());
+  }
   if (world.retaken) world.owner = client;
   if (world.owner != client) return;
   // Of a write that is refused nobody can tell whether it has taken it over.
@@ -66,6 +72,7 @@ void Contract::dds_died() {
 // 3.5: "renew": any request of the owner; 3.5 Signs of life: "While an axis is disabled only requests that ask for
 // something".
 void Contract::asked(std::size_t client) {
+  if (!is_dds(client)) asked_ms_[client] = sight_.now_ms;
   // 3.5 Signs of life: "With "client": "address" only writes renew"; 3.5, "renew": "a write to this axis".
   if ((options_.by_address && !is_dds(client)) || options_.only_writes_renew) return heard(client);
   for (World& world : worlds_)
@@ -156,6 +163,7 @@ void Contract::may_have_stopped_for_good() {
 
 void Contract::left(std::size_t client, bool silently) {
   if (!silently || is_dds(client)) may_have_stopped_for_good();
+  if (!is_dds(client)) opened_ms_[client] = sight_.now_ms;
   if (is_dds(client)) {
     options_.limits.at(client - kModbus) = kNever;
     said_.at(client - kModbus) = {};
@@ -168,7 +176,10 @@ void Contract::left(std::size_t client, bool silently) {
       continue;  // 3.3 Edges: "until 60 s after its last connection"
     }
     if (world.owner == client && silently && !world.orphan) world.owner = kGhost + client;
-    if (world.owner == client) world.orphan = true;
+    if (world.owner == client && !world.orphan) {
+      world.orphan = true;
+      if (!is_dds(client)) world.orphan_asked_ms = asked_ms_[client];
+    }
     // 3.4 Jog: a new connection has no button of an old one's.
     if (world.jog != 0 && world.jog_client == client) world.jog_client = kGhost + client;
     if (is_dds(client)) {
@@ -301,6 +312,7 @@ void Contract::gateway_died() {
 // The latch was the gateway's.
 void Contract::gateway_started() {
   gateway_is_new_ = true;
+  opened_ms_.fill(sight_.now_ms);
   std::vector<World> worlds;
   for (World& world : worlds_) {
     world.found = options_.leases;

@@ -146,6 +146,54 @@ TEST_P(Life, OfAnOrphanGoesOnWithAChangedHeartbeat) {
   EXPECT_NE(plant.velocity(), 0);
 }
 
+// Design 3.5 Signs of life: "on a connection opened after the owner's last request".
+TEST_P(Life, OfAnOrphanIsNotTakenByAProgramOfItsAddressThatWasThereBefore) {
+  Plant plant(GetParam(), with_leases());
+  plant.ready();
+  const auto before = plant.connection_from(Plant::kHostOfA);
+  before->connect();
+  plant.run(100ms);
+  start(plant, plant.a);
+  plant.a.disconnect();
+  plant.run(300ms);
+  EXPECT_EQ(before->row(row::heartbeat, 1), kOk) << "what asks for nothing is refused to nobody";
+  EXPECT_EQ(before->word(shown::owner), kAnother);
+  EXPECT_EQ(plant.set_endless(*before), kNotNow);
+  EXPECT_EQ(before->word(shown::owner), kAnother);
+  plant.run(1000ms);
+  stops_by_its_lease(plant);
+}
+
+// "Register 8 and writes elsewhere renew what is owned and take over nothing."
+TEST_P(Life, OfAnOrphanIsNotTakenByTheGatewaysHeartbeat) {
+  Plant plant(GetParam(), with_leases());
+  plant.ready();
+  start(plant, plant.a);
+  plant.a.disconnect();
+  const auto monitor = plant.connection_from(Plant::kHostOfA);
+  monitor->connect();
+  for (std::uint8_t beat = 1; beat <= 25; ++beat) {
+    monitor->say({0, beat, 0, 0, 0, 6, 1, 6, 0, 8, 0, beat});
+    plant.run(100ms);
+  }
+  EXPECT_GT(monitor->replies(), 0U);
+  EXPECT_EQ(plant.velocity(), 0);
+  EXPECT_EQ(plant.b.word(shown::axis_state), kStopLatched);
+}
+
+TEST_P(Life, OfAnOrphanGoesOnWithTheFirstBlockOfItsReturnThoughThatIsOnlyRemembered) {
+  Plant plant(GetParam(), with_leases());
+  plant.ready();
+  start(plant, plant.a);
+  plant.a.disconnect();
+  plant.run(800ms);
+  plant.a.connect();
+  EXPECT_EQ(plant.a.command(kHalt, 7), kOk) << "an id that is the first of its address";
+  EXPECT_EQ(plant.a.word(shown::owner), kMe);
+  plant.run(1500ms);
+  EXPECT_NE(plant.velocity(), 0);
+}
+
 TEST_P(Life, OfAnOrphanIsNotTakenByAnotherAddress) {
   Plant plant(GetParam(), with_leases());
   plant.ready();

@@ -66,6 +66,26 @@ std::string refusal(std::string_view text) {
 
 TEST(JsonFile, CommentsAreAllowed) { EXPECT_EQ(refusal("{ // why\n \"a\": 1 /* what */ }"), "accepted"); }
 
+TEST(JsonFile, ANumberWithoutAFractionIsAnIntegerHoweverItIsWritten) {
+  const auto parsed = parse_json(R"({"baud": 38400.0, "speed": 1e3, "ratio": 27.5, "far": 1e300, "none": -0.0})");
+  const auto* const document = std::get_if<json>(&parsed);
+  ASSERT_NE(document, nullptr);
+  EXPECT_TRUE((*document)["baud"].is_number_integer());
+  EXPECT_EQ((*document)["baud"], 38400);
+  EXPECT_EQ((*document)["speed"], 1000);
+  EXPECT_EQ((*document)["none"], 0);
+  EXPECT_TRUE((*document)["none"].is_number_integer());
+  EXPECT_TRUE((*document)["ratio"].is_number_float());
+  EXPECT_TRUE((*document)["far"].is_number_float()) << "no integer that anybody can hold";
+}
+
+TEST(JsonFile, Utf16IsNamedAsSuch) {
+  using namespace std::string_view_literals;
+  for (const std::string_view text : {"\xFF\xFE{\0}\0"sv, "\xFE\xFF\0{\0}"sv, "{\0}\0"sv, "\0{\0}"sv})
+    EXPECT_TRUE(refusal(text).starts_with("is UTF-16: save it as UTF-8"));
+  EXPECT_EQ(refusal("\xEF\xBB\xBF{}"), "accepted") << "UTF-8 with its mark";
+}
+
 TEST(JsonFile, ASyntaxErrorTellsLineAndColumn) {
   EXPECT_EQ(refusal("{\n  \"a\": 1,\n  b\n}").substr(0, 18), "line 3, column 3: ");
 }

@@ -49,17 +49,18 @@ void EndSignals::wait() {
 
 void EndSignals::on_signal(int signal) {
   if (signal == SIGHUP && !has_terminal_) {
-    log_.write(LogLevel::info, "gateway", "signal 1: the configuration is read anew");
+    log_.write(LogLevel::info, "gateway", "signal 1: the configuration is read anew", LogPace::each);
     return on_reload_();
   }
   if (std::exchange(ending_, true)) {
-    log_.write(LogLevel::warning, "gateway", fmt::format("signal {} again: ending at once", signal));
+    log_.write(LogLevel::warning, "gateway", fmt::format("signal {} again: ending at once", signal), LogPace::each);
     return on_end_(true);
   }
   log_.write(LogLevel::info, "gateway",
              fmt::format("signal {}: ending; the drives keep what they do, and only stops are accepted now. One that "
                          "watches for a dead gateway will miss it if a motor of it has torque",
-                         signal));
+                         signal),
+             LogPace::each);
   on_end_(false);
 }
 

@@ -16,10 +16,9 @@ bool stronger(const ClientLife& a, const ClientLife& b) {
 Ownership::Taken Ownership::how(const ClientLife& client) const {
   if (!lease_.running) return Taken::free;
   if (!lease_.owner) return Taken::open;
-  const bool own_hand = same_hand(*lease_.owner, client);
-  if (own_hand && !lease_.owner->connected) return Taken::orphan;  // however strong: nobody is its own rival
+  if (may_be_back_as(client, *lease_.owner)) return Taken::orphan;  // however strong: nobody is its own rival
   if (stronger(client, *lease_.owner)) return Taken::weaker;
-  return own_hand ? Taken::same_hand : Taken::lower_rank;
+  return same_hand(*lease_.owner, client) ? Taken::same_hand : Taken::lower_rank;
 }
 
 Errc Ownership::judge(const ClientPtr& client, bool claims) const {

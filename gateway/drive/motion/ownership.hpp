@@ -21,8 +21,8 @@ class Ownership {
   Ownership(Lease& lease, const LeaseRules& rules) : lease_(lease) { lease_.rules = rules; }
 
   /// Whether what this client asks may be carried out: ok, or not_owner. `claims`: a write that would make it the
-  /// owner, and so may take over a weaker DDS writer's lease. An orphan of its own address and role hinders nobody.
-  /// No client: the gateway itself, which is always admitted.
+  /// owner, and so may take over a weaker DDS writer's lease. What its own connection of before has left hinders
+  /// nobody. No client: the gateway itself, which is always admitted.
   [[nodiscard]] Errc judge(const ClientPtr& client, bool claims) const;
 
   /// How a client became the owner.
@@ -30,7 +30,7 @@ class Ownership {
     nothing,     ///< it was the owner already, or leases are off
     free,        ///< nobody owned the axis
     open,        ///< of an axis that was enabled without an owner
-    orphan,      ///< of its own address, whose connection had ended
+    orphan,      ///< of its own address, whose connection had ended, and which it may be the return of
     same_hand,   ///< of its own address, by command take_over
     weaker,      ///< of a DDS writer of less strength
     lower_rank,  ///< by command take_over

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading JSON files (declared in json_schema.hpp): bounded, with comments, and strict about what JSON leaves open.
 #include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -73,14 +77,35 @@ std::string plain(std::string_view what) {
   return std::string(dash == std::string_view::npos ? what : what.substr(dash + 3));
 }
 
+/// JSON has one kind of number: 38400.0 is an integer (draft-7, 6.1.1), for who reads it here too.
+void make_whole(json& value) {
+  constexpr double kExact = 9007199254740992.0;  // 2^53
+  if (!value.is_number_float()) return;
+  const double number = value.get<double>();
+  if (std::abs(number) <= kExact && std::trunc(number) == number) value = static_cast<std::int64_t>(number);
+}
+
+/// As editors on Windows may save it: with a byte order mark, or each character of the first two beside a zero.
+bool is_utf16(std::string_view text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return true;
+  return text.size() >= 2 && (text[0] == '\0') != (text[1] == '\0');
+}
+
 }  // namespace
 
 std::variant<json, SchemaFault> parse_json(std::string_view text) {
+  if (is_utf16(text))
+    return SchemaFault{
+        "", "is UTF-16: save it as UTF-8 (an editor asks for the encoding where it saves; or iconv -t UTF-8)"};
   Watch watch;
   try {
     json document = json::parse(
         text.begin(), text.end(),
-        [&](int depth, json::parse_event_t event, json& parsed) { return watch(depth, event, parsed); }, true, true);
+        [&](int depth, json::parse_event_t event, json& parsed) {
+          if (event == json::parse_event_t::value) make_whole(parsed);
+          return watch(depth, event, parsed);
+        },
+        true, true);
     if (!watch.refused().empty()) return SchemaFault{"", watch.refused()};
     return document;
   } catch (const json::parse_error& error) {
@@ -102,14 +127,22 @@ FileRead read_file(const std::string& path) {
   return {path, std::move(text)};
 }
 
-std::variant<json, SchemaFault> load_json(const std::filesystem::path& path, std::vector<FileRead>& read) {
+std::variant<json, SchemaFault> load_json(const std::filesystem::path& path, std::vector<FileRead>& read, Pipes pipes) {
   std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) return SchemaFault{"", "cannot be read: " + error.message()};
-  if (size > kMaxJsonFileBytes) return SchemaFault{"", "is larger than 1 MiB"};
-  std::string text(static_cast<std::size_t>(size), '\0');
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  const bool readable =
+      std::filesystem::is_regular_file(status) || (pipes == Pipes::allowed && std::filesystem::is_fifo(status));
+  if (!readable) {
+    if (!error && !std::filesystem::exists(status)) error = std::make_error_code(std::errc::no_such_file_or_directory);
+    return SchemaFault{"", "cannot be read: " + (error ? error.message() : "it is no regular file")};
+  }
   std::ifstream file(path, std::ios::binary);
-  if (!file.read(text.data(), static_cast<std::streamsize>(text.size()))) return SchemaFault{"", "cannot be read"};
+  if (!file) return SchemaFault{"", "cannot be read: " + std::string(std::strerror(errno))};
+  std::string text(kMaxJsonFileBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) return SchemaFault{"", "cannot be read"};
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kMaxJsonFileBytes) return SchemaFault{"", "is larger than 1 MiB"};
   read.push_back({path.string(), std::move(text)});
   return parse_json(*read.back().text);
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -41,10 +42,15 @@ inline constexpr std::size_t kMaxWatchedBytes = 4U << 20U;
 /// As far as kMaxWatchedBytes. What is no regular file is not opened: a pipe would hold its reader for ever.
 [[nodiscard]] FileRead read_file(const std::string& path);
 
+/// Whether what is read once may come from a pipe, as a shell's <(...) is. What runs is read again at a reload.
+enum class Pipes : std::uint8_t { refused, allowed };
+
 /// The document, or why there is none. A syntax error's message begins with "line 3, column 14: "; its pointer is
-/// empty. Comments are allowed; a key given twice is a fault. Adds to `read` what was read.
+/// empty. Comments are allowed; a key given twice is a fault; a number without a fraction is an integer, however it is
+/// written. Adds to `read` what was read.
 [[nodiscard]] std::variant<nlohmann::json, SchemaFault> load_json(const std::filesystem::path& path,
-                                                                  std::vector<FileRead>& read);
+                                                                  std::vector<FileRead>& read,
+                                                                  Pipes pipes = Pipes::refused);
 /// The same for text already in memory (an embedded schema, a test).
 [[nodiscard]] std::variant<nlohmann::json, SchemaFault> parse_json(std::string_view text);
 

@@ -137,6 +137,7 @@ void DdsServer::on_ready(const ReadyRecord& record, Instant now) {
   taking_.on_ready(now);
   patience_->expires_at(now + kLooksEach);
   reports_.down(false);
+  if (reports_.address_missing) reports_.address_missing(false);
   reports_.event(EventKind::boot, plan_.on_ready(printable(record.version), now));
   session_.on_link_up(now);
 }
@@ -213,7 +214,9 @@ void DdsServer::on_end(const ProcessEnd& end) {
   if (process_ && process_->socket() != nullptr) take_last_lines(now);
   if (process_) drop_link();
   process_.reset();
-  const auto next = plan_.on_end(std::exchange(cause_, {}).value_or(end), now);
+  const ProcessEnd how = std::exchange(cause_, {}).value_or(end);
+  if (reports_.address_missing) reports_.address_missing(has_no_address(how));
+  const auto next = plan_.on_end(how, now);
   if (next.told) reports_.event(EventKind::warning, *next.told);
   patience_->expires_at(now + next.pause);
 }

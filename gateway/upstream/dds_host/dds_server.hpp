@@ -31,8 +31,9 @@ inline constexpr int kMaxSentATurn = 128;
 /// What the gateway is told of the process.
 struct DdsReports {
   std::function<void(EventKind, std::string)> event;
-  std::function<void(bool down)> down;           ///< gateway alarm dds_process_down
-  std::function<void(bool taken)> name_taken{};  ///< gateway alarm of that name
+  std::function<void(bool down)> down;                  ///< gateway alarm dds_process_down
+  std::function<void(bool taken)> name_taken{};         ///< gateway alarm of that name
+  std::function<void(bool missing)> address_missing{};  ///< gateway alarm listener_down
 };
 
 class DdsServer {

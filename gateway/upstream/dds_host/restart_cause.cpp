@@ -18,8 +18,9 @@ std::string exit_text(int code) {
     case kExitInternal:
       return "met a state that it cannot go on from";
     case kExitParticipant:
-      return "could not create its participant: look at `interfaces`, `domain` and `qos_file`, and at its own lines of "
-             "the log";
+      return "could not create its participant: look at `domain` and `qos_file`, and at its own lines of the log";
+    case kExitNoAddress:
+      return "has no address yet on one of its `interfaces`, which its own line of the log names";
     case kExitProtocol:
       return "was sent what is no record: axisgate and axisgate-dds are not of one installation";
     case kExitMemory:
@@ -51,6 +52,10 @@ std::string signal_text(int signal) {
 }
 
 }  // namespace
+
+bool has_no_address(const ProcessEnd& end) {
+  return end.how == ProcessEnd::How::exited && end.number == kExitNoAddress;
+}
 
 std::string text(const ProcessEnd& end) {
   const std::string name = "axisgate-dds ";

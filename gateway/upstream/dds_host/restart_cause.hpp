@@ -27,6 +27,9 @@ struct ProcessEnd {
   friend bool operator==(const ProcessEnd&, const ProcessEnd&) = default;
 };
 
+/// It waits for the network, and not for somebody who mends something.
+[[nodiscard]] bool has_no_address(const ProcessEnd& end);
+
 /// "axisgate-dds crashed: signal 11 (SEGV)".
 [[nodiscard]] std::string text(const ProcessEnd& end);
 

@@ -28,13 +28,17 @@ RestartPlan::Next RestartPlan::on_end(const ProcessEnd& end, Instant now) {
   if (ready_ && now - *ready_ >= kRanWell) pause_ = kFirstPause;
   ready_.reset();
   Next next;
-  next.pause = std::exchange(pause_, std::min(pause_ * 2, kLongestPause));
+  next.pause = has_no_address(end) ? kAddressPause : std::exchange(pause_, std::min(pause_ * 2, kLongestPause));
   ++failed_;
   if (told_ == end) return next;
   told_ = end;
-  const bool missing = end.how == ProcessEnd::How::not_found;
-  next.told = text(end) + (missing ? "; it is looked for again from time to time"
-                                   : "; started again in " + seconds_text(next.pause));
+  next.told = text(end);
+  if (end.how == ProcessEnd::How::not_found)
+    *next.told += "; it is looked for again from time to time";
+  else if (has_no_address(end))
+    *next.told += "; trying again each second";
+  else
+    *next.told += "; started again in " + seconds_text(next.pause);
   return next;
 }
 

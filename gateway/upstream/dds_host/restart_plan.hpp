@@ -16,6 +16,8 @@ namespace axisgate::dds {
 /// Topics are back within 2 s of a crash: this, and the time that a participant needs.
 inline constexpr Duration kFirstPause = std::chrono::milliseconds(200);
 inline constexpr Duration kLongestPause = std::chrono::seconds(30);
+/// Where an interface that it needs is not there yet: as for a listener.
+inline constexpr Duration kAddressPause = std::chrono::seconds(1);
 /// So long after it was ready it counts as sound, and the next pause is the first again.
 inline constexpr Duration kRanWell = std::chrono::seconds(60);
 /// From its start to its ReadyRecord.

@@ -9,8 +9,9 @@ namespace axisgate::dds {
 inline constexpr int kExitGatewayGone = 0;   ///< the socket was closed: nobody is left to work for
 inline constexpr int kExitUsage = 64;        ///< the command line: will be the same next time
 inline constexpr int kExitInternal = 70;     ///< what should not happen
-inline constexpr int kExitParticipant = 71;  ///< no participant or topic: an interface, a port, the QoS file
+inline constexpr int kExitParticipant = 71;  ///< no participant or topic: a port, the QoS file
 inline constexpr int kExitProtocol = 72;     ///< a packet that is no record: two versions of the programs
 inline constexpr int kExitMemory = 73;       ///< its memory limit
+inline constexpr int kExitNoAddress = 74;    ///< an interface is not there, or has no address: it may come late
 
 }  // namespace axisgate::dds

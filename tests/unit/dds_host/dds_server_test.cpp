@@ -42,6 +42,15 @@ TEST_F(Hosted, StartsItAgainWhenItIsKilled) {
   EXPECT_EQ(told[2].kind, EventKind::boot);
 }
 
+TEST_F(Hosted, SaysThatAnAddressIsMissingUntilItIsThere) {
+  start("ends with 74");
+  ASSERT_TRUE(run_until([&] { return address_missing; }));
+  EXPECT_TRUE(down);
+  behave("normal");
+  ASSERT_TRUE(run_until_ready());
+  EXPECT_FALSE(address_missing);
+}
+
 class Ends : public Hosted, public ::testing::WithParamInterface<std::pair<std::string, std::string>> {};
 
 TEST_P(Ends, AreToldApartAndFollowedByAnotherStart) {
@@ -67,9 +76,10 @@ INSTANTIATE_TEST_SUITE_P(
         std::pair{"ends with 0", "lost its connection to the gateway"},
         std::pair{"ends with 5", "ended with exit code 5"}, std::pair{"ends with 64", "does not know its command line"},
         std::pair{"ends with 70", "met a state that it cannot go on from"},
-        std::pair{"ends with 71", "could not create its participant: look at `interfaces`, `domain`"},
+        std::pair{"ends with 71", "could not create its participant: look at `domain` and `qos_file`"},
         std::pair{"ends with 72", "was sent what is no record"},
         std::pair{"ends with 73", "reached its memory limit (memory_limit_mb)"},
+        std::pair{"ends with 74", "has no address yet on one of its `interfaces`"},
         std::pair{"is never ready", "was not ready in time and was killed"},
         std::pair{"reads nothing", "took nothing from the gateway for too long and was killed"},
         std::pair{"sends garbage", "sent another version: axisgate and axisgate-dds are not of one installation"},

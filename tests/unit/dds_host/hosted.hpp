@@ -93,7 +93,9 @@ class Hosted : public ::testing::Test {
                                          DdsReports{[this](EventKind kind, std::string text) {
                                                       told.push_back({kind, std::move(text)});
                                                     },
-                                                    [this](bool is) { down = is; }});
+                                                    [this](bool is) { down = is; },
+                                                    {},
+                                                    [this](bool is) { address_missing = is; }});
     server->start();
   }
   static void behave(const std::string& behaviour) { setenv("FAKE_DDS", behaviour.c_str(), 1); }
@@ -147,6 +149,7 @@ class Hosted : public ::testing::Test {
           },
           LogLevel::debug};
   std::vector<Told> told;
+  bool address_missing = false;
   bool down = false;
   std::unique_ptr<DdsServer> server;
 };

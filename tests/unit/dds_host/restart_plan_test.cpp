@@ -15,6 +15,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::Optional;
 
@@ -84,9 +85,21 @@ TEST(RestartPlan, SaysThatAMissingProgramIsLookedForAgain) {
                                    "again from time to time")));
 }
 
+TEST(RestartPlan, LooksEachSecondForAnInterfaceThatIsNotThereYet) {
+  const ProcessEnd no_address{ProcessEnd::How::exited, kExitNoAddress};
+  RestartPlan plan;
+  EXPECT_THAT(plan.on_end(no_address, kStart).told,
+              Optional(std::string("axisgate-dds has no address yet on one of its `interfaces`, which its own line of "
+                                   "the log names; trying again each second")));
+  EXPECT_THAT(pauses_ms(plan, 9, no_address), Each(1000));
+  EXPECT_FALSE(plan.on_end(no_address, kStart).told) << "once";
+  EXPECT_EQ(plan.on_end(kCrash, kStart).pause, kFirstPause) << "it has failed in nothing";
+}
+
 TEST(ProcessEnd, HasWordsOfItsOwnForEachWay) {
   std::vector<std::string> words;
-  for (const int code : {kExitGatewayGone, 1, kExitUsage, kExitInternal, kExitParticipant, kExitProtocol, kExitMemory})
+  for (const int code :
+       {kExitGatewayGone, 1, kExitUsage, kExitInternal, kExitParticipant, kExitProtocol, kExitMemory, kExitNoAddress})
     words.push_back(text({ProcessEnd::How::exited, code}));
   for (const int signal : {SIGKILL, SIGBUS, SIGSEGV, SIGTERM}) words.push_back(text({ProcessEnd::How::killed, signal}));
   for (auto how = ProcessEnd::How::unknown; how <= ProcessEnd::How::closed;

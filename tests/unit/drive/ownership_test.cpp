@@ -106,6 +106,20 @@ TEST_F(Owned, AnOrphanIsTakenOverByItsOwnAddressAndRoleAlone) {
   EXPECT_EQ(o.until(), kStart + 3s);
 }
 
+TEST_F(Owned, AnOrphanIsNotTakenOverByAProgramThatWasThereWhileItsOwnerAsked) {
+  Ownership o = owned(rules, kStart);
+  plc->last_request = kStart + 500ms;
+  plc->connected = false;
+  const auto beside = client(7, "10.0.0.1");
+  beside->opened = kStart + 499ms;
+  EXPECT_EQ(o.judge(beside, true), Errc::not_owner);
+  EXPECT_FALSE(o.waits_for(beside, false));
+  EXPECT_EQ(o.may_take_over(beside), Errc::ok) << "by command 14, which is meant so";
+  beside->opened = kStart + 500ms;
+  EXPECT_EQ(o.judge(beside, true), Errc::ok);
+  EXPECT_TRUE(o.waits_for(beside, false));
+}
+
 TEST_F(Owned, AnOrphanRunsOutLikeAnyLease) {
   Ownership o = owned(rules, kStart);
   plc->connected = false;

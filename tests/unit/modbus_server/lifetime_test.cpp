@@ -2,7 +2,9 @@
 // How the server starts and how it ends.
 #include <gmock/gmock.h>
 
+#include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "tests/unit/modbus_server/served.hpp"
 
@@ -10,6 +12,7 @@ namespace axisgate::test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 std::string failure_of_start(Served& served) {
@@ -31,10 +34,55 @@ TEST(ModbusServerStart, APortThatIsTakenIsNamedWithWhatToDo) {
                                               HasSubstr("stop that one or choose another port")));
 }
 
-TEST(ModbusServerStart, AnAddressOfAnotherMachineIsNamedWithWhatToDo) {
+/// Beside one that is there.
+struct LateAddress : testing::Test {
+  LateAddress() {
+    served.listeners.push_back(served.listeners[0]);
+    served.listeners[0].host = "192.0.2.1";  // TEST-NET-1: nobody's
+  }
   Served served;
-  served.listeners[0].host = "192.0.2.1";  // TEST-NET-1: nobody's
-  EXPECT_THAT(failure_of_start(served), HasSubstr("no interface of this machine has this address"));
+};
+
+TEST_F(LateAddress, IsToldOnceWhileTheOthersServe) {
+  served.start();
+  EXPECT_TRUE(served.listener_down);
+  for (int second = 0; second < 90; ++second) served.pass(std::chrono::seconds(1));
+  EXPECT_THAT(served.events, ElementsAre(AllOf(HasSubstr("/modbus_tcp/0/listen: cannot listen on 192.0.2.1:"),
+                                               HasSubstr("no interface of this computer has this address"),
+                                               HasSubstr("trying again each second"))));
+  EXPECT_THAT(served.lines, ElementsAre(HasSubstr("listening on 127.0.0.1:"))) << "one of the two listens";
+  TestClient client(served, 1);
+  client.send(read_request(1, 0, 1));
+  EXPECT_EQ(client.receive(11).size(), 11U);
+}
+
+TEST_F(LateAddress, DoesNotHideOneThatIsTaken) {
+  Served holder;
+  holder.start();
+  served.listeners[1].port = holder.server->ports()[0];
+  EXPECT_THAT(failure_of_start(served), HasSubstr("/modbus_tcp/1/listen"));
+}
+
+TEST_F(LateAddress, IsForgottenByAReloadThatAsksForAnother) {
+  served.start();
+  const std::vector<modbus_tcp::ListenerSettings> wanted{served.listeners[1]};
+  const std::vector<std::optional<std::size_t>> kept{1};
+  served.server->prepare(wanted, kept);
+  served.server->commit({});
+  EXPECT_FALSE(served.listener_down);
+}
+
+TEST_F(LateAddress, OfAReloadIsTriedToo) {
+  const std::vector<modbus_tcp::ListenerSettings> wanted{served.listeners[1], served.listeners[0]};
+  served.listeners.erase(served.listeners.begin());
+  served.start();
+  EXPECT_FALSE(served.listener_down);
+  const std::vector<std::optional<std::size_t>> kept{0, std::nullopt};
+  served.server->prepare(wanted, kept);
+  EXPECT_FALSE(served.listener_down) << "nothing has changed yet";
+  served.server->commit({});
+  EXPECT_TRUE(served.listener_down);
+  EXPECT_THAT(served.events, ElementsAre(HasSubstr("/modbus_tcp/1/listen: cannot listen on 192.0.2.1:")));
 }
 
 TEST(ModbusServerStart, ATextThatIsNoAddressIsRefused) {

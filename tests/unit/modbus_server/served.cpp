@@ -49,7 +49,10 @@ void Served::start() {
 }
 
 void Served::start(const modbus_tcp::DescriptorPlan& descriptors) {
-  server = std::make_unique<modbus_tcp::Server>(io, runtime, listeners, image, port, clients, log);
+  server = std::make_unique<modbus_tcp::Server>(
+      io, runtime, listeners, image, port, clients, log,
+      modbus_tcp::ServerReports{[this](EventKind, std::string text) { events.push_back(std::move(text)); },
+                                [this](bool down) { listener_down = down; }});
   server->start(descriptors);
 }
 

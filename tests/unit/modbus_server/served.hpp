@@ -54,6 +54,8 @@ class Served {
   Log log{[this](LogLevel, std::string_view source, std::string_view message) {
     lines.push_back(std::string(source) + ": " + std::string(message));
   }};
+  std::vector<std::string> events;
+  bool listener_down = false;
   std::vector<modbus_tcp::ListenerSettings> listeners;
   std::unique_ptr<modbus_tcp::Server> server;
 };

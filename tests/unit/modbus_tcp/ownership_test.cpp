@@ -202,20 +202,36 @@ TEST_F(Life, AViewersGatewayHeartbeatIsNobodys) {
   EXPECT_EQ(life->heartbeat, desk.runtime.now()) << "whatever a viewer wrote before";
 }
 
-TEST_F(Life, AChangedGatewayHeartbeatTakesOverTheOrphansOfItsOwnHand) {
+TEST_F(Life, AChangedGatewayHeartbeatAsksNothingOfWhatAnEndedConnectionHasLeft) {
   EXPECT_TRUE(is_done(plc.write(156, 1)));
   desk.axis(1).lease = {.owner = last().life, .running = true, .renewed = desk.runtime.now()};
   plc.session().on_closed(desk.runtime.now());
   desk.port.submitted.clear();
-  EXPECT_TRUE(is_done(panel.write(8, 1)));
-  EXPECT_EQ(desk.asked(), "-") << "another address";
   Line again(desk);
   EXPECT_TRUE(is_done(again.write(8, 1)));
-  ASSERT_EQ(desk.port.submitted.size(), 1U);
-  EXPECT_TRUE(last().is_write && last().beats);
-  EXPECT_EQ(desk.asked(), "nothing") << "of axis 1";
-  EXPECT_TRUE(is_done(again.write(8, 1)));
-  EXPECT_EQ(desk.asked(), "-") << "unchanged";
+  EXPECT_EQ(desk.asked(), "-") << "any program at that address beats it";
+}
+
+TEST_F(Life, AHeartbeatOfTheAxisThatStandsStillIsNoWrite) {
+  EXPECT_TRUE(is_done(plc.write(156, 1)));
+  EXPECT_TRUE(last().is_write);
+  EXPECT_TRUE(is_done(plc.write(156, 1)));
+  EXPECT_FALSE(last().is_write) << "nobody has come back";
+  EXPECT_TRUE(is_done(plc.write_block(154, "00 00 00 00 00 01")));
+  EXPECT_TRUE(last().is_write) << "a block is";
+}
+
+TEST_F(Life, AConnectionIsAsOldAsTheOldestOfItsAddress) {
+  EXPECT_EQ(plc.life()->opened, desk.runtime.now());
+  desk.runtime.advance_by(1s);
+  Line again(desk);
+  EXPECT_EQ(again.life()->opened, desk.runtime.now());
+  desk.settings.client_is_address = true;
+  const Instant first = desk.runtime.now();
+  Line one(desk, Role::engineer, kPanel);
+  desk.runtime.advance_by(1s);
+  Line two(desk, Role::engineer, kPanel);
+  EXPECT_EQ(two.life()->opened, first);
 }
 
 }  // namespace

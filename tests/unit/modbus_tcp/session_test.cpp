@@ -31,6 +31,25 @@ TEST_F(Sessions, AnswerWhatIsGluedToAMalformedFrameAndClose) {
   EXPECT_EQ(plc.reply(), "closed") << "nothing counts after it";
 }
 
+// A gateway or a panel that is set to "RTU over TCP".
+TEST_F(Sessions, NameAClientThatSendsRtuFrames) {
+  for (const char* request : {"01 03 00 64 00 02 85 D4", "01 03 00 00 00 02 C4 0B", "01 06 00 92 00 07 69 E5",
+                              "01 10 00 8E 00 02 04 00 00 00 07 3B 81"}) {
+    Line line(desk);
+    line.feed(bytes(request));
+    EXPECT_EQ(desk.logged(), "192.168.1.7:50000 sends Modbus RTU frames over TCP: set it to Modbus TCP") << request;
+    line.feed(bytes(request));
+    EXPECT_EQ(desk.logged(), "-") << "once";
+  }
+  Line first(desk), other(desk), spoilt(desk);
+  first.feed(frame(0x0103, 1, bytes("03 00 64 00 01")));
+  other.feed(bytes("00 02 00 99 00 06 01 03"));
+  auto without_its_crc = bytes("01 03 00 64 00 02 85 D4");
+  without_its_crc.back() ^= 1;
+  spoilt.feed(without_its_crc);
+  EXPECT_EQ(desk.logged(), "-");
+}
+
 TEST_F(Sessions, WaitForTheWritesBeforeAMalformedFrame) {
   desk.port.slow = true;
   plc.send("06 00 92 00 01");

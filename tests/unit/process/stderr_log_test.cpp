@@ -3,10 +3,13 @@
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
+#include <string>
 
 namespace axisgate::app {
 namespace {
@@ -92,6 +95,37 @@ TEST(StderrLog, CountsTheLinesThatNobodyReads) {
   EXPECT_LT(taken, written);
   EXPECT_THAT(told, HasSubstr("(" + std::to_string(written - taken) + " lines lost here: nobody took them)\n"));
   EXPECT_THAT(told, HasSubstr("it is read again\n"));
+}
+
+/// As systemd starts a service whose stderr the journal reads.
+struct UnderSystemd : testing::Test {
+  ~UnderSystemd() override { ::unsetenv("JOURNAL_STREAM"); }
+  static void say_that_the_journal_reads(int descriptor) {
+    struct stat its {};
+    ASSERT_EQ(::fstat(descriptor, &its), 0);
+    ::setenv("JOURNAL_STREAM", (std::to_string(its.st_dev) + ":" + std::to_string(its.st_ino)).c_str(), 1);
+  }
+  [[nodiscard]] std::string written() const {
+    const Elsewhere elsewhere(pipe.ends[1]);
+    const Log log = stderr_log(LogLevel::info);
+    log.write(LogLevel::warning, "bus lift", "link down");
+    log.write(LogLevel::info, "bus lift", "link up");
+    return pipe.read();
+  }
+  const Pipe pipe;
+};
+
+TEST_F(UnderSystemd, TheJournalIsGivenAPriorityAndNoTime) {
+  say_that_the_journal_reads(pipe.ends[1]);
+  EXPECT_EQ(written(), "<4>warning bus lift: link down\n<6>info bus lift: link up\n");
+}
+
+TEST_F(UnderSystemd, WhatIsRedirectedHasItsOwnTime) {
+  const Pipe other;
+  say_that_the_journal_reads(other.ends[1]);
+  const std::string lines = written();
+  EXPECT_THAT(lines, testing::ContainsRegex("^[0-9-]+ [0-9:.]+ warning bus lift: link down\n"));
+  EXPECT_THAT(lines, Not(HasSubstr("<4>")));
 }
 
 }  // namespace

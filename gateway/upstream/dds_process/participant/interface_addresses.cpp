@@ -49,7 +49,7 @@ std::vector<std::string> interface_addresses(const std::vector<std::string>& nam
     std::vector<std::string> there;
     for (const Address& each : all) there.push_back(fmt::format("{} ({})", each.interface, each.address));
     throw StartError(
-        kExitParticipant,
+        kExitNoAddress,
         fmt::format("--interface {}: no interface of that name or address has an IPv4 address now; there are: {}", name,
                     fmt::join(there, ", ")));
   }

@@ -78,6 +78,7 @@ ClientRegistry::Connected ClientRegistry::connect(const Peer& peer, bool shared,
   alive.origin = peer.address;
   alive.name = shared ? text(peer.address) : text(peer);
   alive.connected = true;
+  if (connected.client->connections == 1) alive.opened = now;
   alive.is_address = shared;
   connected.forgotten = forget_oldest_idle();
   return connected;

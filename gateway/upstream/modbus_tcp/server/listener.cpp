@@ -14,6 +14,7 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "gateway/core/line_bucket.hpp"
 #include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
@@ -50,6 +51,9 @@ Address address_of(const ip::address& from) {
   return ip::make_address_v6(ip::v4_mapped, from.to_v4()).to_bytes();
 }
 
+/// An interface may get its address, or be there at all, after us.
+bool comes_late(const error_code& error) { return error.value() == EADDRNOTAVAIL || error.value() == ENODEV; }
+
 std::string remedy(const error_code& error) {
   if (error == boost::asio::error::address_in_use)
     return "; another program has it: stop that one or choose another port";
@@ -58,7 +62,7 @@ std::string remedy(const error_code& error) {
            "cap_net_bind_service=+ep "
            "PROGRAM; systemd: AmbientCapabilities=CAP_NET_BIND_SERVICE)";
   }
-  if (error.value() == EADDRNOTAVAIL) return "; no interface of this machine has this address (0.0.0.0 means all)";
+  if (comes_late(error)) return "; no interface of this computer has this address (0.0.0.0 means all)";
   if (error.value() == EAFNOSUPPORT) return "; this system has no IPv6: write an IPv4 address";
   return {};
 }
@@ -77,21 +81,49 @@ Listener::Listener(ServerContext& server, const ListenerSettings& settings, std:
 
 std::string Listener::name() const { return address_text(settings_.host, port_); }
 
-void Listener::open() {
-  error_code error;
-  const ip::address address = ip::make_address(settings_.host == "localhost" ? "127.0.0.1" : settings_.host, error);
-  const std::string who = "/modbus_tcp/" + std::to_string(position_) + "/listen: cannot listen on " + name() + ": ";
-  if (error) throw std::runtime_error(who + "not an IP address; write 0.0.0.0, 127.0.0.1 or an interface's address");
-  const ip::tcp::endpoint endpoint(address, settings_.port);
+std::string Listener::in_vain(const error_code& error) const {
+  return "/modbus_tcp/" + std::to_string(position_) + "/listen: cannot listen on " + name() + ": " + error.message() +
+         remedy(error);
+}
 
-  acceptor_.open(endpoint.protocol(), error);
+error_code Listener::bind() {
+  error_code error;
+  const ip::tcp::endpoint endpoint(
+      ip::make_address(settings_.host == "localhost" ? "127.0.0.1" : settings_.host, error), settings_.port);
+  if (!error) acceptor_.open(endpoint.protocol(), error);
   if (!error) acceptor_.set_option(boost::asio::socket_base::reuse_address(true), error);
-  if (!error && address.is_v6()) acceptor_.set_option(boost::asio::ip::v6_only(false), error);
+  if (!error && endpoint.address().is_v6()) acceptor_.set_option(boost::asio::ip::v6_only(false), error);
   if (!error) acceptor_.bind(endpoint, error);
   if (!error) acceptor_.listen(boost::asio::socket_base::max_listen_connections, error);
   if (!error) acceptor_.native_non_blocking(true, error);
   if (!error) port_ = acceptor_.local_endpoint(error).port();
-  if (error) throw std::runtime_error(who + error.message() + remedy(error));
+  error_code ignored;
+  if (error) acceptor_.close(ignored);
+  return error;
+}
+
+void Listener::open() {
+  error_code error;
+  static_cast<void>(ip::make_address(settings_.host == "localhost" ? "127.0.0.1" : settings_.host, error));
+  if (error) {
+    throw std::runtime_error("/modbus_tcp/" + std::to_string(position_) + "/listen: cannot listen on " + name() +
+                             ": not an IP address; write 0.0.0.0, 127.0.0.1 or an interface's address");
+  }
+  error = bind();
+  if (error && !comes_late(error)) throw std::runtime_error(in_vain(error));
+}
+
+// Whatever stands against it by then: clients of the other listeners are served.
+void Listener::try_address() {
+  const error_code error = bind();
+  if (!error) {
+    refused_.clear();
+    wait_for_client();
+    return on_listening_();
+  }
+  if (error != std::exchange(refused_, error) && server_.reports.event)
+    server_.reports.event(EventKind::warning, in_vain(error) + "; trying again each second");
+  resume_->expires_at(server_.runtime.now() + kAddressPause);
 }
 
 void Listener::take_socket(Listener& other) {
@@ -105,9 +137,10 @@ bool Listener::serves(ClientId client) const {
   return std::any_of(open_.begin(), open_.end(), [&](const auto& each) { return each->client() == client; });
 }
 
-void Listener::start() {
-  resume_ = server_.runtime.make_timer([this] { wait_for_client(); });
-  wait_for_client();
+void Listener::start(OnListening on_listening) {
+  on_listening_ = std::move(on_listening);
+  resume_ = server_.runtime.make_timer([this] { listens() ? wait_for_client() : try_address(); });
+  listens() ? wait_for_client() : try_address();
 }
 
 void Listener::stop() {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // One listening socket and the connections it has accepted.
 // Promises an honest refusal: who may not come in, or finds no room, is accepted and closed at once, counted, and named
-// in the log at most once a minute. Never spins when the system is out of descriptors, and never accepts without bound
-// in one turn.
+// in the log at most once a minute; that an address which this computer does not have yet is tried each second. Never
+// spins when the system is out of descriptors, and never accepts without bound in one turn.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,11 +15,13 @@
 #include "gateway/upstream/modbus_tcp/server/connection.hpp"
 #include "gateway/upstream/modbus_tcp/server/descriptor_plan.hpp"
 #include "gateway/upstream/modbus_tcp/server/server_counters.hpp"
+#include "gateway/upstream/modbus_tcp/server/server_reports.hpp"
 
 namespace axisgate::modbus_tcp {
 
 inline constexpr int kAcceptsPerTurn = 16;
 inline constexpr Duration kAcceptPause = std::chrono::milliseconds(200);
+inline constexpr Duration kAddressPause = std::chrono::seconds(1);
 inline constexpr Duration kRefusalLogInterval = std::chrono::minutes(1);
 
 /// What all listeners of one server share; the server owns it.
@@ -29,6 +32,7 @@ struct ServerContext {
   CommandPort& commands;
   ClientRegistry& clients;
   const Log& log;
+  ServerReports reports;
   DescriptorPlan descriptors;
   ServerCounters counters;
 };
@@ -37,12 +41,18 @@ class Listener : public std::enable_shared_from_this<Listener> {
  public:
   Listener(ServerContext& server, const ListenerSettings& settings, std::size_t position);
 
-  /// Binds and listens; "::" serves IPv4 as well. Throws std::runtime_error that names the listener and what to change.
+  using OnListening = std::function<void()>;
+
+  /// Binds and listens; "::" serves IPv4 as well. An address that no interface has yet is left to start(). Throws
+  /// std::runtime_error that names the listener and what to change.
   void open();
   /// In place of open(): takes over the socket of a listener on the same address, with the clients that wait on it.
   /// That one has only its connections then, and can only be stopped.
   void take_socket(Listener& other);
-  void start();
+  /// Where its address is not there yet, it is tried from now on, and `on_listening` is called once it is.
+  void start(OnListening on_listening);
+  /// It has its address.
+  [[nodiscard]] bool listens() const { return acceptor_.is_open(); }
   /// Closes the socket and every connection; nothing of the server is touched after it.
   void stop();
 
@@ -54,6 +64,10 @@ class Listener : public std::enable_shared_from_this<Listener> {
   [[nodiscard]] std::string name() const;
 
  private:
+  /// What the system says against it; empty: it listens.
+  [[nodiscard]] boost::system::error_code bind();
+  [[nodiscard]] std::string in_vain(const boost::system::error_code& error) const;
+  void try_address();
   void wait_for_client();
   void accept_waiting();
   void pause(int why);
@@ -69,6 +83,8 @@ class Listener : public std::enable_shared_from_this<Listener> {
   std::uint16_t port_ = 0;
   boost::asio::ip::tcp::acceptor acceptor_;
   std::unique_ptr<Timer> resume_;
+  OnListening on_listening_;
+  boost::system::error_code refused_{};  ///< why it does not listen, as it was told last
   ClientCounts counts_;
   std::vector<std::shared_ptr<Connection>> open_;
   std::vector<std::shared_ptr<Connection>>

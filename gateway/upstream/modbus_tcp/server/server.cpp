@@ -26,8 +26,9 @@ std::shared_ptr<Listener> on_address_of(const ListenerSettings& settings, const 
 }  // namespace
 
 Server::Server(boost::asio::io_context& io, Runtime& runtime, std::span<const ListenerSettings> listeners,
-               ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log)
-    : context_(new ServerContext{io, runtime, image, commands, clients, log, {}, {}}) {
+               ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log,
+               ServerReports reports)
+    : context_(new ServerContext{io, runtime, image, commands, clients, log, std::move(reports), {}, {}}) {
   for (const ListenerSettings& settings : listeners) {
     listeners_.push_back(std::make_shared<Listener>(*context_, settings, listeners_.size()));
   }
@@ -43,10 +44,25 @@ void Server::start(const DescriptorPlan& descriptors) {
     stop();
     throw;
   }
-  for (const auto& listener : listeners_) {
-    context_->log.write(LogLevel::info, "modbus", "listening on " + listener->name());
-    listener->start();
-  }
+  for (const auto& listener : listeners_) begin(*listener);
+  report_down();
+}
+
+/// One that comes late has its address one day, with nobody who waits for it here.
+void Server::begin(Listener& listener) {
+  const auto say = [this, &listener] {
+    context_->log.write(LogLevel::info, "modbus", "listening on " + listener.name(), LogPace::each);
+  };
+  if (listener.listens()) say();
+  listener.start([this, say] {
+    say();
+    report_down();
+  });
+}
+
+void Server::report_down() {
+  if (!context_->reports.listener_down) return;
+  context_->reports.listener_down(!std::ranges::all_of(listeners_, [](const auto& each) { return each->listens(); }));
 }
 
 void Server::prepare(std::span<const ListenerSettings> wanted, std::span<const std::optional<std::size_t>> kept) {
@@ -72,10 +88,9 @@ void Server::commit(const DescriptorPlan& descriptors) {
   for (const auto& listener : before)
     if (!is_among(listeners_, listener)) listener->stop();
   for (const auto& listener : listeners_) {
-    if (is_among(before, listener)) continue;
-    context_->log.write(LogLevel::info, "modbus", "listening on " + listener->name());
-    listener->start();
+    if (!is_among(before, listener)) begin(*listener);
   }
+  report_down();
 }
 
 bool Server::serves(std::size_t place, ClientId client) const { return listeners_[place]->serves(client); }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Modbus-TCP server: its listeners, opened together and stopped together, on the core thread's io_context.
-// Promises that start() and prepare() either have every configured address or throw and say which one and what to
-// change; that a listener which a reload keeps does not notice it; that nothing of it runs after stop(). Never decides
-// what a request means: that is the Session's part.
+// Promises that start() and prepare() throw, and say which address and what to change, where one is taken or not
+// allowed; that one which no interface has yet is tried each second, while the others serve; that a listener which a
+// reload keeps does not notice it; that nothing of it runs after stop(). Never decides what a request means: that is
+// the Session's part.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -18,6 +19,7 @@
 #include "gateway/upstream/modbus_tcp/client/listener_settings.hpp"
 #include "gateway/upstream/modbus_tcp/server/descriptor_plan.hpp"
 #include "gateway/upstream/modbus_tcp/server/server_counters.hpp"
+#include "gateway/upstream/modbus_tcp/server/server_reports.hpp"
 
 namespace axisgate::modbus_tcp {
 
@@ -29,7 +31,8 @@ class Server {
  public:
   /// Copies the settings. Everything passed by reference must outlive the server.
   Server(boost::asio::io_context& io, Runtime& runtime, std::span<const ListenerSettings> listeners,
-         ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log);
+         ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log,
+         ServerReports reports = {});
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
@@ -57,6 +60,9 @@ class Server {
   [[nodiscard]] const ServerCounters& counters() const;
 
  private:
+  void begin(Listener& listener);
+  void report_down();
+
   std::unique_ptr<ServerContext> context_;
   std::vector<std::shared_ptr<Listener>> listeners_;
   std::vector<std::shared_ptr<Listener>> prepared_;  ///< the listeners after a reload that is under way

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
 #include "gateway/upstream/modbus_tcp/session/pipeline.hpp"
+#include "gateway/upstream/modbus_tcp/wire/rtu_frame.hpp"
 
 namespace axisgate::modbus_tcp {
 namespace {
@@ -46,6 +48,7 @@ class Session::Impl {
  private:
   [[nodiscard]] bool over() const { return why_ != CloseReason::none || closed_; }
   [[nodiscard]] bool has_room() const { return pipeline_.under_way() + replies_waiting_ < kMaxPipelined; }
+  void name_rtu_client(Bytes first);
   void take_requests();
   void put_reply(std::uint16_t transaction, std::uint8_t unit, const Pdu& pdu);
   void on_result(std::uint64_t number, const Outcome& outcome);
@@ -68,14 +71,23 @@ class Session::Impl {
   Instant active_at_;                // last whole request, or last reply taken
   CloseReason why_ = CloseReason::none;
   bool closed_ = false;
+  bool is_new_ = true;  // nothing has come yet
 };
 
 void Session::Impl::on_bytes(Bytes bytes, Instant now, Instant came) {
   if (over()) return;
   now_ = now;
   came_ = came;
+  if (std::exchange(is_new_, false)) name_rtu_client(bytes);
   framer_.push(bytes);
   take_requests();
+}
+
+/// What it asks is no Modbus-TCP, and is answered as such: but whoever set it up is told what to change.
+void Session::Impl::name_rtu_client(Bytes first) {
+  if (!is_rtu_request(first)) return;
+  context_.log.write(LogLevel::warning, "modbus",
+                     client_->life->name + " sends Modbus RTU frames over TCP: set it to Modbus TCP");
 }
 
 /// As many as there is room for; the rest stays with the framer until replies were taken.

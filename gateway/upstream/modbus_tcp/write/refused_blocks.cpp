@@ -17,18 +17,38 @@ std::string named(const BlockWrite& block, std::uint16_t offset) {
   return row == nullptr ? "" : ", " + std::string(row->name);
 }
 
+/// Why an address is not to be written so. Empty: it is one, and the drive has no such thing.
+std::string address_fault(const BlockWrite& block, std::uint16_t offset) {
+  if (block.coils) return offset < kCoils ? "" : "there is no such coil";
+  const RegisterRow* const row = register_table(block.axis == 0 ? Block::gateway : Block::axis).covering(offset);
+  if (row == nullptr) return "there is no such row";
+  if (!row->writable) return "it is read only";
+  const std::uint16_t first = block.address % kAxisBlock;
+  if (row->offset < first) return "the write begins with its second half: both halves go in one request";
+  if (row->offset + row->registers() > first + block.count)
+    return "the write ends with its first half: both halves go in one request";
+  return {};
+}
+
+/// Each refusal says its own reason.
+std::string why_refused(const BlockWrite& block, std::uint16_t offset, const Outcome& outcome, bool in_full) {
+  const std::string general(in_full ? modbus_text(outcome) : std::string(text(outcome.code)));
+  const std::string own = outcome.code == Errc::not_supported ? address_fault(block, offset) : std::string();
+  return own.empty() ? general : own + general.substr(text(outcome.code).size());
+}
+
 /// A tool in a loop must not fill the log.
 constexpr Duration kToldAgain = std::chrono::seconds(60);
 
-void log_once(const RefusedWrite& refused, const std::string& what, const Outcome& outcome, Client& client, Instant now,
+void log_once(const RefusedWrite& refused, const std::string& what, const std::string& why, Client& client, Instant now,
               const Log& log) {
   if (client.refused == refused && now - client.refused_told < kToldAgain) return;
   if (!client.host->refused_lines.takes(now)) return;
   client.refused = refused;
   client.refused_told = now;
-  log.write(LogLevel::info, "modbus",
-            client.life->name + ": " + what + " is refused: " + modbus_text(outcome) +
-                left_out_text(client.host->refused_lines.left_out()));
+  log.write(
+      LogLevel::info, "modbus",
+      client.life->name + ": " + what + " is refused: " + why + left_out_text(client.host->refused_lines.left_out()));
 }
 
 }  // namespace
@@ -58,7 +78,8 @@ void log_refused(const BlockWrite& block, const RefusedRow& refused, Client& cli
             client.life->name + ": a block write of " + std::to_string(block.count) +
                 (block.coils ? " coils from " : " registers from ") + std::to_string(block.address) +
                 " is refused at " + what + " " + std::to_string(refused.offset) + " of axis " +
-                std::to_string(block.axis) + named(block, refused.offset) + ": " + std::string(text(refused.why)));
+                std::to_string(block.axis) + named(block, refused.offset) + ": " +
+                why_refused(block, refused.offset, {refused.why}, false));
 }
 
 void log_refused_write(const BlockWrite& write, const Outcome& outcome, Client& client, Instant now, const Log& log) {
@@ -67,7 +88,7 @@ void log_refused_write(const BlockWrite& write, const Outcome& outcome, Client& 
       write.axis == 0 ? std::string() : " of axis " + std::to_string(write.axis) + named(write, offset);
   const std::string kind = write.coils ? "coil " : "register ";
   log_once({write.address, write.coils, outcome.code}, "a write to " + kind + std::to_string(write.address) + where,
-           outcome, client, now, log);
+           why_refused(write, write.axis == 0 ? write.address : offset, outcome, true), client, now, log);
 }
 
 void log_refused_object(const GeneralReference& reference, const Outcome& outcome, Client& client, Instant now,
@@ -77,7 +98,7 @@ void log_refused_object(const GeneralReference& reference, const Outcome& outcom
   std::string digits = hex_text(index);
   std::erase(digits, ' ');
   log_once({reference.index, false, outcome.code}, "a write of object 0x" + digits + ":" + hex_text(sub) + " (43/13)",
-           outcome, client, now, log);
+           modbus_text(outcome), client, now, log);
 }
 
 void tell_dropped_half(AxisNumber axis, std::uint16_t row, const char* why, Client& client, const Log& log) {

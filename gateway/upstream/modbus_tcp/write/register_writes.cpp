@@ -103,6 +103,8 @@ class BatchMaker {
       put_words();
     onlooker_.words->axes[axis_] = words_;
     put_heartbeat();
+    // A heartbeat that stands still is no sign of a program that has come back.
+    if (found_.rows.size() == 1 && found_.of(Source::heartbeat) != nullptr && !batch_.beats) batch_.is_write = false;
     if (!found_.zeros && !only_remembered) put_rows();
     batch_.claims = register_claims(batch_);
     const bool commands = batch_.command != Command::none || batch_.controlword;
@@ -329,20 +331,13 @@ Errc check_read(const Request& request, const UnitView& view, const Onlooker& on
   return wrong == ModbusException::illegal_data_address ? Errc::not_supported : Errc::link_lost;
 }
 
-/// Gateway register 8. Changed by who may command, it is a sign of life for every axis, and takes over what an ended
-/// connection of the same program has left.
-std::vector<AxisNumber> beat(Client& client, std::uint16_t value, const Onlooker& onlooker) {
-  std::vector<AxisNumber> orphans;
+/// Gateway register 8. Changed by who may command, it is a sign of life for every axis that its client owns, and takes
+/// none over: another program at the address of one that has died beats it as well.
+void beat(Client& client, std::uint16_t value, const Onlooker& onlooker) {
   client.heartbeat = value;
-  if (onlooker.role < Role::operator_ || client.beat == value) return orphans;
+  if (onlooker.role < Role::operator_ || client.beat == value) return;
   client.beat = value;
   client.life->heartbeat = onlooker.now;
-  for (const auto& axis : onlooker.image.axes()) {
-    const auto& owner = axis->lease.owner;
-    if (owner && !owner->connected && owner->id != client.id && same_hand(*owner, *client.life))
-      orphans.push_back(axis->number);
-  }
-  return orphans;
 }
 
 }  // namespace
@@ -368,7 +363,7 @@ Planned plan_register_write(const Request& request, const UnitView& view, const 
 
   WritePlan plan;
   if (found.axis == nullptr) {
-    plan.reclaims = beat(client, static_cast<std::uint16_t>(found.rows.front().value), onlooker);
+    beat(client, static_cast<std::uint16_t>(found.rows.front().value), onlooker);
     return plan;
   }
   plan.axis = found.axis->number;

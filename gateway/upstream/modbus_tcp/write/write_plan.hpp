@@ -40,14 +40,12 @@ struct WritePlan {
   Errc afterwards =
       Errc::ok;  ///< how the request ends when all write batches are done: starts that its own stop has dropped
   std::optional<WriteBatch> object;  ///< the mailbox's request, after the write batches; not waited for
-  /// Axes whose orphan leases a changed heartbeat of the gateway (register 8) takes over.
-  std::vector<AxisNumber> reclaims;
-  bool reads_alone = false;  ///< rows of the mailbox, and no write by it
-  bool single = false;       ///< a single write: where it is not new, its answer is an exception
-  BlockWrite block{};        ///< what it is where it is none, for its client to be told of a refusal
-  bool not_new = false;      ///< something in it did not act, and its client is told: result 10
-  bool repeats = false;      ///< a block in which nothing is new: its client's result stands, unless it is refused
-  WriteMemory before{};      ///< of the client, before this request
+  bool reads_alone = false;          ///< rows of the mailbox, and no write by it
+  bool single = false;               ///< a single write: where it is not new, its answer is an exception
+  BlockWrite block{};                ///< what it is where it is none, for its client to be told of a refusal
+  bool not_new = false;              ///< something in it did not act, and its client is told: result 10
+  bool repeats = false;  ///< a block in which nothing is new: its client's result stands, unless it is refused
+  WriteMemory before{};  ///< of the client, before this request
 };
 
 /// What stops of a block, alone.

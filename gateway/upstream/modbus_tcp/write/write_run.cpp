@@ -48,17 +48,7 @@ ClientAxis* WriteRun::own() const {
 
 std::optional<Outcome> WriteRun::start(OnDone on_done) {
   on_done_ = std::move(on_done);
-  if (const std::shared_ptr<Client> client = client_.lock()) reclaim(*client);
   return carry_on();
-}
-
-/// Nobody is told: a lease that runs out all the same is an event of its own.
-void WriteRun::reclaim(const Client& client) {
-  for (const AxisNumber axis : plan_.reclaims) {
-    WriteBatch sign = client.new_batch(client.life->role);
-    sign.is_write = sign.beats = true;
-    static_cast<void>(commands_.submit(axis, sign, [](const BatchResult&) {}));
-  }
 }
 
 void WriteRun::abandon() {

@@ -30,7 +30,6 @@ class WriteRun : public std::enable_shared_from_this<WriteRun> {
 
  private:
   [[nodiscard]] std::optional<Outcome> carry_on();
-  void reclaim(const Client& client);
   void on_result(std::uint64_t submission, const BatchResult& result);
   /// The client's result reads "pending"; gives the number by which settle() knows whether it is still the newest.
   std::uint64_t begin(std::uint16_t command_id);
