@@ -151,6 +151,10 @@ std::vector<RegisterRow> axis_register_rows() {
             "of the motor, as its drive's constants say; 4294967295: not known", "0.001 rpm"),
       shows(96, "owner_address", u32, Source::owner_address,
             "IPv4 address of the owner, 192.168.1.7 as 0xC0A80107; 0: nobody, or not IPv4"),
+      shows(98, "loss_stop_ms", u16, Source::loss_stop_ms,
+            "the drive begins to stop by itself so soon after the gateway has died; 0: it goes on (alarm "
+            "no_comm_watchdog); 65535: not known, as of a drive that was not set up, or was found enabled",
+            "ms"),
   };
 }
 

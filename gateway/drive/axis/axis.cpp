@@ -7,6 +7,7 @@
 
 #include "gateway/drive/plan/admission.hpp"
 #include "gateway/drive/plan/planner.hpp"
+#include "gateway/model/loss.hpp"
 
 namespace axisgate::drive {
 
@@ -18,7 +19,7 @@ Axis::Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, cons
       core_{drive, drive.axes[slot], store, turn},
       shown_(core_, image_, host_),
       ownership_(image.lease, drive.axes[slot].lease) {
-  set_alarm(AxisAlarm::no_comm_watchdog, !drive.stops_by_itself);
+  core_.loss_stop_ms = loss_stop_ms(drive, std::nullopt);
 }
 
 Axis::Pending* Axis::find(bus::JobId id) {
@@ -42,6 +43,8 @@ void Axis::set_alarm(AxisAlarm alarm, bool on) {
   core_.alarms = on ? core_.alarms | bit(alarm) : core_.alarms & ~bit(alarm);
 }
 
+void Axis::set_loss_reaction(std::optional<bool> holds) { core_.loss_stop_ms = loss_stop_ms(core_.drive, holds); }
+
 void Axis::on_bring_up() {
   core_.homing_method.reset();
   if (core_.model.homing_method) core_.homing_method = *core_.model.homing_method;
@@ -51,6 +54,8 @@ void Axis::on_bring_up() {
   core_.fault.forget_emergency();
   reference_invalidated_ = false;
   core_.homed = false;
+  // What was not held before is not held until it is read.
+  if (core_.loss_stop_ms != kGoesOn) core_.loss_stop_ms = loss_stop_ms(core_.drive, std::nullopt);
   lose_sight();
   if (!core_.is_virtual()) return;
   core_.machine.reset();

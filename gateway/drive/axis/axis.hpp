@@ -53,6 +53,8 @@ class Axis {
   /// It was suspect: it may have restarted unseen.
   void on_invalidated() { reference_invalidated_ = true; }
   void set_alarm(AxisAlarm alarm, bool on);
+  /// Whether its drive holds what makes it notice a dead gateway; none: nobody knows.
+  void set_loss_reaction(std::optional<bool> holds);
   /// New samples are in the store: what is made from them is made anew.
   void on_samples();
   /// The drive's own constants were read: scales and limits have changed.
