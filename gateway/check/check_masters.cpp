@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gateway/check/check_dds.hpp"
+#include "gateway/model/loss.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -117,13 +118,18 @@ std::string objects_told(const drive::DriveModel& drive) {
 }
 
 std::string gateway_dies_text(const drive::DriveModel& drive) {
-  if (!drive.stops_by_itself)
+  if (drive::loss_stop_ms(drive, true) == kGoesOn)
     return fmt::format(
         "THE DRIVE DOES NOT STOP BY ITSELF on {}: it goes on with what it was told last (alarm no_comm_watchdog)",
         drive.protocol);
-  const std::string how = drive.loss_text.empty() ? "" : ": " + drive.loss_text;
-  if (drive.loss_objects.empty()) return "the drive notices by itself" + how;
-  return fmt::format("the drive is told to notice ({}), which is verified at bring-up{}", objects_told(drive), how);
+  const std::uint16_t within = drive::loss_stop_ms(drive, true);
+  const std::string ends = within == kLossNotKnown ? "WHETHER IT STOPS BY ITSELF IS NOT KNOWN"
+                                                   : fmt::format("it begins to stop by itself within {} ms", within);
+  const std::string noticed =
+      drive.loss_objects.empty()
+          ? "the drive notices by itself"
+          : fmt::format("the drive is told to notice ({}), which is verified at bring-up", objects_told(drive));
+  return fmt::format("{}: {}{}", ends, noticed, drive.loss_text.empty() ? "" : ": " + drive.loss_text);
 }
 
 /// "3, 4": the modes in which something is sent again.

@@ -79,6 +79,10 @@ inline constexpr std::size_t kAxisInputCount = 13;
   return static_cast<std::uint16_t>(1U << static_cast<unsigned>(input));
 }
 
+/// Register 98, loss_stop_ms.
+inline constexpr std::uint16_t kGoesOn = 0;                 ///< the drive does not stop by itself
+inline constexpr std::uint16_t kLossNotKnown = UINT16_MAX;  ///< nobody knows whether it does
+
 struct Sample {
   std::int64_t value = 0;  ///< in register units
   bool received = false;   ///< a value was received since the gateway's start and could be represented
@@ -114,6 +118,7 @@ struct AxisImage : Capabilities {
   MotionState motion_state = MotionState::none;
   std::uint16_t motion_id = 0;
   std::uint32_t alarms = 0;
+  std::uint16_t loss_stop_ms = kLossNotKnown;  ///< row 98: how soon its drive stops by itself when the gateway dies
   std::uint16_t inputs = 0;  ///< AxisInput bits
   /// Coils 0, 3, 7, 8, 9 read back: bits 0 enabled, 3 halted, 7 velocity running, 8 and 9 jogging.
   std::uint16_t level_coils = 0;

@@ -41,6 +41,7 @@ enum class Source : std::uint8_t {
   units_denominator,
   rated_speed,
   owner_address,
+  loss_stop_ms,
   // The client's own, per axis.
   command_result,
   command_detail,

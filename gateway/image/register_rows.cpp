@@ -101,7 +101,7 @@ std::vector<RegisterRow> axis_register_rows() {
       shows(25, "command_result", u16, Source::command_result, lists().result),
       shows(26, "command_detail", u32, Source::command_detail,
             "SDO abort code, Modbus exception or the drive's own code; of result 11 the step, from 1, 0: nothing was "
-            "sent; of a block write refused with 0x01, 0x02 or 0x03: 0x0A000000 + offset of the first row, or coil, "
+            "sent; of a single write refused with 0x03 by a limit: that limit, in the row's units; of a block write refused with 0x01, 0x02 or 0x03: 0x0A000000 + offset of the first row, or coil, "
             "refused"),
       shows(28, "owner", u16, Source::owner, "0 nobody, 1 this client, 2 another"),
       shows(29, "lease_remaining_ms", u16, Source::lease_remaining_ms,
@@ -151,6 +151,10 @@ std::vector<RegisterRow> axis_register_rows() {
             "of the motor, as its drive's constants say; 4294967295: not known", "0.001 rpm"),
       shows(96, "owner_address", u32, Source::owner_address,
             "IPv4 address of the owner, 192.168.1.7 as 0xC0A80107; 0: nobody, or not IPv4"),
+      shows(98, "loss_stop_ms", u16, Source::loss_stop_ms,
+            "the drive begins to stop by itself so soon after the gateway has died; 0: it goes on (alarm "
+            "no_comm_watchdog); 65535: not known, as of a drive that was not set up, or was found enabled",
+            "ms"),
   };
 }
 

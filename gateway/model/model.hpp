@@ -363,8 +363,8 @@ struct DriveModel {
   Duration timeout =
       std::chrono::milliseconds(100);  ///< profile's reply timeout, for a bus whose configuration names none
   bool stops_by_itself = false;        ///< it notices a dead gateway on this protocol; else alarm no_comm_watchdog
-  /// Written in the setup list so that it does: alarm no_comm_watchdog where the drive does not hold what was written.
-  std::vector<ObjectId> loss_objects;
+  Duration loss_after{};  ///< its motors stop so long after the gateway's death; 0: whether they do is not stated
+  std::vector<ObjectId> loss_objects;  ///< written at setup so that it notices; where it does not hold them: the alarm
   std::string loss_text;  ///< what the drive then does, and what is not known of it; may be empty
   /// The drive disables itself unless it is commanded so often (profile key "keepalive"); 0: it does not.
   Duration keep_alive{};

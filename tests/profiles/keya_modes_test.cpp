@@ -2,6 +2,8 @@
 // The shipped Keya profile: which motor an axis is, which modes it has and what it can do in them, what is repeated.
 #include <gmock/gmock.h>
 
+#include "gateway/image/axis_image.hpp"
+#include "gateway/model/loss.hpp"
 #include "tests/profiles/keya.hpp"
 
 namespace axisgate::drive {
@@ -171,6 +173,8 @@ TEST(KeyaModes, TheSetpointOfTheModeIsRepeatedWhereAWatchdogWaits) {
       const DriveModel model = keya::model(keya::in_mode(protocol, mode));
       EXPECT_EQ(model.keep_alive, watched ? milliseconds(300) : Duration{});
       EXPECT_EQ(model.stops_by_itself, watched);
+      const std::uint16_t told = protocol == "canopen" ? kLossNotKnown : 1000;
+      EXPECT_EQ(loss_stop_ms(model, {}), watched ? told : kGoesOn) << "nothing is written to it for that";
       const auto& rows = model.axes[1].keep_alive;
       const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.first == object.first; });
       ASSERT_EQ(row != rows.end(), watched);

@@ -9,6 +9,8 @@
 #include <set>
 
 #include "gateway/model/scale.hpp"
+#include "gateway/image/axis_image.hpp"
+#include "gateway/model/loss.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::drive {
@@ -183,6 +185,9 @@ TEST(Leadshine, WatchesTheGatewayAndIsWatched) {
   EXPECT_EQ(model.canopen.heartbeat, std::chrono::milliseconds(1000));
   EXPECT_EQ(model.canopen.own_heartbeat, std::chrono::milliseconds(500));
   ASSERT_THAT(model.loss_objects, SizeIs(1));
+  EXPECT_EQ(loss_stop_ms(model, true), 1500);
+  EXPECT_EQ(loss_stop_ms(model, false), kGoesOn) << "it does not hold 1016h";
+  EXPECT_EQ(loss_stop_ms(model, {}), kLossNotKnown) << "nobody has looked yet";
   EXPECT_EQ(model.object(model.loss_objects[0]).address, (bus::ObjectAddress{0x1016, 1}));
   const Held after = written(model, {});
   EXPECT_EQ(after.at("consumer_heartbeat"), 0x007F05DC) << "node 127, 1500 ms";

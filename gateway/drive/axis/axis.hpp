@@ -55,6 +55,8 @@ class Axis {
   /// The drive, which is there, tells this object no more: a motion that needs it is stopped.
   void on_blind(ObjectId object);
   void set_alarm(AxisAlarm alarm, bool on);
+  /// Whether its drive holds what makes it notice a dead gateway; none: nobody knows.
+  void set_loss_reaction(std::optional<bool> holds);
   /// New samples are in the store: what is made from them is made anew.
   void on_samples();
   /// The drive's own constants were read: scales and limits have changed.
@@ -222,7 +224,8 @@ class Axis {
   // Who asked for what, and what became of it (axis_told.cpp).
   void tell_asked(const WriteBatch& asked, const WriteBatch& carried_out);
   void tell_owner(const std::string& what);
-  void tell_refused(const WriteBatch& asked, const Outcome& outcome);
+  void tell_refused(const WriteBatch& asked, const BatchResult& result);
+  void name_limit(const WriteBatch& batch, BatchResult& result) const;
   void tell_ended(const Pending& pending, const Outcome& outcome);
   [[nodiscard]] Pending* find(bus::JobId id);
   [[nodiscard]] const Pending* find(bus::JobId id) const { return const_cast<Axis*>(this)->find(id); }

@@ -154,6 +154,7 @@ std::uint16_t inputs_of(const AxisCore& core, const AxisImage& image, const Axis
 std::uint32_t alarms_of(const AxisCore& core) {
   std::uint32_t alarms = core.alarms;
   const auto set = [&](AxisAlarm alarm, bool on) { alarms = on ? alarms | bit(alarm) : alarms; };
+  set(AxisAlarm::no_comm_watchdog, core.loss_stop_ms == kGoesOn);
   set(AxisAlarm::stop_latched, core.motion.latched());
   set(AxisAlarm::not_homed, core.model.command(Command::home).has_value() && !core.homed);
   set(AxisAlarm::cannot_deenergise, core.cannot_deenergise());
@@ -208,6 +209,7 @@ void show_state(const AxisCore& core, AxisImage& image) {
   }
   if (image.oldest_cyclic == kNever) image.oldest_cyclic = kLongAgo;
   image.alarms = alarms_of(core);
+  image.loss_stop_ms = core.loss_stop_ms;
   if (image.reachable() && core.fault.withheld()) return;
   image.axis_state = core.motion.axis_state(facts);
   image.motion_state = core.motion.state();

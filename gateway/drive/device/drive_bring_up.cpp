@@ -193,13 +193,14 @@ void Drive::judge_checks() {
 
 // Whether the drive notices a dead gateway: what makes it do so must be in it.
 void Drive::judge_loss_reaction() {
-  if (model_.loss_objects.empty()) return;
   const bool armed = std::all_of(model_.setup.begin(), model_.setup.end(), [&](const ObjectWrite& setup) {
     const bool counts =
         std::find(model_.loss_objects.begin(), model_.loss_objects.end(), setup.object) != model_.loss_objects.end();
     return !counts || (store_[setup.object].known && store_[setup.object].number == setup.raw);
   });
-  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::no_comm_watchdog, !model_.stops_by_itself || !armed);
+  // An adopted drive may hold it from before: whether it watches was not this gateway's doing.
+  const std::optional<bool> holds = armed && bring_up_.adopted() ? std::nullopt : std::optional(armed);
+  for (auto& axis : axes_) axis->set_loss_reaction(holds);
 }
 
 // An enable that is under way, or waits for its turn, would meet the NMT commands of a bring-up.

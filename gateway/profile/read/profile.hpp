@@ -166,6 +166,7 @@ struct LossSpec {
   std::string object;  ///< what must be written so that it does; empty: nothing
   std::int64_t value = 0;
   Duration after{};
+  bool stops = true;  ///< its motors then stop; false: no manual says so
   std::string text;
 };
 

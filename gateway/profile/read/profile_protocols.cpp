@@ -89,6 +89,7 @@ LossSpec loss_in(const json& node) {
   out.object = text_in(*loss, "object");
   out.value = whole_in(*loss, "value", 0);
   out.after = milliseconds(whole_in(*loss, "after_ms", 0));
+  out.stops = text_in(*loss, "reaction") != "not stated";
   out.text = text_in(*loss, "text");
   return out;
 }

@@ -58,6 +58,13 @@ void resolve_resync(Resolving& r, const ProtocolSpec& protocol) {
   }
 }
 
+/// From the gateway's last sign of life on; a node that is guarded counts guard times.
+Duration loss_after(const ProtocolSpec& protocol) {
+  if (!protocol.loss.stops) return {};
+  const bool guarded = protocol.loss.by == LossSpec::By::life_guarding;
+  return guarded ? protocol.canopen.guard_time * protocol.canopen.life_factor : protocol.loss.after;
+}
+
 }  // namespace
 
 void resolve_drive(Resolving& r) {
@@ -68,6 +75,7 @@ void resolve_drive(Resolving& r) {
   r.model.node = r.input.node;
   r.model.poll_period = r.input.poll;
   r.model.stops_by_itself = protocol.stops_by_itself();
+  r.model.loss_after = loss_after(protocol);
   r.model.loss_text = protocol.loss.text;
   if (r.profile.keepalive && r.profile.keepalive->is_on(r.input.protocol))
     r.model.keep_alive = r.profile.keepalive->every;

@@ -26,6 +26,7 @@ TEST_P(CanDrive, ComesOnlineWithGoodValuesAndIsNotEnabled) {
   rig.online();
   EXPECT_FALSE(is_enabled(rig.axis()));
   EXPECT_EQ(rig.axis().alarms & (bit(AxisAlarm::no_comm_watchdog) | bit(AxisAlarm::identity_mismatch)), 0U);
+  EXPECT_EQ(rig.axis().loss_stop_ms, GetParam() == CanType::jd ? kLossNotKnown : 1500) << "as its manual says";
   EXPECT_TRUE(rig.axis()[Quantity::statusword].valid);
   EXPECT_TRUE(rig.axis()[Quantity::position_actual].valid);
   EXPECT_TRUE(rig.becomes_operational());
@@ -115,11 +116,13 @@ TEST_P(CanDrive, FoundEnabledItIsAdoptedAndNothingIsWrittenUntilItIsDisabled) {
   ASSERT_TRUE(first.stage.come_online());
   ASSERT_TRUE(is_enabled(first.axis()));
   EXPECT_NE(first.axis().alarms & bit(AxisAlarm::adopted_running), 0U);
+  EXPECT_EQ(first.axis().loss_stop_ms, kLossNotKnown) << "nothing was written to it that makes it notice";
   EXPECT_THAT(first.writes(), IsEmpty());
   EXPECT_THAT(first.nmt(), IsEmpty());
   ASSERT_EQ(first.stage.command(1, Command::disable).outcome.code, Errc::ok);
   ASSERT_TRUE(first.stage.come_online());
   EXPECT_EQ(first.axis().alarms & bit(AxisAlarm::adopted_running), 0U);
+  EXPECT_EQ(first.axis().loss_stop_ms, GetParam() == CanType::jd ? kLossNotKnown : 1500) << "set up by now";
   EXPECT_THAT(first.nmt(), ElementsAre("80 01", "01 01"));
 }
 

@@ -104,6 +104,7 @@ TEST_P(KeepAliveOnAKeya, NeverTripsWhileTheOwnerLivesAndTheMotorIsOffSoonAfterIt
   EXPECT_EQ(drive.rig.trips(), has_watchdog() ? 1U : 0U);
   const unsigned alarm = drive.rig.axis().alarms >> static_cast<unsigned>(AxisAlarm::no_comm_watchdog) & 1U;
   EXPECT_EQ(alarm, has_watchdog() ? 0U : 1U) << "a drive that would go on says so";
+  EXPECT_EQ(drive.rig.axis().loss_stop_ms == kGoesOn, !has_watchdog()) << "and row 98 says the same";
 }
 
 TEST_P(KeepAliveOnAKeya, ADisabledMotorIsToldNothing) {

@@ -185,6 +185,7 @@ TEST(Alarms, TellOfEachThingThatWasFound) {
   EXPECT_NE(jd.axis().alarms & bit(AxisAlarm::local_control), 0U);
   EXPECT_NE(jd.axis().alarms & bit(AxisAlarm::limit_inputs_open), 0U);
   EXPECT_NE(jd.axis().alarms & bit(AxisAlarm::no_comm_watchdog), 0U);
+  EXPECT_EQ(jd.axis().loss_stop_ms, kGoesOn);
   EXPECT_NE(jd.axis().alarms & bit(AxisAlarm::not_homed), 0U);
   EXPECT_FALSE(jd.axis().has(AxisInput::ready)) << "an enable would not be tried";
   EXPECT_EQ(jd.command(Command::enable).outcome.code, Errc::state_unsuitable);

@@ -111,6 +111,8 @@ std::uint32_t axis_value(const RegisterRow& row, const AxisImage& axis, const On
       return static_cast<std::uint32_t>(axis.units_per_rev.denominator());
     case Source::rated_speed:
       return axis.rated_speed.value_or(static_cast<std::uint32_t>(no_value(RegisterType::u32)));
+    case Source::loss_stop_ms:
+      return axis.loss_stop_ms;
     case Source::owner_address:
       return owner_address(axis.lease);
     case Source::jog_velocity:
