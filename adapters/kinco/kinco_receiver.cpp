@@ -43,12 +43,15 @@ Receiver::Heard Receiver::take_frame(const Frame& frame) {
   frame_bytes_ = window_;
   in_step_ = true;
   glitch_.renew();
-  const bool is_copy = window_ == sent_;
-  if (is_answer || is_copy) {
-    if (is_answer) awaited_.reset();
-    if (is_copy) ++echoes_;
+  if (is_answer) {
+    awaited_.reset();
     filled_ = explained_ = 0;
-    return is_answer ? Heard::answer : Heard::echo;
+    return Heard::answer;
+  }
+  if (window_ == sent_) {
+    ++echoes_;
+    filled_ = explained_ = 0;
+    return Heard::echo;
   }
   explained_ = kFrameSize;
   if (is_request(frame.command)) {
