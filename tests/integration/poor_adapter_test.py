@@ -23,8 +23,8 @@ class PoorAdapter(Story):
         return [bus(self.path("rtu"), drive("jd", 1, JD_RTU), adapter="modbus-rtu", baud=baud),
                 bus(self.path("stepper"), drive("id286pro", 1, 2), adapter="modbus-rtu", baud=baud),
                 bus(self.path("kinco"), drive("jd", 1, JD_KINCO), baud=baud),
-                bus(self.path("rs232"), keya(4), adapter="keya-rs232", baud=baud),
-                bus(self.path("rs485"), keya(6, node=1), adapter="keya-rs485", baud=baud)]
+                bus(self.path("rs232"), keya(4), adapter="keya-rs232"),  # each of its interfaces has one rate
+                bus(self.path("rs485"), keya(6, node=1), adapter="keya-rs485")]
 
     def serve(self, baud, words):
         """A gateway that meets the drives with their faults from the first byte on."""
