@@ -14,11 +14,12 @@ struct Statistics {
   std::uint32_t timeouts = 0;
   std::uint32_t bad_frames = 0;     ///< well-summed frames that fit nothing, ill-summed ones, wrong widths
   std::uint32_t late_replies = 0;   ///< well-formed replies to an exchange that was given up
-  std::uint32_t dropped_bytes = 0;  ///< bytes skipped while looking for a frame
+  std::uint32_t dropped_bytes = 0;  ///< bytes skipped while looking for a frame, glitches among them
   std::uint32_t refused = 0;        ///< bus jobs refused because a queue was full
   std::uint32_t coalesced = 0;      ///< reads that joined an identical waiting one
   std::uint32_t superseded = 0;     ///< setpoints replaced before they were sent
   std::uint32_t reconnects = 0;     ///< times the link came back
+  std::uint32_t echoes = 0;         ///< copies of our own requests that came back and were dropped
 
   friend bool operator==(const Statistics&, const Statistics&) = default;
   friend Statistics operator+(Statistics a, const Statistics& b) {
@@ -32,6 +33,7 @@ struct Statistics {
     a.coalesced += b.coalesced;
     a.superseded += b.superseded;
     a.reconnects += b.reconnects;
+    a.echoes += b.echoes;
     return a;
   }
 };

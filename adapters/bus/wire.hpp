@@ -47,7 +47,7 @@ class Wire {
   [[nodiscard]] virtual bool call(std::uint8_t /*node*/) { return false; }
   /// Bits of all frames that it has sent and heard, with stuff bits and the space between frames; none: not counted.
   [[nodiscard]] virtual std::optional<std::uint64_t> bits_carried() const { return std::nullopt; }
-  /// The adapter adds what it counts: bad_frames, late_replies, dropped_bytes, reconnects.
+  /// The adapter adds what it counts: bad_frames, late_replies, dropped_bytes, reconnects, echoes.
   [[nodiscard]] virtual const Statistics& statistics() const = 0;
   /// Decode level (design section 6): log every frame sent and received.
   virtual void set_decode(bool on) = 0;

@@ -22,10 +22,16 @@ inline constexpr std::uint16_t kValueIndex = 0x2000;
 /// one of them by the mailbox). On is 0 or 1 in any width, a value has four bytes.
 [[nodiscard]] std::optional<bus::ExchangeResult> refusal_of(KeyaLine line, const bus::Exchange& exchange);
 
+/// The drive's interface, its supply voltage and its version's date are never 0.
+[[nodiscard]] constexpr bool is_never_zero(std::uint8_t code) {
+  const auto query = static_cast<Query>(code);
+  return query == Query::control_state || query == Query::voltage || query == Query::version;
+}
+
 /// Only where refusal_of() has no value. On RS485 the node is 1 to 255; RS232 has none.
 [[nodiscard]] SerialFrame request_of(KeyaLine line, const bus::Exchange& exchange);
 
-/// Only a read is answered at all. A query looks like an answer whose data are 0: telling them apart is for EchoWatch.
+/// Only a read is answered at all. A query looks like an answer whose data are 0: telling them apart is for the receiver.
 [[nodiscard]] bool answers(KeyaLine line, const SerialFrame& frame, const bus::Exchange& exchange);
 
 /// Of a frame that answers.

@@ -10,7 +10,9 @@ namespace axisgate::keya {
 void SerialReceiver::sent(const bus::Exchange& exchange, const FrameBytes& request) {
   before_request_ = filled_;
   clean_ = true;
-  echo_.on_sent(request);
+  sent_ = request;
+  echo_.on_sent(exchange.access == bus::Access::read);
+  glitch_.renew();
   awaited_.reset();
   if (exchange.access == bus::Access::read) awaited_ = exchange;
 }
@@ -20,6 +22,7 @@ void SerialReceiver::reset() {
   in_step_ = true;
   awaited_.reset();
   echo_.reset();
+  sent_ = {};
 }
 
 SerialReceiver::Heard SerialReceiver::take(Byte byte) {
@@ -38,6 +41,11 @@ SerialReceiver::Heard SerialReceiver::on_silence() {
 SerialReceiver::Heard SerialReceiver::look(bool silence) {
   while (filled_ > 0) {
     if (filled_ < kFrameSize && may_start(line_, window_[0])) return Heard::nothing;
+    if (in_step_ && glitch_.skips(window_[0])) {
+      ++dropped_bytes_;
+      remove(1);
+      continue;
+    }
     const auto frame = whole_frame();
     if (!frame) {
       drop_one();
@@ -60,7 +68,7 @@ std::optional<SerialFrame> SerialReceiver::whole_frame() const {
   const SerialFrame* frame = std::get_if<SerialFrame>(&decoded);
   if (frame == nullptr) return std::nullopt;
   const bool noise = line_ == KeyaLine::rs232 && frame->start == kControl &&
-                     !std::equal(window_.begin(), window_.begin() + kFrameSize, echo_.sent().begin());
+                     !std::equal(window_.begin(), window_.begin() + kFrameSize, sent_.begin());
   return noise ? std::nullopt : std::optional(*frame);
 }
 
@@ -80,6 +88,7 @@ SerialReceiver::Heard SerialReceiver::accept(const SerialFrame& frame) {
   const bool began_before_request = before_request_ > 0;
   remove(kFrameSize);
   in_step_ = true;
+  glitch_.renew();
   const Heard heard = name(frame, began_before_request);
   switch (heard) {
     case Heard::answer:
@@ -90,7 +99,6 @@ SerialReceiver::Heard SerialReceiver::accept(const SerialFrame& frame) {
       ++late_replies_;
       break;
     case Heard::echo:
-      ++echoes_;
       break;
     case Heard::foreign:
       ++foreign_frames_;
@@ -101,14 +109,21 @@ SerialReceiver::Heard SerialReceiver::accept(const SerialFrame& frame) {
     case Heard::nothing:
       break;
   }
-  if (heard == Heard::late || heard == Heard::foreign) clean_ = false;
+  if (heard == Heard::late || heard == Heard::foreign) {
+    clean_ = false;
+    echo_.on_other();
+  }
   return heard;
 }
 
 SerialReceiver::Heard SerialReceiver::name(const SerialFrame& frame, bool began_before_request) {
   if (frame.start == kHeartbeat) return Heard::heartbeat;
   const bool may_be_drives = frame.start == kQuery && !is_never_zero(frame.code);
-  if (!began_before_request && echo_.is_echo(frame_bytes_, may_be_drives)) return Heard::echo;
+  if (!began_before_request && frame_bytes_ == sent_) {
+    const bus::EchoWatch::Copy copy = echo_.on_copy(may_be_drives);
+    if (copy == bus::EchoWatch::Copy::echo) ++echoes_;
+    if (copy != bus::EchoWatch::Copy::answer) return Heard::echo;
+  }
   if (frame.start == kControl) return Heard::foreign;
   return !began_before_request && awaited_ && answers(line_, frame, *awaited_) ? Heard::answer : Heard::late;
 }
@@ -116,6 +131,7 @@ SerialReceiver::Heard SerialReceiver::name(const SerialFrame& frame, bool began_
 void SerialReceiver::drop_one() {
   ++dropped_bytes_;
   clean_ = false;
+  echo_.on_other();
   // A lost beginning is one lost frame, however many bytes it takes to find the next.
   if (std::exchange(in_step_, false)) ++lost_frames_;
   remove(1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds Keya's serial frames in a stream of bytes, and in them the one answer that is awaited.
-// Promises that a heartbeat, an echo or another's frame is never taken for the answer, nor a frame that began before
+// Promises that a heartbeat, an echo or another's frame is never taken for the answer: a query's echo is byte for byte
+// the answer whose data are all 0, "no fault, standing still", and is one only on a line that is known not to echo, nor a frame that began before
 // the request; that noise before the answer gives way byte by byte; that a window of twelve bytes in which the awaited
 // answer may begin anew is decided only by what follows it: another start byte, or silence. RS232 has no sum.
 // Counts what it skips. Never allocates, and never looks at a clock: silence is told.
@@ -8,7 +9,8 @@
 
 #include <optional>
 
-#include "adapters/keya/keya_echo.hpp"
+#include "adapters/bus/echo_watch.hpp"
+#include "adapters/bus/glitch_skip.hpp"
 #include "adapters/keya/keya_serial_exchange.hpp"
 
 namespace axisgate::keya {
@@ -52,6 +54,7 @@ class SerialReceiver {
   [[nodiscard]] std::uint32_t odd_heartbeats() const { return odd_heartbeats_; }
   [[nodiscard]] std::uint32_t dropped_bytes() const { return dropped_bytes_; }
   [[nodiscard]] std::uint32_t echoes() const { return echoes_; }
+  [[nodiscard]] const bus::EchoWatch& echo() const { return echo_; }
 
  private:
   [[nodiscard]] Heard look(bool silence);
@@ -67,9 +70,11 @@ class SerialReceiver {
   std::size_t filled_ = 0;
   std::size_t before_request_ = 0;  ///< bytes at the head of the window that came before the request
   bool in_step_ = true;
-  bool clean_ = true;  ///< nothing but heartbeats since the request
+  bool clean_ = true;  ///< nothing but heartbeats and glitches since the request
   std::optional<bus::Exchange> awaited_;
-  EchoWatch echo_;
+  FrameBytes sent_{};
+  bus::EchoWatch echo_;
+  bus::GlitchSkip glitch_;
   SerialFrame frame_;
   FrameBytes frame_bytes_{};
   std::uint32_t late_replies_ = 0;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "adapters/bus/line_remarks.hpp"
 #include "adapters/bus/line_watch.hpp"
 #include "adapters/keya/keya_serial_receiver.hpp"
 #include "adapters/keya/keya_text.hpp"
@@ -44,6 +45,7 @@ class KeyaSerialWire final : public bus::Wire, private bus::ByteLinkEvents {
   void on_silence();
   void hear(Heard heard, News& news);
   void tell(const News& news, std::uint32_t dropped);
+  void tell_misfit(const SerialFrame& frame, std::string_view why);
   void drop_outstanding();
   void log_frame(std::string_view direction, Bytes bytes, std::string_view text) const;
 
@@ -53,7 +55,11 @@ class KeyaSerialWire final : public bus::Wire, private bus::ByteLinkEvents {
   const Log& log_;
   bus::WireEvents* events_ = nullptr;
   SerialReceiver receiver_;
-  bus::Exchange outstanding_;
+  bus::Exchange outstanding_;              // newest
+  bool awaiting_ = false;                  // a read
+  std::optional<bus::Exchange> before_;    // asked before it: its answer may be said twice
+  std::optional<bus::Exchange> given_up_;  // last: its answer may be late
+  bus::LineRemarks remarks_;
   /// What ends without an answer ends by a timer, never inside send().
   std::optional<bus::ExchangeResult> owed_;
   Instant last_heartbeat_ = kLongAgo;
@@ -73,6 +79,7 @@ KeyaSerialWire::KeyaSerialWire(KeyaSerialSettings settings, std::unique_ptr<bus:
       runtime_(runtime),
       log_(log),
       receiver_(settings_.line),
+      remarks_(log, log_source_),
       owed_timer_(runtime.make_timer([this] { pay(); })),
       silence_timer_(runtime.make_timer([this] { on_silence(); })),
       watch_(runtime,
@@ -91,6 +98,7 @@ const bus::Statistics& KeyaSerialWire::statistics() const {
   statistics_.bad_frames = receiver_.lost_frames() + receiver_.foreign_frames() + receiver_.odd_heartbeats();
   statistics_.late_replies = receiver_.late_replies();
   statistics_.dropped_bytes = receiver_.dropped_bytes();
+  statistics_.echoes = receiver_.echoes();
   statistics_.reconnects = watch_.reconnects();
   return statistics_;
 }
@@ -105,8 +113,10 @@ void KeyaSerialWire::send(const bus::Exchange& exchange) {
   }
   const SerialFrame request = request_of(settings_.line, exchange);
   const FrameBytes bytes = encode(settings_.line, request);
-  outstanding_ = exchange;
+  before_ = std::exchange(outstanding_, exchange);
+  awaiting_ = exchange.access == bus::Access::read;
   receiver_.sent(exchange, bytes);
+  remarks_.tell_of(receiver_.echo(), runtime_.now());
   if (decode_) log_frame("->", bytes, describe_request(request));
   if (exchange.access == bus::Access::write) owe({}, frame_time(settings_.baud));
   link_->send(bytes);
@@ -127,6 +137,7 @@ void KeyaSerialWire::abandon() { drop_outstanding(); }
 
 void KeyaSerialWire::drop_outstanding() {
   receiver_.give_up();
+  if (std::exchange(awaiting_, false)) given_up_ = outstanding_;
   owed_.reset();
   owed_timer_->expires_at(kNever);
 }
@@ -135,6 +146,8 @@ void KeyaSerialWire::drop_outstanding() {
 
 void KeyaSerialWire::on_link_up() {
   receiver_.reset();
+  before_.reset();
+  given_up_.reset();
   last_heartbeat_ = kLongAgo;
   watch_.on_link_up();
 }
@@ -169,11 +182,25 @@ void KeyaSerialWire::hear(Heard heard, News& news) {
     const std::string text = heard == Heard::echo ? describe_request(frame) : describe_answer(settings_.line, frame);
     log_frame("<-", receiver_.frame_bytes(), text + kRemarks.at(static_cast<std::size_t>(heard)));
   }
-  if (heard == Heard::answer) news.answer = result_of(settings_.line, frame, outstanding_);
+  if (heard == Heard::answer) {
+    awaiting_ = false;
+    news.answer = result_of(settings_.line, frame, outstanding_);
+  }
+  if (heard == Heard::late || heard == Heard::foreign) tell_misfit(frame, heard == Heard::late ? "late" : "another master's");
   if (heard == Heard::heartbeat) {
     const Instant before = std::exchange(last_heartbeat_, runtime_.now());
     if (before == kLongAgo || runtime_.now() - before > kSerialHeartbeatSilence) news.present = true;
   }
+}
+
+void KeyaSerialWire::tell_misfit(const SerialFrame& frame, std::string_view why) {
+  const auto may_come_of = [&](const std::optional<bus::Exchange>& older) {
+    return older && answers(settings_.line, frame, *older);
+  };
+  if (!awaiting_ || may_come_of(before_) || may_come_of(given_up_)) return;
+  const SerialFrame asked = request_of(settings_.line, outstanding_);
+  remarks_.misfit(fmt::format("node {}: {}", asked.node, describe_request(asked)),
+                  fmt::format("node {}: {}", frame.node, describe_answer(settings_.line, frame)), why, runtime_.now());
 }
 
 void KeyaSerialWire::tell(const News& news, std::uint32_t dropped) {

@@ -37,7 +37,7 @@ inline constexpr Duration kSerialHeartbeatSilence = std::chrono::seconds(2);
 ///   CiA 301's code for it; nothing is sent. That includes every write that is not a whole control frame.
 /// - A control frame, which no reply is documented for, ends ok when its last byte has left, at `baud` and 8N1.
 /// - Until the line has shown whether it echoes, an answer that is its query's echo byte for byte (all data 0) is taken
-///   for the echo, and the exchange times out: the first query is best one whose answer is never 0 (keya_echo.hpp).
+///   for the echo, and the exchange times out: the first query is best one whose answer is never 0.
 /// `runtime` and `log` must outlive the wire.
 [[nodiscard]] std::unique_ptr<bus::Wire> make_keya_serial_wire(KeyaSerialSettings settings,
                                                                std::unique_ptr<bus::ByteLink> link, Runtime& runtime,

@@ -9,14 +9,22 @@ namespace axisgate::kinco {
 void Receiver::await(const bus::Exchange& exchange) {
   drop_window();
   awaited_ = exchange;
+  sent_ = encode(request_of(exchange));
+  glitch_.renew();
 }
 
 void Receiver::reset() {
   drop_window();
   awaited_.reset();
+  sent_ = {};
 }
 
 Receiver::Heard Receiver::take(Byte byte) {
+  // No station has number 0x00 or 0xFF.
+  if (filled_ == 0 && glitch_.skips(byte)) {
+    ++dropped_bytes_;
+    return Heard::nothing;
+  }
   if (filled_ == kFrameSize) slide();
   window_[filled_++] = byte;
   if (filled_ < kFrameSize) return Heard::nothing;
@@ -34,15 +42,21 @@ Receiver::Heard Receiver::take_frame(const Frame& frame) {
   frame_ = frame;
   frame_bytes_ = window_;
   in_step_ = true;
+  glitch_.renew();
   if (is_answer) {
     awaited_.reset();
     filled_ = explained_ = 0;
     return Heard::answer;
   }
+  if (window_ == sent_) {
+    ++echoes_;
+    filled_ = explained_ = 0;
+    return Heard::echo;
+  }
   explained_ = kFrameSize;
   if (is_request(frame.command)) {
-    ++echoes_;
-    return Heard::echo;
+    ++foreign_frames_;
+    return Heard::foreign;
   }
   ++late_replies_;
   return Heard::late;

@@ -2,12 +2,12 @@
 // Finds frames in a stream of bytes, and in them the one answer that is awaited.
 // Promises that the awaited answer is found whatever comes before it: a window of ten bytes that is not the answer
 // gives way by one byte only, however good its sum, since noise may add up to 0 across the start of the true frame.
-// Counts what it skips. Never allocates, and never takes a byte received before await() for part of an answer.
+// Counts what it skips; a glitch before a frame is no bad frame. Never allocates, and never takes a byte received before await() for part of an answer.
 #pragma once
 
 #include <optional>
 
-#include "adapters/bus/statistics.hpp"
+#include "adapters/bus/glitch_skip.hpp"
 #include "adapters/kinco/kinco_exchange.hpp"
 
 namespace axisgate::kinco {
@@ -19,7 +19,9 @@ class Receiver {
     nothing,
     answer,  ///< to the exchange awaited; none is awaited any more
     late,    ///< a well-formed reply to something else: of an exchange given up, or from another station
-    echo,    ///< a request: our own, passed round by drives in a chain (both settings of 6510:0B are served)
+    echo,    ///< our own request: passed round by drives in a chain (both settings of 6510:0B are served), or by an
+             ///< adapter that hears itself
+    foreign,  ///< another request: there is another master
   };
 
   /// Bytes that were left over are dropped: they cannot belong to the answer of what is sent now.
@@ -40,6 +42,7 @@ class Receiver {
   }  ///< times that the beginning of a frame was lost
   [[nodiscard]] std::uint32_t dropped_bytes() const { return dropped_bytes_; }
   [[nodiscard]] std::uint32_t echoes() const { return echoes_; }
+  [[nodiscard]] std::uint32_t foreign_frames() const { return foreign_frames_; }
 
  private:
   void slide();
@@ -52,12 +55,15 @@ class Receiver {
   std::size_t explained_ = 0;
   bool in_step_ = true;
   std::optional<bus::Exchange> awaited_;
+  FrameBytes sent_{};  ///< last; no station has number 0
+  bus::GlitchSkip glitch_;
   Frame frame_;
   FrameBytes frame_bytes_{};
   std::uint32_t late_replies_ = 0;
   std::uint32_t bad_frames_ = 0;
   std::uint32_t dropped_bytes_ = 0;
   std::uint32_t echoes_ = 0;
+  std::uint32_t foreign_frames_ = 0;
 };
 
 }  // namespace axisgate::kinco

@@ -13,8 +13,9 @@ namespace axisgate::kinco {
 KincoWire::KincoWire(std::string name, std::unique_ptr<bus::ByteLink> link, Runtime& runtime, const Log& log)
     : log_source_("bus " + std::move(name)),
       log_(log),
-      watch_(runtime,
-             {.reopen = [this](std::string_view why) { link_->reopen(why); }, .drop = [this] { receiver_.give_up(); }}),
+      runtime_(runtime),
+      remarks_(log, log_source_),
+      watch_(runtime, {.reopen = [this](std::string_view why) { link_->reopen(why); }, .drop = [this] { give_up(); }}),
       link_(std::move(link)) {
   assert(link_ != nullptr);
 }
@@ -32,22 +33,36 @@ void KincoWire::send(const bus::Exchange& exchange) {
   const Frame request = request_of(exchange);
   const FrameBytes bytes = encode(request);
   receiver_.await(exchange);
+  before_ = std::exchange(asked_, exchange);
+  outstanding_ = exchange;
+  echo_.on_sent(exchange.access == bus::Access::read);
+  remarks_.tell_of(echo_, runtime_.now());
   log_frame("->", bytes, request, "");
   link_->send(bytes);
 }
 
-void KincoWire::abandon() { receiver_.give_up(); }
+void KincoWire::abandon() { give_up(); }
+
+void KincoWire::give_up() {
+  receiver_.give_up();
+  if (outstanding_) given_up_ = std::exchange(outstanding_, std::nullopt);
+}
 
 const bus::Statistics& KincoWire::statistics() const {
-  statistics_.bad_frames = receiver_.bad_frames();
+  statistics_.bad_frames = receiver_.bad_frames() + receiver_.foreign_frames();
   statistics_.late_replies = receiver_.late_replies();
   statistics_.dropped_bytes = receiver_.dropped_bytes();
+  statistics_.echoes = receiver_.echoes();
   statistics_.reconnects = watch_.reconnects();
   return statistics_;
 }
 
 void KincoWire::on_link_up() {
   receiver_.reset();
+  echo_.reset();
+  outstanding_.reset();
+  before_.reset();
+  given_up_.reset();
   watch_.on_link_up();
 }
 
@@ -65,12 +80,18 @@ void KincoWire::on_bytes(Bytes bytes) {
         break;
       case Receiver::Heard::answer:
         answer = receiver_.frame();
+        outstanding_.reset();
+        echo_.on_answer(true);
         log_frame("<-", receiver_.frame_bytes(), *answer, "");
         break;
       case Receiver::Heard::late:
-        log_frame("<-", receiver_.frame_bytes(), receiver_.frame(), "  (late)");
+        take_other("late");
+        break;
+      case Receiver::Heard::foreign:
+        take_other("another master's");
         break;
       case Receiver::Heard::echo:
+        static_cast<void>(echo_.on_copy(false));  // no drive answers with a request
         log_frame("<-", receiver_.frame_bytes(), receiver_.frame(), "  (echo)");
         break;
     }
@@ -85,6 +106,17 @@ void KincoWire::on_bytes(Bytes bytes) {
   } else if (dropped > 0) {
     watch_.on_noise();
   }
+}
+
+void KincoWire::take_other(std::string_view remark) {
+  const Frame& frame = receiver_.frame();
+  log_frame("<-", receiver_.frame_bytes(), frame, fmt::format("  ({})", remark));
+  echo_.on_other();
+  const auto may_come_of = [&](const std::optional<bus::Exchange>& older) { return older && answers(frame, *older); };
+  if (!outstanding_ || may_come_of(before_) || may_come_of(given_up_)) return;
+  const Frame asked = request_of(*outstanding_);
+  remarks_.misfit(fmt::format("station {}: {}", asked.node, describe(asked)),
+                  fmt::format("station {}: {}", frame.node, describe(frame)), remark, runtime_.now());
 }
 
 void KincoWire::log_frame(std::string_view direction, Bytes bytes, const Frame& frame, std::string_view remark) const {

@@ -10,6 +10,8 @@
 #include <string>
 
 #include "adapters/bus/byte_link.hpp"
+#include "adapters/bus/echo_watch.hpp"
+#include "adapters/bus/line_remarks.hpp"
 #include "adapters/bus/line_watch.hpp"
 #include "adapters/bus/wire.hpp"
 #include "adapters/kinco/kinco_receiver.hpp"
@@ -33,12 +35,21 @@ class KincoWire final : public bus::Wire, private bus::ByteLinkEvents {
   void on_link_up() override;
   void on_link_down(std::string_view why) override;
   void on_bytes(Bytes bytes) override;
+  void give_up();
+  void take_other(std::string_view remark);
   void log_frame(std::string_view direction, Bytes bytes, const Frame& frame, std::string_view remark) const;
 
   std::string log_source_;
   const Log& log_;
   bus::WireEvents* events_ = nullptr;
+  Runtime& runtime_;
   Receiver receiver_;
+  std::optional<bus::Exchange> outstanding_;
+  std::optional<bus::Exchange> before_;    ///< asked before it: its answer may be said twice
+  std::optional<bus::Exchange> given_up_;  ///< last: its answer may be late
+  bus::Exchange asked_;                    ///< last
+  bus::EchoWatch echo_;
+  bus::LineRemarks remarks_;
   bool decode_ = false;
   mutable bus::Statistics statistics_;
   // Last, so that they go first: neither may call into a wire that is half gone.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sum at the end of each Modbus RTU frame: CRC-16, polynomial 0xA001 reflected, start 0xFFFF, low byte first on the
 // wire (Modbus over serial line V1.02, 6.2.2). Promises 0 for a frame together with its own CRC. Never used to build
-// what the product sends: libmodbus does that; here it judges the frames that libmodbus passes on unjudged.
+// what the product sends: libmodbus does that; here it judges the frames that libmodbus passes on unjudged, and knows a
+// request that comes back.
 #pragma once
 
 #include "gateway/core/bytes.hpp"

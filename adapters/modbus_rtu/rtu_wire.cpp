@@ -26,6 +26,7 @@ RtuWire::RtuWire(std::string name, std::vector<RtuNode> nodes, LineSpeed speed, 
       speed_(speed),
       runtime_(runtime),
       log_(log),
+      remarks_(log, log_source_),
       broadcast_timer_(runtime.make_timer([this] { broadcast_over(); })),
       watch_(runtime, {.reopen = [this](std::string_view why) { link_->reopen(why); }, .drop = [this] { abandon(); }}),
       link_(std::move(link)) {
@@ -47,6 +48,10 @@ void RtuWire::send(const bus::Exchange& exchange) {
   assert(!broadcast || exchange.access == bus::Access::write);
   const Frame frame = request_of(exchange, node_of(exchange.node));
   outstanding_ = {++last_number_, exchange, broadcast, runtime_.now(), frame.size() + kCrcSize};
+  request_ = frame;
+  clean_ = true;
+  echo_.on_sent(exchange.access == bus::Access::read);
+  remarks_.tell_of(echo_, runtime_.now());
   if (decode_) log_frame("->", frame, describe_request(frame));
   link_->transmit(last_number_, frame);
   if (!broadcast) return;
@@ -83,6 +88,8 @@ void RtuWire::broadcast_over() {
 void RtuWire::on_link_up() {
   give_up();
   for (auto& [unit, heard] : heard_) heard.last.clear();
+  request_.clear();
+  echo_.reset();
   timed_ = true;
   watch_.on_link_up();
 }
@@ -93,6 +100,7 @@ void RtuWire::on_link_down(std::string_view why) {
 }
 
 void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
+  if (newest == last_number_ && std::ranges::equal(frame, request_) && take_copy(frame)) return;
   std::string_view remark = "not asked for";
   if (outstanding_ && !outstanding_->broadcast) {
     const Judgement judgement = judge(frame, outstanding_->exchange, node_of(outstanding_->exchange.node));
@@ -104,6 +112,7 @@ void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
     if (mine && !said_again) {
       if (decode_) log_frame("<-", frame, describe_reply(frame));
       watch_.on_answer();
+      echo_.on_answer(clean_ && !(too_soon && may_owe(outstanding_->exchange.node)));
       heard.last.assign(frame.begin(), frame.end());
       // Of a drive that may owe an answer it says nothing about the line, and is nothing to compare the next one with.
       if (too_soon && may_owe(outstanding_->exchange.node)) {
@@ -115,7 +124,30 @@ void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
       return;
     }
     remark = mine ? "said twice" : result != nullptr ? "late" : text(std::get<NotMine>(judgement));
+    if (result == nullptr && newest == outstanding_->number) tell_misfit(frame, remark);
   }
+  take_other(frame, remark);
+}
+
+/// A read's or a longer write's is no answer; that of a write of one register is, on a line without echo.
+bool RtuWire::take_copy(Bytes frame) {
+  const bool may_be_answer = outstanding_ && !outstanding_->broadcast &&
+                             frame[1] == static_cast<Byte>(Function::write_single_register);
+  const bus::EchoWatch::Copy copy = echo_.on_copy(may_be_answer);
+  if (copy == bus::EchoWatch::Copy::answer) return false;
+  const bool echo = copy == bus::EchoWatch::Copy::echo;
+  if (echo) ++statistics_.echoes;
+  if (decode_) log_frame("<-", frame, describe_request(frame) + (echo ? "  (echo)" : "  (echo or answer)"));
+  return true;
+}
+
+void RtuWire::tell_misfit(Bytes frame, std::string_view why) {
+  const bool owed = may_owe(outstanding_->exchange.node) || (knows(frame[0]) && heard_.contains(frame[0]) && may_owe(frame[0]));
+  if (!owed) remarks_.misfit(describe_request(request_), describe_reply(frame), why, runtime_.now());
+}
+
+void RtuWire::take_other(Bytes frame, std::string_view remark) {
+  echo_.on_other();
   const bool late = well_formed(frame) && knows(frame[0]);
   ++(late ? statistics_.late_replies : statistics_.bad_frames);
   if (late) heard_[frame[0]] = {Frame(frame.begin(), frame.end()), runtime_.now()};
@@ -132,7 +164,14 @@ bool RtuWire::early(Bytes frame) const {
   return runtime_.now() - outstanding_->sent_at < crossing - crossing / 10;
 }
 
+void RtuWire::on_glitch(std::size_t bytes) {
+  statistics_.dropped_bytes += static_cast<std::uint32_t>(bytes);
+  if (decode_) log_.write(LogLevel::info, log_source_, fmt::format("<- skipped {} bytes", bytes));
+}
+
 void RtuWire::on_bad_frame(ExchangeNumber, std::size_t bytes) {
+  clean_ = false;
+  echo_.on_other();
   // A run of noise is one bad frame, in however many parts it is told.
   if (!watch_.noisy()) ++statistics_.bad_frames;
   statistics_.dropped_bytes += static_cast<std::uint32_t>(bytes);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Modbus RTU on a serial line, as the bus sees it: requests out, answers back.
 // Promises at most one reply per send(), none after abandon() or a loss of the link, none for a frame that was heard
-// before its request was sent, or that is the answer before said again by a drive that answers twice, and that a line
+// before its request was sent, that is the answer before said again by a drive that answers twice, or that may be the
+// echo of its request; and that a line
 // that babbles is opened anew three times and then reported down until it is quiet. Never queues or repeats a request,
 // and never judges a value.
 #pragma once
@@ -12,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "adapters/bus/echo_watch.hpp"
+#include "adapters/bus/line_remarks.hpp"
 #include "adapters/bus/line_watch.hpp"
 #include "adapters/bus/wire.hpp"
 #include "adapters/modbus_rtu/rtu_codec.hpp"
@@ -54,8 +57,14 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   void on_link_down(std::string_view why) override;
   void on_frame(ExchangeNumber newest, Bytes frame) override;
   void on_bad_frame(ExchangeNumber newest, std::size_t bytes) override;
+  void on_glitch(std::size_t bytes) override;
 
   void give_up();
+  /// Of the request sent last; false: it is judged as an answer.
+  [[nodiscard]] bool take_copy(Bytes frame);
+  /// Takes what is not the answer; `remark` says why.
+  void take_other(Bytes frame, std::string_view remark);
+  void tell_misfit(Bytes frame, std::string_view why);
   void end(const bus::ExchangeResult& result);
   [[nodiscard]] bool early(Bytes frame) const;
   /// The answer to a request given up may still come, or be said again: four times as late as the drive's worst reply.
@@ -76,6 +85,10 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   std::optional<Outstanding> outstanding_;
   bool timed_ = true;  ///< nothing has come sooner than the line could carry it, but what may have been a late answer
   std::map<std::uint8_t, Heard> heard_;  ///< by unit, of the nodes and what they obey
+  Frame request_;       ///< sent last
+  bool clean_ = true;   ///< no noise since then
+  bus::EchoWatch echo_;
+  bus::LineRemarks remarks_;
   bool decode_ = false;
   mutable bus::Statistics statistics_;
   // Last, so that they go first: none may call into a wire that is half gone.

@@ -61,6 +61,7 @@ void BusLine::show(BusImage& shown) const {
   shown.coalesced = s.coalesced;
   shown.superseded = s.superseded;
   shown.reconnects = s.reconnects;
+  shown.echoes = s.echoes;
 }
 
 }  // namespace axisgate::app

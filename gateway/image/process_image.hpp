@@ -55,6 +55,7 @@ struct BusImage {
   std::uint32_t coalesced = 0;
   std::uint32_t superseded = 0;
   std::uint32_t reconnects = 0;
+  std::uint32_t echoes = 0;
 };
 
 struct GatewayImage {

@@ -82,6 +82,7 @@ enum class Source : std::uint8_t {
   bus_coalesced,
   bus_superseded,
   bus_reconnects,
+  bus_echoes,
 };
 
 struct RegisterRow {

@@ -203,6 +203,7 @@ std::vector<RegisterRow> bus_register_rows() {
       shows(18, "coalesced", u32, Source::bus_coalesced),
       shows(20, "superseded", u32, Source::bus_superseded),
       shows(22, "reconnects", u32, Source::bus_reconnects),
+      shows(24, "echoes", u32, Source::bus_echoes, "copies of its own requests that the line brought back"),
   };
 }
 

@@ -11,7 +11,8 @@ constexpr std::string_view help =
     "LINE/STATION: unresponsive lose corrupt split duplicate noise noise-before noise-after wrong-station babble "
     "on|off|next [N]|RATE, on Modbus RTU half wrong-length glued too; late MS [on|next [N]|RATE]|off; exception CODE "
     "[on|next "
-    "[N]|RATE]|off (Modbus RTU); restart [next [N]|RATE|off]; clear; state; position; restarts; input NUMBER on|off; "
+    "[N]|RATE]|off (Modbus RTU); glitch 0x00|0xFF BYTES LEAD_MS [on|next [N]|RATE]|off (serial lines; LEAD_MS 0: glued to "
+    "the reply); restart [next [N]|RATE|off]; clear; state; position; restarts; input NUMBER on|off; "
     "jam on|off; get|writes OBJECT; set OBJECT VALUE; mute OBJECT on|off; refuse OBJECT CODE|off (reads of it; "
     "INDEX.SUB, the register on Modbus RTU, the query code of a Keya on a serial line). A Kinco: fault "
     "2601|2602 BITS; clear 2601|2602 BITS; stores; transitions. An id286pro: fault CODE [hardware]; clear CODE; "
@@ -23,7 +24,7 @@ constexpr std::string_view help =
     "commands; trips; fault|"
     "clear A|B BITS; jam A|B on|off; set voltage|temperature|version VALUE; set count|current|motor-temperature A|B "
     "VALUE; heartbeat MS; heartbeat-twice on|off|next [N]|RATE. LINE: unplug; "
-    "plug; reply-delay MS; exchanges; on CAN bus-off on|off; no-ack; overlaps. lines; help";
+    "plug; reply-delay MS; exchanges; on serial lines echo on|off|only; on CAN bus-off on|off; no-ack; overlaps. lines; help";
 
 // The number that a fault may come with.
 void set_number(DriveFaults& faults, DriveFault fault, std::int64_t number) {
@@ -44,6 +45,18 @@ void set_number(DriveFaults& faults, DriveFault fault, std::int64_t number) {
     default:
       refuse_word("'" + std::string(name_of(fault)) + "' takes no number");
   }
+}
+
+// glitch LINE/STATION 0x00|0xFF BYTES LEAD_MS
+void set_glitch(DriveFaults& faults, const ControlWords& words) {
+  const std::int64_t value = number_in(words[2]);
+  const std::int64_t bytes = number_in(words[3]);
+  constexpr std::int64_t most = 64;  // more is no glitch
+  if (value < 0 || value > 0xFF) refuse_word("'" + words[2] + "' is no byte");
+  if (bytes < 1 || bytes > most) refuse_word("'" + words[3] + "' bytes: write 1 to " + std::to_string(most));
+  faults.glitch_value = static_cast<std::uint8_t>(value);
+  faults.glitch_bytes = static_cast<std::size_t>(bytes);
+  faults.glitch_lead = std::chrono::milliseconds(number_in(words[4]));
 }
 
 }  // namespace
@@ -116,6 +129,10 @@ std::string Control::on_line(const ControlWords& words) {
     port.line->set_reply_delay(std::chrono::milliseconds(number_in(words[2])));
   } else if (words[0] == "exchanges") {
     return " " + std::to_string(port.line->requests_heard());
+  } else if (port.can == nullptr && words[0] == "echo") {
+    need_words(words, 3, "echo LINE on|off|only");
+    const bool only = words[2] == "only";
+    port.line->set_echo(only ? AdapterEcho::only : on_or_off(words[2]) ? AdapterEcho::on : AdapterEcho::off);
   } else if (port.can != nullptr && words[0] == "overlaps") {
     return " " + std::to_string(port.can->bus().overlapping_requests());
   } else if (port.can != nullptr && words[0] == "no-ack") {
@@ -147,6 +164,11 @@ std::string Control::switch_fault(const ControlWords& words, const Target& targe
                  : bus  ? "' is for drives on CAN alone"
                  : life ? "' is for drives that send heartbeats"
                         : "' is for drives on Modbus RTU alone"));
+  }
+  if (*fault == DriveFault::glitch && words.size() > 4) {
+    set_glitch(faults, words);
+    set_fault_switch(faults, *fault, words, 5);
+    return "";
   }
   const bool counted = *fault == DriveFault::late || *fault == DriveFault::exception;
   const bool hex = can && words.size() > 2 && words[2].starts_with("0x");

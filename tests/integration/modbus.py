@@ -41,7 +41,7 @@ GATEWAY = {"map_version": (0, "u16"), "axis_count": (1, "u16"), "gateway_state":
 BUS = {"link": (0, "u16"), "load": (1, "u16"), "cycle_ms": (2, "u16"), "queue_depth": (3, "u16"), "requests": (4, "u32"),
        "replies": (6, "u32"), "timeouts": (8, "u32"), "bad_frames": (10, "u32"), "late_replies": (12, "u32"),
        "dropped_bytes": (14, "u32"), "refused": (16, "u32"), "coalesced": (18, "u32"), "superseded": (20, "u32"),
-       "reconnects": (22, "u32")}
+       "reconnects": (22, "u32"), "echoes": (24, "u32")}
 
 UNKNOWN, SETUP, ONLINE, SUSPECT, OFFLINE, LINK_DOWN = range(6)
 DISABLED, STANDSTILL, DISCRETE, CONTINUOUS, HOMING, STOPPING, ERROR_STOP, OUT_OF_SIGHT = range(8)

@@ -40,9 +40,11 @@ enum class DriveFault : std::uint8_t {
   emergencies,  // an EMCY with `emergency_code` every `babble_period`, unasked
   // Where a drive says by itself that it lives:
   heartbeat_twice,  // its heartbeat comes twice
+  // On serial lines alone:
+  glitch,  // its transceiver turns round: `glitch_bytes` times `glitch_value` before the reply, `glitch_lead` or none
 };
 
-inline constexpr std::size_t drive_fault_count = 17;
+inline constexpr std::size_t drive_fault_count = 18;
 
 std::string_view name_of(DriveFault fault);
 std::optional<DriveFault> drive_fault_named(std::string_view name);
@@ -53,6 +55,9 @@ class DriveFaults {
   Time split_gap = std::chrono::milliseconds(3);
   Time babble_period = std::chrono::milliseconds(10);
   std::uint64_t longest_noise = 12;  // bytes
+  std::size_t glitch_bytes = 1;
+  std::uint8_t glitch_value = 0;
+  Time glitch_lead{};  // from its last byte to the reply; 0: glued to it
   std::uint8_t exception_code = 4;
   std::uint32_t abort_code = 0x08000000;
   std::uint32_t babble_id = 0;  // CAN: whose frames; 0: those of the drive's own error control

@@ -22,6 +22,9 @@ struct ToHost {
   std::span<const std::uint8_t> bytes;
 };
 
+// An adapter that hears itself brings back what the host sends; one that is looped brings back that alone.
+enum class AdapterEcho : std::uint8_t { off, on, only };
+
 using ToHostSink = std::function<void(const ToHost&)>;  // may call from_host()
 
 class DriveLine {
@@ -42,6 +45,11 @@ class DriveLine {
   virtual std::optional<Time> next_event() const = 0;
   virtual void cut() = 0;  // the cable is pulled: bytes under way are gone
   virtual std::uint64_t requests_heard() const = 0;
+
+  void set_echo(AdapterEcho echo) { adapter_echo_ = echo; }  // serial lines alone
+
+ protected:
+  AdapterEcho adapter_echo_ = AdapterEcho::off;
 };
 
 }  // namespace axisgate::simulated

@@ -49,6 +49,10 @@ void KeyaLine::set_heartbeat(std::size_t position, Time period) {
 
 void KeyaLine::from_host(std::span<const std::uint8_t> bytes, Time now) {
   advance(now);
+  if (adapter_echo_ != AdapterEcho::off) {
+    outgoing_.send(std::max(host_free_, now), {0, ByteOrigin::echo, slots_.size(), {bytes.begin(), bytes.end()}});
+  }
+  if (adapter_echo_ == AdapterEcho::only) return advance(now);
   for (const std::uint8_t byte : bytes) {
     host_free_ = std::max(host_free_, now) + byte_time(options_.baud);
     incoming_.push_back({host_free_, byte});
@@ -167,7 +171,14 @@ std::vector<std::uint8_t> KeyaLine::distort(Slot& slot, KeyaFrame reply) {
 void KeyaLine::send_reply(std::size_t position, std::uint64_t tag, const std::vector<std::uint8_t>& bytes) {
   Slot& slot = slots_[position];
   if (bytes.size() < 2 || !slot.faults.strikes(DriveFault::split, random_)) {
-    outgoing_.send(slot.free_at, {tag, ByteOrigin::reply, position, bytes});
+    Chunk chunk{tag, ByteOrigin::reply, position, bytes};
+    if (slot.faults.strikes(DriveFault::glitch, random_)) {
+      slot.split_from = slot.free_at;  // no heartbeat comes between the two
+      slot.free_at = outgoing_.send_behind_glitch(slot.free_at, std::move(chunk), slot.faults);
+      slot.split_until = slot.free_at;
+    } else {
+      outgoing_.send(slot.free_at, std::move(chunk));
+    }
     return;
   }
   const auto cut_at = static_cast<std::ptrdiff_t>(1 + random_.below(bytes.size() - 1));

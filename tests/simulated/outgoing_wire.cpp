@@ -10,6 +10,19 @@ Time byte_time(std::uint32_t baud, std::size_t bytes) {
   return Time{static_cast<std::int64_t>(bytes) * 10'000'000'000 / baud};
 }
 
+Time OutgoingWire::send_behind_glitch(Time ready, Chunk chunk, const DriveFaults& faults) {
+  std::vector<std::uint8_t> glitch(faults.glitch_bytes, faults.glitch_value);
+  if (faults.glitch_lead == Time{}) {
+    chunk.bytes.insert(chunk.bytes.begin(), glitch.begin(), glitch.end());
+  } else {
+    const Time length = byte_time(baud_, glitch.size());
+    send(ready, {0, ByteOrigin::noise, chunk.drive, std::move(glitch)});
+    ready += length + faults.glitch_lead;
+  }
+  send(ready, std::move(chunk));
+  return ready;
+}
+
 std::optional<Time> OutgoingWire::next_event() const {
   std::optional<Time> next;
   for (const Queue* queue : {&waiting_, &arriving_}) {

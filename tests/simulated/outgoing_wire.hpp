@@ -25,6 +25,8 @@ class OutgoingWire {
   explicit OutgoingWire(std::uint32_t baud) : baud_(baud) {}
 
   void send(Time ready, Chunk chunk) { waiting_.emplace(std::pair{ready, ++chunks_}, std::move(chunk)); }
+  // Of a drive, behind what its transceiver makes before it; tells when the reply itself begins.
+  Time send_behind_glitch(Time ready, Chunk chunk, const DriveFaults& faults);
   std::optional<Time> next_event() const;
   bool arrives_at(Time at) const { return !arriving_.empty() && arriving_.begin()->first.first == at; }
   bool begins_at(Time at) const { return !waiting_.empty() && waiting_.begin()->first.first == at; }

@@ -61,6 +61,10 @@ Id286pro* RtuLine::id286pro(std::size_t position) { return dynamic_cast<Id286pro
 
 void RtuLine::from_host(std::span<const std::uint8_t> bytes, Time now) {
   advance(now);
+  if (adapter_echo_ != AdapterEcho::off) {
+    outgoing_.send(std::max(host_free_, now), {0, ByteOrigin::echo, slots_.size(), {bytes.begin(), bytes.end()}});
+  }
+  if (adapter_echo_ == AdapterEcho::only) return advance(now);
   for (const std::uint8_t byte : bytes) {
     host_free_ = std::max(host_free_, now) + on_wire(1);
     incoming_.push_back({host_free_, byte});
@@ -234,7 +238,13 @@ void RtuLine::send(std::size_t position, std::uint64_t tag, Time ready, const Rt
   Slot& slot = slots_[position];
   slot.free_at = ready + on_wire(bytes.size()) + gap_;
   if (bytes.size() < 2 || !slot.faults.strikes(DriveFault::split, random_)) {
-    outgoing_.send(ready, {tag, ByteOrigin::reply, position, bytes});
+    Chunk chunk{tag, ByteOrigin::reply, position, bytes};
+    if (slot.faults.strikes(DriveFault::glitch, random_)) {
+      const Time begins = outgoing_.send_behind_glitch(ready, std::move(chunk), slot.faults);
+      slot.free_at += begins - ready + on_wire(slot.faults.glitch_bytes);
+    } else {
+      outgoing_.send(ready, std::move(chunk));
+    }
     return;
   }
   const auto cut_at = static_cast<std::ptrdiff_t>(1 + random_.below(bytes.size() - 1));

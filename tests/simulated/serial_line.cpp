@@ -55,6 +55,10 @@ bool SerialLine::reaches_host(std::size_t position) const {
 
 void SerialLine::from_host(std::span<const std::uint8_t> bytes, Time now) {
   advance(now);
+  if (adapter_echo_ != AdapterEcho::off) {
+    outgoing_.send(std::max(host_line_free_, now), {0, ByteOrigin::echo, slots_.size(), {bytes.begin(), bytes.end()}});
+  }
+  if (adapter_echo_ == AdapterEcho::only) return advance(now);
   for (const std::uint8_t byte : bytes) {
     host_line_free_ = std::max(host_line_free_, now) + byte_time(options_.baud);
     incoming_.push_back({host_line_free_, byte});
@@ -190,7 +194,12 @@ void SerialLine::send_reply(std::size_t position, std::uint64_t tag, Time ready,
     outgoing_.send(slot.reply_ready, {tag, ByteOrigin::reply, position, {bytes.begin() + cut_at, bytes.end()}});
     return;
   }
-  outgoing_.send(ready, {tag, ByteOrigin::reply, position, std::move(bytes)});
+  Chunk chunk{tag, ByteOrigin::reply, position, std::move(bytes)};
+  if (slot.faults.strikes(DriveFault::glitch, random_)) {
+    slot.reply_ready = outgoing_.send_behind_glitch(ready, std::move(chunk), slot.faults);
+  } else {
+    outgoing_.send(ready, std::move(chunk));
+  }
 }
 
 void SerialLine::babble(Time now) {

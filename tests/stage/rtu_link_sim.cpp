@@ -1,28 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/stage/rtu_link_sim.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace axisgate::test {
-namespace {
-
-/// Bytes of the frame that begins like this, CRC included; nothing: more must come to tell.
-std::optional<std::size_t> frame_size(Bytes begun) {
-  if (begun.size() < 2) return std::nullopt;
-  switch (begun[1]) {
-    case simulated::function::write_one:
-    case simulated::function::write_several:
-      return 8;
-    case simulated::function::read:
-      if (begun.size() < 3) return std::nullopt;
-      return std::size_t{5} + begun[2];
-    default:
-      return 5;  // an error reply: one byte of data
-  }
-}
-
-}  // namespace
-
 RtuLinkSim::RtuLinkSim(ManualRuntime& runtime, const simulated::RtuLineOptions& options, std::uint64_t seed)
     : SerialCable(runtime, line_), line_(options, simulated::Random(seed), sink()) {}
 
@@ -52,6 +34,7 @@ void RtuLinkSim::transmit(modbus_rtu::ExchangeNumber number, Bytes frame) {
   newest_ = number;
   std::vector<Byte> whole = simulated::seal_rtu(frame[0], frame.subspan(1));
   whole.resize(last_words.take(whole.size()));
+  finder_.sent(whole);
   sent.push_back({runtime_.now(), number, whole});
   carry(whole);
 }
@@ -76,7 +59,8 @@ bool RtuLinkSim::deliver() {
 
 void RtuLinkSim::hear_silence() {
   noisy_ = false;
-  if (!begun_.empty()) bad(std::exchange(begun_, {}).size());
+  take_frames(newest_, true);
+  noisy_ = false;
 }
 
 void RtuLinkSim::take(const Chunk& chunk) {
@@ -86,20 +70,30 @@ void RtuLinkSim::take(const Chunk& chunk) {
     bad(chunk.bytes.size());
     return;
   }
-  begun_.insert(begun_.end(), chunk.bytes.begin(), chunk.bytes.end());
-  take_frames(chunk.newest);
+  for (Bytes rest(chunk.bytes); !rest.empty() && !noisy_;) {
+    const std::size_t fits = std::min(rest.size(), finder_.room());
+    finder_.take(rest.first(fits));
+    rest = rest.subspan(fits);
+    take_frames(chunk.newest, false);
+    if (noisy_ && !rest.empty()) bad(rest.size());
+  }
 }
 
-void RtuLinkSim::take_frames(modbus_rtu::ExchangeNumber newest) {
-  for (auto size = frame_size(begun_); size && *size <= begun_.size(); size = frame_size(begun_)) {
-    const std::vector<Byte> frame(begun_.begin(), begun_.begin() + static_cast<std::ptrdiff_t>(*size));
-    if (!simulated::open_rtu(frame)) {
+void RtuLinkSim::take_frames(modbus_rtu::ExchangeNumber newest, bool silence) {
+  using Kind = modbus_rtu::FrameFinder::Found::Kind;
+  while (!noisy_) {
+    const auto found = finder_.next(silence);
+    const std::vector<Byte> bytes(found.bytes.begin(), found.bytes.end());
+    const bool spoilt = found.kind == Kind::frame && !simulated::open_rtu(bytes);
+    if (found.kind == Kind::nothing) return;
+    if (found.kind == Kind::glitch) {
+      events_->on_glitch(bytes.size());
+    } else if (spoilt || found.kind == Kind::noise) {
       noisy_ = true;
-      bad(std::exchange(begun_, {}).size());
-      return;
+      bad(bytes.size() + finder_.drop());
+    } else {
+      events_->on_frame(newest, Bytes(bytes).first(bytes.size() - 2));
     }
-    begun_.erase(begun_.begin(), begun_.begin() + static_cast<std::ptrdiff_t>(*size));
-    events_->on_frame(newest, Bytes(frame).first(*size - 2));
   }
 }
 
@@ -107,12 +101,12 @@ void RtuLinkSim::bad(std::size_t bytes) { events_->on_bad_frame(newest_, bytes);
 
 Instant RtuLinkSim::due() const {
   if (!arrived_.empty() || reopening_) return runtime_.now();
-  return begun_.empty() ? kNever : at_time(silence_at());
+  return !finder_.unfinished() ? kNever : at_time(silence_at());
 }
 
 void RtuLinkSim::forget() {
   arrived_.clear();
-  begun_.clear();
+  finder_ = {};
   noisy_ = false;
 }
 

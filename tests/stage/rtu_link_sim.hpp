@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cable between the gateway and a simulated Modbus RTU line: an RtuLink whose far end is an RtuLine, in manual
 // time. Promises frames at the instants the line says, each with the number of the newest request sent before it was
-// heard, and a cut that loses what is under way. Finds frames as libmodbus does: by the length their function byte
-// tells, and after what was none it hears nothing until the line was silent. Never calls back from inside a call of its
+// heard, and a cut that loses what is under way. Finds frames as the product's link does, and after what was none it
+// hears nothing until the line was silent. Never calls back from inside a call of its
 // own.
 #pragma once
 
@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/modbus_rtu/frame_finder.hpp"
 #include "adapters/modbus_rtu/rtu_link.hpp"
 #include "tests/simulated/rtu_line.hpp"
 #include "tests/stage/serial_cable.hpp"
@@ -49,7 +50,7 @@ class RtuLinkSim final : public modbus_rtu::RtuLink, public SerialCable {
   bool deliver() override;
   [[nodiscard]] Instant due() const override;
   void take(const Chunk& chunk);
-  void take_frames(modbus_rtu::ExchangeNumber newest);
+  void take_frames(modbus_rtu::ExchangeNumber newest, bool silence);
   void hear_silence();
   void bad(std::size_t bytes);
   [[nodiscard]] simulated::Time silence_at() const { return heard_until_ + line_.frame_gap(); }
@@ -57,8 +58,8 @@ class RtuLinkSim final : public modbus_rtu::RtuLink, public SerialCable {
   simulated::RtuLine line_;
   modbus_rtu::RtuLinkEvents* events_ = nullptr;
   std::vector<Chunk> arrived_;
-  std::vector<Byte> begun_;  ///< of a frame
-  bool noisy_ = false;       ///< after what was no frame, until the line is silent
+  modbus_rtu::FrameFinder finder_;
+  bool noisy_ = false;  ///< after what was no frame, until the line is silent
   simulated::Time heard_until_{};
   modbus_rtu::ExchangeNumber newest_ = 0;
   std::optional<std::string> reopening_;

@@ -103,6 +103,10 @@ void LibmodbusLink::on_noise(OpeningNumber opening, ExchangeNumber newest, std::
   if (opening == opening_ && state_ == State::open) events_->on_bad_frame(newest, bytes);
 }
 
+void LibmodbusLink::on_glitch(OpeningNumber opening, std::size_t bytes) {
+  if (opening == opening_ && state_ == State::open) events_->on_glitch(bytes);
+}
+
 void LibmodbusLink::transmit(ExchangeNumber number, Bytes frame) {
   if (state_ != State::open || worker_->send(number, frame)) return;
   log_.write(LogLevel::warning, log_source_,

@@ -3,7 +3,7 @@
 // Promises a loss told at once with its reason, also while its worker waits for the rest of a frame, a new try each
 // second and at once when the path appears, exclusive use, and that a port whose descriptor libmodbus cannot serve is
 // down and not the end of the process. A device that is missing at the start is a matter for the log, not an error.
-// Never blocks the core's thread but in its destructor, for as long as a frame takes; never calls its events from
+// Never blocks the core's thread but for its worker's last step in its destructor; never calls its events from
 // inside a call, nor once destroyed.
 #pragma once
 
@@ -39,6 +39,7 @@ class LibmodbusLink final : public RtuLink, private PortWorkerEvents {
   void on_lost(OpeningNumber opening, const std::string& why) override;
   void on_heard(OpeningNumber opening, ExchangeNumber newest, Bytes frame) override;
   void on_noise(OpeningNumber opening, ExchangeNumber newest, std::size_t bytes) override;
+  void on_glitch(OpeningNumber opening, std::size_t bytes) override;
 
   enum class State : std::uint8_t { closed, opening, open, closing };
 

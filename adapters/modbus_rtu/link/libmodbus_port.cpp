@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adapters/modbus_rtu/link/libmodbus_port.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <modbus/modbus.h>
 #include <sys/ioctl.h>
@@ -20,9 +21,7 @@ namespace axisgate::modbus_rtu {
 
 namespace {
 
-constexpr std::size_t kShortestReply = 8;        // of a write, CRC included
-constexpr std::size_t kHeadOfRefusedLength = 3;  // unit, function and a byte count that no frame has
-constexpr Byte kUntouched = 0xA5;
+constexpr std::size_t kShortestReply = 8;  // of a write, CRC included
 constexpr std::string_view kTakesNothing = ": it takes no bytes";
 
 /// Bytes of the answer to this request, CRC included.
@@ -31,36 +30,29 @@ std::size_t reply_size(Bytes request) {
   return std::size_t{5} + 2 * std::size_t{load_be16(request, 4)};
 }
 
-/// Length of the frame that modbus_receive_confirmation() has read to its end, CRC included: by the function byte, as
-/// libmodbus 3.1.6 does it. A function that it does not know, errors among them, has one byte of data.
-std::size_t confirmation_size(Bytes frame) {
-  const Byte function = frame[1];
-  switch (function) {
-    case MODBUS_FC_WRITE_SINGLE_COIL:
-    case MODBUS_FC_WRITE_SINGLE_REGISTER:
-    case MODBUS_FC_WRITE_MULTIPLE_COILS:
-    case MODBUS_FC_WRITE_MULTIPLE_REGISTERS:
-      return 8;
-    case MODBUS_FC_MASK_WRITE_REGISTER:
-      return 10;
-    default:
-      break;
-  }
-  const bool counted = function <= MODBUS_FC_READ_INPUT_REGISTERS || function == MODBUS_FC_REPORT_SLAVE_ID ||
-                       function == MODBUS_FC_WRITE_AND_READ_REGISTERS;
-  return std::size_t{5} + (counted ? frame[2] : 0U);
-}
+/// The clock of the patience with a half frame; the core's own is on another thread.
+Instant clock_now() { return Instant(std::chrono::steady_clock::now().time_since_epoch()); }
 
 }  // namespace
 
 /// Never closed by libmodbus: modbus_close() would set the line as modbus_connect() found it, which was never called.
 struct LibmodbusPort::Context {
   explicit Context(const serial::SerialSettings& settings)
-      : modbus(modbus_new_rtu(settings.device.c_str(), static_cast<int>(settings.baud), 'N', 8, 1)) {}
+      : modbus(modbus_new_rtu(settings.device.c_str(), static_cast<int>(settings.baud), 'N', 8, 1)) {
+    static_cast<void>(::pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK));
+  }
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
-  ~Context() { modbus_free(modbus); }
+  ~Context() {
+    modbus_free(modbus);
+    for (const int end : pipe) {
+      if (end >= 0) ::close(end);
+    }
+  }
+  [[nodiscard]] bool works() const { return modbus != nullptr && pipe[0] >= 0; }
+
   modbus_t* modbus;
+  std::array<int, 2> pipe{-1, -1};  ///< by which it is given frames; its reading end first
 };
 
 LibmodbusPort::LibmodbusPort(serial::SerialSettings settings, Duration adapter_latency)
@@ -73,53 +65,59 @@ LibmodbusPort::Opening LibmodbusPort::open() {
   serial::OpenedPort opened = serial::open_port(settings_);
   if (opened.descriptor < 0) return {std::move(opened.error), {}};
   descriptor_ = opened.descriptor;
-  if (!selectable()) {
-    Opening refused{fmt::format("{}: it got descriptor {}, and libmodbus serves none above {}: raise the hard limit of "
-                                "open files (LimitNOFILE) or lower max_clients",
-                                settings_.device, descriptor_, FD_SETSIZE - 1),
-                    {}};
-    close();
-    return refused;
-  }
   context_ = std::make_unique<Context>(settings_);
-  if (context_->modbus == nullptr) {
+  if (!context_->works()) {
     Opening refused{settings_.device + ": libmodbus refuses it: " + modbus_strerror(errno), {}};
     close();
     return refused;
   }
-  modbus_set_socket(context_->modbus, descriptor_);
+  if (!selectable()) {
+    Opening refused{fmt::format("{}: it got descriptor {}, and libmodbus serves none above {}: raise the hard limit of "
+                                "open files (LimitNOFILE) or lower max_clients",
+                                settings_.device, std::max(descriptor_, context_->pipe[0]), FD_SETSIZE - 1),
+                    {}};
+    close();
+    return refused;
+  }
   modbus_set_error_recovery(context_->modbus, MODBUS_ERROR_RECOVERY_NONE);
-  set_patience();
+  // It is given whole frames, and waits for nothing.
+  modbus_set_byte_timeout(context_->modbus, 0, 0);
+  modbus_set_response_timeout(context_->modbus, 0, 1);
   return {{}, std::move(opened.notes)};
 }
 
 void LibmodbusPort::close() {
   context_.reset();
+  finder_ = {};
   if (descriptor_ >= 0) ::close(descriptor_);
   descriptor_ = -1;
 }
 
-bool LibmodbusPort::selectable() const { return descriptor_ >= 0 && descriptor_ < FD_SETSIZE; }
+bool LibmodbusPort::selectable() const {
+  return descriptor_ >= 0 && descriptor_ < FD_SETSIZE && context_ != nullptr && context_->pipe[0] < FD_SETSIZE;
+}
 
-/// Without a byte timeout the response timeout is the whole frame's, from its first bytes on (Linux's select() counts
-/// it down): so a slave that drips bytes cannot hold us longer than a frame takes. The longest frame that anybody asked
-/// for is the longest that has to be waited for.
-void LibmodbusPort::set_patience() {
+/// The whole frame's, from its first bytes on: so a slave that drips bytes cannot hold us longer than a frame takes. The
+/// longest frame that anybody asked for is the longest that has to be waited for.
+Duration LibmodbusPort::patience() const {
   const int parity_bits = settings_.parity == serial::Parity::none ? 0 : 1;
-  const Duration patience = wire_time(settings_.baud, parity_bits, 0, longest_reply_) + adapter_latency_;
-  const auto us = std::chrono::duration_cast<std::chrono::microseconds>(patience).count();
-  constexpr std::int64_t kSecond = 1'000'000;
-  modbus_set_byte_timeout(context_->modbus, 0, 0);
-  modbus_set_response_timeout(context_->modbus, static_cast<std::uint32_t>(us / kSecond),
-                              static_cast<std::uint32_t>(us % kSecond));
+  return wire_time(settings_.baud, parity_bits, 0, longest_reply_) + adapter_latency_;
+}
+
+Duration LibmodbusPort::patience_left() const {
+  return std::max(begun_at_ + patience() - clock_now(), Duration{});
 }
 
 std::string LibmodbusPort::transmit(Bytes frame) {
   if (!selectable()) return settings_.device + ": not open";
-  if (const std::size_t reply = reply_size(frame); reply > longest_reply_) {
-    longest_reply_ = reply;
-    set_patience();
-  }
+  longest_reply_ = std::max(longest_reply_, reply_size(frame));
+  std::array<Byte, kMaxFrame + kCrcSize> whole{};
+  std::ranges::copy(frame, whole.begin());
+  const std::uint16_t crc = crc16(frame);
+  whole.at(frame.size()) = static_cast<Byte>(crc & 0xFF);
+  whole.at(frame.size() + 1) = static_cast<Byte>(crc >> 8);
+  finder_.sent(Bytes(whole).first(frame.size() + kCrcSize));
+  modbus_set_socket(context_->modbus, descriptor_);
   // Of this unit libmodbus judges the CRC. It knows none above 247: those it leaves to us, as all other units.
   static_cast<void>(modbus_set_slave(context_->modbus, frame[0]));
   const int size = static_cast<int>(frame.size());
@@ -135,41 +133,65 @@ std::size_t LibmodbusPort::bytes_waiting() const {
   return static_cast<std::size_t>(std::max(waiting, 0));
 }
 
-Heard LibmodbusPort::receive() {
+Heard LibmodbusPort::receive(bool may_read) {
   if (!selectable()) return {.kind = Heard::Kind::lost, .why = settings_.device + ": not open"};
-  buffer_.fill(kUntouched);
-  const int length = modbus_receive_confirmation(context_->modbus, buffer_.data());
-  return length >= 0 ? judged(length) : failed(errno);
+  while (true) {
+    const FrameFinder::Found found = finder_.next(!may_read && patience_left() == Duration{});
+    if (found.kind != FrameFinder::Found::Kind::nothing) {
+      begun_at_ = clock_now();  // of what follows
+      return told(found);
+    }
+    if (!may_read) return {};
+    Heard lost;
+    may_read = read_more(lost);
+    if (lost.kind == Heard::Kind::lost) return lost;
+  }
+}
+
+/// False: there is no more.
+bool LibmodbusPort::read_more(Heard& lost) {
+  std::array<Byte, FrameFinder::kHolds> bytes{};
+  const ssize_t got = ::read(descriptor_, bytes.data(), finder_.room());
+  if (got > 0) {
+    if (!finder_.unfinished()) begun_at_ = clock_now();
+    finder_.take(Bytes(bytes).first(static_cast<std::size_t>(got)));
+    return true;
+  }
+  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return false;
+  lost = {.kind = Heard::Kind::lost, .why = settings_.device + ": " + (got == 0 ? "hung up" : std::strerror(errno))};
+  return false;
+}
+
+Heard LibmodbusPort::told(const FrameFinder::Found& found) {
+  using Kind = FrameFinder::Found::Kind;
+  switch (found.kind) {
+    case Kind::copy:
+      return {.kind = Heard::Kind::frame, .frame = found.bytes.first(found.bytes.size() - kCrcSize)};
+    case Kind::frame:
+      return judged(found.bytes);
+    case Kind::glitch:
+      return {.kind = Heard::Kind::glitch, .bytes = found.bytes.size()};
+    case Kind::noise:
+      return {.kind = Heard::Kind::noise, .bytes = found.bytes.size()};
+    case Kind::nothing:
+      break;
+  }
+  return {};
 }
 
 /// libmodbus returns 0, CRC unseen, for a whole frame from a unit other than the one set.
-Heard LibmodbusPort::judged(int length) {
-  const Bytes read(buffer_);
-  const std::size_t size = length > 0 ? static_cast<std::size_t>(length) : confirmation_size(read);
-  if (length == 0 && crc16(read.first(size)) != 0) return {.kind = Heard::Kind::noise, .bytes = size};
-  return {.kind = Heard::Kind::frame, .frame = read.first(size - kCrcSize)};
-}
-
-Heard LibmodbusPort::failed(int error) {
-  const Bytes read(buffer_);
-  switch (error) {
-    case EMBBADCRC:
-      return {.kind = Heard::Kind::noise, .bytes = confirmation_size(read)};
-    case EMBBADDATA:
-      return {.kind = Heard::Kind::noise, .bytes = kHeadOfRefusedLength};
-    case ETIMEDOUT:
-    case EAGAIN: {
-      // libmodbus does not say how many bytes it had: those that are no longer as we left them, but for bytes that
-      // happen to be the same.
-      const auto last = std::find_if(read.rbegin(), read.rend(), [](Byte byte) { return byte != kUntouched; });
-      const auto bytes = static_cast<std::size_t>(read.rend() - last);
-      return {.kind = bytes > 0 ? Heard::Kind::noise : Heard::Kind::nothing, .bytes = bytes};
-    }
-    case ECONNRESET:
-      return {.kind = Heard::Kind::lost, .why = settings_.device + ": hung up"};
-    default:
-      return {.kind = Heard::Kind::lost, .why = settings_.device + ": " + modbus_strerror(error)};
+Heard LibmodbusPort::judged(Bytes frame) {
+  const auto [reading, writing] = context_->pipe;
+  const ssize_t given = ::write(writing, frame.data(), frame.size());
+  modbus_set_socket(context_->modbus, reading);
+  const int length = modbus_receive_confirmation(context_->modbus, buffer_.data());
+  while (::read(reading, buffer_.data(), buffer_.size()) > 0) continue;  // of a frame that it measures otherwise
+  const bool whole = given == static_cast<ssize_t>(frame.size()) && (length > 0 ? length == given : length == 0);
+  if (whole && crc16(frame) == 0) {
+    return {.kind = Heard::Kind::frame, .frame = frame.first(frame.size() - kCrcSize)};
   }
+  const std::size_t bytes = frame.size();
+  return {.kind = Heard::Kind::noise, .bytes = bytes + finder_.drop()};
 }
 
 Heard LibmodbusPort::skip() {

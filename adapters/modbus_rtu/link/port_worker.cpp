@@ -38,9 +38,12 @@ struct Noise {
   ExchangeNumber newest = 0;
   std::size_t bytes = 0;
 };
+struct Glitch {
+  std::size_t bytes = 0;
+};
 struct Told {
   OpeningNumber opening = 0;
-  std::variant<Opened, NotOpened, Lost, HeardFrame, Noise> what;
+  std::variant<Opened, NotOpened, Lost, HeardFrame, Noise, Glitch> what;
 };
 
 struct Outgoing {
@@ -144,6 +147,7 @@ class PortWorker::Mailbox : public std::enable_shared_from_this<Mailbox> {
   void hand_over(OpeningNumber opening, const Lost& it) { events_->on_lost(opening, it.why); }
   void hand_over(OpeningNumber opening, const HeardFrame& it) { events_->on_heard(opening, it.newest, it.frame); }
   void hand_over(OpeningNumber opening, const Noise& it) { events_->on_noise(opening, it.newest, it.bytes); }
+  void hand_over(OpeningNumber opening, const Glitch& it) { events_->on_glitch(opening, it.bytes); }
 
   boost::asio::io_context& context_;
   PortWorkerEvents* events_;  // of the core's thread alone
@@ -174,7 +178,7 @@ class PortWorker::Loop {
       to_send_ = port_.is_open() && mailbox_->has_outgoing();
       if (to_send_) {
         listen_or_send();
-      } else if (ready != 0 && port_.is_open() && !todo.open) {
+      } else if ((ready != 0 || port_.unfinished()) && port_.is_open() && !todo.open) {
         listen(ready);
       }
     }
@@ -184,10 +188,18 @@ class PortWorker::Loop {
   /// Until something is to be done. What the port has; 0 where it has nothing.
   [[nodiscard]] short wait() {
     std::array<pollfd, 2> waited{{{mailbox_->wake_descriptor(), POLLIN, 0}, {port_.descriptor(), POLLIN, 0}}};
-    const timespec at_once{};
-    const timespec silence{0, static_cast<long>(gap_time(port_.settings().baud).count())};
-    const timespec* longest = to_send_ ? &at_once : noisy_ ? &silence : nullptr;
-    const int ready = ::ppoll(waited.data(), waited.size(), longest, nullptr);
+    std::optional<Duration> longest;
+    if (port_.unfinished()) {
+      longest = port_.patience_left();
+    } else if (to_send_) {
+      longest = Duration{};
+    } else if (noisy_) {
+      longest = gap_time(port_.settings().baud);
+    }
+    constexpr std::int64_t kSecond = 1'000'000'000;
+    const std::int64_t ns = longest.value_or(Duration{}).count();
+    const timespec time{static_cast<time_t>(ns / kSecond), static_cast<long>(ns % kSecond)};
+    const int ready = ::ppoll(waited.data(), waited.size(), longest ? &time : nullptr, nullptr);
     if (ready == 0 && !to_send_) noisy_ = false;
     return ready > 0 ? waited[1].revents : short{0};
   }
@@ -206,7 +218,7 @@ class PortWorker::Loop {
 
   /// What has come by now was heard before the frame is sent, and must be told so.
   void listen_or_send() {
-    if (reads_before_sending_ < kMaxReadsBeforeSending && port_.bytes_waiting() > 0) {
+    if (reads_before_sending_ < kMaxReadsBeforeSending && (port_.bytes_waiting() > 0 || port_.unfinished())) {
       ++reads_before_sending_;
       listen(POLLIN);
       return;
@@ -215,31 +227,46 @@ class PortWorker::Loop {
     to_send_ = false;
     const std::optional<Outgoing> outgoing = mailbox_->take_outgoing();
     if (!outgoing) return;
+    if (const std::size_t half = port_.drop(); half > 0) tell_noise(half);
     noisy_ = false;
     newest_ = outgoing->number;
     if (std::string why = port_.transmit(outgoing->frame); !why.empty()) lose(std::move(why));
   }
 
   void listen(short ready) {
-    const Heard heard = noisy_ ? port_.skip() : port_.receive();
+    Heard heard = noisy_ ? port_.skip() : port_.receive(true);
+    // A port that reports an error for ever and has no bytes must not keep us busy for ever.
+    if (heard.kind == Heard::Kind::nothing && (ready & (POLLERR | POLLHUP | POLLNVAL)) != 0) {
+      lose(port_.settings().device + ": hung up");
+      return;
+    }
+    while (tell(heard)) heard = port_.receive(false);
+  }
+
+  /// True: more may have been read with it.
+  bool tell(const Heard& heard) {
     switch (heard.kind) {
       case Heard::Kind::frame:
         mailbox_->tell_heard({opening_, HeardFrame{newest_, Frame(heard.frame.begin(), heard.frame.end())}},
                              heard.frame.size() + kCrcSize);
-        return;
+        return true;
+      case Heard::Kind::glitch:
+        mailbox_->tell_heard({opening_, Glitch{heard.bytes}}, heard.bytes);
+        return true;
       case Heard::Kind::noise:
         noisy_ = true;
-        mailbox_->tell_heard({opening_, Noise{newest_, heard.bytes}}, heard.bytes);
-        return;
+        tell_noise(heard.bytes);
+        return false;
       case Heard::Kind::lost:
         lose(heard.why);
-        return;
+        return false;
       case Heard::Kind::nothing:
-        // A port that reports an error for ever and has no bytes must not keep us busy for ever.
-        if ((ready & (POLLERR | POLLHUP | POLLNVAL)) != 0) lose(port_.settings().device + ": hung up");
-        return;
+        return false;
     }
+    return false;
   }
+
+  void tell_noise(std::size_t bytes) { mailbox_->tell_heard({opening_, Noise{newest_, bytes}}, bytes); }
 
   void lose(std::string why) {
     port_.close();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thread of one port: libmodbus blocks, so it does that here and not on the core's thread.
+// The thread of one port: what waits for a device, or for the rest of a frame, does that here and not on the core's.
 // Promises that what it is told is taken up as soon as no frame is half read, that what it hears is told on the core's
 // thread in order, each frame with the number of the newest frame sent before it, and that it calls nobody once it is
 // destroyed. Never decides: it opens, sends and listens as it is told, and keeps no more than kMaxHeard frames.
@@ -31,6 +31,7 @@ class PortWorkerEvents {
   virtual void on_lost(OpeningNumber opening, const std::string& why) = 0;
   virtual void on_heard(OpeningNumber opening, ExchangeNumber newest, Bytes frame) = 0;
   virtual void on_noise(OpeningNumber opening, ExchangeNumber newest, std::size_t bytes) = 0;
+  virtual void on_glitch(OpeningNumber opening, std::size_t bytes) = 0;
 };
 
 class PortWorker {
@@ -45,7 +46,6 @@ class PortWorker {
              PortWorkerEvents& events);
   PortWorker(const PortWorker&) = delete;
   PortWorker& operator=(const PortWorker&) = delete;
-  /// Waits for a frame that is half read, no longer.
   ~PortWorker();
 
   void open(OpeningNumber opening);

@@ -37,7 +37,9 @@ class SerialScanner final : private bus::WireEvents {
   [[nodiscard]] const SerialScanPlan& plan() const { return plan_; }
   [[nodiscard]] const std::string& why() const { return why_; }
   [[nodiscard]] std::uint32_t late_replies() const { return late_; }
-  [[nodiscard]] std::uint32_t noise() const { return noise_; }
+  [[nodiscard]] std::uint32_t bad_frames() const { return bad_; }
+  [[nodiscard]] std::uint32_t dropped_bytes() const { return dropped_; }
+  [[nodiscard]] std::uint32_t echoes() const { return echoes_; }
 
  private:
   void on_wire_up() override { soon(); }
@@ -66,7 +68,7 @@ class SerialScanner final : private bus::WireEvents {
   bool ended_ = false;
   bool opened_ = false;
   bool asked_ = false;
-  std::uint32_t late_ = 0, noise_ = 0;
+  std::uint32_t late_ = 0, bad_ = 0, dropped_ = 0, echoes_ = 0;
   std::unique_ptr<Timer> open_limit_;
   std::unique_ptr<Timer> answer_limit_;
   std::optional<SerialSpeech> speech_;
@@ -139,7 +141,9 @@ std::unique_ptr<bus::Wire> SerialScanner::wire_for(const SerialSpeech& speech) {
 void SerialScanner::drop_wire() {
   if (!wire_) return;
   late_ += wire_->statistics().late_replies;
-  noise_ += wire_->statistics().bad_frames + wire_->statistics().dropped_bytes;
+  bad_ += wire_->statistics().bad_frames;
+  dropped_ += wire_->statistics().dropped_bytes;
+  echoes_ += wire_->statistics().echoes;
   wire_.reset();
 }
 
@@ -187,6 +191,23 @@ void SerialScanner::tell_progress() {
                  now);
 }
 
+/// What the line itself did, in the words that the gateway's log has for it.
+void tell_line(const SerialScanner& scan, bool found) {
+  if (!found && scan.echoes() > 0)
+    fmt::print(stderr,
+               "{} copies of the scan's own reads came and no answer: the adapter hears itself, or the line is looped\n",
+               scan.echoes());
+  if (found && scan.echoes() > 0)
+    fmt::print(stderr, "the line echoes: {} copies of the scan's own reads came back and were dropped, as the gateway does\n",
+               scan.echoes());
+  if (found && scan.bad_frames() == 0 && scan.dropped_bytes() > 0)
+    fmt::print(stderr,
+               "{} bytes came before answers and were skipped, as the gateway does: a transceiver that turns round\n",
+               scan.dropped_bytes());
+  if (!found && scan.bad_frames() + scan.dropped_bytes() > 0)
+    fmt::print(stderr, "bytes came that are no answer: somebody else speaks there, or the rate is another\n");
+}
+
 int tell_serial(const ScanOptions& options, const SerialScanner& scan) {
   fmt::print("{}", serial_scan_table(scan.plan().found(), options.device));
   std::fflush(stdout);
@@ -204,8 +225,7 @@ int tell_serial(const ScanOptions& options, const SerialScanner& scan) {
   if (scan.late_replies() > 0)
     fmt::print(stderr, "{} answers came that nobody waited for any more: scan again with a longer --timeout-ms\n",
                scan.late_replies());
-  if (!found && scan.noise() > 0)
-    fmt::print(stderr, "bytes came that are no answer: somebody else speaks there, or the rate is another\n");
+  tell_line(scan, found);
   return all_asked && found ? 0 : 1;
 }
 

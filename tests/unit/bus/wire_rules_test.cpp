@@ -24,6 +24,7 @@ struct FarEnd {
   std::function<void(std::string_view why)> down;
   std::function<void()> make_noise;  ///< two bytes that are no frame; none: this line cannot babble
   std::vector<std::string>* reopened = nullptr;
+  std::vector<std::string>* sent = nullptr;
 };
 
 struct Made {
@@ -49,6 +50,7 @@ FarEnd far_end_of(Link* link) {
   if constexpr (!std::is_same_v<Link, ScriptedCanLink>) {
     far.bring = [link](std::string_view hex) { link->bring(hex); };
     far.reopened = &link->reopened;
+    far.sent = &link->sent;
   }
   if constexpr (std::is_same_v<Link, ScriptedLink>) far.make_noise = [link] { link->bring("55 01"); };
   if constexpr (std::is_same_v<Link, ScriptedRtuLink>) {
@@ -288,6 +290,65 @@ TEST_P(ByteLineRules, whole_frames_of_others_are_no_noise) {
   EXPECT_THAT(*far.reopened, IsEmpty());
   EXPECT_THAT(told, IsEmpty());
   EXPECT_EQ(late(), 1000u);
+}
+
+TEST_P(ByteLineRules, up_to_eight_bytes_of_a_glitch_before_an_answer_are_skipped_and_counted_as_bytes_alone) {
+  if (GetParam().make == rtu_wire) return;  // its link finds frames
+  std::uint32_t bytes = 0;
+  for (const char* glitch : {"00", "FF", "00 FF 00", "FF FF FF FF FF FF FF FF"}) {
+    for (const bool glued : {true, false}) {
+      forget();
+      wire->send(first());
+      if (!glued) far.bring(glitch);
+      runtime.advance_by(25ms);
+      far.bring((glued ? std::string(glitch) + " " : "") + GetParam().first_answer);
+      EXPECT_THAT(answered(), ElementsAre(GetParam().first)) << glitch;
+      bytes += static_cast<std::uint32_t>(from_hex(glitch).size());
+    }
+  }
+  EXPECT_EQ(wire->statistics().dropped_bytes, bytes);
+  EXPECT_EQ(wire->statistics().bad_frames, 0u);
+}
+
+TEST_P(ByteLineRules, a_line_that_echoes_is_answered_its_copies_counted_and_told_once) {
+  for (int i = 0; i < 10; ++i) {
+    wire->send(second());  // of Keya one that no drive answers with zeros
+    far.bring(far.sent->back());
+    runtime.advance_by(50ms);
+    answer_second();
+    runtime.advance_by(1s);
+  }
+  EXPECT_THAT(replies, SizeIs(10));
+  EXPECT_EQ(wire->statistics().echoes, 10u);
+  EXPECT_EQ(wire->statistics().bad_frames + wire->statistics().late_replies + wire->statistics().dropped_bytes, 0u);
+  EXPECT_THAT(log_lines, ElementsAre(HasSubstr("the line echoes")));
+}
+
+TEST_P(ByteLineRules, where_only_copies_come_the_log_says_so_once_a_minute) {
+  for (int i = 0; i < 50; ++i) {
+    wire->send(second());
+    far.bring(far.sent->back());
+    runtime.advance_by(1s);
+    wire->abandon();
+  }
+  EXPECT_THAT(replies, IsEmpty());
+  EXPECT_EQ(wire->statistics().echoes, 50u);
+  EXPECT_EQ(std::ranges::count_if(log_lines, [](const std::string& line) {
+              return line.find("only copies of our own requests come: the adapter hears itself, or the line is looped") !=
+                     std::string::npos;
+            }),
+            1);
+}
+
+TEST_P(ByteLineRules, a_whole_frame_that_does_not_fit_is_told_with_what_was_asked_and_what_came) {
+  wire->send(second());
+  answer_first();
+  EXPECT_THAT(log_lines, ElementsAre(testing::AllOf(HasSubstr("a valid frame that does not fit: asked was \""),
+                                                    HasSubstr("\", what came is \""))));
+  wire->abandon();
+  wire->send(first());
+  answer_second();
+  EXPECT_THAT(log_lines, SizeIs(1)) << "an answer that is only late is none";
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, ByteLineRules, testing::ValuesIn(std::vector(kProtocols, kProtocols + 4)),

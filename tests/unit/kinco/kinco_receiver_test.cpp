@@ -44,7 +44,7 @@ TEST_F(KincoReceiver, hears_whole_frames_for_what_they_are_and_none_as_noise) {
       {kStatus + kStatus, {Heard::answer, Heard::late}},
       {kOtherObject + kAcknowledgement + kStatus, {Heard::late, Heard::late, Heard::answer}},
       {kRequest + kStatus, {Heard::echo, Heard::answer}},
-      {kOlderRequest + kRequest + kStatus, {Heard::echo, Heard::echo, Heard::answer}},
+      {kOlderRequest + kRequest + kStatus, {Heard::foreign, Heard::echo, Heard::answer}},
       {kRequest, {Heard::echo}},
   };
   for (const auto& [stream, expected] : streams) {
@@ -54,6 +54,7 @@ TEST_F(KincoReceiver, hears_whole_frames_for_what_they_are_and_none_as_noise) {
     EXPECT_EQ(hear(stream), expected);
     EXPECT_EQ(receiver.late_replies(), std::ranges::count(expected, Heard::late));
     EXPECT_EQ(receiver.echoes(), std::ranges::count(expected, Heard::echo));
+    EXPECT_EQ(receiver.foreign_frames(), std::ranges::count(expected, Heard::foreign));
     EXPECT_EQ(receiver.dropped_bytes(), 0u);
   }
 }
@@ -84,6 +85,19 @@ TEST_F(KincoReceiver, noise_that_adds_up_across_the_start_of_the_answer_does_not
   noise[4] = static_cast<Byte>(-sum);
   EXPECT_THAT(hear(noise + kStatus), ElementsAre(Heard::late, Heard::answer));
   expect_status_heard_last();
+}
+
+TEST_F(KincoReceiver, skips_a_glitch_before_answer_and_echo_and_counts_no_bad_frame) {
+  for (const Byte glitch : {Byte{0x00}, Byte{0xFF}}) {
+    for (std::size_t size = 1; size <= bus::GlitchSkip::kMost; ++size) {
+      receiver = Receiver();
+      receiver.await(read_of(0x6041));
+      const ByteRow before(size, glitch);
+      EXPECT_THAT(hear(before + kRequest + before + kStatus), ElementsAre(Heard::echo, Heard::answer));
+      EXPECT_EQ(receiver.dropped_bytes(), 2 * size);
+      EXPECT_EQ(receiver.bad_frames(), 0u);
+    }
+  }
 }
 
 TEST_F(KincoReceiver, counts_a_broken_frame_once_and_its_bytes_one_by_one) {

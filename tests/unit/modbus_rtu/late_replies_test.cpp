@@ -113,6 +113,10 @@ TEST_F(LateReplies, of_another_drive_do_not_answer_this_one) {
 }
 
 TEST_F(LateReplies, to_a_write_do_not_acknowledge_another) {
+  ask(100);  // on a line without echo, as one read shows
+  answer(pty, kHundred);
+  ASSERT_TRUE(answered(1));
+  replies.clear();
   ask_and_give_up(write_of(0x3100, 0x2F, 2));
   ask(write_of(0x3100, 0x3F, 2));
   answer(pty, "01 06 31 00 00 2F");

@@ -37,13 +37,16 @@ class RtuLinkDiary final : public modbus_rtu::RtuLinkEvents {
     noise += bytes;
     if (on_noise) on_noise();
   }
+  void on_glitch(std::size_t bytes) override { skipped += bytes; }
+  /// Of frames nothing.
+  [[nodiscard]] std::size_t dropped() const { return noise + skipped; }
   [[nodiscard]] bool up() const { return !told.empty() && told.back() == "up"; }
   [[nodiscard]] bool down() const { return !told.empty() && told.back() != "up"; }
 
   std::vector<std::string> told;
   std::vector<std::string> frames;  ///< "number: bytes"
   std::vector<modbus_rtu::ExchangeNumber> noise_after;
-  std::size_t noise = 0;
+  std::size_t noise = 0, skipped = 0;
   std::function<void()> on_up, on_down, on_heard, on_noise;
 };
 

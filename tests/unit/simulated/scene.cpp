@@ -14,6 +14,9 @@ void set_option(DriveFaults& faults, const std::string& name, std::int64_t value
       {"abort_code", [&] { faults.abort_code = static_cast<std::uint32_t>(value); }},
       {"restart_acts", [&] { faults.restart_acts = value != 0; }},
       {"split_gap", [&] { faults.split_gap = milliseconds(value); }},
+      {"glitch_bytes", [&] { faults.glitch_bytes = static_cast<std::size_t>(value); }},
+      {"glitch_value", [&] { faults.glitch_value = static_cast<std::uint8_t>(value); }},
+      {"glitch_lead", [&] { faults.glitch_lead = milliseconds(value); }},
       {"babble_period", [&] { faults.babble_period = milliseconds(value); }},
       {"babble_id", [&] { faults.babble_id = static_cast<std::uint32_t>(value); }},
   };
@@ -82,6 +85,8 @@ bool Scene::act(const Row& words) {
     set_option(bench.faults(), words[1], whole(words[2]));
   } else if (word == "listen") {
     bench.arrivals.clear();
+  } else if (word == "echo") {
+    bench.line().set_echo(words[1] == "only" ? AdapterEcho::only : words[1] == "on" ? AdapterEcho::on : AdapterEcho::off);
   } else if (word == "cut") {
     bench.line().cut();
   } else if (word == "bus_off") {

@@ -182,6 +182,8 @@ std::uint32_t bus_value(const RegisterRow& row, const BusImage& bus) {
       return bus.superseded;
     case Source::bus_reconnects:
       return bus.reconnects;
+    case Source::bus_echoes:
+      return bus.echoes;
     default:
       break;
   }
