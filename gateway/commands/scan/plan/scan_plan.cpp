@@ -11,6 +11,7 @@ constexpr bus::ObjectAddress kDeviceType{0x1000, 0};
 constexpr bus::ObjectAddress kDeviceName{0x1008, 0};
 constexpr std::uint16_t kIdentity = 0x1018;
 constexpr std::size_t kMaxName = 64;
+constexpr std::uint8_t kWidestField = 4;
 
 const drive::Place* place_of(const drive::Object& object) {
   const auto at = object.places.find("canopen");
@@ -178,8 +179,7 @@ void ScanPlan::knock_on_next() {
 
 // A server that says no sizes, or answers all in four bytes, says of no object how wide it is.
 bool ScanPlan::tells_widths() const {
-  constexpr std::uint8_t kWidest = 4;
-  return std::any_of(tried_.begin(), tried_.end(), [](const Tried& it) { return it.size.value_or(kWidest) < kWidest; });
+  return std::any_of(tried_.begin(), tried_.end(), [](const Tried& it) { return it.size && *it.size < kWidestField; });
 }
 
 std::vector<ScanFit> ScanPlan::fits() const {
