@@ -2,6 +2,9 @@
 """A PLC that comes back within its lease goes on as if it had never been away; another address gets nothing."""
 from lease_stage import ANOTHER, ME, NOBODY, NOT_OWNER, PANEL_1, Machine, main
 from modbus import ACTIVE, BUSY, Axis, Refused
+from processes import until
+
+HEARTBEAT = 8  # of the gateway
 
 
 class Return(Machine):
@@ -83,6 +86,29 @@ class AfterASilence(Return):
             self.assert_stopped_for_good(number)
             self.enable(Axis(again, number))
         self.stop_all(again)
+
+
+class WhileAnotherProgramOfItsAddressGoesOn(Return):
+    """A monitor on the PLC's computer, which was there before and beats the gateway's heartbeat, keeps nothing of a dead PLC alive."""
+
+    lines_of = ("serial",)
+
+    def test_its_axes_stop_when_its_lease_is_over(self):
+        monitor = self.peer()
+        self.plc.gateway()
+        self.plc.close()
+        beats = 0
+
+        def beat_until_they_stand():
+            nonlocal beats
+            beats += 1
+            monitor.write(HEARTBEAT, beats)
+            return all(self.speed(number) == 0 for number in self.numbers)
+
+        until("all motors stand", beat_until_they_stand)
+        for number in self.each():
+            self.assert_stopped_for_good(number)
+            self.assertTrue(self.leases_told(number, "has run out"))
 
 
 class FromAnotherAddress(Return):

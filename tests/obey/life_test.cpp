@@ -188,7 +188,7 @@ TEST_P(Life, OfAnOrphanGoesOnWithTheFirstBlockOfItsReturnThoughThatIsOnlyRemembe
   plant.a.disconnect();
   plant.run(800ms);
   plant.a.connect();
-  EXPECT_EQ(plant.a.command(kHalt, 7), kOk) << "an id that is the first of its address";
+  EXPECT_EQ(plant.a.command(plant.endless_command(), 7), kOk) << "an id that is the first of its address";
   EXPECT_EQ(plant.a.word(shown::owner), kMe);
   plant.run(1500ms);
   EXPECT_NE(plant.velocity(), 0);
