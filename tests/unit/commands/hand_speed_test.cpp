@@ -35,9 +35,6 @@ TEST_F(Speed, Is60UnlessAskedOtherwiseIsToldBeforeTheEnableAndIsSetBack) {
   EXPECT_THAT(written(), ElementsAre(command(Command::enable, 42))) << "nothing was enabled before";
   plan_->end("Ctrl-C", now_);
   answer();
-  look();
-  if (!plan_->over()) answer_unseen();
-  stand();
   EXPECT_THAT(written(), ElementsAre(stop(Command::disable)));
   answer();
   EXPECT_THAT(written(), ElementsAre(speed(2344))) << "as it was";
