@@ -48,10 +48,10 @@ void warn_about_units(const AxisConfig& config, const drive::AxisModel& axis, co
   const double rpm = static_cast<double>(*config.limits.velocity) / kPerRpm;
   const double rated = axis.rated_speed ? static_cast<double>(*axis.rated_speed) / kPerRpm : 0;
   if (rpm >= kLeast && rpm >= kLeastPart * rated) return;
-  const std::string part = rated > 0 ? fmt::format(", {:.2g} % of the rated speed of {:g} rpm", 100 * rpm / rated, rated)
-                                     : std::string();
-  out.push_back(fmt::format("{}: {}/limits/velocity: {} is {:g} rpm{}: its unit is 0.001 rpm, {} would be {:g} rpm", file,
-                            config.pointer, *config.limits.velocity, rpm, part, *config.limits.velocity * 1000,
+  const std::string part =
+      rated > 0 ? fmt::format(", {:.2g} % of the rated speed of {:g} rpm", 100 * rpm / rated, rated) : std::string();
+  out.push_back(fmt::format("{}: {}/limits/velocity: {} is {:g} rpm{}: its unit is 0.001 rpm, {} would be {:g} rpm",
+                            file, config.pointer, *config.limits.velocity, rpm, part, *config.limits.velocity * 1000,
                             rpm * kPerRpm));
 }
 
@@ -90,8 +90,8 @@ ReportLines limit_lines(const AxisConfig& config, const drive::AxisModel& axis) 
   else if (has_velocity(axis))
     parts.emplace_back("velocity NONE");
   if (limits.position)
-    parts.push_back(fmt::format("position {} to {} ({:.2f} to {:.2f} turns)", limits.position->min, limits.position->max,
-                                static_cast<double>(limits.position->min) / units,
+    parts.push_back(fmt::format("position {} to {} ({:.2f} to {:.2f} turns)", limits.position->min,
+                                limits.position->max, static_cast<double>(limits.position->min) / units,
                                 static_cast<double>(limits.position->max) / units));
   else if (turns_to_positions(axis))
     parts.emplace_back("position NONE");
@@ -121,13 +121,15 @@ std::vector<std::string> limit_warnings(const LoadedConfig& loaded) {
       }
     }
   if (!any_speed.empty())
-    out.push_back(fmt::format("no limit of velocity: axis {}: a slip of the keyboard is sent as it is; write "
-                              "\"limits\": {{\"velocity\": N}}, in 0.001 rpm",
-                              fmt::join(any_speed, ", ")));
+    out.push_back(
+        fmt::format("no limit of velocity: axis {}: a slip of the keyboard is sent as it is; write "
+                    "\"limits\": {{\"velocity\": N}}, in 0.001 rpm",
+                    fmt::join(any_speed, ", ")));
   if (!any_position.empty())
-    out.push_back(fmt::format("no limit of position: axis {}: a move may end anywhere; where its way has an end, write "
-                              "\"limits\": {{\"position\": [MIN, MAX]}}",
-                              fmt::join(any_position, ", ")));
+    out.push_back(
+        fmt::format("no limit of position: axis {}: a move may end anywhere; where its way has an end, write "
+                    "\"limits\": {{\"position\": [MIN, MAX]}}",
+                    fmt::join(any_position, ", ")));
   return out;
 }
 

@@ -124,6 +124,15 @@ bool latched_and_stands(const AxisCells& cells) {
   return (cells.pair(Source::axis_alarms) & bit(AxisAlarm::stop_latched)) != 0 && cells.stands();
 }
 
+/// Beside "standstill" a speed is that of before: it is read less often than the state.
+std::string velocity_text(const AxisCells& cells) {
+  constexpr int kOfAnRpm = 3;
+  const std::string shown = cells.number(Quantity::velocity_actual, kOfAnRpm);
+  const bool standstill = cells.word(Source::axis_state) == static_cast<std::uint16_t>(AxisState::standstill);
+  const bool marked = shown.back() == '?' || shown == "-";
+  return standstill && !marked && !cells.stands() ? shown + "?" : shown;
+}
+
 AxisTexts texts_of(const AxisReading& axis, WordOrder order, bool float_numbers) {
   const AxisCells cells(axis, order, float_numbers);
   return {.number = fmt::format("{}", axis.axis),
@@ -132,7 +141,7 @@ AxisTexts texts_of(const AxisReading& axis, WordOrder order, bool float_numbers)
           .state = std::string(axis_state_text(cells.word(Source::axis_state), latched_and_stands(cells))),
           .mode = mode_text(cells),
           .position = cells.number(Quantity::position_actual, 0),
-          .velocity = cells.number(Quantity::velocity_actual, 3),
+          .velocity = velocity_text(cells),
           .torque = cells.number(Quantity::torque_actual, 1),
           .current = cells.number(Quantity::current_actual, 2),
           .age = age_text(cells.word(Source::age_ms)),

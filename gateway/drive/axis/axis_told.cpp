@@ -98,11 +98,10 @@ void Axis::tell_ended(const Pending& pending, const Outcome& outcome) {
   const bool stopped = outcome.code == Errc::stopped_by_other || outcome.code == Errc::dropped_by_stop;
   const std::string by = stopped && !pending.stopped_by_name.empty() ? ", " + pending.stopped_by_name : std::string();
   const std::string what = batch.jogs ? std::string("jog") : command_text(core_, batch, image_.jog_velocity);
-  host_.event(
-      image_.number, EventKind::command, static_cast<std::uint32_t>(batch.command),
-      fmt::format("{}: {}{}: {}{}{}{}", batch.life ? batch.life->name : "a client", beside ? "what stood beside " : "",
-                  what, outcome_text(batch, outcome), alarm_against(core_, image_.number, batch, outcome.code), by,
-                  left_out_text(*left_out)));
+  host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(batch.command),
+              fmt::format("{}: {}{}: {}{}{}{}", batch.life ? batch.life->name : "a client",
+                          beside ? "what stood beside " : "", what, outcome_text(batch, outcome),
+                          alarm_against(core_, image_.number, batch, outcome.code), by, left_out_text(*left_out)));
 }
 
 }  // namespace axisgate::drive

@@ -80,6 +80,15 @@ TEST(TopTable, AStoppedAxisThatStandsIsLatched) {
   EXPECT_THAT(axis_line(axis), testing::HasSubstr("stopping")) << "halted";
 }
 
+TEST(TopTable, ASpeedBesideAStandstillIsMarkedAsThatOfBefore) {
+  AxisReading axis = good_axis(1);
+  EXPECT_THAT(axis_line(axis), testing::HasSubstr(" -12.500 "));
+  axis.registers[31] = 1;
+  EXPECT_THAT(axis_line(axis), testing::HasSubstr(" -12.500? "));
+  put32(axis, 4, 500);  // it trembles
+  EXPECT_THAT(axis_line(axis), testing::HasSubstr(" 0.500 "));
+}
+
 TEST(TopTable, WritesFloatsInTurnsAndRpm) {
   AxisReading axis = good_axis(1);
   put32(axis, 2, 0xC1200000);  // -10

@@ -98,7 +98,8 @@ void HandPlan::on_answer(ModbusException exception, Instant now) {
     return go(Step::refused);
   }
   if (exception != ModbusException::none && step_ == Step::set_back)
-    words_ += fmt::format("; {} stays at {} rpm", row_text(answer.write), rpm_.to_double());
+    words_ += fmt::format("; {} stays at {} rpm, for its {} rpm of before were refused", row_text(answer.write),
+                          rpm_.to_double(), answer.write.number.to_double());
   if (exception != ModbusException::none && answer.write.what == HandWrite::What::stop) {
     code_ = 1;
     const bool owed =

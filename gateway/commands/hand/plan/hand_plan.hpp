@@ -141,10 +141,10 @@ class HandPlan {
   [[nodiscard]] std::string axis_text() const;
 
   HandArguments arguments_;
-  Rational rpm_{kUsualRpm};                ///< asked for
-  bool speed_is_limit_ = false;            ///< the usual one was beyond the axis's limit
-  bool speed_set_ = false;                 ///< the drive, or the gateway, has taken it
-  std::optional<Rational> speed_before_;   ///< what is set back
+  Rational rpm_{kUsualRpm};               ///< asked for
+  bool speed_is_limit_ = false;           ///< the usual one was beyond the axis's limit
+  bool speed_set_ = false;                ///< the drive, or the gateway, has taken it
+  std::optional<Rational> speed_before_;  ///< what is set back
   std::vector<std::string> notes_;
   Step step_ = Step::look;
   std::deque<HandWrite> outbox_;

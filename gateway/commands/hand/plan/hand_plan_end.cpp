@@ -42,13 +42,13 @@ void HandPlan::lost(std::string_view why) {
 std::string HandPlan::out_of_reach() const {
   const std::string_view doing = arguments_.task == HandTask::enable ? "keeps its torque" : "goes on";
   const std::uint16_t within = view_ ? view_->loss_stop_ms : kLossNotKnown;
-  const std::string dead =
-      within == kGoesOn         ? fmt::format("{} GOES ON: use its wired stop", axis_text())
-      : within == kLossNotKnown ? fmt::format("nobody knows whether {} stops: use its wired stop", axis_text())
-                                : fmt::format("the drive begins to stop by itself within {} ms", within);
-  const std::string cut =
-      lease_ms_ ? fmt::format("{} is stopped as its lease says, within {} ms", axis_text(), *lease_ms_)
-                : fmt::format("{} {}, for it has no lease: only a stop ends that", axis_text(), doing);
+  const std::string dead = within == kGoesOn ? fmt::format("{} GOES ON: use its wired stop", axis_text())
+                           : within == kLossNotKnown
+                               ? fmt::format("nobody knows whether {} stops: use its wired stop", axis_text())
+                               : fmt::format("the drive begins to stop by itself within {} ms", within);
+  const std::string cut = lease_ms_
+                              ? fmt::format("{} is stopped as its lease says, within {} ms", axis_text(), *lease_ms_)
+                              : fmt::format("{} {}, for it has no lease: only a stop ends that", axis_text(), doing);
   return fmt::format("\n  if the gateway has died: {}\n  if only the network has failed: {}", dead, cut);
 }
 

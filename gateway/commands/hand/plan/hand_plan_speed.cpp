@@ -25,11 +25,11 @@ std::optional<Rational> HandPlan::speed_shown() const {
 std::string HandPlan::too_fast() const {
   const double most = view_->rated_rpm ? view_->rated_rpm->to_double() : static_cast<double>(kMostRpm);
   if (!arguments_.rpm || arguments_.rpm->to_double() <= most) return {};
-  return fmt::format("{} rpm is above {}: nothing was sent", arguments_.rpm->to_double(),
-                     view_->rated_rpm
-                         ? fmt::format("the rated speed of the motor of {}, {} rpm", axis_text(), most)
-                         : fmt::format("what {} is moved at by hand, {} rpm (the rated speed of its motor is not known)",
-                                       axis_text(), most));
+  return fmt::format(
+      "{} rpm is above {}: nothing was sent", arguments_.rpm->to_double(),
+      view_->rated_rpm ? fmt::format("the rated speed of the motor of {}, {} rpm", axis_text(), most)
+                       : fmt::format("what {} is moved at by hand, {} rpm (the rated speed of its motor is not known)",
+                                     axis_text(), most));
 }
 
 void HandPlan::write_speed(Instant now) {
@@ -44,7 +44,8 @@ bool HandPlan::lowers_speed() {
   const bool usual = !arguments_.rpm && !speed_set_ && !speed_is_limit_ && !may_move_;
   const Rational limit(view_->detail, kPerRpm);
   if (!usual || refused_what_ != (arguments_.task == HandTask::jog ? "jog_velocity" : "profile_velocity") ||
-      exception_ != ModbusException::illegal_data_value || limit.numerator() <= 0 || limit.to_double() >= rpm_.to_double())
+      exception_ != ModbusException::illegal_data_value || limit.numerator() <= 0 ||
+      limit.to_double() >= rpm_.to_double())
     return false;
   rpm_ = limit;
   speed_is_limit_ = true;
@@ -57,7 +58,7 @@ void HandPlan::note_dangers() {
   const auto speed = speed_shown();
   if (moves && speed)
     notes_.push_back(fmt::format("{} turns at {} rpm{}", axis_text(), speed->to_double(),
-                                 speed_is_limit_   ? ", its limit"
+                                 speed_is_limit_  ? ", its limit"
                                  : arguments_.rpm ? ""
                                                   : "; --velocity sets another speed"));
   else if (moves)

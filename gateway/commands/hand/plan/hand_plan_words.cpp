@@ -16,8 +16,7 @@ std::string HandPlan::why_refused() const {
     return out + ": the gateway gives this computer another role than operator (key \"allow\")";
   if (exception_ == ModbusException::illegal_data_address)
     return out + ": this drive does not have it (axisgate map shows what it has)";
-  if (exception_ == ModbusException::illegal_data_value)
-    return out + limit_text();
+  if (exception_ == ModbusException::illegal_data_value) return out + limit_text();
   if (view_->result == CommandResult::none) return out;
   const Word* word = find_word(WordKind::result, result);
   out += fmt::format(", result {}", result);
