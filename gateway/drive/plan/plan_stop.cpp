@@ -76,13 +76,11 @@ Plan halt(const AxisCore& core) {
     const ObjectState& status = core.store[core.model.statusword];
     const ObjectState& word = core.store[core.model.controlword];
     if (core.turn.link != LinkState::online || !status.known || !word.known || word.unsure) return quick_stop(core);
-    if (!status.cached) {
-      plan.add(Action::read(core.model.statusword));
-      plan.add(Action::at(Mark::look_again));
-      return plan;
-    }
+    if (!status.cached) return look_at_state(core);
     const bool asked_for = enables(core.controlword());
     if (!asked_for || !core.facts().enabled()) {
+      // An enable may have gone out since that was read.
+      if (asked_for && !core.state_is_of_now()) return look_at_state(core);
       plan.add(Action::read(core.model.statusword));
       plan.add(Action::wait(not_enabled(core), kStopLimit));
       return plan;

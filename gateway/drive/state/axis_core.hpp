@@ -59,6 +59,8 @@ struct AxisCore {
   /// link_state online or suspect.
   [[nodiscard]] bool reachable() const { return turn.link == LinkState::online || turn.link == LinkState::suspect; }
   [[nodiscard]] AxisFacts facts() const;
+  /// What facts() tells of the state was read after the last sending.
+  [[nodiscard]] bool state_is_of_now() const { return store.shows_now(model.statusword); }
   [[nodiscard]] bool is_virtual() const { return model.virtual_axis.has_value(); }
   /// Virtual axes: makes the statusword from the newest samples.
   void refresh_virtual();
