@@ -160,6 +160,7 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
   }
   // Accepted in every state: the latch is set even where nothing can be sent.
   if (stop) accept_stop(batch);
+  pending.stop_number = stop ? core_.motion.stops() : 0;
   if (const Errc of_link = link_admits(stop, reads_alone(batch)); of_link != Errc::ok) {
     if (stop) publish();
     return refuse(asked, of_link);
@@ -340,6 +341,7 @@ void Axis::complete(bus::JobId id, const BatchResult& result) {
   note_jog(pending, result.outcome.code);
   if (!motion_pending()) core_.motion.unmask_target_reached();
   BatchResult told = result;
+  told.stop = pending.stop_number;
   told.refused_row = refused_row(core_, pending.command_sequence->batch(), told.outcome.code);
   if (told.outcome.code == Errc::ok && pending.refusal != Errc::ok) {
     told.outcome = {pending.refusal, 0};
@@ -349,7 +351,10 @@ void Axis::complete(bus::JobId id, const BatchResult& result) {
     forget_told(core_, pending.command_sequence->batch());
     if (!pending.command_sequence->begun()) forget_accepted(pending.command_sequence->batch());
   }
-  if (!pending.by_mailbox) show_latest(pending.command_sequence->batch(), told.outcome);
+  if (!pending.by_mailbox) {
+    show_latest(pending.command_sequence->batch(), told.outcome);
+    image_.latest.stop = told.stop;
+  }
   tell_ended(pending, told.outcome);
   if (told.outcome.code == Errc::timed_out) watch_enable(*pending.command_sequence);
   if (told.outcome.code == Errc::not_reached) {

@@ -16,6 +16,7 @@
 #include "gateway/drive/motion/late_enable.hpp"
 #include "gateway/drive/motion/owed_stop.hpp"
 #include "gateway/drive/motion/ownership.hpp"
+#include "gateway/drive/motion/stop_watch.hpp"
 #include "gateway/image/command_port.hpp"
 
 namespace axisgate::drive {
@@ -128,6 +129,7 @@ class Axis {
     bool by_mailbox = false;
     bool jogs = false;                        ///< it starts a jog
     std::optional<Endings::Point> acts_at{};  ///< of a command or controlword that the servers do not know to act yet
+    std::uint64_t stop_number = 0;            ///< of a stop: Motion::stops() when it was accepted
     std::uint64_t ends_jog = 0;               ///< once it has started what it starts, this jog is over
     Errc refusal = Errc::ok;                  ///< of what stood beside the stop; the answer once the stop is done
     std::optional<ClientId> stopped_by{};     ///< whose stop came first after it
@@ -180,6 +182,7 @@ class Axis {
   // What is owed until the drive shows it (axis_owed.cpp).
   void owe(const WriteBatch& stop);
   void observe_owed();
+  void observe_stop();
   void watch_enable(const CommandSequence& unknown);
   void take_back_enable(State402 state);
   void lose_sight();
@@ -254,6 +257,7 @@ class Axis {
   Instant position_at_ = kLongAgo;  ///< the newest sample of the position
   Duration position_gap_{};         ///< between two of them, while it jogs
   OwedStop owed_;
+  StopWatch stop_watch_;
   LateEnable late_enable_;
   Telling telling_;
   bool closing_ = false;  ///< the gateway ends, or lets go of the drive

@@ -36,6 +36,7 @@ void Axis::observe() {
       clamped = clamped || core_.store[binding.object].clamped;
   set_alarm(AxisAlarm::clamped, clamped);
   observe_jog();
+  observe_stop();
   observe_owed();
   if (!core_.motion.take_homing_timeout()) return;
   host_.event(image_.number, EventKind::warning, 0, "homing took longer than its timeout: halted");

@@ -146,7 +146,7 @@ std::string CommandSequence::missed() const {
                        hex(writes_.last->object, writes_.last->number));
   if (plan_.at_end() || plan_.action().kind != Action::Kind::wait) return out + ": what follows was not sent in time";
   if (plan_.action().effect == Effect::homing) return out + ": awaited a motion or a change of its bits, read none";
-  if (plan_.action().effect == Effect::halt) {
+  if (plan_.action().effect == Effect::stop) {
     const auto speed = core_.value(Quantity::velocity_actual);
     return out + ": awaited that it slows down, read " +
            (speed ? fmt::format("velocity_actual {}", *speed) : std::string("nothing"));

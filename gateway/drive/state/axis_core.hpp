@@ -100,6 +100,8 @@ struct AxisCore {
   /// last, as long as the drive holds it, however short of it the motor stands; else at a position sampled since it
   /// stands. None: there is no such sample yet.
   [[nodiscard]] std::optional<std::int64_t> setpoint_position() const;
+  /// The motor is held or moved by the drive, as far as that shows: enabled, in a quick stop, or never without torque.
+  [[nodiscard]] bool shows_torque() const;
   /// The bus cannot take this virtual axis's torque away, and it is not enabled.
   [[nodiscard]] bool cannot_deenergise() const;
   /// Velocity and torque: what a client has asked for since the last stop, fault, disable or loss, else 0.
