@@ -7,8 +7,8 @@
 #include "adapters/modbus_rtu/rtu_wire.hpp"
 #include "gateway/config/adapter_names.hpp"
 #include "gateway/config/config_sections.hpp"
-#include "tests/simulated/keya_drive.hpp"
 #include "tests/places.hpp"
+#include "tests/simulated/keya_drive.hpp"
 #include "tests/stage/profile_once.hpp"
 
 namespace axisgate::test {

@@ -173,6 +173,7 @@ class Axis {
   void observe_jog();
   void end_jog_at_limit();
   void observe_reference(const AxisFacts& facts);
+  void observe_counter();
   void observe_volatile();
   void observe_homing_method();
   void observe_end_of_fault(const AxisFacts& facts);
@@ -240,9 +241,11 @@ class Axis {
   std::vector<Pending> pending_;
   std::vector<Due> due_;
   bool reference_invalidated_ = false;
-  bool holds_method_ = false;  ///< its drive was seen to hold the homing_method that a client has written
-  bool faulted_ = false;       ///< as seen last
-  bool forgotten_ = false;     ///< its drive holds other speeds than it was told, and a start will tell it anew
+  bool holds_method_ = false;              ///< its drive was seen to hold the homing_method that a client has written
+  bool faulted_ = false;                   ///< as seen last
+  bool enabled_ = false;                   ///< as seen last
+  std::optional<std::int64_t> counted_{};  ///< the position as the drive counts, as seen last without a gap
+  bool forgotten_ = false;  ///< its drive holds other speeds than it was told, and a start will tell it anew
   struct {
     std::optional<ClientId> client{};
     std::shared_ptr<const ClientLife> life{};

@@ -157,8 +157,8 @@ void Axis::note_stop(const Pending& pending, bool ended) {
     tell_end(owed_.attempted(*kind, command_sequence.stop_confirmed(), core_.store.exchange(), core_.turn.now));
 }
 
-// What was told done is so until the motor stands, or something else is asked of it: a drive that shows a stop and turns
-// on has not stopped.
+// What was told done is so until the motor stands, or something else is asked of it: a drive that shows a stop and
+// turns on has not stopped.
 void Axis::observe_stop() {
   const auto stop = stop_watch_.watched();
   if (!stop) return;
@@ -168,8 +168,8 @@ void Axis::observe_stop() {
   const Binding* const velocity = core_.model.binding(Quantity::velocity_actual);
   const auto speed = core_.value(Quantity::velocity_actual);
   if (!speed || !core_.facts().moving || core_.turn.link != LinkState::online) return;
-  const Duration period = std::max(core_.drive.poll_period[static_cast<std::size_t>(velocity->poll)],
-                                   core_.store.period(velocity->object));
+  const Duration period =
+      std::max(core_.drive.poll_period[static_cast<std::size_t>(velocity->poll)], core_.store.period(velocity->object));
   if (!stop_watch_.goes_on(std::abs(*speed), core_.store[velocity->object].sent_at, core_.model.velocity_lag + period))
     return;
   image_.unheeded_stop = stop->number;

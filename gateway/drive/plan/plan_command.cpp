@@ -264,13 +264,6 @@ Plan plan_save(const AxisCore& core) {
 
 }  // namespace
 
-Plan look_at_state(const AxisCore& core) {
-  Plan plan;
-  plan.add(Action::read(core.model.statusword));
-  plan.add(Action::at(Mark::look_again));
-  return plan;
-}
-
 bool append(Plan& plan, Plan more) {
   if (more.refused()) {
     plan.refusal = more.refusal;

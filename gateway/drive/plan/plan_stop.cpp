@@ -125,6 +125,13 @@ Plan by_controlword(const AxisCore& core, std::uint16_t word) {
 
 }  // namespace
 
+Plan look_at_state(const AxisCore& core) {
+  Plan plan;
+  plan.add(Action::read(core.model.statusword));
+  plan.add(Action::at(Mark::look_again));
+  return plan;
+}
+
 bool is_enabling_word(const AxisCore& core, ObjectId object, std::int64_t number) {
   return object == core.model.controlword && enables(number);
 }

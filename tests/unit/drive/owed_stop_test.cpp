@@ -283,7 +283,8 @@ TEST(StopWatch, OneThatGetsFasterGoesOn) {
   EXPECT_TRUE(goes_on(watch, {100, 110, 120, 130, 140}));
 }
 
-// --- What was read before a sending shows nothing of it ----------------------------------------------------------------
+// --- What was read before a sending shows nothing of it
+// ----------------------------------------------------------------
 
 TEST(ObjectStore, WhatWasReadBeforeTheLastSendingIsNotOfNow) {
   ObjectStore store(2);
