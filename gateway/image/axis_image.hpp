@@ -95,6 +95,7 @@ struct LatestResult {
   CommandResult result = CommandResult::none;
   std::uint32_t detail = 0;
   std::uint16_t command_id = 0;
+  std::uint64_t stop = 0;  ///< BatchResult::stop
   friend bool operator==(const LatestResult&, const LatestResult&) = default;
 };
 
@@ -129,6 +130,7 @@ struct AxisImage : Capabilities {
   Endings endings{};                 ///< what has ended motions: the servers' rules of edges look at it
   Instant oldest_cyclic = kLongAgo;  ///< when the oldest cyclic value was confirmed
   LatestResult latest;
+  std::uint64_t unheeded_stop = 0;  ///< BatchResult::stop of the newest that was done, and whose motor turned on
   std::uint32_t sequence = 0;
 
   [[nodiscard]] const Sample& operator[](Quantity q) const { return samples[static_cast<std::size_t>(q)]; }

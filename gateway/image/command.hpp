@@ -167,6 +167,7 @@ struct BatchResult {
   std::string limit{};            ///< of bad_value: the limit that stands against it, "3 rpm"; empty: none
   bool controlword_done = false;  ///< of a write batch that failed: its controlword was carried out before
   bool command_sent = false;      ///< something was written for its command, or for a controlword that was not done
+  std::uint64_t stop = 0;         ///< of a stop: its number on its axis, from 1 on
 };
 
 }  // namespace axisgate

@@ -47,6 +47,11 @@ std::optional<std::string> ask_leadshine(LeadshineDrive& drive, const ControlWor
     drive.jam(on_or_off(words[2]));
     return "";
   }
+  if (command == "ignore-quick-stop") {
+    need_words(words, 3, "ignore-quick-stop LINE/NODE on|off");
+    drive.ignore_quick_stop(on_or_off(words[2]));
+    return "";
+  }
   return std::nullopt;
 }
 

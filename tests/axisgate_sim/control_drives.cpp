@@ -100,6 +100,11 @@ std::optional<std::string> change(KincoDrive& drive, const ControlWords& words) 
     drive.jam(on_or_off(words[2]));
     return "";
   }
+  if (command == "ignore-quick-stop") {
+    need_words(words, 3, "ignore-quick-stop LINE/STATION on|off");
+    drive.ignore_quick_stop(on_or_off(words[2]));
+    return "";
+  }
   return std::nullopt;
 }
 

@@ -230,6 +230,11 @@ void lock(GatewayStage& stage, Subject subject, bool locked) {
   stage.drive(0).lock(locked);
 }
 
+void ignore_quick_stop(GatewayStage& stage, Subject subject, bool ignores) {
+  if (subject == Subject::leadshine) return stage.leadshine(0).ignore_quick_stop(ignores);
+  stage.drive(0).ignore_quick_stop(ignores);
+}
+
 void numb(GatewayStage& stage, Subject subject, bool numb) {
   if (subject == Subject::id286pro) return stage.id286pro(0).numb(numb);
   if (is_keya(subject)) return stage.keya(0).numb(numb);

@@ -135,6 +135,9 @@ void lock(GatewayStage& stage, Subject subject, bool locked);
 /// The drive acknowledges commands and carries none out; when it comes to, a CiA 402 drive carries out those in effect.
 void numb(GatewayStage& stage, Subject subject, bool numb);
 
+/// It shows quick stop active and turns on. Of a CiA 402 drive.
+void ignore_quick_stop(GatewayStage& stage, Subject subject, bool ignores);
+
 /// An object of the drive that can be read at any time: its statusword where it has one, else a speed.
 [[nodiscard]] ObjectPlace readable_object(Subject subject);
 

@@ -53,6 +53,8 @@ class KincoDrive {
   void lock(bool locked);
   // It acknowledges controlwords and modes and carries none out; when it comes to, it carries out those in effect.
   void numb(bool numb);
+  // It shows quick stop active and turns on at its target velocity, on a ramp too; when it comes to, it stops.
+  void ignore_quick_stop(bool ignores);
   // As the panel or another port would write it: same effects, not counted. Measured values that nothing computes
   // (voltage, temperature) may be set too.
   Refusal poke(ObjectKey key, std::int64_t value);
@@ -130,6 +132,7 @@ class KincoDrive {
   std::uint16_t controlword_ = 0;
   bool locked_out_ = false;
   bool numb_ = false;
+  bool ignores_quick_stop_ = false;
   std::optional<std::uint16_t> unheard_;  // the controlword written while numb
   std::int64_t mode_ = 0;
   Dec torque_command_ = 0;

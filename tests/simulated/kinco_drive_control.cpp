@@ -46,6 +46,13 @@ void KincoDrive::numb(bool numb) {
   take_target_speed();
 }
 
+void KincoDrive::ignore_quick_stop(bool ignores) {
+  ignores_quick_stop_ = ignores;
+  if (state_ != quick_stop_active) return;
+  leave_operation(Cia402Command::quick_stop, switch_on_disabled, 0);
+  if (ignores) motion_.run_at(object(0x60FF), false);
+}
+
 void KincoDrive::obey(Cia402Command command, std::uint64_t tag) {
   const bool enable = command == Cia402Command::enable_operation;
   if (enable && inputs_.active(InputFunction::emergency_stop)) return;
@@ -83,6 +90,10 @@ void KincoDrive::leave_operation(Cia402Command command, Cia402State to, std::uin
   if (command == Cia402Command::switch_on) option = object(0x605C);
   pending_.reset();
   halted_.reset();
+  if (command == Cia402Command::quick_stop && ignores_quick_stop_) {
+    change_state(quick_stop_active, tag);
+    return;
+  }
   if (option == 0) {
     change_state(command == Cia402Command::quick_stop ? switch_on_disabled : to, tag);
     return;

@@ -67,6 +67,13 @@ void LeadshineDrive::numb(bool numb) {
   take_target_speed();
 }
 
+void LeadshineDrive::ignore_quick_stop(bool ignores) {
+  ignores_quick_stop_ = ignores;
+  if (state_ != quick_stop_active) return;
+  leave_operation(Cia402Command::quick_stop, switch_on_disabled, 0);
+  if (ignores) motion_.run_at(speed_of(object(0x60FF)), false);
+}
+
 void LeadshineDrive::obey(Cia402Command command, std::uint64_t tag) {
   const bool enable = command == Cia402Command::enable_operation;
   if (enable && inputs_.active(InputFunction::emergency_stop)) return;
@@ -108,6 +115,10 @@ void LeadshineDrive::leave_operation(Cia402Command command, Cia402State to, std:
   const bool slows_down = object(0x2506) == 0;  // Pr5.06: slow down and release, or release at once
   pending_.reset();
   halted_.reset();
+  if (command == Cia402Command::quick_stop && ignores_quick_stop_) {
+    change_state(quick_stop_active, tag);
+    return;
+  }
   if (command == Cia402Command::quick_stop) {
     const std::int64_t option = object(0x605A);
     if (option == 0 && !slows_down) {

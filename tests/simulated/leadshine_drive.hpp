@@ -76,6 +76,8 @@ class LeadshineDrive final : public CanDevice {
   void lock(bool locked);
   // It acknowledges controlwords and modes and carries none out; when it comes to, it carries out those in effect.
   void numb(bool numb);
+  // It shows quick stop active and turns on at its target velocity, on a ramp too; when it comes to, it stops.
+  void ignore_quick_stop(bool ignores);
 
   // What a world looks at.
   const LeadshineOptions& options() const { return options_; }
@@ -154,6 +156,7 @@ class LeadshineDrive final : public CanDevice {
   std::uint16_t controlword_ = 0;
   bool locked_out_ = false;
   bool numb_ = false;
+  bool ignores_quick_stop_ = false;
   std::optional<std::uint16_t> unheard_;  // the controlword written while numb
   std::int64_t mode_ = 0;
   std::int64_t torque_demand_ = 0;  // in millionths of rated torque, on its slope

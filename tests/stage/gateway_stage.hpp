@@ -24,11 +24,12 @@ struct StageDrive {
   std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
 };
 
-/// The same on a Modbus RTU line; its profile is the shipped one of its type.
+/// The same on a Modbus RTU line.
 struct RtuStageDrive {
   simulated::RtuDriveOptions options{};
   drive::ResolveAxis axis{};
   std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
+  std::string profile{};                        ///< a file of the source folder; empty: the shipped one of its type
 };
 
 /// The same on a CAN bus.

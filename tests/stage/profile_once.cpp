@@ -12,7 +12,8 @@ const drive::LoadedProfile& profile_once(const std::string& path) {
   static std::map<std::string, drive::LoadedProfile> known;
   if (!path.starts_with(source_path(""))) throw std::invalid_argument(path + " is no file of the source folder");
   auto found = known.find(path);
-  if (found == known.end()) found = known.emplace(path, drive::load_profile(path)).first;
+  if (found == known.end())
+    found = known.emplace(path, drive::load_profile(path, {source_path("schemas/drives")})).first;
   return found->second;
 }
 

@@ -7,6 +7,7 @@
 #include "adapters/modbus_rtu/rtu_wire.hpp"
 #include "gateway/config/adapter_names.hpp"
 #include "gateway/config/config_sections.hpp"
+#include "tests/places.hpp"
 #include "tests/simulated/keya_drive.hpp"
 #include "tests/stage/profile_once.hpp"
 
@@ -24,7 +25,8 @@ struct Entry {
 };
 
 drive::DriveModel resolved(Entry entry, const GatewayStage::Line& line) {
-  const drive::LoadedProfile& loaded = shipped_profile(entry.profile);
+  const bool own = entry.profile.ends_with(".json");
+  const drive::LoadedProfile& loaded = own ? profile_once(source_path(entry.profile)) : shipped_profile(entry.profile);
   if (!loaded.faults.empty()) throw std::runtime_error(text(loaded.faults.front()));
   drive::ResolveInput input;
   input.protocol = entry.protocol;
@@ -76,6 +78,7 @@ Entry entry_of(const RtuStageDrive& staged) {
   Entry entry{"id286pro", "modbus-rtu", unit_of(staged.options), {staged.axis}, staged.constants, {}};
   const auto* kinco = std::get_if<simulated::KincoRtuDrive>(&staged.options);
   if (kinco != nullptr) name_kinco(entry, kinco->drive.type);
+  if (!staged.profile.empty()) entry.profile = staged.profile;
   return entry;
 }
 

@@ -54,7 +54,8 @@ void Axis::on_bring_up() {
   accepted_.forget_parameters();
   core_.fault.forget_emergency();
   reference_invalidated_ = false;
-  core_.homed = false;
+  core_.homed = core_.counter_wrapped = false;
+  counted_.reset();
   // What was not held before is not held until it is read.
   if (core_.loss_stop_ms != kGoesOn) core_.loss_stop_ms = loss_stop_ms(core_.drive, std::nullopt);
   lose_sight();
@@ -177,6 +178,7 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
   }
   // Accepted in every state: the latch is set even where nothing can be sent.
   if (stop) accept_stop(batch);
+  pending.stop_number = stop ? core_.motion.stops() : 0;
   if (const Errc of_link = link_admits(stop, reads_alone(batch)); of_link != Errc::ok) {
     if (stop) publish();
     return refuse(asked, of_link);
@@ -357,6 +359,7 @@ void Axis::complete(bus::JobId id, const BatchResult& result) {
   note_jog(pending, result.outcome.code);
   if (!motion_pending()) core_.motion.unmask_target_reached();
   BatchResult told = result;
+  told.stop = pending.stop_number;
   told.refused_row = refused_row(core_, pending.command_sequence->batch(), told.outcome.code);
   if (told.outcome.code == Errc::ok && pending.refusal != Errc::ok) {
     told.outcome = {pending.refusal, 0};
@@ -367,7 +370,10 @@ void Axis::complete(bus::JobId id, const BatchResult& result) {
     forget_told(core_, pending.command_sequence->batch());
     if (!pending.command_sequence->begun()) forget_accepted(pending.command_sequence->batch());
   }
-  if (!pending.by_mailbox) show_latest(pending.command_sequence->batch(), told.outcome);
+  if (!pending.by_mailbox) {
+    show_latest(pending.command_sequence->batch(), told.outcome);
+    image_.latest.stop = told.stop;
+  }
   tell_ended(pending, told.outcome);
   if (told.outcome.code == Errc::timed_out) watch_enable(*pending.command_sequence);
   if (told.outcome.code == Errc::not_reached) {

@@ -16,6 +16,7 @@
 #include "gateway/drive/motion/late_enable.hpp"
 #include "gateway/drive/motion/owed_stop.hpp"
 #include "gateway/drive/motion/ownership.hpp"
+#include "gateway/drive/motion/stop_watch.hpp"
 #include "gateway/image/command_port.hpp"
 
 namespace axisgate::drive {
@@ -132,6 +133,7 @@ class Axis {
     bool by_mailbox = false;
     bool jogs = false;                        ///< it starts a jog
     std::optional<Endings::Point> acts_at{};  ///< of a command or controlword that the servers do not know to act yet
+    std::uint64_t stop_number = 0;            ///< of a stop: Motion::stops() when it was accepted
     std::uint64_t ends_jog = 0;               ///< once it has started what it starts, this jog is over
     Errc refusal = Errc::ok;                  ///< of what stood beside the stop; the answer once the stop is done
     std::optional<ClientId> stopped_by{};     ///< whose stop came first after it
@@ -175,6 +177,7 @@ class Axis {
   void observe_jog();
   void end_jog_at_limit();
   void observe_reference(const AxisFacts& facts);
+  void observe_counter();
   void observe_volatile();
   void observe_homing_method();
   void observe_end_of_fault(const AxisFacts& facts);
@@ -184,6 +187,7 @@ class Axis {
   // What is owed until the drive shows it (axis_owed.cpp).
   void owe(const WriteBatch& stop);
   void observe_owed();
+  void observe_stop();
   void watch_enable(const CommandSequence& unknown);
   void take_back_enable(State402 state);
   void lose_sight();
@@ -242,9 +246,11 @@ class Axis {
   std::vector<Pending> pending_;
   std::vector<Due> due_;
   bool reference_invalidated_ = false;
-  bool holds_method_ = false;  ///< its drive was seen to hold the homing_method that a client has written
-  bool faulted_ = false;       ///< as seen last
-  bool forgotten_ = false;     ///< its drive holds other speeds than it was told, and a start will tell it anew
+  bool holds_method_ = false;              ///< its drive was seen to hold the homing_method that a client has written
+  bool faulted_ = false;                   ///< as seen last
+  bool enabled_ = false;                   ///< as seen last
+  std::optional<std::int64_t> counted_{};  ///< the position as the drive counts, as seen last without a gap
+  bool forgotten_ = false;  ///< its drive holds other speeds than it was told, and a start will tell it anew
   struct {
     std::optional<ClientId> client{};
     std::shared_ptr<const ClientLife> life{};
@@ -259,6 +265,7 @@ class Axis {
   Instant position_at_ = kLongAgo;  ///< the newest sample of the position
   Duration position_gap_{};         ///< between two of them, while it jogs
   OwedStop owed_;
+  StopWatch stop_watch_;
   LateEnable late_enable_;
   Telling telling_;
   bool closing_ = false;  ///< the gateway ends, or lets go of the drive

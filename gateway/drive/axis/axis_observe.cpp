@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an axis sees in its drive's newest samples, and shows in its image.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -25,7 +28,9 @@ void Axis::on_scale() {
 void Axis::observe() {
   const AxisFacts facts = core_.facts();
   shown_.watch_fault();
+  if (!std::exchange(enabled_, facts.enabled()) && enabled_) core_.enabled_by = core_.store.exchange();
   core_.motion.observe(facts, core_.model.homing_timeout);
+  observe_counter();
   observe_reference(facts);
   observe_volatile();
   observe_homing_method();
@@ -36,6 +41,7 @@ void Axis::observe() {
       clamped = clamped || core_.store[binding.object].clamped;
   set_alarm(AxisAlarm::clamped, clamped);
   observe_jog();
+  observe_stop();
   observe_owed();
   if (!core_.motion.take_homing_timeout()) return;
   host_.event(image_.number, EventKind::warning, 0, "homing took longer than its timeout: halted");
@@ -43,17 +49,34 @@ void Axis::observe() {
 }
 
 void Axis::observe_reference(const AxisFacts& facts) {
-  if (core_.is_virtual() && facts.reference) core_.homed = true;
+  if (core_.is_virtual() && facts.reference && !core_.counter_wrapped) core_.homed = true;
   if (core_.turn.link != LinkState::online || !core_.model.homed || !core_.store[core_.model.homed->object].cached)
     return;
   const bool homing = core_.motion.running() == MotionKind::homing;
-  if (facts.reference && !homing) core_.homed = true;
+  if (facts.reference && !homing && !core_.counter_wrapped) core_.homed = true;
   // What says so in one mode alone says nothing in it before the homing either, unless the drive was silent since.
   const bool lasts = reference_invalidated_ || !core_.model.homed_mode;
   reference_invalidated_ = reference_invalidated_ && !facts.reference_tells;
   if (!lasts || !core_.homed || !facts.reference_tells || facts.reference || homing || !pending_.empty()) return;
   on_unseen_restart(
       "it has lost its reference: it has restarted, too quickly to go offline, or is homed by somebody else");
+}
+
+// No motor goes through half of its counter's numbers between two looks: it has come to their end, and goes on at the
+// other. The drive says homed all the same, and every place that is told it from now on is another one.
+void Axis::observe_counter() {
+  const ObjectId id = core_.object_of(Quantity::position_actual);
+  const bool seen = id != kNoObject && core_.store[id].known && core_.reachable();
+  const auto before = std::exchange(counted_, seen ? std::optional(core_.store[id].number) : std::nullopt);
+  if (!before || !counted_) return;
+  const std::int64_t half = std::int64_t{1} << (8 * core_.object(id).size - 1);
+  if (std::abs(*counted_ - *before) <= half) return;
+  core_.counter_wrapped = true;
+  core_.homed = false;
+  core_.machine.forget_homing();
+  host_.event(image_.number, EventKind::position_wrapped, 0,
+              fmt::format("the drive's position counter has run over, from {} to {}: it is not homed any more", *before,
+                          *counted_));
 }
 
 // A drive without a reference and a state machine of its own: what it forgets with its power tells that it has

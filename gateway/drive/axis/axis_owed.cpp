@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stop is owed by the axis until the drive has shown it, through every loss of it (design 3.4 Owed stops); and a
 // jog needs its button, also while nobody can see whether it runs.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -84,7 +87,7 @@ void Axis::observe_owed() {
   const auto state = state_of(static_cast<std::uint16_t>(status.number));
   take_back_enable(state);
   if (!owed_.owed() || stopping() || ends_what_is_owed()) return;
-  tell_end(owed_.state_read(state, status.exchange));
+  tell_end(owed_.state_read(state, status.exchange, core_.shows_torque() && core_.facts().moving));
   if (const auto stop = owed_.due(core_.turn.now)) send_owed(*stop);
 }
 
@@ -148,8 +151,33 @@ void Axis::note_stop(const Pending& pending, bool ended) {
   const auto kind = kind_of(command_sequence.batch());
   if (!command_sequence.is_stop() || !kind) return;
   if (command_sequence.begun()) owed_.sending();
-  if (ended || command_sequence.stop_confirmed())
+  const bool confirmed = command_sequence.stop_confirmed();
+  if (confirmed && pending.stop_number == core_.motion.stops()) stop_watch_.begin({*kind, pending.stop_number});
+  if (ended || confirmed)
     tell_end(owed_.attempted(*kind, command_sequence.stop_confirmed(), core_.store.exchange(), core_.turn.now));
+}
+
+// What was told done is so until the motor stands, or something else is asked of it: a drive that shows a stop and
+// turns on has not stopped.
+void Axis::observe_stop() {
+  const auto stop = stop_watch_.watched();
+  if (!stop) return;
+  const Motion& motion = core_.motion;
+  const bool holds = motion.stopping() && motion.stops() == stop->number && !motion.runs_raw();
+  if (!holds || !core_.shows_torque()) return stop_watch_.end();
+  const Binding* const velocity = core_.model.binding(Quantity::velocity_actual);
+  const auto speed = core_.value(Quantity::velocity_actual);
+  if (!speed || !core_.facts().moving || core_.turn.link != LinkState::online) return;
+  const Duration period =
+      std::max(core_.drive.poll_period[static_cast<std::size_t>(velocity->poll)], core_.store.period(velocity->object));
+  if (!stop_watch_.goes_on(std::abs(*speed), core_.store[velocity->object].sent_at, core_.model.velocity_lag + period))
+    return;
+  image_.unheeded_stop = stop->number;
+  if (image_.latest.stop == stop->number) image_.latest.result = CommandResult::not_reached;
+  host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(command_of(stop->kind)),
+              fmt::format("the motor turns on after its {}, at velocity_actual {}: the stop is owed",
+                          text(command_of(stop->kind)), *speed));
+  owed_.unheeded(stop->kind, core_.store.exchange());
 }
 
 // A later enable or start ends what is owed as soon as anything of it is carried out, or is so already. One that is

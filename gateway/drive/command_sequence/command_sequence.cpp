@@ -10,8 +10,8 @@ namespace {
 
 // How long a stop may take to show before it is sent once more.
 constexpr Duration kStopShows = std::chrono::milliseconds(250);
-// A halt shows in the sampled velocity alone: so much longer than that lags.
-constexpr Duration kSampleOfHalt = std::chrono::milliseconds(100);
+// That a motor gets slower shows in the sampled velocity alone: so much later than that lags.
+constexpr Duration kSampleOfStop = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -240,7 +240,7 @@ std::optional<CommandSequence::Move> CommandSequence::advance_wait(const Action&
   const Instant now = core_.turn.now;
   if (!awaiting_.begun()) {
     const bool by_motor = action.effect != Effect::none;
-    const Duration shows = by_motor ? core_.model.velocity_lag + kSampleOfHalt : kStopShows;
+    const Duration shows = by_motor ? core_.model.velocity_lag + kSampleOfStop : kStopShows;
     const Instant until = now + action.limit;
     awaiting_.begin(phase_ == Phase::stop ? stop_attempt_.begin_wait(by_motor, until, now + shows) : until);
   }

@@ -144,6 +144,7 @@ class CommandSequence {
     std::optional<Action> last{};
     bool under_way = false;             ///< the last one is not answered yet
     bool verifying = false;             ///< it was not acknowledged: its object is read back
+    bool acknowledged = false;          ///< one of them at least
     std::uint64_t acknowledged_by = 0;  ///< exchange of the last one: samples asked for earlier are too old
   } writes_;
   MailboxAccess mailbox_{};

@@ -59,6 +59,7 @@ void CommandSequence::on_write(const Action& action, const bus::ExchangeResult& 
         return;
       }
       core_.store.acknowledged(action.object, number_of(action), sent_at);
+      writes_.acknowledged = true;
       moved_by_write_ =
           moved_by_write_ || (phase_ != Phase::stop && is_command_of_motion(action.object) && core_.facts().enabled());
       if (by_mailbox_) core_.store.invalidate_all(action.object);
@@ -130,8 +131,10 @@ Outcome CommandSequence::outcome_if_late() const {
   // Nothing was sent, so no acknowledgement is lost. A stop waits on, and is owed.
   if (!begun_) return {stop_ ? Errc::not_reached : Errc::never_started, 0};
   const bool asks_for_a_state = phase_ == Phase::stop || phase_ == Phase::mode || in_command();
-  // That a look was lost since, and the drive is suspect, takes back no acknowledgement.
-  const bool acknowledged = !writes_.under_way && !writes_.verifying;
+  // That a look was lost since, and the drive is suspect, takes back no acknowledgement; nor does a stop that is sent
+  // once more.
+  const bool acknowledged =
+      (!writes_.under_way && !writes_.verifying) || (phase_ == Phase::stop && writes_.acknowledged);
   return asks_for_a_state && acknowledged ? Outcome{Errc::not_reached, writes_.count} : Outcome{Errc::timed_out, 0};
 }
 
@@ -146,7 +149,7 @@ std::string CommandSequence::missed() const {
                        hex(writes_.last->object, writes_.last->number));
   if (plan_.at_end() || plan_.action().kind != Action::Kind::wait) return out + ": what follows was not sent in time";
   if (plan_.action().effect == Effect::homing) return out + ": awaited a motion or a change of its bits, read none";
-  if (plan_.action().effect == Effect::halt) {
+  if (plan_.action().effect == Effect::stop) {
     const auto speed = core_.value(Quantity::velocity_actual);
     return out + ": awaited that it slows down, read " +
            (speed ? fmt::format("velocity_actual {}", *speed) : std::string("nothing"));
@@ -252,7 +255,7 @@ void CommandSequence::reach(const Action& action) {
       core_.store.invalidate_all(action.object);
       break;
     case Mark::not_homed:
-      core_.homed = false;
+      core_.homed = core_.counter_wrapped = false;
       break;
     case Mark::borrow_homing:
       if (!core_.offset_owed) core_.offset_owed = core_.value(Quantity::homing_offset);

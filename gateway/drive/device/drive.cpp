@@ -67,7 +67,7 @@ std::optional<bus::Exchange> Drive::on_grant(const bus::Arbiter::Grant& grant) {
   if (exchange) {
     if (exchange->part != bus::Part::next) break_chain();
     widen(*exchange);
-    store_.begin_exchange();
+    store_.begin_exchange(exchange->access != bus::Access::read);
   } else {
     after_event();
   }

@@ -306,7 +306,7 @@ void DriveReads::take_unasked(const bus::ReplyFields& fields, Instant now) {
   for (const bus::ReplyField& field : fields) {
     const ObjectId id = model_.find(field.object);
     if (id == kNoObject || !mapped_[id] || field.size != model_.object(id).size) continue;
-    store_.read(id, model_.object(id).number(field.raw), now);
+    store_.received(id, model_.object(id).number(field.raw), now);
     plan_.received(id, now);
   }
 }

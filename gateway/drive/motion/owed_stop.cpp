@@ -23,7 +23,7 @@ OwedStop::End OwedStop::attempted(StopKind stop, bool shown, std::uint64_t excha
   return End::none;
 }
 
-OwedStop::End OwedStop::state_read(State402 state, std::uint64_t exchange) {
+OwedStop::End OwedStop::state_read(State402 state, std::uint64_t exchange, bool turns) {
   if (!stop_ || exchange <= after_) return End::none;
   switch (state) {
     case State402::operation_enabled:
@@ -31,7 +31,7 @@ OwedStop::End OwedStop::state_read(State402 state, std::uint64_t exchange) {
       return End::none;
     case State402::quick_stop_active:
       // It stands, or will, and holds its torque: less than a disable asks for.
-      if (sent_ && *stop_ != StopKind::disable) return discharge(End::shown);
+      if (sent_ && !turns && *stop_ != StopKind::disable) return discharge(End::shown);
       read_enabled_ = true;
       return End::none;
     case State402::fault_reaction_active:
@@ -42,6 +42,10 @@ OwedStop::End OwedStop::state_read(State402 state, std::uint64_t exchange) {
     case State402::switched_on:
     case State402::fault:
       break;
+  }
+  if (turns) {
+    read_enabled_ = true;
+    return End::none;
   }
   return discharge(End::disabled);
 }

@@ -39,8 +39,14 @@ class OwedStop {
   void sending() { sent_ = true; }
   /// An attempt at `stop` has ended. `shown`: a state read after it confirms it.
   End attempted(StopKind stop, bool shown, std::uint64_t exchange, Instant now);
-  /// What the drive shows, by this exchange.
-  End state_read(State402 state, std::uint64_t exchange);
+  /// What the drive shows, by this exchange. `turns`: the motor turns in that state by its torque, whatever the state
+  /// says.
+  End state_read(State402 state, std::uint64_t exchange, bool turns = false);
+  /// It was shown, and the motor turns on all the same.
+  void unheeded(StopKind stop, std::uint64_t exchange) {
+    accepted(stop, exchange);
+    sent_ = true;
+  }
   /// What was accepted after the stop is carried out: what was asked last is what happens. A start takes back a halt
   /// alone.
   End enabled_later();

@@ -126,6 +126,8 @@ Plan plan_enable(const AxisCore& core) {
   Plan plan;
   const AxisFacts facts = core.facts();
   if (facts.enabled()) {
+    // A stop may have gone out since that was read.
+    if (!core.state_is_of_now()) return look_at_state(core);
     // Found so, or enabled by somebody else: from now on it is so by our word.
     if (!facts.commanded) add_virtual_controlword(core, kEnabledBits, plan);
     plan.add(Action::at(Mark::found_enabled));
@@ -159,7 +161,7 @@ std::optional<Wanted> asked_for(const AxisCore& core, Quantity quantity) {
 
 Plan plan_fault_reset(const AxisCore& core) {
   Plan plan;
-  if (!core.facts().faulted()) return plan;
+  if (!core.facts().faulted()) return core.state_is_of_now() ? plan : look_at_state(core);
   if (add_command_steps(core, Command::fault_reset, plan)) plan.add(Action::at(Mark::values_invalidated));
   return plan;
 }

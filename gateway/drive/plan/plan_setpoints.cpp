@@ -278,23 +278,6 @@ bool may_be_written(const AxisCore& core, const Setpoint& sp, const AxisFacts& f
   return !(kept_alive && state.cached && raw && state.number == *raw);
 }
 
-// What says how fast an axis moves in this mode, and how it gets there.
-std::vector<Quantity> speeds_of(int motion_mode) {
-  using enum Quantity;
-  switch (motion_mode) {
-    case 1:
-      return {profile_velocity, profile_acceleration, profile_deceleration, max_torque};
-    case 3:
-      return {profile_acceleration, profile_deceleration, max_torque};
-    case 4:
-      return {max_velocity, max_torque};
-    case 6:
-      return {homing_speed_switch, homing_speed_zero, homing_acceleration, max_torque};
-    default:
-      return {};
-  }
-}
-
 }  // namespace
 
 Plan plan_setpoints(const AxisCore& core, const WriteBatch& batch) {
@@ -372,23 +355,6 @@ bool nothing_to_send(const AxisCore& core, const WriteBatch& batch) {
   if (!batch.mode) return true;
   const Plan mode = plan_raw_mode(core, *batch.mode);
   return !mode.refused() && mode.actions.empty();
-}
-
-void add_speeds(const AxisCore& core, int mode, Plan& plan) {
-  for (const Quantity each : speeds_of(mode)) {
-    const Binding* binding = core.model.binding(each);
-    if (binding == nullptr || !core.model.takes(each)) continue;
-    const ObjectState& state = core.store[binding->object];
-    const auto told = core.told.find(binding->object);
-    if (told != core.told.end() && !state.clamped) {
-      // After a mode change it is taken to be as it was: what a start takes longer is a button's time.
-      if (!state.known || state.out_of_sight || state.number != told->second.raw)
-        static_cast<void>(add_write(core, each, {told->second.value, told->second.raw}, plan));
-      continue;
-    }
-    const auto held = core.value(each);
-    if (held && *held > binding->limits.max) static_cast<void>(add_write(core, each, {binding->limits.max}, plan));
-  }
 }
 
 }  // namespace axisgate::drive

@@ -10,8 +10,8 @@ namespace {
 // Controlwords of a virtual axis (CiA 402-2 table 28).
 constexpr std::uint16_t kSwitchedOn = 0x0007, kEnabled = 0x000F;
 
-// How long a halt may take to be seen in the motor's speed. Then it is owed, and sent again after a pause.
-constexpr Duration kHaltLimit = std::chrono::seconds(2);
+// How long a stop may take to be seen in the motor's speed. Then it is owed, and sent again after a pause.
+constexpr Duration kSlowerLimit = std::chrono::seconds(2);
 
 Condition not_enabled(const AxisCore& core) {
   Condition c;
@@ -45,13 +45,22 @@ Plan first_word(const AxisCore& core, std::int64_t word) {
   return plan;
 }
 
+// A state may show a stop that stops nothing. A long ramp goes on after the answer.
+void add_motor_obeys(const AxisCore& core, Plan& plan) {
+  if (stop_shows(core)) plan.add(Action::wait(Effect::stop, kSlowerLimit));
+}
+
 Plan quick_stop(const AxisCore& core) {
   Plan plan;
   if (!add_command_steps(core, Command::quick_stop, plan)) return plan;
   // As soon as it is acknowledged.
   plan.actions.insert(plan.actions.begin() + (plan.actions.empty() ? 0 : 1), Action::at(Mark::quick_stopped));
+  // A gate that is the gateway's own is closed when the motor has obeyed: until then it is owed what it would tell.
+  const bool own_gate = core.is_virtual() && core.model.virtual_axis->gate_only;
+  if (own_gate) add_motor_obeys(core, plan);
   add_virtual_controlword(core, controlword::kEnableVoltage, plan);
   plan.add(Action::wait(not_enabled(core), kStopLimit));
+  if (!own_gate) add_motor_obeys(core, plan);
   return plan;
 }
 
@@ -59,8 +68,7 @@ Plan disable(const AxisCore& core) {
   Plan plan;
   if (!add_command_steps(core, Command::disable, plan)) return plan;
   // Its gate is the gateway's own: that the motor obeys, only the motor shows.
-  if (core.is_virtual() && core.model.virtual_axis->gate_only && halt_shows(core))
-    plan.add(Action::wait(Effect::halt, kHaltLimit));
+  if (core.is_virtual() && core.model.virtual_axis->gate_only) add_motor_obeys(core, plan);
   add_virtual_controlword(core, kSwitchedOn, plan);
   plan.add(Action::wait(torque_off(core), kStopLimit));
   return plan;
@@ -76,13 +84,11 @@ Plan halt(const AxisCore& core) {
     const ObjectState& status = core.store[core.model.statusword];
     const ObjectState& word = core.store[core.model.controlword];
     if (core.turn.link != LinkState::online || !status.known || !word.known || word.unsure) return quick_stop(core);
-    if (!status.cached) {
-      plan.add(Action::read(core.model.statusword));
-      plan.add(Action::at(Mark::look_again));
-      return plan;
-    }
+    if (!status.cached) return look_at_state(core);
     const bool asked_for = enables(core.controlword());
     if (!asked_for || !core.facts().enabled()) {
+      // An enable may have gone out since that was read.
+      if (asked_for && !core.state_is_of_now()) return look_at_state(core);
       plan.add(Action::read(core.model.statusword));
       plan.add(Action::wait(not_enabled(core), kStopLimit));
       return plan;
@@ -90,8 +96,7 @@ Plan halt(const AxisCore& core) {
   }
   add_steps(core, *steps, plan);
   if (core.facts().enabled()) add_virtual_controlword(core, controlword::kHalt | kEnabled, plan);
-  // No state tells of it: that it was obeyed, only the motor shows. A long ramp goes on after the answer.
-  if (halt_shows(core)) plan.add(Action::wait(Effect::halt, kHaltLimit));
+  add_motor_obeys(core, plan);  // no state tells of it
   return plan;
 }
 
@@ -114,10 +119,18 @@ Plan by_controlword(const AxisCore& core, std::uint16_t word) {
   const bool stays = core.facts().state == State402::quick_stop_active && request != Request402::disable_voltage;
   const bool torque_may_stay = request == Request402::quick_stop || stays;
   plan.add(Action::wait(torque_may_stay ? not_enabled(core) : torque_off(core), kStopLimit));
+  if (torque_may_stay && !core.is_virtual()) add_motor_obeys(core, plan);
   return plan;
 }
 
 }  // namespace
+
+Plan look_at_state(const AxisCore& core) {
+  Plan plan;
+  plan.add(Action::read(core.model.statusword));
+  plan.add(Action::at(Mark::look_again));
+  return plan;
+}
 
 bool is_enabling_word(const AxisCore& core, ObjectId object, std::int64_t number) {
   return object == core.model.controlword && enables(number);

@@ -83,6 +83,10 @@ Plan plan_virtual_controlword(const AxisCore& core, std::uint16_t word) {
   const bool enables = request == Request402::enable_operation;
   const bool halts = facts.enabled() && rising(before, word, controlword::kHalt);
 
+  // What is "so already" is not sent: by a state that was read after the last sending alone.
+  const bool so_already =
+      enables ? facts.enabled() && !word_starts(core, word, true) : request != Request402::other && !facts.enabled();
+  if (so_already && !core.state_is_of_now()) return look_at_state(core);
   if (rising(before, word, controlword::kFaultReset) && facts.faulted() &&
       !append(plan, plan_command(core, Command::fault_reset, 0)))
     return plan;

@@ -86,6 +86,8 @@ void add_quiet_setpoint(const AxisCore& core, const Steps* steps, Plan& plan);
 
 /// Appends another plan; false where that one is refused (its refusal becomes this plan's).
 bool append(Plan& plan, Plan more);
+/// The state is read, and all is planned anew by it.
+[[nodiscard]] Plan look_at_state(const AxisCore& core);
 /// Appends the profile's steps.
 void add_steps(const AxisCore& core, const Steps& steps, Plan& plan);
 /// Appends the command's steps in the mode in force; false (and refused) where the drive has none.

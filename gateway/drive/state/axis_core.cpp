@@ -208,6 +208,11 @@ bool AxisCore::cannot_deenergise() const {
   return newest && machine.cannot_deenergise(*newest, *model.virtual_axis);
 }
 
+bool AxisCore::shows_torque() const {
+  const AxisFacts now = facts();
+  return now.enabled() || (now.reachable && now.state == State402::quick_stop_active) || cannot_deenergise();
+}
+
 bool AxisCore::held_back(Quantity quantity) const {
   const Binding* binding = model.binding(quantity);
   if (binding == nullptr || binding->object == kNoObject) return false;

@@ -38,6 +38,8 @@ struct AxisCore {
   std::optional<Wanted> velocity_beside_jog{};
   bool mode_chosen = false;             ///< a client has chosen the mode since bring-up
   bool homed = false;                   ///< latched (design 3.1, discrete input 6)
+  bool counter_wrapped = false;         ///< its position has jumped, and no homing was begun since
+  std::uint64_t enabled_by = 0;         ///< the newest exchange when it was seen to become enabled last
   std::int32_t set_position_value = 0;  ///< row 78, the gateway's own
   VirtualAxis machine{};                ///< of a virtual axis alone
   /// Where the motion started last was sent, in register units, and the store's invalidations() then: the drive may
@@ -60,6 +62,8 @@ struct AxisCore {
   /// link_state online or suspect.
   [[nodiscard]] bool reachable() const { return turn.link == LinkState::online || turn.link == LinkState::suspect; }
   [[nodiscard]] AxisFacts facts() const;
+  /// What facts() tells of the state was read after the last sending.
+  [[nodiscard]] bool state_is_of_now() const { return store.shows_now(model.statusword); }
   [[nodiscard]] bool is_virtual() const { return model.virtual_axis.has_value(); }
   /// Virtual axes: makes the statusword from the newest samples.
   void refresh_virtual();
@@ -99,6 +103,8 @@ struct AxisCore {
   /// last, as long as the drive holds it, however short of it the motor stands; else at a position sampled since it
   /// stands. None: there is no such sample yet.
   [[nodiscard]] std::optional<std::int64_t> setpoint_position() const;
+  /// The motor is held or moved by the drive, as far as that shows: enabled, in a quick stop, or never without torque.
+  [[nodiscard]] bool shows_torque() const;
   /// The bus cannot take this virtual axis's torque away, and it is not enabled.
   [[nodiscard]] bool cannot_deenergise() const;
   /// Velocity and torque: what a client has asked for since the last stop, fault, disable or loss, else 0.

@@ -7,8 +7,6 @@
 namespace axisgate::drive {
 namespace {
 
-// A ramp of half a minute is seen within a second, what a loaded motor's speed varies is not taken for one.
-constexpr std::int64_t kSlower = 50;  // one part of the speed in so many
 // What a standing servo hunts, as the drive counts; as profiles have it for "within".
 constexpr std::int64_t kHunts = 10;
 
@@ -47,21 +45,23 @@ ObjectId EffectWatch::to_read(const AxisCore& core, Effect effect) {
     if (oldest == kNoObject || core.store[id].exchange < core.store[oldest].exchange) oldest = id;
   };
   consider(core.motion_object());
-  consider(core.object_of(effect == Effect::halt ? Quantity::velocity_actual : Quantity::position_actual));
+  consider(core.object_of(effect == Effect::stop ? Quantity::velocity_actual : Quantity::position_actual));
   if (effect == Effect::homing && !core.is_virtual()) consider(object_of(core, core.model.homed));
   return oldest;
 }
 
 bool EffectWatch::shown(const AxisCore& core, Effect effect, std::uint64_t after) {
-  return effect == Effect::halt ? halts(core, after) : homes(core, after);
+  return effect == Effect::stop ? stops(core, after) : homes(core, after);
 }
 
-// A sampled velocity of 0 may be of before a start that the halt has ended; one that falls is of now.
-bool EffectWatch::halts(const AxisCore& core, std::uint64_t after) {
+// A sampled velocity of 0 may be of before a start that the stop has ended; one that falls is of now. Without torque a
+// motor coasts as it may: the state alone shows the stop.
+bool EffectWatch::stops(const AxisCore& core, std::uint64_t after) {
+  if (fresh(core, core.model.statusword, after) && !core.shows_torque()) return true;
   const auto speed = core.value(Quantity::velocity_actual);
   if (speed && fresh(core, core.object_of(Quantity::velocity_actual), after)) {
     fastest_ = std::max(fastest_, std::abs(*speed));
-    const std::int64_t slower = std::max(fastest_ / kSlower, core.model.standstill_velocity);
+    const std::int64_t slower = std::max(fastest_ / kPartSlower, core.model.standstill_velocity);
     if (fastest_ - std::abs(*speed) >= slower) return true;
   }
   const ObjectId moves = core.motion_object();
@@ -84,10 +84,10 @@ bool EffectWatch::homes(const AxisCore& core, std::uint64_t after) const {
   return facts.reference && !must_move(core.homing_method.value_or(0));
 }
 
-bool halt_shows(const AxisCore& core) {
+bool stop_shows(const AxisCore& core) {
   const ObjectId id = core.motion_object();
   const bool keeps_torque = core.is_virtual() && core.model.virtual_axis->gate_only;
-  if (id == kNoObject || (!core.facts().enabled() && !keeps_torque)) return false;
+  if (id == kNoObject || (!core.shows_torque() && !keeps_torque)) return false;
   return core.motion.stopping() || core.facts().moving || !core.store[id].cached;
 }
 

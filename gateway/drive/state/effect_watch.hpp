@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether a drive shows the effect of a write that no state of its own tells: that it slows down or stands after a
-// halt, that a homing has begun. Pure: what was known when the write was sent and what was read since go in.
+// stop, that a homing has begun. Pure: what was known when the write was sent and what was read since go in.
 // Promises that only samples asked for after the write's answer count, and that what nothing can show is not waited
 // for. Never sends.
 #pragma once
@@ -8,11 +8,12 @@
 #include <cstdint>
 #include <optional>
 
+#include "gateway/drive/motion/stop_watch.hpp"
 #include "gateway/drive/state/axis_core.hpp"
 
 namespace axisgate::drive {
 
-enum class Effect : std::uint8_t { none, halt, homing };
+enum class Effect : std::uint8_t { none, stop, homing };
 
 class EffectWatch {
  public:
@@ -24,7 +25,7 @@ class EffectWatch {
   [[nodiscard]] bool shown(const AxisCore& core, Effect effect, std::uint64_t after);
 
  private:
-  [[nodiscard]] bool halts(const AxisCore& core, std::uint64_t after);
+  [[nodiscard]] bool stops(const AxisCore& core, std::uint64_t after);
   [[nodiscard]] bool homes(const AxisCore& core, std::uint64_t after) const;
 
   Instant sent_at_ = kLongAgo;
@@ -37,7 +38,7 @@ class EffectWatch {
   } before_;
 };
 
-/// A halt of this axis has something to show: it may turn.
-[[nodiscard]] bool halt_shows(const AxisCore& core);
+/// A stop of this axis has something to show: it may turn, and has torque.
+[[nodiscard]] bool stop_shows(const AxisCore& core);
 
 }  // namespace axisgate::drive

@@ -40,10 +40,20 @@ class ObjectStore {
     assert(id < states_.size());
     return states_[id];
   }
-  /// The drive's next exchange goes on the wire; what is read or acknowledged from now on comes from it.
-  void begin_exchange() { ++exchange_; }
+  /// The drive's next exchange goes on the wire; what is read or acknowledged from now on comes from it. `changes`: it
+  /// is no mere read.
+  void begin_exchange(bool changes = false) {
+    ++exchange_;
+    if (changes) last_change_ = exchange_;
+  }
   /// The newest exchange's number.
   [[nodiscard]] std::uint64_t exchange() const { return exchange_; }
+  /// The number was asked for after the last thing that was sent to change anything: what was read before a stop went
+  /// out shows neither that stop nor what was asked after it. Whoever finds something "so already" asks this.
+  [[nodiscard]] bool shows_now(ObjectId id) const {
+    const ObjectState& s = (*this)[id];
+    return s.known && s.cached && s.exchange > last_change_;
+  }
 
   void read(ObjectId id, std::int64_t number, Instant sent_at) {
     each(id, [&](ObjectState& s) {
@@ -55,6 +65,12 @@ class ObjectStore {
            .sent_at = sent_at,
            .exchange = exchange_};
     });
+  }
+  /// It came by itself. The first one after the last sending may have been on its way before: it tells nothing of it.
+  void received(ObjectId id, std::int64_t number, Instant at) {
+    const bool first = (*this)[id].exchange < last_change_;
+    read(id, number, at);
+    if (first) each(id, [this](ObjectState& s) { s.exchange = last_change_; });
   }
   void acknowledged(ObjectId id, std::int64_t number, Instant sent_at) {
     each(id, [&](ObjectState& s) {
@@ -135,6 +151,7 @@ class ObjectStore {
   std::vector<Duration> periods_;
   std::vector<std::vector<ObjectId>> aliases_;
   std::uint64_t exchange_ = 0;
+  std::uint64_t last_change_ = 0;  ///< the newest exchange that was no mere read
   std::uint64_t invalidations_ = 0;
 };
 

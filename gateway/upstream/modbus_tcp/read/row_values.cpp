@@ -17,6 +17,9 @@ std::uint32_t client_value(const RegisterRow& row, const AxisImage& axis, const 
   const LatestResult& result = own.used ? own.result : axis.latest;
   switch (row.source) {
     case Source::command_result:
+      // The drive had shown the stop, and its motor has turned on since.
+      if (result.result == CommandResult::done && result.stop != 0 && result.stop == axis.unheeded_stop)
+        return static_cast<std::uint32_t>(CommandResult::not_reached);
       return static_cast<std::uint32_t>(result.result);
     case Source::command_detail:
       return result.detail;

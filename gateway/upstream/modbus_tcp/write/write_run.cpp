@@ -192,6 +192,7 @@ void WriteRun::settle(std::uint64_t submission, const BatchResult& result) {
   if (axis->submission != submission) return;
   axis->result.result = command_result(outcome.code);
   axis->result.detail = outcome.detail;
+  axis->result.stop = result.stop;
 }
 
 Outcome WriteRun::submit_object() {

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Speeds and ramps that a motion goes by.
+#include "gateway/drive/plan/planner.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+// What says how fast an axis moves in this mode, and how it gets there.
+std::vector<Quantity> speeds_of(int motion_mode) {
+  using enum Quantity;
+  switch (motion_mode) {
+    case 1:
+      return {profile_velocity, profile_acceleration, profile_deceleration, max_torque};
+    case 3:
+      return {profile_acceleration, profile_deceleration, max_torque};
+    case 4:
+      return {max_velocity, max_torque};
+    case 6:
+      return {homing_speed_switch, homing_speed_zero, homing_acceleration, max_torque};
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+// A node may have restarted while nobody heard its boot-up: for a heartbeat's time nothing tells of it. Then it had to
+// be enabled anew, and what it held before that it may hold no more.
+void add_speeds(const AxisCore& core, int mode, Plan& plan) {
+  bool look_again = false;
+  for (const Quantity each : speeds_of(mode)) {
+    const Binding* binding = core.model.binding(each);
+    if (binding == nullptr || !core.model.takes(each)) continue;
+    const ObjectState& state = core.store[binding->object];
+    const auto told = core.told.find(binding->object);
+    const bool of_before = is_canopen(core.drive) && state.exchange <= core.enabled_by;
+    if (told != core.told.end() && !state.clamped) {
+      if (of_before && !state.refused && core.object(binding->object).nvm == Nvm::no) {
+        plan.add(Action::write(binding->object, told->second.raw));
+        continue;
+      }
+      // After a mode change it is taken to be as it was: what a start takes longer is a button's time.
+      if (!state.known || state.out_of_sight || state.number != told->second.raw)
+        static_cast<void>(add_write(core, each, {told->second.value, told->second.raw}, plan));
+      continue;
+    }
+    const bool limited = binding->limits.max < range_of(row(each).type).max;
+    if ((of_before || state.out_of_sight) && limited && state.known && core.facts().enabled()) {
+      plan.add(Action::read(binding->object));
+      look_again = true;
+      continue;
+    }
+    const auto held = core.value(each);
+    if (held && *held > binding->limits.max) static_cast<void>(add_write(core, each, {binding->limits.max}, plan));
+  }
+  if (look_again) plan.add(Action::at(Mark::look_again));
+}
+
+}  // namespace axisgate::drive
