@@ -55,7 +55,7 @@ TEST(MapListing, JsonCarriesVersionWordOrderAndEveryEntry) {
 
 TEST(MapListing, CountsEveryRowOfEveryBlock) {
   // gateway 9; per axis 60 registers, 8 of the overview, 10 coils, 13 inputs; per bus 14.
-  EXPECT_EQ(map_entries(two_axes()).size(), 9U + 2U * (64 + 8 + 10 + 13) + 2U * 14);
+  EXPECT_EQ(map_entries(two_axes()).size(), 9U + 2U * (64 + 8 + 10 + 13) + 2U * 15);
 }
 
 TEST(MapListing, IsSortedByTableAndAddressAndNamesNoAddressTwice) {
