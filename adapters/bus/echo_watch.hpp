@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a serial line brings our own frames back: an adapter that hears itself, a chain that passes them on, a loop in
-// the cable. What is the same as a request may then be its echo, where the protocol has such an answer too.
-// Promises that only reads teach it, three in a row that came back; that while it is not known the copy of a write is
-// neither echo nor answer; that a line that brought one read back is not known to be without echo any more. Never looks
-// into a byte nor at a clock: the wire says what was a copy.
+// Whether a serial line brings our own frames back: an adapter that hears itself, a chain that passes them on, a loop
+// in the cable. What is the same as a request may then be its echo, where the protocol has such an answer too. Promises
+// that only reads teach it, three in a row that came back; that while it is not known the copy of a write is neither
+// echo nor answer; that a line that brought one read back is not known to be without echo any more. Never looks into a
+// byte nor at a clock: the wire says what was a copy.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ class EchoWatch {
  public:
   /// Reads in a row that came back, after which the line is known to echo.
   static constexpr int kReadsThatCameBack = 3;
-  /// Answers in a row without a copy before them, after which a line that echoed is known not to any more; where no read
-  /// has come back, one is enough.
+  /// Answers in a row without a copy before them, after which a line that echoed is known not to any more; where no
+  /// read has come back, one is enough.
   static constexpr int kAnswersWithoutCopy = 3;
   /// Reads in a row that came back and were not answered, after which nothing but copies is said to come.
   static constexpr int kCopiesAlone = 3;

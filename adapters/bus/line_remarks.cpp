@@ -17,7 +17,8 @@ void LineRemarks::tell_of(const EchoWatch& echo, Instant now) {
 }
 
 void LineRemarks::misfit(std::string_view asked, std::string_view came, std::string_view why, Instant now) {
-  tell(misfit_, fmt::format("a valid frame that does not fit: asked was \"{}\", what came is \"{}\" ({})", asked, came, why),
+  tell(misfit_,
+       fmt::format("a valid frame that does not fit: asked was \"{}\", what came is \"{}\" ({})", asked, came, why),
        now);
 }
 

@@ -31,7 +31,8 @@ inline constexpr std::uint16_t kValueIndex = 0x2000;
 /// Only where refusal_of() has no value. On RS485 the node is 1 to 255; RS232 has none.
 [[nodiscard]] SerialFrame request_of(KeyaLine line, const bus::Exchange& exchange);
 
-/// Only a read is answered at all. A query looks like an answer whose data are 0: telling them apart is for the receiver.
+/// Only a read is answered at all. A query looks like an answer whose data are 0: telling them apart is for the
+/// receiver.
 [[nodiscard]] bool answers(KeyaLine line, const SerialFrame& frame, const bus::Exchange& exchange);
 
 /// Of a frame that answers.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds Keya's serial frames in a stream of bytes, and in them the one answer that is awaited.
 // Promises that a heartbeat, an echo or another's frame is never taken for the answer: a query's echo is byte for byte
-// the answer whose data are all 0, "no fault, standing still", and is one only on a line that is known not to echo, nor a frame that began before
-// the request; that noise before the answer gives way byte by byte; that a window of twelve bytes in which the awaited
-// answer may begin anew is decided only by what follows it: another start byte, or silence. RS232 has no sum.
-// Counts what it skips. Never allocates, and never looks at a clock: silence is told.
+// the answer whose data are all 0, "no fault, standing still", and is one only on a line that is known not to echo, nor
+// a frame that began before the request; that noise before the answer gives way byte by byte; that a window of twelve
+// bytes in which the awaited answer may begin anew is decided only by what follows it: another start byte, or silence.
+// RS232 has no sum. Counts what it skips. Never allocates, and never looks at a clock: silence is told.
 #pragma once
 
 #include <optional>

@@ -186,7 +186,8 @@ void KeyaSerialWire::hear(Heard heard, News& news) {
     awaiting_ = false;
     news.answer = result_of(settings_.line, frame, outstanding_);
   }
-  if (heard == Heard::late || heard == Heard::foreign) tell_misfit(frame, heard == Heard::late ? "late" : "another master's");
+  if (heard == Heard::late || heard == Heard::foreign)
+    tell_misfit(frame, heard == Heard::late ? "late" : "another master's");
   if (heard == Heard::heartbeat) {
     const Instant before = std::exchange(last_heartbeat_, runtime_.now());
     if (before == kLongAgo || runtime_.now() - before > kSerialHeartbeatSilence) news.present = true;

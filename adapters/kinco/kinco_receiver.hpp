@@ -2,7 +2,8 @@
 // Finds frames in a stream of bytes, and in them the one answer that is awaited.
 // Promises that the awaited answer is found whatever comes before it: a window of ten bytes that is not the answer
 // gives way by one byte only, however good its sum, since noise may add up to 0 across the start of the true frame.
-// Counts what it skips; a glitch before a frame is no bad frame. Never allocates, and never takes a byte received before await() for part of an answer.
+// Counts what it skips; a glitch before a frame is no bad frame. Never allocates, and never takes a byte received
+// before await() for part of an answer.
 #pragma once
 
 #include <optional>
@@ -17,10 +18,10 @@ class Receiver {
   /// What one byte has completed.
   enum class Heard : std::uint8_t {
     nothing,
-    answer,  ///< to the exchange awaited; none is awaited any more
-    late,    ///< a well-formed reply to something else: of an exchange given up, or from another station
-    echo,    ///< our own request: passed round by drives in a chain (both settings of 6510:0B are served), or by an
-             ///< adapter that hears itself
+    answer,   ///< to the exchange awaited; none is awaited any more
+    late,     ///< a well-formed reply to something else: of an exchange given up, or from another station
+    echo,     ///< our own request: passed round by drives in a chain (both settings of 6510:0B are served), or by an
+              ///< adapter that hears itself
     foreign,  ///< another request: there is another master
   };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds frames in the bytes of a Modbus RTU line: by the length that their function byte tells, as libmodbus does it,
-// but for what libmodbus cannot tell from a frame: glitch bytes before one, and the copy of our own request, whose third
-// byte would be read as the length of an answer.
-// Promises that such a copy is told whole, as any other frame, and that a frame that may still become one is waited for.
-// Never judges a CRC or what a frame means, and holds no more than kHolds bytes.
+// but for what libmodbus cannot tell from a frame: glitch bytes before one, and the copy of our own request, whose
+// third byte would be read as the length of an answer. Promises that such a copy is told whole, as any other frame, and
+// that a frame that may still become one is waited for. Never judges a CRC or what a frame means, and holds no more
+// than kHolds bytes.
 #pragma once
 
 #include <boost/container/static_vector.hpp>

@@ -28,7 +28,8 @@ class RtuLinkEvents {
   virtual void on_link_up() = 0;
   /// `why` names the device and the system's reason, for the log.
   virtual void on_link_down(std::string_view why) = 0;
-  /// `frame`: unit address and PDU, without the CRC; a copy of the request among them, where the line echoes. `newest`: the newest frame sent when this one was heard.
+  /// `frame`: unit address and PDU, without the CRC; a copy of the request among them, where the line echoes. `newest`:
+  /// the newest frame sent when this one was heard.
   virtual void on_frame(ExchangeNumber newest, Bytes frame) = 0;
   /// Bytes that are no frame: noise, a half frame, a wrong CRC.
   virtual void on_bad_frame(ExchangeNumber newest, std::size_t bytes) = 0;

@@ -131,8 +131,8 @@ void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
 
 /// A read's or a longer write's is no answer; that of a write of one register is, on a line without echo.
 bool RtuWire::take_copy(Bytes frame) {
-  const bool may_be_answer = outstanding_ && !outstanding_->broadcast &&
-                             frame[1] == static_cast<Byte>(Function::write_single_register);
+  const bool may_be_answer =
+      outstanding_ && !outstanding_->broadcast && frame[1] == static_cast<Byte>(Function::write_single_register);
   const bus::EchoWatch::Copy copy = echo_.on_copy(may_be_answer);
   if (copy == bus::EchoWatch::Copy::answer) return false;
   const bool echo = copy == bus::EchoWatch::Copy::echo;
@@ -142,7 +142,8 @@ bool RtuWire::take_copy(Bytes frame) {
 }
 
 void RtuWire::tell_misfit(Bytes frame, std::string_view why) {
-  const bool owed = may_owe(outstanding_->exchange.node) || (knows(frame[0]) && heard_.contains(frame[0]) && may_owe(frame[0]));
+  const bool owed =
+      may_owe(outstanding_->exchange.node) || (knows(frame[0]) && heard_.contains(frame[0]) && may_owe(frame[0]));
   if (!owed) remarks_.misfit(describe_request(request_), describe_reply(frame), why, runtime_.now());
 }
 

@@ -85,8 +85,8 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   std::optional<Outstanding> outstanding_;
   bool timed_ = true;  ///< nothing has come sooner than the line could carry it, but what may have been a late answer
   std::map<std::uint8_t, Heard> heard_;  ///< by unit, of the nodes and what they obey
-  Frame request_;       ///< sent last
-  bool clean_ = true;   ///< no noise since then
+  Frame request_;                        ///< sent last
+  bool clean_ = true;                    ///< no noise since then
   bus::EchoWatch echo_;
   bus::LineRemarks remarks_;
   bool decode_ = false;

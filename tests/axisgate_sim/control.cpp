@@ -11,7 +11,8 @@ constexpr std::string_view help =
     "LINE/STATION: unresponsive lose corrupt split duplicate noise noise-before noise-after wrong-station babble "
     "on|off|next [N]|RATE, on Modbus RTU half wrong-length glued too; late MS [on|next [N]|RATE]|off; exception CODE "
     "[on|next "
-    "[N]|RATE]|off (Modbus RTU); glitch 0x00|0xFF BYTES LEAD_MS [on|next [N]|RATE]|off (serial lines; LEAD_MS 0: glued to "
+    "[N]|RATE]|off (Modbus RTU); glitch 0x00|0xFF BYTES LEAD_MS [on|next [N]|RATE]|off (serial lines; LEAD_MS 0: glued "
+    "to "
     "the reply); restart [next [N]|RATE|off]; clear; state; position; restarts; input NUMBER on|off; "
     "jam on|off; get|writes OBJECT; set OBJECT VALUE; mute OBJECT on|off; refuse OBJECT CODE|off (reads of it; "
     "INDEX.SUB, the register on Modbus RTU, the query code of a Keya on a serial line). A Kinco: fault "
@@ -25,7 +26,8 @@ constexpr std::string_view help =
     "commands; trips; fault|"
     "clear A|B BITS; jam A|B on|off; set voltage|temperature|version VALUE; set count|current|motor-temperature A|B "
     "VALUE; heartbeat MS; heartbeat-twice on|off|next [N]|RATE. LINE: unplug; "
-    "plug; reply-delay MS; exchanges; on serial lines echo on|off|only; on CAN bus-off on|off; no-ack; overlaps. lines; help";
+    "plug; reply-delay MS; exchanges; on serial lines echo on|off|only; on CAN bus-off on|off; no-ack; overlaps. "
+    "lines; help";
 
 // The number that a fault may come with.
 void set_number(DriveFaults& faults, DriveFault fault, std::int64_t number) {

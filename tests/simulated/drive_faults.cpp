@@ -5,10 +5,9 @@ namespace axisgate::simulated {
 namespace {
 
 constexpr std::array<std::string_view, drive_fault_count> names{
-    "unresponsive", "late",      "lose",          "noise-before", "noise-after",    "corrupt",
-    "split",        "duplicate", "wrong-station", "restart",      "babble",         "half",
-    "wrong-length", "glued",     "exception",     "emergencies",  "heartbeat-twice",
-    "glitch"};
+    "unresponsive", "late",      "lose",          "noise-before", "noise-after",     "corrupt",
+    "split",        "duplicate", "wrong-station", "restart",      "babble",          "half",
+    "wrong-length", "glued",     "exception",     "emergencies",  "heartbeat-twice", "glitch"};
 
 }  // namespace
 

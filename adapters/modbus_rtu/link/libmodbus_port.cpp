@@ -97,16 +97,14 @@ bool LibmodbusPort::selectable() const {
   return descriptor_ >= 0 && descriptor_ < FD_SETSIZE && context_ != nullptr && context_->pipe[0] < FD_SETSIZE;
 }
 
-/// The whole frame's, from its first bytes on: so a slave that drips bytes cannot hold us longer than a frame takes. The
-/// longest frame that anybody asked for is the longest that has to be waited for.
+/// The whole frame's, from its first bytes on: so a slave that drips bytes cannot hold us longer than a frame takes.
+/// The longest frame that anybody asked for is the longest that has to be waited for.
 Duration LibmodbusPort::patience() const {
   const int parity_bits = settings_.parity == serial::Parity::none ? 0 : 1;
   return wire_time(settings_.baud, parity_bits, 0, longest_reply_) + adapter_latency_;
 }
 
-Duration LibmodbusPort::patience_left() const {
-  return std::max(begun_at_ + patience() - clock_now(), Duration{});
-}
+Duration LibmodbusPort::patience_left() const { return std::max(begun_at_ + patience() - clock_now(), Duration{}); }
 
 std::string LibmodbusPort::transmit(Bytes frame) {
   if (!selectable()) return settings_.device + ": not open";

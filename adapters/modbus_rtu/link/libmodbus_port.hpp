@@ -2,9 +2,9 @@
 // A serial port spoken to through libmodbus: the one file that knows <modbus/modbus.h>, and of it only the framing of
 // requests and confirmations. Its server half is never used, nor what it would do about an error by itself. It is given
 // whole frames by a pipe: what it cannot skip, glitch bytes and copies of our requests, it does not see.
-// Promises to tell whole frames with a right CRC from everything else, never to wait, to give a frame that has begun the
-// time that it takes and no more, and never to give libmodbus a descriptor that its select() would abort the process on. Never decides, queues or
-// remembers an exchange; one thread at a time.
+// Promises to tell whole frames with a right CRC from everything else, never to wait, to give a frame that has begun
+// the time that it takes and no more, and never to give libmodbus a descriptor that its select() would abort the
+// process on. Never decides, queues or remembers an exchange; one thread at a time.
 #pragma once
 
 #include <array>

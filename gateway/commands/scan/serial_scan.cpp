@@ -194,11 +194,13 @@ void SerialScanner::tell_progress() {
 /// What the line itself did, in the words that the gateway's log has for it.
 void tell_line(const SerialScanner& scan, bool found) {
   if (!found && scan.echoes() > 0)
-    fmt::print(stderr,
-               "{} copies of the scan's own reads came and no answer: the adapter hears itself, or the line is looped\n",
-               scan.echoes());
+    fmt::print(
+        stderr,
+        "{} copies of the scan's own reads came and no answer: the adapter hears itself, or the line is looped\n",
+        scan.echoes());
   if (found && scan.echoes() > 0)
-    fmt::print(stderr, "the line echoes: {} copies of the scan's own reads came back and were dropped, as the gateway does\n",
+    fmt::print(stderr,
+               "the line echoes: {} copies of the scan's own reads came back and were dropped, as the gateway does\n",
                scan.echoes());
   if (found && scan.bad_frames() == 0 && scan.dropped_bytes() > 0)
     fmt::print(stderr,

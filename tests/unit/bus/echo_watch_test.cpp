@@ -156,8 +156,9 @@ TEST(LineRemarksTest, say_each_kind_once_a_minute_and_how_many_were_left_out) {
   Instant now = Instant{} + std::chrono::hours(1);
   const Instant end = now + LineRemarks::kPause;
   for (; now < end; now += std::chrono::milliseconds(10)) remarks.misfit("read", "a value", "another length", now);
-  EXPECT_THAT(lines, ElementsAre("a valid frame that does not fit: asked was \"read\", what came is \"a value\" (another "
-                                 "length)"));
+  EXPECT_THAT(lines,
+              ElementsAre("a valid frame that does not fit: asked was \"read\", what came is \"a value\" (another "
+                          "length)"));
   remarks.misfit("read", "a value", "another length", now);
   ASSERT_THAT(lines, SizeIs(2));
   EXPECT_THAT(lines.back(), HasSubstr("; 5999 more since the last such line"));

@@ -333,11 +333,14 @@ TEST_P(ByteLineRules, where_only_copies_come_the_log_says_so_once_a_minute) {
   }
   EXPECT_THAT(replies, IsEmpty());
   EXPECT_EQ(wire->statistics().echoes, 50u);
-  EXPECT_EQ(std::ranges::count_if(log_lines, [](const std::string& line) {
-              return line.find("only copies of our own requests come: the adapter hears itself, or the line is looped") !=
-                     std::string::npos;
-            }),
-            1);
+  EXPECT_EQ(
+      std::ranges::count_if(
+          log_lines,
+          [](const std::string& line) {
+            return line.find("only copies of our own requests come: the adapter hears itself, or the line is looped") !=
+                   std::string::npos;
+          }),
+      1);
 }
 
 TEST_P(ByteLineRules, a_whole_frame_that_does_not_fit_is_told_with_what_was_asked_and_what_came) {

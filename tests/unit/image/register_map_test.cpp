@@ -106,7 +106,7 @@ constexpr Printed kBus[] = {
     {3, "queue_depth", u16, false, -1},    {4, "requests", u32, false, -1},    {6, "replies", u32, false, -1},
     {8, "timeouts", u32, false, -1},       {10, "bad_frames", u32, false, -1}, {12, "late_replies", u32, false, -1},
     {14, "dropped_bytes", u32, false, -1}, {16, "refused", u32, false, -1},    {18, "coalesced", u32, false, -1},
-    {20, "superseded", u32, false, -1},    {22, "reconnects", u32, false, -1},    {24, "echoes", u32, false, -1},
+    {20, "superseded", u32, false, -1},    {22, "reconnects", u32, false, -1}, {24, "echoes", u32, false, -1},
 };
 
 template <std::size_t N>

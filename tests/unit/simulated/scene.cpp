@@ -86,7 +86,9 @@ bool Scene::act(const Row& words) {
   } else if (word == "listen") {
     bench.arrivals.clear();
   } else if (word == "echo") {
-    bench.line().set_echo(words[1] == "only" ? AdapterEcho::only : words[1] == "on" ? AdapterEcho::on : AdapterEcho::off);
+    bench.line().set_echo(words[1] == "only" ? AdapterEcho::only
+                          : words[1] == "on" ? AdapterEcho::on
+                                             : AdapterEcho::off);
   } else if (word == "cut") {
     bench.line().cut();
   } else if (word == "bus_off") {
