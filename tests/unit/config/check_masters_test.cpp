@@ -234,6 +234,17 @@ TEST_F(Masters, HintsAtOneShotToolsWhereEachConnectionIsAClient) {
   EXPECT_THAT(warned(), Not(HasSubstr("one-shot tools"))) << "nothing runs out behind them";
 }
 
+TEST_F(Masters, SaysThatTwoProgramsOfOneAddressAreOneClientWhateverRenews) {
+  EXPECT_THAT(warned(), Not(HasSubstr("two programs of one computer")));
+  loaded.config.modbus_tcp[0].client_is_address = true;
+  const std::string one = "on 127.0.0.1:1502 two programs of one computer are one client (\"client\": \"address\"): ";
+  EXPECT_THAT(warned(), HasSubstr(one + "an HMI that writes from the PLC's computer keeps "));
+  config(0).lease.renew = config(1).lease.renew = LeaseRenewal::heartbeat;
+  EXPECT_THAT(warned(), HasSubstr(one + "what one of them owns the other commands too"));
+  config(0).lease.on = config(1).lease.on = false;
+  EXPECT_THAT(warned(), Not(HasSubstr("two programs of one computer"))) << "nobody owns anything";
+}
+
 TEST_F(Masters, AreInTheReportOfEachAxisAndBelowIt) {
   config(1).lease.on = false;
   const std::string report = check(loaded).text;
