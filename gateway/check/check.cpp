@@ -163,13 +163,7 @@ void add_axis(std::string& out, const MasteredAxis& whole, bool floats) {
                      config.number * 100, config.number * 100 + 99);
   add_line(out, "units", units_text(config) + counter_text(config, axis, drive));
   if (floats) add_line(out, "", float_text(config));
-  if (config.limits.position) {
-    const double units = config.units_per_rev.to_double();
-    add_line(out, "position limits",
-             fmt::format("{} to {} ({:.2f} to {:.2f} turns)", config.limits.position->min, config.limits.position->max,
-                         static_cast<double>(config.limits.position->min) / units,
-                         static_cast<double>(config.limits.position->max) / units));
-  }
+  add_lines(out, limit_lines(config, axis));
   add_line(out, "not on it", fmt::format("quantities: {}", missing_quantities(axis)));
   add_line(out, "", fmt::format("commands: {}", missing_commands(axis)));
   if (config.inverted && axis.command(Command::home)) {

@@ -128,6 +128,46 @@ TEST(Check, WarnsOfLimitsThatLimitNothing) {
                     Not(HasSubstr("/limits/velocity: "))));
 }
 
+TEST(Check, PrintsTheLimitsInRpmAndTurnsAndWarnsWhereThereAreNone) {
+  LoadedConfig loaded = one_axis();
+  AxisConfig& axis = loaded.config.buses[0].drives[0].axes[0];
+  drive::AxisModel& model = loaded.models[0][0].axes[0];
+  const std::uint32_t targets = bit(Quantity::target_velocity) | bit(Quantity::target_position);
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("limit of"))) << "nothing can be asked for";
+  model.supported |= targets;
+  model.writable |= targets;
+  EXPECT_THAT(check(loaded).text, AllOf(HasSubstr("limits          velocity NONE; position NONE\n"),
+                                        HasSubstr("warning: no limit of velocity: axis 7: "),
+                                        HasSubstr("warning: no limit of position: axis 7: ")));
+  axis.limits.velocity = 600'000;
+  axis.limits.position = Range{-5000, 125'000};
+  axis.limits.acceleration = 6000;
+  axis.limits.torque = 505;
+  EXPECT_THAT(check(loaded).text,
+              AllOf(HasSubstr("limits          velocity 600 rpm; position -5000 to 125000 (-0.50 to 12.50 "
+                              "turns); acceleration 600 rpm/s; torque 50.5 %\n"),
+                    Not(HasSubstr("no limit of"))));
+}
+
+TEST(Check, WarnsOfAVelocityThatWasMeantInRpm) {
+  LoadedConfig loaded = one_axis();
+  AxisConfig& axis = loaded.config.buses[0].drives[0].axes[0];
+  axis.pointer = "/buses/0/drives/0/axes/0";
+  drive::AxisModel& model = loaded.models[0][0].axes[0];
+  model.supported |= bit(Quantity::target_velocity);
+  model.writable |= bit(Quantity::target_velocity);
+  axis.limits.velocity = 3000;
+  EXPECT_THAT(check(loaded).text,
+              HasSubstr("warning: gateway.json: /buses/0/drives/0/axes/0/limits/velocity: 3000 is 3 rpm: its "
+                        "unit is 0.001 rpm, 3000000 would be 3000 rpm\n"));
+  axis.limits.velocity = 10'000;
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("its unit is")));
+  model.rated_speed = 3'000'000;
+  EXPECT_THAT(check(loaded).text, HasSubstr("10000 is 10 rpm, 0.33 % of the rated speed of 3000 rpm"));
+  axis.limits.velocity = 30'000;
+  EXPECT_THAT(check(loaded).text, Not(HasSubstr("its unit is")));
+}
+
 /// What a limit of the velocity does not reach: by this command, whose speed nobody can write.
 void expect_warning_of_own_speed(Command command, Quantity speed, const std::string& motion, const std::string& name) {
   LoadedConfig loaded = one_axis();
