@@ -23,7 +23,8 @@ std::string line(std::string_view what, std::string_view text) {
 
 std::string told(const Word& word) {
   return fmt::format("{} ({} {}: {})\n", word.name, title(word.kind), number_text(word), place(word.kind)) +
-         line("meaning", word.meaning) + line("causes", word.causes) + line("remedy", word.remedy);
+         line("meaning", word.meaning) + line("causes", word.causes) + line("remedy", word.remedy) +
+         line("enable", word.refuses_enable ? "is refused while it is set" : "");
 }
 
 std::string told(const drive::Profile& profile, const drive::AlarmSpec& alarm) {

@@ -91,6 +91,25 @@ std::string number_text(const Word& word) {
   return word.kind == error_code ? fmt::format("0x{:04X}", word.number) : fmt::format("{}", word.number);
 }
 
+std::string against_enable(std::uint32_t axis_alarms, unsigned axis) {
+  std::string out;
+  for (const Word& word : words()) {
+    if (word.kind != axis_alarm || !word.refuses_enable || (axis_alarms >> word.number & 1U) == 0) continue;
+    std::string remedy(word.remedy);
+    constexpr std::string_view kAxis = "CONFIG AXIS";
+    if (const std::size_t at = remedy.find(kAxis); at != std::string::npos)
+      remedy.replace(at, kAxis.size(), "CONFIG " + std::to_string(axis));
+    out += (out.empty() ? "" : "; ") + ("alarm " + std::string(word.name)) + ": " + std::string(word.meaning) + "; " +
+           remedy;
+  }
+  return out;
+}
+
+std::string_view axis_state_text(std::uint32_t state, bool latched_and_stands) {
+  constexpr std::uint32_t kStopping = 5;
+  return state == kStopping && latched_and_stands ? "latched" : name_of(axis_state, state);
+}
+
 std::string_view title(WordKind kind) {
   static constexpr std::array<std::string_view, kWordKinds> kTitles{
       "axis state",    "motion state", "link state", "mode",       "axis alarm", "gateway state",
@@ -143,7 +162,10 @@ std::vector<const Word*> look_up(std::string_view typed) {
       return word.number == *number && title(word.kind).find(wanted.substr(0, blank)) != std::string_view::npos;
     });
   if (!out.empty()) return out;
+  const Word* const latched = wanted == "latched" ? find_word(axis_state, 5) : nullptr;
+  if (latched != nullptr) out.push_back(latched);
   take([&](const Word& word) { return plain(word.name) == wanted; });
+  if (latched != nullptr) out.push_back(find_word(axis_alarm, 7));
   if (out.empty() && !wanted.empty())
     take([&](const Word& word) { return plain(word.name).find(wanted) != std::string::npos; });
   return out;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "gateway/core/bytes.hpp"
@@ -163,6 +164,7 @@ struct BatchResult {
   /// Of a write batch that asks for what is not there or not allowed (not_supported, bad_value): the first row that
   /// this is of, by its offset in the axis's block of registers.
   std::optional<std::uint16_t> refused_row{};
+  std::string limit{};            ///< of bad_value: the limit that stands against it, "3 rpm"; empty: none
   bool controlword_done = false;  ///< of a write batch that failed: its controlword was carried out before
   bool command_sent = false;      ///< something was written for its command, or for a controlword that was not done
 };

@@ -101,7 +101,8 @@ std::vector<RegisterRow> axis_register_rows() {
       shows(25, "command_result", u16, Source::command_result, lists().result),
       shows(26, "command_detail", u32, Source::command_detail,
             "SDO abort code, Modbus exception or the drive's own code; of result 11 the step, from 1, 0: nothing was "
-            "sent; of a block write refused with 0x01, 0x02 or 0x03: 0x0A000000 + offset of the first row, or coil, "
+            "sent; of a single write refused with 0x03 by a limit: that limit, in the row's units; of a block write "
+            "refused with 0x01, 0x02 or 0x03: 0x0A000000 + offset of the first row, or coil, "
             "refused"),
       shows(28, "owner", u16, Source::owner, "0 nobody, 1 this client, 2 another"),
       shows(29, "lease_remaining_ms", u16, Source::lease_remaining_ms,

@@ -35,6 +35,10 @@ class FactoryFresh(Story):
         self.gateway.wait_for("DIN1 has the function drive enable")
         with self.refused(REFUSED):
             axis.command("enable")
+        named = "alarm local_control: the drive obeys its own inputs or keypad and ignores the bus; axisgate commission CONFIG 1 shows and changes it"
+        self.gateway.wait_for(rf"enable is refused: .*: {named}$|enable: .*: {named}$")
+        by_hand = self.command_line("enable", f"127.0.0.1:{self.ports[0]}", "1")
+        self.assertIn(named, by_hand.stderr)
         self.assertNotIn("operation", self.sim.state("lift/1"))
         self.assertEqual(self.sim.writes("lift/1", *SETTINGS[:-2]), 0, "a person decides over these")
 

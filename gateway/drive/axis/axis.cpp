@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "gateway/drive/axis/command_text.hpp"
 #include "gateway/drive/plan/admission.hpp"
 #include "gateway/drive/plan/planner.hpp"
 #include "gateway/model/loss.hpp"
@@ -129,10 +130,21 @@ void Axis::show_latest(const WriteBatch& batch, const Outcome& outcome) {
 }
 
 BatchResult Axis::refuse(const WriteBatch& batch, Errc code) {
-  const Outcome outcome = refusal(code);
+  BatchResult result{.outcome = refusal(code), .refused_row = refused_row(core_, batch, code)};
+  name_limit(batch, result);
+  const Outcome& outcome = result.outcome;
   if (!batch.object && command_result(code) != CommandResult::none) show_latest(batch, outcome);
-  tell_refused(batch, outcome);
-  return {.outcome = outcome, .refused_row = refused_row(core_, batch, code)};
+  tell_refused(batch, result);
+  return result;
+}
+
+// A single row that is refused by a limit has it as detail, in the row's own units; a block has the row there.
+void Axis::name_limit(const WriteBatch& batch, BatchResult& result) const {
+  if (result.outcome.code != Errc::bad_value) return;
+  const auto passed = passed_limit(core_, batch);
+  if (!passed) return;
+  result.outcome.detail = static_cast<std::uint32_t>(passed->limit);
+  result.limit = limit_text(core_, *passed);
 }
 
 std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal, BatchCallback on_result) {
@@ -350,6 +362,7 @@ void Axis::complete(bus::JobId id, const BatchResult& result) {
     told.outcome = {pending.refusal, 0};
     told.refused_row = pending.refused_row;
   }
+  name_limit(pending.command_sequence->batch(), told);
   if (told.outcome.code != Errc::ok) {
     forget_told(core_, pending.command_sequence->batch());
     if (!pending.command_sequence->begun()) forget_accepted(pending.command_sequence->batch());

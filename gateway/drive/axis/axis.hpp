@@ -222,7 +222,8 @@ class Axis {
   // Who asked for what, and what became of it (axis_told.cpp).
   void tell_asked(const WriteBatch& asked, const WriteBatch& carried_out);
   void tell_owner(const std::string& what);
-  void tell_refused(const WriteBatch& asked, const Outcome& outcome);
+  void tell_refused(const WriteBatch& asked, const BatchResult& result);
+  void name_limit(const WriteBatch& batch, BatchResult& result) const;
   void tell_ended(const Pending& pending, const Outcome& outcome);
   [[nodiscard]] Pending* find(bus::JobId id);
   [[nodiscard]] const Pending* find(bus::JobId id) const { return const_cast<Axis*>(this)->find(id); }

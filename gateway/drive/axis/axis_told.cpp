@@ -24,6 +24,14 @@ bool told_by_its_server(const WriteBatch& batch, Errc code) {
   return modbus && (code == Errc::bad_value || code == Errc::not_supported || code == Errc::role_forbidden);
 }
 
+/// ": alarm local_control: ...", of an enable that is refused for what an alarm says.
+std::string alarm_against(const AxisCore& core, AxisNumber axis, const WriteBatch& batch, Errc code) {
+  const bool by_alarm = code == Errc::state_unsuitable || code == Errc::identity_mismatch;
+  if (!by_alarm || !asks_to_enable(batch)) return {};
+  const std::string alarm = against_enable(core.alarms, axis);
+  return alarm.empty() ? alarm : ": " + alarm;
+}
+
 bool resets(const WriteBatch& batch) {
   return batch.command == Command::fault_reset ||
          (batch.controlword && (*batch.controlword & controlword::kFaultReset) != 0);
@@ -62,7 +70,8 @@ void Axis::tell_owner(const std::string& what) {
 
 // --- What became of it -----------------------------------------------------------------------------------------------
 
-void Axis::tell_refused(const WriteBatch& asked, const Outcome& outcome) {
+void Axis::tell_refused(const WriteBatch& asked, const BatchResult& result) {
+  const Outcome& outcome = result.outcome;
   if (!asked.life || reads_alone(asked) || told_by_its_server(asked, outcome.code)) return;
   const auto left_out = telling_.refused(asked, outcome.code, core_.turn.now);
   if (!left_out) return;
@@ -70,8 +79,10 @@ void Axis::tell_refused(const WriteBatch& asked, const Outcome& outcome) {
   const std::string whose = outcome.code == Errc::not_owner && owner ? "; its owner is " + owner->name : std::string();
   host_.event(
       image_.number, EventKind::command, static_cast<std::uint32_t>(asked.command),
-      fmt::format("{}: {} is refused: {}{}{}", asked.life->name, command_text(core_, asked, image_.jog_velocity),
-                  outcome_text(asked, outcome), whose, left_out_text(*left_out)));
+      fmt::format("{}: {} is refused: {}{}{}{}{}", asked.life->name, command_text(core_, asked, image_.jog_velocity),
+                  outcome_text(asked, outcome), alarm_against(core_, image_.number, asked, outcome.code),
+                  result.limit.empty() ? result.limit : "; its limit is " + result.limit, whose,
+                  left_out_text(*left_out)));
 }
 
 // A set-point in whose place a newer one was sent is no news; what was not reached is told with what was awaited.
@@ -87,10 +98,10 @@ void Axis::tell_ended(const Pending& pending, const Outcome& outcome) {
   const bool stopped = outcome.code == Errc::stopped_by_other || outcome.code == Errc::dropped_by_stop;
   const std::string by = stopped && !pending.stopped_by_name.empty() ? ", " + pending.stopped_by_name : std::string();
   const std::string what = batch.jogs ? std::string("jog") : command_text(core_, batch, image_.jog_velocity);
-  host_.event(
-      image_.number, EventKind::command, static_cast<std::uint32_t>(batch.command),
-      fmt::format("{}: {}{}: {}{}{}", batch.life ? batch.life->name : "a client", beside ? "what stood beside " : "",
-                  what, outcome_text(batch, outcome), by, left_out_text(*left_out)));
+  host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(batch.command),
+              fmt::format("{}: {}{}: {}{}{}{}", batch.life ? batch.life->name : "a client",
+                          beside ? "what stood beside " : "", what, outcome_text(batch, outcome),
+                          alarm_against(core_, image_.number, batch, outcome.code), by, left_out_text(*left_out)));
 }
 
 }  // namespace axisgate::drive

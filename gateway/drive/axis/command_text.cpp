@@ -90,6 +90,14 @@ std::string value_text(const AxisCore& core, Quantity quantity, std::int64_t val
 
 }  // namespace
 
+std::string limit_text(const AxisCore& core, const PassedLimit& passed) {
+  if (passed.kind == Kind::position)
+    return fmt::format("{:.6g} turns", static_cast<double>(passed.limit) / core.model.units_per_rev.to_double());
+  const std::string words = in_words(core, passed.kind, passed.limit);
+  constexpr std::size_t kOpened = 2;  // " ("
+  return words.empty() ? fmt::format("{}", passed.limit) : words.substr(kOpened, words.size() - kOpened - 1);
+}
+
 bool sets(const WriteBatch& batch, Quantity quantity) {
   return std::any_of(batch.setpoints.begin(), batch.setpoints.end(),
                      [quantity](const Setpoint& sp) { return sp.quantity == quantity; });

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "gateway/drive/plan/admission.hpp"
 #include "gateway/drive/state/axis_core.hpp"
 #include "gateway/image/command.hpp"
 
@@ -16,6 +17,8 @@ namespace axisgate::drive {
 /// Set-points of one request that are written out; of more, their number.
 inline constexpr std::size_t kMaxToldValues = 6;
 
+/// "3 rpm", "12.5 turns"; a code as its number.
+[[nodiscard]] std::string limit_text(const AxisCore& core, const PassedLimit& passed);
 /// `batch` as its client has asked for it; `jog_velocity`: of a jog.
 [[nodiscard]] std::string command_text(const AxisCore& core, const WriteBatch& batch, std::uint32_t jog_velocity);
 

@@ -153,15 +153,19 @@ std::string CommandSequence::missed() const {
   }
   const Condition& until = plan_.action().until;
   const bool negated = until.test == Condition::Test::not_equals || until.test == Condition::Test::not_in;
+  constexpr std::uint32_t kFaultBit = 0x0008;  // of the statusword: a reset waits for it to go
+  const ObjectState& state = core_.store[until.object];
+  const bool since = state.known && state.exchange > writes_.acknowledged_by;
+  const std::string read = ", read " + (since ? hex(until.object, state.number) : std::string("nothing since"));
+  if (until.object == core_.model.statusword && until.mask == kFaultBit)
+    return out + (since ? ": the fault's cause is still there" : ": whether the fault has gone is not known") + read;
   out += ": awaited " + core_.object(until.object).name;
   if (until.mask != 0) out += fmt::format(" & {}", hex(until.object, until.mask));
   out += negated ? " other than" : " =";
   constexpr std::size_t kMostNamed = 4;  // of a window of values the first tell enough
   for (std::size_t i = 0; i < std::min(until.values.size(), kMostNamed); ++i)
     out += (i == 0 ? " " : " or ") + hex(until.object, until.values[i]);
-  const ObjectState& state = core_.store[until.object];
-  const bool since = state.known && state.exchange > writes_.acknowledged_by;
-  return out + ", read " + (since ? hex(until.object, state.number) : std::string("nothing since"));
+  return out + read;
 }
 
 // A start waits for its drive no longer, and the drive must not come back to it; nor may a mode that comes late make

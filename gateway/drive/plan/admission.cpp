@@ -179,6 +179,33 @@ bool jog_velocity_fits(const AxisCore& core, const Binding& velocity, std::int64
   return value == 0 || !velocity.scaled || velocity.to_raw(value, core.object(velocity.object)).value_or(0) != 0;
 }
 
+std::optional<std::int64_t> limit_beyond(const Range& range, std::int64_t value) {
+  if (range.holds(value)) return std::nullopt;
+  return value < range.min ? range.min : range.max;
+}
+
+// Of an axis's limits, or of what its drive can count.
+std::optional<std::int64_t> limit_beyond(const AxisCore& core, const Binding& binding, const Range& range,
+                                         std::int64_t value) {
+  const ObjectDef& object = core.object(binding.object);
+  if (const auto limit = limit_beyond(range, value)) return limit;
+  if (!binding.scaled || binding.to_raw(value, object)) return std::nullopt;
+  const auto one = binding.to_register(object.range().min), other = binding.to_register(object.range().max);
+  if (!one || !other) return std::nullopt;
+  return value < 0 ? std::min(*one, *other) : std::max(*one, *other);
+}
+
+// Where a move would end.
+std::optional<std::int64_t> limit_of_move(const AxisCore& core, Command command) {
+  const auto wanted = core.target_position();
+  const bool relative = command == Command::move_relative;
+  if (!wanted || (!relative && command != Command::move_absolute)) return std::nullopt;
+  const auto known = core.setpoint_position();
+  const auto base = known ? known : core.value(Quantity::position_actual);
+  if (relative && !base) return std::nullopt;
+  return limit_beyond(position_range(core), wanted->value + (relative ? *base : 0));
+}
+
 // What is refused at its turn although each part of it could be: first what acts, since the rest goes before it.
 int weight(const RegisterRow& row) {
   if (row.source == Source::object_request) return 4;
@@ -188,6 +215,21 @@ int weight(const RegisterRow& row) {
 }
 
 }  // namespace
+
+std::optional<PassedLimit> passed_limit(const AxisCore& core, const WriteBatch& batch) {
+  const Binding* velocity = core.model.binding(Quantity::target_velocity);
+  if (batch.jog_velocity && velocity != nullptr)
+    if (const auto limit = limit_beyond(core, *velocity, velocity->limits, *batch.jog_velocity))
+      return PassedLimit{Kind::velocity, *limit};
+  for (const Setpoint& sp : batch.setpoints) {
+    const Binding* binding = core.model.binding(sp.quantity);
+    if (binding == nullptr || binding->object == kNoObject || is_distance(batch, sp.quantity)) continue;
+    if (const auto limit = limit_beyond(core, *binding, range_of(core, batch, *binding), sp.value))
+      return PassedLimit{row(sp.quantity).kind, *limit};
+  }
+  if (const auto limit = limit_of_move(core, batch.command)) return PassedLimit{Kind::position, *limit};
+  return std::nullopt;
+}
 
 std::optional<std::uint16_t> refused_row(const AxisCore& core, const WriteBatch& batch, Errc code) {
   if (code != Errc::not_supported && code != Errc::bad_value) return std::nullopt;

@@ -12,6 +12,14 @@ namespace axisgate::drive {
 
 /// ok, not_supported, bad_value, or still_in_setup where the drive has not told yet what it needs to be judged.
 [[nodiscard]] Errc admit(const AxisCore& core, const WriteBatch& batch);
+/// The number nearest to what a write batch asks for that its row would take, where it is beyond a limit.
+struct PassedLimit {
+  Kind kind = Kind::code;
+  std::int64_t limit = 0;
+};
+/// None: no limit stands against it.
+[[nodiscard]] std::optional<PassedLimit> passed_limit(const AxisCore& core, const WriteBatch& batch);
+
 /// Of a write batch that was refused with not_supported or bad_value, here or at its turn: the first row of the
 /// register map that is refused so by itself, or with the one that it is checked with; else the one that asks for the
 /// action. No value with any other code.

@@ -21,6 +21,13 @@ TEST(Explain, SaysMeaningCausesAndRemedy) {
                              "disable clears nothing\n"));
 }
 
+TEST(Explain, FindsALatchedAxisAndSaysWhichAlarmsStandAgainstAnEnable) {
+  EXPECT_THAT(told("latched"), HasSubstr("stopping (axis state 5"));
+  EXPECT_THAT(told("latched"), HasSubstr("stop_latched (axis alarm 7"));
+  EXPECT_THAT(told("local_control"), HasSubstr("  enable:  is refused while it is set\n"));
+  EXPECT_THAT(told("not_homed"), Not(HasSubstr("  enable:  is refused")));
+}
+
 TEST(Explain, KnowsTheFaultsOfEveryDriveThatHasTheCode) {
   const std::string out = told("0x3130");
   EXPECT_THAT(out, HasSubstr("phase failure (error code 0x3130"));

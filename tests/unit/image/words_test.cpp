@@ -98,6 +98,14 @@ TEST(Words, NameTheBitsThatAreSet) {
   EXPECT_EQ(name_of(WordKind::axis_state, 200), "?");
 }
 
+TEST(Words, NameTheAlarmsThatStandAgainstAnEnableAndWhatHelps) {
+  EXPECT_EQ(against_enable(1U << 5 | 1U << 7, 3), "") << "not_homed, stop_latched: an enable passes";
+  EXPECT_EQ(against_enable(1U << 3 | 1U << 5, 3),
+            "alarm local_control: the drive obeys its own inputs or keypad and ignores the bus; axisgate commission "
+            "CONFIG 3 shows and changes it");
+  for (const std::uint32_t alarm : {2U, 12U}) EXPECT_NE(against_enable(1U << alarm, 3), "") << alarm;
+}
+
 TEST(TroubleshootingPage, IsTheOneInDocs) {
   const std::string path = test::source_path("docs/troubleshooting.md");
   if (std::getenv("AXISGATE_WRITE_PAGES") != nullptr) std::ofstream(path) << troubleshooting_page();

@@ -14,7 +14,8 @@ namespace {
 std::string named(const BlockWrite& block, std::uint16_t offset) {
   if (block.coils) return offset < kCoils ? ", " + std::string(coil_rows()[offset].name) : "";
   const RegisterRow* const row = register_table(Block::axis).covering(offset);
-  return row == nullptr ? "" : ", " + std::string(row->name);
+  const std::string limit = block.limit.empty() ? std::string() : " (its limit is " + block.limit + ")";
+  return row == nullptr ? "" : ", " + std::string(row->name) + limit;
 }
 
 /// A tool in a loop must not fill the log.

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "gateway/core/error.hpp"
 #include "gateway/core/log.hpp"
@@ -27,6 +28,7 @@ struct BlockWrite {
   std::uint16_t address = 0;
   std::uint16_t count = 0;
   bool coils = false;
+  std::string limit{};  ///< of a row refused by one: "3 rpm"
 };
 [[nodiscard]] BlockWrite block_write(const Request& request, AxisNumber axis);
 

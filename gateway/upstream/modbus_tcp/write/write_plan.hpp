@@ -63,6 +63,7 @@ struct Refused {
   Errc code;
   std::optional<std::uint16_t> row{};  ///< of a block write, and not of busy: the first row or coil refused
   std::vector<AxisStop> stops{};       ///< in it: carried out alone
+  std::string limit{};                 ///< the limit that stands against it, "3 rpm"
 };
 
 /// `client` is the one that writes: what is its own is stored there.

@@ -83,7 +83,8 @@ std::optional<Outcome> WriteRun::carry_on() {
     // began.
     if (is_wrong(outcome.code) && next_ == 1) forget();
     settle(submission, {outcome});
-    if (is_wrong(outcome.code)) tell_refused({at_once->outcome.code, row_of(*at_once)}, pending);
+    if (is_wrong(outcome.code))
+      tell_refused({.code = at_once->outcome.code, .row = row_of(*at_once), .limit = at_once->limit}, pending);
     if (outcome.code != Errc::ok) return end(outcome);
   }
   if (plan_.not_new) {
@@ -108,7 +109,8 @@ void WriteRun::on_result(std::uint64_t submission, const BatchResult& result) {
   const bool newest = axis != nullptr && axis->submission == submission;
   settle(submission, result);
   if (is_wrong(result.outcome.code)) {
-    tell_refused({result.outcome.code, row_of(result)}, newest ? std::nullopt : shown());
+    tell_refused({.code = result.outcome.code, .row = row_of(result), .limit = result.limit},
+                 newest ? std::nullopt : shown());
   }
   std::optional<Outcome> outcome;
   if (result.outcome.code != Errc::ok || abandoned_) {
@@ -138,7 +140,9 @@ std::optional<WriteRun::Shown> WriteRun::shown_pending() const {
 void WriteRun::tell_refused(const Refused& refused, const std::optional<Shown>& stays) {
   const std::shared_ptr<Client> client = client_.lock();
   if (client == nullptr) return;
-  if (plan_.single) return log_refused_write(plan_.block, {refused.code}, *client, asked_at_, log_);
+  BlockWrite block = plan_.block;
+  block.limit = refused.limit;
+  if (plan_.single) return log_refused_write(block, {refused.code}, *client, asked_at_, log_);
   if (!refused.row) return;
   ClientAxis& axis = client->at(plan_.axis);
   if (stays) {
@@ -147,7 +151,7 @@ void WriteRun::tell_refused(const Refused& refused, const std::optional<Shown>& 
   } else {
     show_refused(axis, *refused.row);
   }
-  log_refused(plan_.block, {*refused.row, refused.code}, *client, log_);
+  log_refused(block, {*refused.row, refused.code}, *client, log_);
 }
 
 void WriteRun::forget() {
