@@ -5,8 +5,9 @@ namespace axisgate::app {
 namespace {
 
 constexpr const char* kHandEnd =
-    "Ctrl-C, a signal and a terminal that is closed stop the axis before the command ends; where the network or this\n"
-    "computer fails, the gateway stops it when its lease runs out. An axis with \"lease\": null has no such guard.\n"
+    "Ctrl-C, a signal and a terminal that is closed stop the axis before the command ends. Where the network or this\n"
+    "computer fails, the gateway does what the axis's lease says (\"lease\": null: nothing). WHERE THE GATEWAY DIES,\n"
+    "MANY DRIVES GO ON: register 98 (loss_stop_ms) and axisgate check say what this one does, and the command does.\n"
     "No function of axisgate is a safety function: keep the wired stop in reach.\n";
 
 CLI::App* add_hand(CLI::App& app, HandOptions& options, std::function<int()>& chosen, HandTask task,
@@ -45,7 +46,9 @@ void add_hand_commands(CLI::App& app, HandCommands& commands, std::function<int(
       ->required()
       ->check(CLI::Validator(turns_mistake, ""));
   move->add_flag("--relative", commands.move.arguments.relative, "by so many turns from where it stands");
-  add_speed(move, commands.move, "profile velocity in rpm of the motor; without it the one that is set");
+  add_speed(
+      move, commands.move,
+      "profile velocity in rpm of the motor, set back at the end; without it 60, or the axis's limit if that is less");
   add_enable_flag(move, commands.move);
   move->footer(
       std::string("A turn is units_per_rev position units of the register map; the target is rounded to one.\n") +
@@ -55,7 +58,9 @@ void add_hand_commands(CLI::App& app, HandCommands& commands, std::function<int(
 
   CLI::App* jog =
       add_hand(app, commands.jog, chosen, HandTask::jog, "Turn an axis while a key is held, showing its position");
-  add_speed(jog, commands.jog, "jog velocity in rpm of the motor; without it the one that is set");
+  add_speed(
+      jog, commands.jog,
+      "jog velocity in rpm of the motor, set back at the end; without it 60, or the axis's limit if that is less");
   add_enable_flag(jog, commands.jog);
   jog->footer(
       std::string("Right, up and + turn it forward, left, down and - in reverse; q ends, any other key lets go.\n"

@@ -56,6 +56,35 @@ class Moves(Hand):
         self.assertIn("500000 turns does not fit its register", ended.stderr)
         self.assert_disabled(1)
 
+    def test_the_speed_is_told_before_it_moves_and_set_back_after(self):
+        panel = self.peer(PANEL_1)
+        Axis(panel, 1).set(profile_velocity=600 * RPM)
+        Axis(panel, 1).command("release")
+        ended = self.hand("move", 1, 0.5, "--enable")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertIn("axis 1 turns at 60 rpm; --velocity sets another speed\n", ended.stdout)
+        self.assertEqual(self.watched(1).get("profile_velocity"), 600 * RPM)
+        ended = self.hand("move", 1, 0.5, "--velocity", 99999, "--enable")
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn("99999 rpm is above what axis 1 is moved at by hand, 10000 rpm (the rated speed of its motor is not known): nothing was sent", ended.stderr)
+        self.assertEqual(self.watched(1).get("profile_velocity"), 600 * RPM)
+
+
+class Limited(Hand):
+    lines_of = ("serial",)
+    axis_options = {"limits": {"velocity": 3000, "position": [0, 20000]}}
+
+    def test_a_limit_is_kept_and_named(self):
+        ended = self.hand("move", 1, 0.01, "--enable")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertIn("axis 1 turns at 3 rpm, its limit\n", ended.stdout)
+        ended = self.hand("move", 1, 0.5, "--velocity", 30, "--enable")
+        self.assertIn("30 rpm is beyond the limit of 3 rpm", ended.stderr)
+        ended = self.hand("move", 1, -1, "--velocity", 2, "--enable")
+        self.assertIn("-1 turns is beyond the limit of 0 turns", ended.stderr)
+        self.gateway.wait_for(r"profile_velocity \(its limit is 3 rpm\) is refused")
+        self.gateway.wait_for(r"target_position \(its limit is 0 turns\) is refused")
+
 
 class MovesAnEnabledAxis(Hand):
     lease = None
@@ -202,7 +231,19 @@ class ItDies(Hand):
                 getattr(network, end)()
                 self.assert_its_lease_stopped_it(number)
                 self.assertEqual(program.ended(), 1)
-                self.assertRegex(program.text(), r"the gateway is out of reach \(.*\); it stops axis \d when its lease runs out")
+                said = program.text()
+                self.assertRegex(said, r"the gateway is out of reach \(.*\)")
+                self.assertRegex(said, rf"if only the network has failed: axis {number} is stopped as its lease says, within 1\d\d\d ms")
+
+    def test_a_gateway_that_is_killed_stops_nothing_and_the_tool_does_not_say_so(self):
+        program = self.on_terminal("move", 1, FAR, "--velocity", 300, "--enable")
+        program.wait_for("if the gateway dies it GOES ON: keep its wired stop in reach")
+        self.until_it_turns(1)
+        self.gateway.send(signal.SIGKILL)
+        self.assertEqual(self.gateway.ended(), -signal.SIGKILL)
+        self.assertEqual(program.ended(), 1)
+        self.assertIn("if the gateway has died: axis 1 GOES ON: use its wired stop", program.text())
+        self.assertNotEqual(self.speed(1), 0, "and so it does")
 
 
 class WhatCannotBe(Hand):

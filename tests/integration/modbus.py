@@ -27,7 +27,7 @@ AXIS = {
     "set_position_value": (78, "i32"), "object_request": (80, "u16"), "object_index": (81, "u16"), "object_subindex": (82, "u16"),
     "object_size": (83, "u16"), "object_data": (84, "u32"), "object_status": (86, "u16"), "object_detail": (88, "u32"),
     "units_per_rev_numerator": (90, "u32"), "units_per_rev_denominator": (92, "u32"), "rated_speed": (94, "u32"),
-    "owner_address": (96, "u32"),
+    "owner_address": (96, "u32"), "loss_stop_ms": (98, "u16"),
 }
 COILS = ["enable", "fault_reset", "quick_stop", "halt", "start_absolute", "start_relative", "home", "run_velocity"]
 INPUTS = ["online", "ready", "enabled", "fault", "warning", "target_reached", "homed", "moving", "limit_active",

@@ -168,6 +168,7 @@ void Hand::seen(Bytes registers_reply, Bytes inputs_reply, std::uint32_t answere
 
 /// What the plan has to say goes out, and its next moment is waited for.
 void Hand::pump() {
+  for (const std::string& note : plan_.take_notes()) screen_.say(note);
   for (const HandWrite& write : plan_.take()) {
     const Rational units = plan_.view() ? plan_.view()->units_per_rev : Rational(1);
     const auto request = hand_request(write, arguments_.axis, listener_, units);

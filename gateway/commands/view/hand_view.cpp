@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cmath>
 
 #include "gateway/core/binary32.hpp"
 #include "gateway/core/words.hpp"
@@ -27,6 +28,17 @@ std::optional<double> number_at(std::span<const std::uint16_t> registers, std::s
   const auto value = static_cast<std::int32_t>(bits);
   if (value == no_value(RegisterType::i32)) return std::nullopt;
   return static_cast<double>(value) / unit;
+}
+
+/// A row in 0.001 rpm, to the unit.
+std::optional<Rational> rpm_at(std::span<const std::uint16_t> registers, std::size_t at, const HandListener& listener) {
+  const std::uint32_t bits = pair_at(registers, at, listener.order);
+  if (!listener.float_numbers)
+    return bits == no_value(RegisterType::u32) ? std::nullopt : std::optional(Rational(bits, kPerRpm));
+  const double rpm = static_cast<double>(std::bit_cast<float>(bits));
+  constexpr double kMost = 4294967.0;
+  if (is_nan_binary32(bits) || rpm < 0 || rpm > kMost) return std::nullopt;
+  return Rational(std::llround(rpm * kPerRpm), kPerRpm);
 }
 
 /// number * scale, rounded half away from zero. 128 bits hold every product of two halves that came from 64.
@@ -91,6 +103,14 @@ HandView hand_view(std::span<const std::uint16_t> registers, std::uint16_t input
   view.owner_address = pair(Source::owner_address);
   view.lease_remaining_ms = word(Source::lease_remaining_ms);
   view.error_code = word(Quantity::error_code);
+  view.alarms = pair(Source::axis_alarms);
+  view.loss_stop_ms = word(Source::loss_stop_ms);
+  view.can.supported = pair(Source::supported);
+  view.can.supported_commands = pair(Source::supported_commands);
+  view.profile_rpm = rpm_at(registers, axis_offset(Quantity::profile_velocity), listener);
+  view.jog_rpm = rpm_at(registers, axis_offset(Source::jog_velocity), listener);
+  if (const std::uint32_t rated = pair(Source::rated_speed); rated != no_value(RegisterType::u32))
+    view.rated_rpm = Rational(rated, kPerRpm);
   view.inputs = inputs;
   if (pair(Source::units_numerator) != 0 && pair(Source::units_denominator) != 0)
     view.units_per_rev = Rational(pair(Source::units_numerator), pair(Source::units_denominator));
@@ -109,10 +129,14 @@ std::string owner_text(const HandView& view) {
 
 std::string hand_line(AxisNumber axis, const HandView& view, std::string_view doing) {
   constexpr int kOfATurn = 4, kOfAnRpm = 1;
+  // Its speed is read less often than its state, and may be that of before.
+  constexpr double kTremble = 1;  // rpm
+  const bool old_speed = view.state == AxisState::standstill && std::abs(view.rpm.value_or(0)) > kTremble;
   std::string out =
       fmt::format("axis {}  {}  {}  {}", axis, shown_number(view.turns, view.turns_good, kOfATurn, "turns"),
-                  shown_number(view.rpm, view.rpm_good, kOfAnRpm, "rpm"),
-                  name_of(WordKind::axis_state, static_cast<std::uint32_t>(view.state)));
+                  shown_number(view.rpm, view.rpm_good && !old_speed, kOfAnRpm, "rpm"),
+                  axis_state_text(static_cast<std::uint32_t>(view.state),
+                                  view.has(AxisInput::stop_latched) && !view.has(AxisInput::moving)));
   if (!view.in_sight())
     out += fmt::format(", link {}", name_of(WordKind::link_state, static_cast<std::uint32_t>(view.link)));
   return doing.empty() ? out : out + "  " + std::string(doing);

@@ -20,8 +20,8 @@
 
 namespace axisgate::app {
 
-/// The rows of an axis that are read at once: up to and with the owner's address.
-inline constexpr std::uint16_t kHandRegisters = 98;
+/// The rows of an axis that are read at once: up to and with loss_stop_ms.
+inline constexpr std::uint16_t kHandRegisters = 99;
 
 /// How a listener shows its numbers.
 struct HandListener {
@@ -41,6 +41,12 @@ struct HandView {
   std::uint32_t owner_address = 0;
   std::uint16_t lease_remaining_ms = 0;
   std::uint16_t error_code = 0;
+  std::uint32_t alarms = 0;
+  std::uint16_t loss_stop_ms = kLossNotKnown;
+  Capabilities can{};
+  std::optional<Rational> profile_rpm{};  ///< profile_velocity; none: no value
+  std::optional<Rational> jog_rpm{};
+  std::optional<Rational> rated_rpm{};
   std::uint16_t inputs = 0;  ///< discrete inputs, bit by bit
   Rational units_per_rev{10000};
   std::optional<double> turns;  ///< none: no value

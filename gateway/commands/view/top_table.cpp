@@ -37,6 +37,16 @@ class AxisCells {
     if (value == no_value(type)) return "?";
     return with_point(value, decimals) + (good(quantity) ? "" : "?");
   }
+  /// Nothing shows that it turns.
+  [[nodiscard]] bool stands() const {
+    if ((pair(Source::supported) & bit(Quantity::velocity_actual)) == 0) return true;
+    constexpr double kTremble = 1;  // rpm
+    const std::uint32_t bits = pair(Quantity::velocity_actual);
+    constexpr double kUnits = 1000;  // of an rpm
+    const double rpm = floats_ ? static_cast<double>(std::bit_cast<float>(bits))
+                               : static_cast<double>(static_cast<std::int32_t>(bits)) / kUnits;
+    return good(Quantity::velocity_actual) && rpm > -kTremble && rpm < kTremble;
+  }
   [[nodiscard]] bool good(Quantity quantity) const { return (pair(Source::valid) & bit(quantity)) != 0; }
 
  private:
@@ -109,15 +119,29 @@ Attention of_state(LinkState link, AxisState state) {
   return link == LinkState::suspect || state == AxisState::stopping ? Attention::look : Attention::none;
 }
 
+/// Of this part of the block the speed tells whether it stands; a drive that tells none is shown latched.
+bool latched_and_stands(const AxisCells& cells) {
+  return (cells.pair(Source::axis_alarms) & bit(AxisAlarm::stop_latched)) != 0 && cells.stands();
+}
+
+/// Beside "standstill" a speed is that of before: it is read less often than the state.
+std::string velocity_text(const AxisCells& cells) {
+  constexpr int kOfAnRpm = 3;
+  const std::string shown = cells.number(Quantity::velocity_actual, kOfAnRpm);
+  const bool standstill = cells.word(Source::axis_state) == static_cast<std::uint16_t>(AxisState::standstill);
+  const bool marked = shown.back() == '?' || shown == "-";
+  return standstill && !marked && !cells.stands() ? shown + "?" : shown;
+}
+
 AxisTexts texts_of(const AxisReading& axis, WordOrder order, bool float_numbers) {
   const AxisCells cells(axis, order, float_numbers);
   return {.number = fmt::format("{}", axis.axis),
           .name = axis.name,
           .link = std::string(name_of(WordKind::link_state, cells.word(Source::link_state))),
-          .state = std::string(name_of(WordKind::axis_state, cells.word(Source::axis_state))),
+          .state = std::string(axis_state_text(cells.word(Source::axis_state), latched_and_stands(cells))),
           .mode = mode_text(cells),
           .position = cells.number(Quantity::position_actual, 0),
-          .velocity = cells.number(Quantity::velocity_actual, 3),
+          .velocity = velocity_text(cells),
           .torque = cells.number(Quantity::torque_actual, 1),
           .current = cells.number(Quantity::current_actual, 2),
           .age = age_text(cells.word(Source::age_ms)),

@@ -116,7 +116,7 @@ TEST_F(ByHand, EachStepThatIsRefusedSaysWhichAndWhy) {
   answer(Exception::illegal_data_value);
   look();
   EXPECT_THAT(plan_->words(), HasSubstr("profile_velocity was refused with exception 0x03"));
-  EXPECT_THAT(plan_->words(), HasSubstr("beyond the limits"));
+  EXPECT_THAT(plan_->words(), HasSubstr("beyond the limits of the axis"));
   EXPECT_THAT(written(), ElementsAre(command(Command::release, 42))) << "nothing was enabled, nothing moved";
 
   arguments_.rpm.reset();
@@ -348,16 +348,29 @@ TEST_F(ByHand, ASecondEndDoesNotWait) {
   EXPECT_EQ(plan_->exit_code(), 1);
 }
 
-TEST_F(ByHand, ALostNetworkIsToldWithWhatStopsTheAxisThen) {
+/// Which of the two has failed, gateway or network, nobody here knows.
+TEST_F(ByHand, AGatewayOutOfReachIsToldWithWhatStopsTheAxisThenAndWhatDoesNot) {
+  const auto said = [&](std::uint16_t loss_stop_ms) {
+    view_.loss_stop_ms = loss_stop_ms;
+    look();
+    plan_->lost("no answer in time");
+    EXPECT_TRUE(plan_->over());
+    EXPECT_EQ(plan_->exit_code(), 1);
+    return plan_->words();
+  };
   moving();
-  plan_->lost("no answer in time");
-  EXPECT_TRUE(plan_->over());
-  EXPECT_THAT(plan_->words(), HasSubstr("it stops axis 4 when its lease runs out, within 2000 ms"));
+  EXPECT_EQ(said(kGoesOn),
+            "the gateway is out of reach (no answer in time)\n"
+            "  if the gateway has died: axis 4 GOES ON: use its wired stop\n"
+            "  if only the network has failed: axis 4 is stopped as its lease says, within 2000 ms");
+  moving();
+  EXPECT_THAT(said(1500), HasSubstr("has died: the drive begins to stop by itself within 1500 ms\n"));
+  moving();
+  EXPECT_THAT(said(kLossNotKnown), HasSubstr("has died: nobody knows whether axis 4 stops: use its wired stop\n"));
   begin(HandTask::move);
   look();
   answer_unseen();
-  plan_->lost("no answer in time");
-  EXPECT_THAT(plan_->words(), HasSubstr("axis 4 has no lease"));
+  EXPECT_THAT(said(kGoesOn), HasSubstr("failed: axis 4 goes on, for it has no lease: only a stop ends that"));
 }
 
 TEST_F(ByHand, ANumberThatDoesNotFitMovesNothing) {

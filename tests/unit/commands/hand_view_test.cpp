@@ -27,7 +27,33 @@ TEST(HandView, ShowsTurnsAndRpmInTheUnitsOfTheAxis) {
   EXPECT_EQ(view.turns, -5.0);
   EXPECT_EQ(view.rpm, 60.0);
   EXPECT_TRUE(view.has(AxisInput::enabled));
-  EXPECT_EQ(hand_line(3, view, "to 2 turns"), "axis 3  -5.0000 turns  60.0 rpm  standstill  to 2 turns");
+  EXPECT_EQ(hand_line(3, view, "to 2 turns"), "axis 3  -5.0000 turns  60.0 rpm?  standstill  to 2 turns")
+      << "a speed beside a standstill is that of before";
+}
+
+TEST(HandView, AStoppedAxisThatStandsIsLatched) {
+  auto stopped = registers();
+  stopped[5] = 0;
+  stopped[31] = 5;
+  const auto state = [&](unsigned inputs) {
+    return hand_line(3, hand_view(stopped, static_cast<std::uint16_t>(inputs), {}), "");
+  };
+  EXPECT_THAT(state(bit(AxisInput::stop_latched)), HasSubstr("0.0 rpm  latched"));
+  EXPECT_THAT(state(bit(AxisInput::stop_latched) | bit(AxisInput::moving)), HasSubstr("stopping"));
+  EXPECT_THAT(state(0), HasSubstr("stopping")) << "halted";
+}
+
+TEST(HandView, ReadsTheSpeedsThatAreSetOnEveryListener) {
+  auto set = registers();
+  set[48] = 0x0005, set[49] = 0xB8D8;  // 375000
+  set[98] = 1500;
+  const HandView view = hand_view(set, 0, {});
+  EXPECT_EQ(view.profile_rpm, Rational(375));
+  EXPECT_EQ(view.loss_stop_ms, 1500);
+  set[48] = 0x43BB, set[49] = 0x8000;  // 375.0
+  EXPECT_EQ(hand_view(set, 0, {WordOrder::high_first, true}).profile_rpm, Rational(375));
+  set[48] = set[49] = 0xFFFF;
+  EXPECT_EQ(hand_view(set, 0, {}).profile_rpm, std::nullopt);
 }
 
 TEST(HandView, AValueThatIsNotGoodNowIsMarked) {

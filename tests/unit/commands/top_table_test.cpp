@@ -69,6 +69,26 @@ TEST(TopTable, TellsOfTheGatewayInItsFirstLine) {
             "axisgate 127.0.0.1:1502  running  axes online 2 of 2  up 1:02:05  role engineer  alarms: none");
 }
 
+TEST(TopTable, AStoppedAxisThatStandsIsLatched) {
+  AxisReading axis = good_axis(1);
+  axis.registers[31] = 5;
+  put32(axis, 34, bit(AxisAlarm::stop_latched));
+  EXPECT_THAT(axis_line(axis), testing::HasSubstr("stopping"));
+  put32(axis, 4, 0);
+  EXPECT_THAT(axis_line(axis), testing::HasSubstr("  latched  "));
+  put32(axis, 34, 0);
+  EXPECT_THAT(axis_line(axis), testing::HasSubstr("stopping")) << "halted";
+}
+
+TEST(TopTable, ASpeedBesideAStandstillIsMarkedAsThatOfBefore) {
+  AxisReading axis = good_axis(1);
+  EXPECT_THAT(axis_line(axis), testing::HasSubstr(" -12.500 "));
+  axis.registers[31] = 1;
+  EXPECT_THAT(axis_line(axis), testing::HasSubstr(" -12.500? "));
+  put32(axis, 4, 500);  // it trembles
+  EXPECT_THAT(axis_line(axis), testing::HasSubstr(" 0.500 "));
+}
+
 TEST(TopTable, WritesFloatsInTurnsAndRpm) {
   AxisReading axis = good_axis(1);
   put32(axis, 2, 0xC1200000);  // -10

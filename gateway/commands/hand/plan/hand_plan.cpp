@@ -38,6 +38,7 @@ std::string_view text(HandTask task) {
 }
 
 HandPlan::HandPlan(const HandArguments& arguments, Instant now) : arguments_(arguments) {
+  if (arguments_.rpm) rpm_ = *arguments_.rpm;
   // A stop asks nobody, and looks at nothing first.
   if (arguments_.task != HandTask::stop) return;
   step_ = Step::stop;
@@ -96,6 +97,9 @@ void HandPlan::on_answer(ModbusException exception, Instant now) {
     refused_what_ = row_text(answer.write);
     return go(Step::refused);
   }
+  if (exception != ModbusException::none && step_ == Step::set_back)
+    words_ += fmt::format("; {} stays at {} rpm, for its {} rpm of before were refused", row_text(answer.write),
+                          rpm_.to_double(), answer.write.number.to_double());
   if (exception != ModbusException::none && answer.write.what == HandWrite::What::stop) {
     code_ = 1;
     const bool owed =
@@ -110,11 +114,9 @@ void HandPlan::on_answer(ModbusException exception, Instant now) {
 void HandPlan::step_done(Instant now) {
   switch (step_) {
     case Step::begin:
-      if (!arguments_.rpm) return after_speed(now);
-      write(speed_write());
-      claim(now);
-      return go(Step::speed);
+      return arguments_.rpm || has_speed() ? write_speed(now) : after_speed(now);
     case Step::speed:
+      speed_set_ = true;
       return go(Step::speed_set);
     case Step::enable:
       return go(Step::enabled);
@@ -129,6 +131,8 @@ void HandPlan::step_done(Instant now) {
       return go(Step::standing);
     case Step::disable:
       return after_disable();
+    case Step::set_back:
+      return give_back();
     case Step::release:
       return go(Step::over);
     default:
@@ -136,12 +140,8 @@ void HandPlan::step_done(Instant now) {
   }
 }
 
-HandWrite HandPlan::speed_write() const {
-  const bool jog = arguments_.task == HandTask::jog;
-  return {.what = jog ? HandWrite::What::jog_velocity : HandWrite::What::profile_velocity, .number = *arguments_.rpm};
-}
-
 void HandPlan::after_speed(Instant now) {
+  note_dangers();
   const bool enabled = view_->has(AxisInput::enabled) && !view_->has(AxisInput::stop_latched);
   if (enabled && arguments_.task != HandTask::enable) return after_enable(now);
   torque_is_ours_ = !view_->has(AxisInput::enabled);
@@ -206,7 +206,7 @@ void HandPlan::on_view(const HandView& view, std::uint32_t answered, Instant now
     case Step::look:
       return first_look(now);
     case Step::speed_set:
-      if (settled(speed_write(), now)) after_speed(now);
+      if (settled(speed_write(rpm_), now)) after_speed(now);
       return;
     case Step::target_set:
       if (settled({.what = HandWrite::What::target_position}, now)) after_target(now);
@@ -220,7 +220,7 @@ void HandPlan::on_view(const HandView& view, std::uint32_t answered, Instant now
         may_move_ = false;
       return watch(now);
     case Step::refused:
-      return finish(1, why_refused(), now);
+      return lowers_speed() ? write_speed(now) : finish(1, why_refused(), now);
     case Step::standing:
       return stood(now);
     default:
@@ -253,6 +253,8 @@ void HandPlan::first_look(Instant now) {
                   fmt::format("{} is {}: --enable enables it for this {}", name,
                               view.has(AxisInput::enabled) ? "stopped and latched" : "disabled", text(arguments_.task)),
                   now);
+  if (const std::string mistake = too_fast(); !mistake.empty()) return finish(1, mistake, now);
+  speed_before_ = speed_shown();
   owned_before_ = view.mine();
   id_ = after(view.command_id_seen);
   write({.what = HandWrite::What::command, .command = Command::none, .id = id_});

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "gateway/commands/hand/plan/hand_keys.hpp"
@@ -28,7 +29,7 @@ struct HandArguments {
   AxisNumber axis = 1;
   Rational turns{};  ///< move: to this position, or by so much
   bool relative = false;
-  std::optional<Rational> rpm;  ///< move: profile_velocity; jog: jog_velocity; none: as it is
+  std::optional<Rational> rpm;  ///< move: profile_velocity; jog: jog_velocity; none: HandPlan::kUsualRpm at most
   bool enable = false;          ///< move, jog: enables the axis before, and disables it after
 };
 
@@ -42,10 +43,17 @@ class HandPlan {
   /// A motor stands when it has not moved for so long: longer than the filters of a drive's speed.
   static constexpr Duration kStill = std::chrono::milliseconds(300);
 
+  /// A speed at which a person can follow a motor with his eyes.
+  static constexpr std::int64_t kUsualRpm = 60;
+  /// More is a slip of the keyboard, where nobody has said what the motor is rated for.
+  static constexpr std::int64_t kMostRpm = 10000;
+
   HandPlan(const HandArguments& arguments, Instant now);
 
   /// What is written next, in this order; each is answered once, in the same order.
   [[nodiscard]] std::vector<HandWrite> take();
+  /// What a person must read before anything moves, once: the speed, and what becomes of the motor without a gateway.
+  [[nodiscard]] std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
   /// Of the oldest write not answered yet.
   void on_answer(ModbusException exception, Instant now);
   /// `answered`: what answered() was when the look was asked for.
@@ -94,6 +102,7 @@ class HandPlan {
     stop,
     standing,  ///< awaits a look that shows it
     disable,
+    set_back,  ///< the speed is what it was before
     release,
     over,
   };
@@ -105,7 +114,14 @@ class HandPlan {
   void write_button(const std::optional<JogButton::Write>& button);
   void step_done(Instant now);
   void button_answered(ModbusException exception, Instant now);
-  [[nodiscard]] HandWrite speed_write() const;
+  [[nodiscard]] HandWrite speed_write(const Rational& rpm) const;
+  [[nodiscard]] bool has_speed() const;
+  [[nodiscard]] std::optional<Rational> speed_shown() const;
+  [[nodiscard]] std::string too_fast() const;
+  void write_speed(Instant now);
+  [[nodiscard]] bool lowers_speed();
+  void note_dangers();
+  void give_back();
   void after_speed(Instant now);
   void after_enable(Instant now);
   void after_target(Instant now);
@@ -120,9 +136,16 @@ class HandPlan {
   [[nodiscard]] bool stands(Instant now) const;
   [[nodiscard]] bool ending() const { return step_ >= Step::stop; }
   [[nodiscard]] std::string why_refused() const;
+  [[nodiscard]] std::string limit_text() const;
+  [[nodiscard]] std::string out_of_reach() const;
   [[nodiscard]] std::string axis_text() const;
 
   HandArguments arguments_;
+  Rational rpm_{kUsualRpm};               ///< asked for
+  bool speed_is_limit_ = false;           ///< the usual one was beyond the axis's limit
+  bool speed_set_ = false;                ///< the drive, or the gateway, has taken it
+  std::optional<Rational> speed_before_;  ///< what is set back
+  std::vector<std::string> notes_;
   Step step_ = Step::look;
   std::deque<HandWrite> outbox_;
   struct Waiting {

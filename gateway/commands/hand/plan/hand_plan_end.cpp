@@ -31,19 +31,31 @@ void HandPlan::lost(std::string_view why) {
   if (over()) return;
   code_ = 1;
   words_ = fmt::format("the gateway is out of reach ({})", why);
-  if (claimed_ && lease_ms_)
-    words_ += fmt::format("; it stops {} when its lease runs out, within {} ms", axis_text(), *lease_ms_);
-  else if (claimed_)
-    words_ += fmt::format("; {} has no lease: a move goes on to its target, and only a stop ends it", axis_text());
+  if (claimed_)
+    words_ += out_of_reach();
   else if (arguments_.task == HandTask::stop && outbox_.empty())
-    words_ += fmt::format("; whether {} was stopped is not known", axis_text());
+    words_ += fmt::format("; whether {} was stopped is not known: use its wired stop", axis_text());
   step_ = Step::over;
+}
+
+/// Nobody here knows which of the two has failed, gateway or network.
+std::string HandPlan::out_of_reach() const {
+  const std::string_view doing = arguments_.task == HandTask::enable ? "keeps its torque" : "goes on";
+  const std::uint16_t within = view_ ? view_->loss_stop_ms : kLossNotKnown;
+  const std::string dead = within == kGoesOn ? fmt::format("{} GOES ON: use its wired stop", axis_text())
+                           : within == kLossNotKnown
+                               ? fmt::format("nobody knows whether {} stops: use its wired stop", axis_text())
+                               : fmt::format("the drive begins to stop by itself within {} ms", within);
+  const std::string cut = lease_ms_
+                              ? fmt::format("{} is stopped as its lease says, within {} ms", axis_text(), *lease_ms_)
+                              : fmt::format("{} {}, for it has no lease: only a stop ends that", axis_text(), doing);
+  return fmt::format("\n  if the gateway has died: {}\n  if only the network has failed: {}", dead, cut);
 }
 
 void HandPlan::refuse_number(Instant now) {
   waiting_.pop_back();
   fail(fmt::format("{} does not fit its register, in the units of {}",
-                   step_ == Step::speed ? fmt::format("{} rpm", arguments_.rpm->to_double())
+                   step_ == Step::speed ? fmt::format("{} rpm", rpm_.to_double())
                                         : fmt::format("{} turns", arguments_.turns.to_double()),
                    axis_text()),
        now);
@@ -98,8 +110,16 @@ void HandPlan::after_stop() {
 
 void HandPlan::after_disable() {
   stand_by_ = kNever;
-  if (!claimed_ || owned_before_ || arguments_.task == HandTask::stop || (view_ && view_->anothers()))
-    return go(Step::over);
+  if (!claimed_ || arguments_.task == HandTask::stop || (view_ && view_->anothers())) return go(Step::over);
+  const bool another = speed_set_ && speed_before_ && speed_before_->numerator() > 0 && *speed_before_ != rpm_;
+  // A motor that was not seen to stand may still move at the speed that is set.
+  if (!another || may_move_) return give_back();
+  write(speed_write(*speed_before_));
+  go(Step::set_back);
+}
+
+void HandPlan::give_back() {
+  if (owned_before_) return go(Step::over);
   write_command(Command::release);
   go(Step::release);
 }

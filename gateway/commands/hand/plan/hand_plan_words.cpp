@@ -16,13 +16,30 @@ std::string HandPlan::why_refused() const {
     return out + ": the gateway gives this computer another role than operator (key \"allow\")";
   if (exception_ == ModbusException::illegal_data_address)
     return out + ": this drive does not have it (axisgate map shows what it has)";
-  if (exception_ == ModbusException::illegal_data_value)
-    return out + ": beyond the limits of the axis, its profile or its drive";
+  if (exception_ == ModbusException::illegal_data_value) return out + limit_text();
   if (view_->result == CommandResult::none) return out;
   const Word* word = find_word(WordKind::result, result);
   out += fmt::format(", result {}", result);
-  if (word != nullptr) out += fmt::format(" {}: {}", word->name, word->meaning);
+  const std::string alarm =
+      refused_what_ == text(Command::enable) ? against_enable(view_->alarms, arguments_.axis) : std::string();
+  if (word != nullptr) out += fmt::format(" {}: {}", word->name, alarm.empty() ? word->meaning : alarm);
   return out;
+}
+
+/// A refused row's limit is in command_detail, in the units of the row.
+std::string HandPlan::limit_text() const {
+  constexpr double kPerRpm = 1000;
+  const bool target = refused_what_ == "target_position";
+  const bool speed = refused_what_ == "profile_velocity" || refused_what_ == "jog_velocity";
+  if (target)
+    return fmt::format(": {} turns is beyond the limit of {} turns", arguments_.turns.to_double(),
+                       static_cast<std::int32_t>(view_->detail) / view_->units_per_rev.to_double());
+  if (refused_what_.starts_with("move_") && view_->detail != 0)
+    return fmt::format(": it would end beyond the limit of {} turns",
+                       static_cast<std::int32_t>(view_->detail) / view_->units_per_rev.to_double());
+  if (speed && view_->detail != 0)
+    return fmt::format(": {} rpm is beyond the limit of {} rpm", rpm_.to_double(), view_->detail / kPerRpm);
+  return ": beyond the limits of the axis, its profile or its drive";
 }
 
 std::string HandPlan::axis_text() const { return fmt::format("axis {}", arguments_.axis); }
