@@ -8,9 +8,9 @@
 #include <regex>
 #include <set>
 
-#include "gateway/model/scale.hpp"
 #include "gateway/image/axis_image.hpp"
 #include "gateway/model/loss.hpp"
+#include "gateway/model/scale.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::drive {

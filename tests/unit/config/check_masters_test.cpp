@@ -144,11 +144,13 @@ TEST_F(Masters, NamesTheAlarmOfADriveThatDoesNotNoticeADeadGateway) {
                             HasSubstr("alarm no_comm_watchdog")));
   drive().stops_by_itself = true;
   drive().loss_text = "it disables itself after 1000 ms";
-  EXPECT_THAT(said(), AllOf(HasSubstr("WHETHER IT STOPS BY ITSELF IS NOT KNOWN: the drive notices by itself: it disables"),
-                            Not(HasSubstr("no_comm_watchdog"))));
+  EXPECT_THAT(said(),
+              AllOf(HasSubstr("WHETHER IT STOPS BY ITSELF IS NOT KNOWN: the drive notices by itself: it disables"),
+                    Not(HasSubstr("no_comm_watchdog"))));
   drive().loss_after = milliseconds(1000);
-  EXPECT_THAT(said(), HasSubstr("gateway dies    it begins to stop by itself within 1000 ms: the drive notices by itself: "
-                                "it disables itself after 1000 ms\n"));
+  EXPECT_THAT(said(),
+              HasSubstr("gateway dies    it begins to stop by itself within 1000 ms: the drive notices by itself: "
+                        "it disables itself after 1000 ms\n"));
 }
 
 TEST_F(Masters, TellsWhatKeepsADriveEnabledAndForHowLong) {

@@ -54,8 +54,8 @@ TEST(MapListing, JsonCarriesVersionWordOrderAndEveryEntry) {
 }
 
 TEST(MapListing, CountsEveryRowOfEveryBlock) {
-  // gateway 9; per axis 60 registers, 8 of the overview, 10 coils, 13 inputs; per bus 14.
-  EXPECT_EQ(map_entries(two_axes()).size(), 9U + 2U * (64 + 8 + 10 + 13) + 2U * 14);
+  // gateway 9; per axis 65 registers, 8 of the overview, 10 coils, 13 inputs; per bus 14.
+  EXPECT_EQ(map_entries(two_axes()).size(), 9U + 2U * (65 + 8 + 10 + 13) + 2U * 14);
 }
 
 TEST(MapListing, IsSortedByTableAndAddressAndNamesNoAddressTwice) {

@@ -89,6 +89,7 @@ constexpr Printed kAxis[] = {
     {92, "units_per_rev_denominator", u32, false, -1},
     {94, "rated_speed", u32, false, -1},
     {96, "owner_address", u32, false, -1},
+    {98, "loss_stop_ms", u16, false, -1},
 };
 constexpr Printed kOverview[] = {
     {0, "statusword", u16, false, 0},      {1, "mode_display", i16, false, 1},  {2, "position_actual", i32, false, 2},
