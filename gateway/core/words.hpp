@@ -51,8 +51,8 @@ struct Word {
 [[nodiscard]] std::string_view name_of(WordKind kind, std::uint32_t number);
 /// Names of the bits that are set, with ", " between; a bit without a name as "bit 17"; empty: none is set.
 [[nodiscard]] std::string names_of_bits(WordKind kind, std::uint32_t bits);
-/// What of these bits of register 34 stands against an enable, and what helps: "alarm local_control: the drive obeys its
-/// own inputs or keypad and ignores the bus; axisgate commission CONFIG 3 shows and changes it". Empty: nothing.
+/// What of these bits of register 34 stands against an enable, and what helps: "alarm local_control: the drive obeys
+/// its own inputs or keypad and ignores the bus; axisgate commission CONFIG 3 shows and changes it". Empty: nothing.
 [[nodiscard]] std::string against_enable(std::uint32_t axis_alarms, unsigned axis);
 /// Register 31 in a word: "latched" where a stop is latched and the axis stands, else the name of the number.
 [[nodiscard]] std::string_view axis_state_text(std::uint32_t state, bool latched_and_stands);

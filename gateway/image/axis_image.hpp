@@ -120,7 +120,7 @@ struct AxisImage : Capabilities {
   std::uint16_t motion_id = 0;
   std::uint32_t alarms = 0;
   std::uint16_t loss_stop_ms = kLossNotKnown;  ///< row 98: how soon its drive stops by itself when the gateway dies
-  std::uint16_t inputs = 0;  ///< AxisInput bits
+  std::uint16_t inputs = 0;                    ///< AxisInput bits
   /// Coils 0, 3, 7, 8, 9 read back: bits 0 enabled, 3 halted, 7 velocity running, 8 and 9 jogging.
   std::uint16_t level_coils = 0;
   std::uint32_t jog_velocity = 0;  ///< row 58, 0.001 rpm: the gateway's own

@@ -365,7 +365,7 @@ struct DriveModel {
   bool stops_by_itself = false;        ///< it notices a dead gateway on this protocol; else alarm no_comm_watchdog
   Duration loss_after{};  ///< its motors stop so long after the gateway's death; 0: whether they do is not stated
   std::vector<ObjectId> loss_objects;  ///< written at setup so that it notices; where it does not hold them: the alarm
-  std::string loss_text;  ///< what the drive then does, and what is not known of it; may be empty
+  std::string loss_text;               ///< what the drive then does, and what is not known of it; may be empty
   /// The drive disables itself unless it is commanded so often (profile key "keepalive"); 0: it does not.
   Duration keep_alive{};
   std::vector<ObjectId> composed{};  ///< Keya's serial protocols: the fields of the control frame

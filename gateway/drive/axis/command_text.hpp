@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "gateway/drive/plan/admission.hpp"
 #include "gateway/drive/state/axis_core.hpp"
 #include "gateway/drive/plan/admission.hpp"
 #include "gateway/image/command.hpp"
