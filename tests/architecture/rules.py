@@ -339,7 +339,7 @@ def licence(root):
             yield f"{name}:{1 + behind}: the line before all others, behind #! or <?xml, is: {wanted}"
 
 
-FAULTS = 31
+FAULTS = 36
 C_TEST = re.compile(r"^\s*TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)", re.M)
 STORIES = {"stories": "tests/integration", "vcan_stories": "tests/vcan", "modbus_clients": "tests/integration/modbus_clients"}
 
