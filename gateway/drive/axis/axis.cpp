@@ -50,7 +50,8 @@ void Axis::on_bring_up() {
   accepted_.forget_parameters();
   core_.fault.forget_emergency();
   reference_invalidated_ = false;
-  core_.homed = core_.counter_wrapped = false;
+  core_.homed = false;
+  core_.counter_wrapped = false;
   counted_.reset();
   lose_sight();
   if (!core_.is_virtual()) return;
