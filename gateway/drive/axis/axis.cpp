@@ -54,7 +54,8 @@ void Axis::on_bring_up() {
   accepted_.forget_parameters();
   core_.fault.forget_emergency();
   reference_invalidated_ = false;
-  core_.homed = core_.counter_wrapped = false;
+  core_.homed = false;
+  core_.counter_wrapped = false;
   counted_.reset();
   // What was not held before is not held until it is read.
   if (core_.loss_stop_ms != kGoesOn) core_.loss_stop_ms = loss_stop_ms(core_.drive, std::nullopt);

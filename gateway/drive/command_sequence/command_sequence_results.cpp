@@ -255,7 +255,8 @@ void CommandSequence::reach(const Action& action) {
       core_.store.invalidate_all(action.object);
       break;
     case Mark::not_homed:
-      core_.homed = core_.counter_wrapped = false;
+      core_.homed = false;
+      core_.counter_wrapped = false;
       break;
     case Mark::borrow_homing:
       if (!core_.offset_owed) core_.offset_owed = core_.value(Quantity::homing_offset);
