@@ -10,7 +10,6 @@
 
 #include "gateway/drive/plan/admission.hpp"
 #include "gateway/drive/state/axis_core.hpp"
-#include "gateway/drive/plan/admission.hpp"
 #include "gateway/image/command.hpp"
 
 namespace axisgate::drive {

@@ -129,8 +129,8 @@ void Drive::judge_given_up() {
 }
 
 std::string Drive::lacking(ObjectId object) const {
-  const bool mute = reads_.tries().given_up(object) && !reads_.tries().refusal(object);
-  return fmt::format("{}{} (0x{:04X})", mute ? "to answer " : "", model_.object(object).name,
+  const bool silent = reads_.tries().given_up(object) && !reads_.tries().refusal(object);
+  return fmt::format("{}{} (0x{:04X})", silent ? "to answer " : "", model_.object(object).name,
                      model_.object(object).address.index);
 }
 

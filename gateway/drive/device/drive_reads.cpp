@@ -97,7 +97,7 @@ bool DriveReads::may_probe(Instant now) {
 bus::Exchange DriveReads::probe(Asked& asked) {
   if (resync_.suspect()) return after_silence(asked, &Asked::probe);
   asked.probe = true;
-  // A drive whose state is mute is there all the same.
+  // A drive whose state is unresponsive is there all the same.
   return probes_++ % 2 == 0 ? probe_read(model_) : other_probe_read(model_);
 }
 

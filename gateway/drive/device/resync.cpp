@@ -64,14 +64,14 @@ bool Resync::is_refused(const Likeness& like) const {
 }
 
 std::optional<ResyncRead> Resync::candidate() const {
-  std::optional<ResyncRead> mute;
+  std::optional<ResyncRead> unanswered;
   for (std::size_t i = 0; i < facts_.candidates.size(); ++i) {
     const ResyncRead& read = facts_.candidates[i];
     if (owed(of(read)) != 0 || is_refused(of(read))) continue;
-    if (!mute_[i]) return read;
-    if (!mute) mute = read;
+    if (!unanswered_[i]) return read;
+    if (!unanswered) unanswered = read;
   }
-  return mute;
+  return unanswered;
 }
 
 void Resync::resync_sent(const ResyncRead& read) {
@@ -82,7 +82,7 @@ void Resync::resync_sent(const ResyncRead& read) {
 }
 
 void Resync::answered() {
-  for (const std::size_t at : sent_) mute_[at] = at != sent_.back();
+  for (const std::size_t at : sent_) unanswered_[at] = at != sent_.back();
   forget();
 }
 

@@ -24,12 +24,12 @@ class Resync {
   static constexpr int kMaxOwed = 64;
 
   Resync(const ResyncProperties& facts, const std::vector<ObjectDef>& objects)
-      : facts_(facts), objects_(objects), mute_(facts.candidates.size(), false) {}
+      : facts_(facts), objects_(objects), unanswered_(facts.candidates.size(), false) {}
 
   /// This exchange was given up.
   void lost(const bus::Exchange& exchange, Instant now);
   /// The resynchronisation read was answered: a drive answers in order, so nothing older is left. Of those that were
-  /// sent since the loss the last one has answered, and what the others read may be mute.
+  /// sent since the loss the last one has answered, and what the others read may be unresponsive.
   void answered();
   /// Nothing counts as owed any more, for another reason.
   void forget();
@@ -83,7 +83,7 @@ class Resync {
   boost::container::static_vector<Lost, kMaxLost> lost_;
   boost::container::static_vector<Likeness, kMaxLost> refused_;
   std::optional<Counting> counting_{};
-  std::vector<bool> mute_;  ///< candidates that did not answer although the drive did: those that do come first
+  std::vector<bool> unanswered_;  ///< candidates that did not answer although the drive did: those that do come first
   boost::container::static_vector<std::size_t, kMaxResyncs> sent_;  ///< candidates asked since the loss
   Instant last_lost_ = kLongAgo;
   int resyncs_ = 0;
