@@ -35,8 +35,9 @@ void add_speeds(const AxisCore& core, int mode, Plan& plan) {
     const auto told = core.told.find(binding->object);
     const bool of_before = is_canopen(core.drive) && state.exchange <= core.enabled_by;
     if (told != core.told.end() && !state.clamped) {
-      if (of_before && !state.refused && core.object(binding->object).nvm == Nvm::no) {
-        plan.add(Action::write(binding->object, told->second.raw));
+      if (of_before && state.known && core.facts().enabled()) {
+        plan.add(Action::read(binding->object));
+        look_again = true;
         continue;
       }
       // After a mode change it is taken to be as it was: what a start takes longer is a button's time.
