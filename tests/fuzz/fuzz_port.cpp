@@ -59,7 +59,8 @@ void modbus_port(Input input) {
         const Bytes bytes = input.bytes(1 + input.below(64));
         const auto taken = ::write(far, bytes.data(), bytes.size());
         came += taken > 0 ? static_cast<std::size_t>(taken) : 0;
-        if (port.bytes_waiting() > 0 && input.yes()) take(port.receive());
+        if (input.yes()) take(port.receive(input.yes()));
+        if (port.unfinished() && input.below(4) == 0) heard += port.drop();
         break;
       }
     }
