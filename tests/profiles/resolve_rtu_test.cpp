@@ -82,7 +82,7 @@ TEST(Rtu, ResynchronisationReadsDifferInLengthOnly) {
   EXPECT_EQ(resyncs(on_rtu("kinco-jd")), "statusword/1 position_actual/2");
   EXPECT_EQ(resyncs(on_rtu("kinco-md")), "statusword/1 position_actual/2");
   EXPECT_EQ(resyncs(resolved(shipped("id286pro"), one_axis("modbus-rtu"))),
-            "fault_code/1 fault_code/2 fault_code/3 fault_code/4");
+            "fault_code/1 fault_code/2 microstep_in_effect/3 fault_code/4");
   EXPECT_EQ(resyncs(resolved(valid_file("virtual"), one_axis("modbus-rtu"))), "fault_code/1 fault_code/3 position/2");
   EXPECT_TRUE(on_rtu("kinco-jd").resync.by_length);
 }

@@ -10,6 +10,7 @@
 
 #include "gateway/drive/axis/axis.hpp"
 #include "gateway/drive/plan/admission.hpp"
+#include "gateway/drive/plan/planner.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -152,7 +153,9 @@ void Axis::note_stop(const Pending& pending, bool ended) {
   if (!command_sequence.is_stop() || !kind) return;
   if (command_sequence.begun()) owed_.sending();
   const bool confirmed = command_sequence.stop_confirmed();
-  if (confirmed && pending.stop_number == core_.motion.stops()) stop_watch_.begin({*kind, pending.stop_number});
+  const bool goes_back = *kind == StopKind::halt && halts_by_position(core_);
+  if (confirmed && !goes_back && pending.stop_number == core_.motion.stops())
+    stop_watch_.begin({*kind, pending.stop_number});
   if (ended || confirmed)
     tell_end(owed_.attempted(*kind, command_sequence.stop_confirmed(), core_.store.exchange(), core_.turn.now));
 }

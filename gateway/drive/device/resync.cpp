@@ -68,7 +68,7 @@ std::optional<ResyncRead> Resync::candidate() const {
   for (std::size_t i = 0; i < facts_.candidates.size(); ++i) {
     const ResyncRead& read = facts_.candidates[i];
     if (owed(of(read)) != 0 || is_refused(of(read))) continue;
-    if (!unanswered_[i]) return read;
+    if (!unanswered_.contains(i)) return read;
     if (!unanswered) unanswered = read;
   }
   return unanswered;
@@ -82,7 +82,10 @@ void Resync::resync_sent(const ResyncRead& read) {
 }
 
 void Resync::answered() {
-  for (const std::size_t at : sent_) unanswered_[at] = at != sent_.back();
+  if (!sent_.empty()) {
+    unanswered_.insert(sent_.begin(), sent_.end());
+    unanswered_.erase(sent_.back());
+  }
   forget();
 }
 

@@ -10,6 +10,7 @@
 
 #include <boost/container/static_vector.hpp>
 #include <optional>
+#include <set>
 
 #include "gateway/model/model.hpp"
 
@@ -24,7 +25,7 @@ class Resync {
   static constexpr int kMaxOwed = 64;
 
   Resync(const ResyncProperties& facts, const std::vector<ObjectDef>& objects)
-      : facts_(facts), objects_(objects), unanswered_(facts.candidates.size(), false) {}
+      : facts_(facts), objects_(objects) {}
 
   /// This exchange was given up.
   void lost(const bus::Exchange& exchange, Instant now);
@@ -83,7 +84,8 @@ class Resync {
   boost::container::static_vector<Lost, kMaxLost> lost_;
   boost::container::static_vector<Likeness, kMaxLost> refused_;
   std::optional<Counting> counting_{};
-  std::vector<bool> unanswered_;  ///< candidates that did not answer although the drive did: those that do come first
+  /// Candidates, by their position, that did not answer although the drive did: those that do come first.
+  std::set<std::size_t> unanswered_;
   boost::container::static_vector<std::size_t, kMaxResyncs> sent_;  ///< candidates asked since the loss
   Instant last_lost_ = kLongAgo;
   int resyncs_ = 0;

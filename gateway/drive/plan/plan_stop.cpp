@@ -163,6 +163,13 @@ bool halt_is_quick_stop(const AxisCore& core) {
   return halt_def->quick_stop_otherwise || halt_def->steps.empty();
 }
 
+bool halts_by_position(const AxisCore& core) {
+  const Steps* steps = halt_is_quick_stop(core) ? nullptr : steps_of(core, Command::halt);
+  return steps != nullptr && std::any_of(steps->begin(), steps->end(), [](const Step& step) {
+           return step.source == Step::Source::quantity && step.quantity == Quantity::position_actual;
+         });
+}
+
 bool halts_by_word(const AxisCore& core) {
   return core.is_virtual() ||
          (!halt_is_quick_stop(core) && hold_an_enabling_word(core, *steps_of(core, Command::halt)));

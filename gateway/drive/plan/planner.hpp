@@ -120,5 +120,7 @@ void add_target_here(const AxisCore& core, Plan& plan);
 [[nodiscard]] bool writes(const Plan& plan, ObjectId object);
 /// The steps of a command in the mode in force, or null where the drive has none.
 [[nodiscard]] const Steps* steps_of(const AxisCore& core, Command command);
+/// In the mode in force a halt is a move back to where the axis was when it was asked: it gets faster again on the way.
+[[nodiscard]] bool halts_by_position(const AxisCore& core);
 
 }  // namespace axisgate::drive

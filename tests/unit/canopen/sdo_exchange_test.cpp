@@ -31,7 +31,7 @@ TEST_F(SdoExchange, a_read_is_sent_to_its_node_and_its_value_reported_as_it_came
       {read_of(0x6041), "4B 41 60 00 37 02", value_of(0x6041, 2, 0x0237)},              // shorter than eight bytes
       {read_of(0x6064), "42 64 60 00 E0 B1 FF FF", value_of(0x6064, 4, 0xFFFFB1E0)},    // without a size: four bytes
       {read_of(0x6041, 0, 4), "4B 41 60 00 37 02 00 00", value_of(0x6041, 2, 0x0237)},  // of another width than asked
-      {read_of(0x2000), "47 00 20 00 01 02 03 00", refusal_of(0x06070010)},             // three bytes fit no field
+      {read_of(0x2000), "47 00 20 00 01 02 03 00", refusal_of(0x06070010, true)},             // three bytes fit no field
   };
   for (const Read& read : reads) {
     clear();
@@ -64,7 +64,7 @@ TEST_F(SdoExchange, an_abort_is_a_refusal_with_the_drives_own_number) {
   bring(0x581, "80 60 60 00 10 00 06 06");
   wire->send(write_of(0x6060, 9, 1));
   bring(0x581, "80 60 60 00 22 00 00 08");
-  EXPECT_THAT(replies, ElementsAre(refusal_of(0x06020000), refusal_of(0x06060010), refusal_of(0x08000022, true)));
+  EXPECT_THAT(replies, ElementsAre(refusal_of(0x06020000), refusal_of(0x06060010, true), refusal_of(0x08000022, true)));
 }
 
 TEST_F(SdoExchange, only_the_reply_that_fits_in_everything_ends_the_exchange) {
@@ -95,7 +95,7 @@ TEST_F(SdoExchange, an_object_longer_than_wanted_is_refused_and_its_transfer_end
   wire->send(read_of(0x1008, 0, 4));
   bring(0x581, "41 08 10 00 09 00 00 00");
   EXPECT_EQ(link->sent.back(), frame_of(0x601, "80 08 10 00 22 00 00 08"));
-  EXPECT_THAT(replies, ElementsAre(refusal_of(0x06070010))) << "it will be as long the next time";
+  EXPECT_THAT(replies, ElementsAre(refusal_of(0x06070010, true)));
 }
 
 // --- Two devices, one number (a second reply) -----------------------------------------------------------------------

@@ -71,7 +71,7 @@ TEST_F(SmallStack, one_that_turns_out_to_be_longer_is_refused_and_ended) {
     bring(0x581, "40 08 10 00 00 00 00 00");
     bring(0x581, segment);
     EXPECT_EQ(link->sent.back(), frame_of(0x601, "80 08 10 00 22 00 00 08")) << segment;
-    EXPECT_THAT(replies, ElementsAre(refusal_of(0x06070010)));
+    EXPECT_THAT(replies, ElementsAre(refusal_of(0x06070010, true)));
   }
 }
 
@@ -79,7 +79,7 @@ TEST_F(SmallStack, one_that_turns_out_to_be_longer_is_refused_and_ended) {
 
 TEST_F(SmallStack, an_abort_that_names_no_object_is_that_of_the_one_open_request) {
   EXPECT_EQ(answer_of(read_of(0x6079), "80 00 00 00 00 00 02 06"), refusal_of(0x06020000));
-  EXPECT_EQ(answer_of(write_of(0x6060, 9, 1), "80 00 00 00 10 00 06 06"), refusal_of(0x06060010));
+  EXPECT_EQ(answer_of(write_of(0x6060, 9, 1), "80 00 00 00 10 00 06 06"), refusal_of(0x06060010, true));
   EXPECT_EQ(wire->statistics().late_replies, 0u);
 }
 

@@ -203,7 +203,7 @@ TEST_F(SdoTransfer, a_node_that_restarts_between_two_parts_has_no_chain_to_go_on
 
 TEST_F(SdoTransfer, a_server_that_answers_an_abort_is_no_second_device) {
   server.objects[kObject] = content_of(100);
-  EXPECT_EQ(exchange(read_of(kObject)), refusal_of(0x06070010));
+  EXPECT_EQ(exchange(read_of(kObject)), refusal_of(0x06070010, true));
   bring(0x581, "80 00 20 00 00 00 04 05");
   open_chain();
   EXPECT_EQ(exchange(nmt_of(0x80, 1)), bus::ExchangeResult{});
