@@ -248,7 +248,6 @@ class Axis {
   bool reference_invalidated_ = false;
   bool holds_method_ = false;              ///< its drive was seen to hold the homing_method that a client has written
   bool faulted_ = false;                   ///< as seen last
-  bool enabled_ = false;                   ///< as seen last
   std::optional<std::int64_t> counted_{};  ///< the position as the drive counts, as seen last without a gap
   bool forgotten_ = false;  ///< its drive holds other speeds than it was told, and a start will tell it anew
   struct {

@@ -28,7 +28,6 @@ void Axis::on_scale() {
 void Axis::observe() {
   const AxisFacts facts = core_.facts();
   shown_.watch_fault();
-  if (!std::exchange(enabled_, facts.enabled()) && enabled_) core_.enabled_by = core_.store.exchange();
   core_.motion.observe(facts, core_.model.homing_timeout);
   observe_counter();
   observe_reference(facts);

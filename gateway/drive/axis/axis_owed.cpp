@@ -130,6 +130,7 @@ void Axis::send_owed(StopKind stop) {
   owed_.sending();
   Pending pending;
   pending.by_mailbox = true;  // it shows in no client's result
+  pending.stop_number = core_.motion.stops();
   pending.command_sequence = std::make_unique<CommandSequence>(core_, batch, true);
   bus::BusJob job = job_for(core_, batch, true);
   job.axis = slot_;
@@ -170,7 +171,7 @@ void Axis::observe_stop() {
   if (!holds || !core_.shows_torque()) return stop_watch_.end();
   const Binding* const velocity = core_.model.binding(Quantity::velocity_actual);
   const auto speed = core_.value(Quantity::velocity_actual);
-  if (!speed || !core_.facts().moving || core_.turn.link != LinkState::online) return;
+  if (!speed || !core_.facts().moving || core_.turn.link != LinkState::online || velocity->object == kNoObject) return;
   const Duration period =
       std::max(core_.drive.poll_period[static_cast<std::size_t>(velocity->poll)], core_.store.period(velocity->object));
   if (!stop_watch_.goes_on(std::abs(*speed), core_.store[velocity->object].sent_at, core_.model.velocity_lag + period))

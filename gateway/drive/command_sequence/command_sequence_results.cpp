@@ -29,7 +29,11 @@ void CommandSequence::on_result(const bus::ExchangeResult& result, Instant sent_
   } else if (phase_ == Phase::object) {
     on_object(result);
   } else if (phase_ == Phase::settle || phase_ == Phase::settle_stop) {
-    if (result.code == Errc::refused_by_drive) next_phase();  // what a drive never shows nothing can confirm
+    if (result.code == Errc::refused_by_drive) {
+      next_phase();  // what a drive never shows nothing can confirm
+    } else if (result.code != Errc::ok && phase_ == Phase::settle_stop && !stop_attempt_.may_look_again()) {
+      fail(Errc::not_reached, writes_.count);
+    }
   } else if (!plan_.at_end()) {
     const Action& action = plan_.action();
     if (action.kind == Action::Kind::write && !writes_.verifying) {
@@ -94,6 +98,9 @@ void CommandSequence::on_lost_write(const Action& action) {
 void CommandSequence::on_read(ObjectId object, const bus::ExchangeResult& result) {
   const Action& action = plan_.action();
   if (result.code == Errc::refused_by_drive) {
+    // What it refuses for now may be shown yet; the wait has its end.
+    if (phase_ == Phase::stop && action.effect == Effect::stop && result.for_now && stop_attempt_.may_look_again())
+      return;
     // What a drive never shows nothing can confirm.
     if (action.kind == Action::Kind::wait && (action.optional || action.effect != Effect::none)) {
       pop();
@@ -104,7 +111,17 @@ void CommandSequence::on_read(ObjectId object, const bus::ExchangeResult& result
   }
   // A read that was not answered is asked again once the resynchronisation read is answered: it changes nothing. The
   // drive goes offline first.
-  if (result.code != Errc::ok) return;
+  if (result.code != Errc::ok) {
+    // A stop is not held up by a look that nobody answers: what it writes is planned without it, and where it has
+    // written all, it is owed until the drive shows it.
+    if (phase_ != Phase::stop || writes_.verifying || result.code == Errc::link_lost) return;
+    if (action.kind == Action::Kind::read)
+      plan_.made = false;
+    else if (!stop_attempt_.may_look_again())
+      fail(Errc::not_reached, writes_.count);
+    return;
+  }
+  stop_attempt_.was_answered();
   if (writes_.verifying) {
     const ObjectDef& def = core_.object(object);
     if (core_.store[object].number == def.number(wire_bits(number_of(action), def.size))) {

@@ -13,6 +13,7 @@ namespace axisgate::drive {
 class StopAttempt {
  public:
   static constexpr int kAttempts = 3;  // design 3.4
+  static constexpr int kLooks = 3;     // as many as an object is asked before it is given up
 
   [[nodiscard]] bool may_repeat() const { return attempts_ + 1 < kAttempts; }
   void repeat() { ++attempts_; }
@@ -30,6 +31,11 @@ class StopAttempt {
   void was_not_heeded() { unheeded_ = true; }
   [[nodiscard]] bool unheeded() const { return unheeded_; }
 
+  /// A look for its effect came to nothing: false after kLooks in a row. An axis whose state nobody tells must not keep
+  /// its line.
+  [[nodiscard]] bool may_look_again() { return ++looks_ < kLooks; }
+  void was_answered() { looks_ = 0; }
+
   /// Something of it was not sent, as it could have enabled, or not seen to act.
   void withhold() { withheld_ = true; }
   /// A state was read after its last sending.
@@ -41,6 +47,7 @@ class StopAttempt {
   [[nodiscard]] bool handed_over() const { return handed_over_; }
 
  private:
+  int looks_ = 0;                 ///< in vain, in a row
   int attempts_ = 0;              ///< beyond the first
   Instant until_ = kNever;        ///< of its waits together
   Instant motor_until_ = kNever;  ///< and of those that the motor alone shows the end of

@@ -48,6 +48,7 @@ void Drive::begin_bring_up(bool restarted) {
   }
   set_state(LinkState::setup);
   presence_.found();
+  if (jobs_.setup != 0) bus_.finish(std::exchange(jobs_.setup, 0));  // what was left of its setup is done anew
   unmap_values();
   reads_.restart(turn_.now);
   control_.reset();
@@ -102,6 +103,7 @@ void Drive::tell_given_up(ObjectId id) {
                     object.name, place_of(model_, id), model_.node,
                     refusal ? fmt::format("was refused (0x{:08X})", *refusal) : "was not answered", uses_of(model_, id),
                     model_.needs_for_state(id) ? "nothing is known of the axis without it, and it is asked each 2 s"
+                    : model_.needs(id)         ? "nothing moves without it, and it is asked ever more seldom"
                                                : "the axis goes on without it, and it is asked ever more seldom"));
 }
 

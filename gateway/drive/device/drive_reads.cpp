@@ -31,6 +31,7 @@ void DriveReads::restart(Instant now) {
   tries_.restart();
   silent_.reset();
   answers_ = false;
+  probes_ = 0;
   wide_told_ = false;
   plan_.restart(now);
 }

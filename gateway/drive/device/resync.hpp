@@ -24,8 +24,7 @@ class Resync {
   /// out in the length that was lost least.
   static constexpr int kMaxOwed = 64;
 
-  Resync(const ResyncProperties& facts, const std::vector<ObjectDef>& objects)
-      : facts_(facts), objects_(objects) {}
+  Resync(const ResyncProperties& facts, const std::vector<ObjectDef>& objects) : facts_(facts), objects_(objects) {}
 
   /// This exchange was given up.
   void lost(const bus::Exchange& exchange, Instant now);

@@ -24,8 +24,7 @@ std::vector<Quantity> speeds_of(int motion_mode) {
 
 }  // namespace
 
-// A node may have restarted while nobody heard its boot-up: for a heartbeat's time nothing tells of it. Then it had to
-// be enabled anew, and what it held before that it may hold no more.
+// A drive that was silent may have restarted while nobody heard it: what a limit is held against is read again then.
 void add_speeds(const AxisCore& core, int mode, Plan& plan) {
   bool look_again = false;
   for (const Quantity each : speeds_of(mode)) {
@@ -33,20 +32,14 @@ void add_speeds(const AxisCore& core, int mode, Plan& plan) {
     if (binding == nullptr || !core.model.takes(each)) continue;
     const ObjectState& state = core.store[binding->object];
     const auto told = core.told.find(binding->object);
-    const bool of_before = is_canopen(core.drive) && state.exchange <= core.enabled_by;
     if (told != core.told.end() && !state.clamped) {
-      if (of_before && state.known && core.facts().enabled()) {
-        plan.add(Action::read(binding->object));
-        look_again = true;
-        continue;
-      }
       // After a mode change it is taken to be as it was: what a start takes longer is a button's time.
       if (!state.known || state.out_of_sight || state.number != told->second.raw)
         static_cast<void>(add_write(core, each, {told->second.value, told->second.raw}, plan));
       continue;
     }
     const bool limited = binding->limits.max < range_of(row(each).type).max;
-    if ((of_before || state.out_of_sight) && limited && state.known && core.facts().enabled()) {
+    if (state.out_of_sight && limited && state.known && core.facts().enabled()) {
       plan.add(Action::read(binding->object));
       look_again = true;
       continue;

@@ -39,7 +39,6 @@ struct AxisCore {
   bool mode_chosen = false;             ///< a client has chosen the mode since bring-up
   bool homed = false;                   ///< latched (design 3.1, discrete input 6)
   bool counter_wrapped = false;         ///< its position has jumped, and no homing was begun since
-  std::uint64_t enabled_by = 0;         ///< the newest exchange when it was seen to become enabled last
   std::int32_t set_position_value = 0;  ///< row 78, the gateway's own
   VirtualAxis machine{};                ///< of a virtual axis alone
   /// Where the motion started last was sent, in register units, and the store's invalidations() then: the drive may

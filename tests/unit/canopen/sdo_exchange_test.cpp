@@ -31,7 +31,7 @@ TEST_F(SdoExchange, a_read_is_sent_to_its_node_and_its_value_reported_as_it_came
       {read_of(0x6041), "4B 41 60 00 37 02", value_of(0x6041, 2, 0x0237)},              // shorter than eight bytes
       {read_of(0x6064), "42 64 60 00 E0 B1 FF FF", value_of(0x6064, 4, 0xFFFFB1E0)},    // without a size: four bytes
       {read_of(0x6041, 0, 4), "4B 41 60 00 37 02 00 00", value_of(0x6041, 2, 0x0237)},  // of another width than asked
-      {read_of(0x2000), "47 00 20 00 01 02 03 00", refusal_of(0x06070010, true)},             // three bytes fit no field
+      {read_of(0x2000), "47 00 20 00 01 02 03 00", refusal_of(0x06070010, true)},       // three bytes fit no field
   };
   for (const Read& read : reads) {
     clear();

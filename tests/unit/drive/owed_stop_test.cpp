@@ -262,11 +262,12 @@ bool goes_on(StopWatch& watch, std::initializer_list<std::int64_t> speeds) {
 
 TEST(StopWatch, ToldOnceOfAMotorThatGetsNoSlower) {
   StopWatch watch;
-  EXPECT_FALSE(goes_on(watch, {100, 100, 100, 100, 100, 100})) << "no stop is watched";
+  EXPECT_FALSE(goes_on(watch, {100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100}))
+      << "no stop is watched";
   watch.begin({StopKind::halt, 7});
-  EXPECT_TRUE(goes_on(watch, {100, 80, 80, 81, 80, 79}));
+  EXPECT_TRUE(goes_on(watch, {100, 80, 80, 81, 80, 79, 79, 79, 80, 80, 81, 79, 79}));
   EXPECT_FALSE(watch.watched());
-  EXPECT_FALSE(goes_on(watch, {79, 79, 79, 79, 79, 79}));
+  EXPECT_FALSE(goes_on(watch, {79, 79, 79, 79, 79, 79, 79, 79, 79, 79, 79, 79, 79}));
 }
 
 TEST(StopWatch, ARampOfFifteenSecondsIsNone) {
@@ -280,7 +281,7 @@ TEST(StopWatch, ARampOfFifteenSecondsIsNone) {
 TEST(StopWatch, OneThatGetsFasterGoesOn) {
   StopWatch watch;
   watch.begin({StopKind::quick_stop, 1});
-  EXPECT_TRUE(goes_on(watch, {100, 110, 120, 130, 140}));
+  EXPECT_TRUE(goes_on(watch, {100, 110, 120, 130, 140, 150, 160, 170, 180, 190, 200, 210, 220}));
 }
 
 // --- What was read before a sending shows nothing of it
