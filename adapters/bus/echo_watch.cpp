@@ -37,7 +37,9 @@ void EchoWatch::on_answer(bool clean) {
     read_came_back();
     return;
   }
-  if (!clean) return;
+  // One that may be late says little, several say the same: a line with an echo would have brought a copy by then.
+  if (!clean && ++unclean_ < kAnswersWithoutCopy) return;
+  unclean_ = 0;
   came_back_ = 0;
   if (++without_copy_ < (echoed_ ? kAnswersWithoutCopy : 1)) return;
   belief_ = Belief::silent;
@@ -48,7 +50,7 @@ void EchoWatch::on_answer(bool clean) {
 void EchoWatch::read_came_back() {
   if (counted_) return;
   counted_ = echoed_ = true;
-  without_copy_ = 0;
+  without_copy_ = unclean_ = 0;
   if (++came_back_ >= kReadsThatCameBack) {
     came_back_ = kReadsThatCameBack;
     belief_ = Belief::echoes;

@@ -54,6 +54,7 @@ class EchoWatch {
   bool answered_ = true;  ///< what was sent last
   int came_back_ = 0;     ///< reads in a row
   int without_copy_ = 0;  ///< answers in a row
+  int unclean_ = 0;       ///< of those without a copy that may be late ones, in a row
   int copies_alone_ = 0;
 };
 

@@ -94,7 +94,7 @@ class Looped(PoorAdapter):
         for line in self.lines:
             self.gateway.wait_for(f"bus {line}: {ONLY_COPIES}")
         self.assertEqual(self.client.gateway()["axes_online"], 0)
-        self.assertTrue(all(each["echoes"] >= 3 for each in self.all_buses()))
+        until("copies were counted on each line", lambda: all(each["echoes"] >= 3 for each in self.all_buses()))
         for line in self.lines:
             self.sim.ask(f"echo {line} off")
         self.until_online()
