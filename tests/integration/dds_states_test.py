@@ -187,7 +187,7 @@ class Gateway(Watched):
                 self.assertEqual(bus["link"], now["link"])
                 self.assertTrue(0 <= bus["load"] <= 1, bus["load"])
                 self.assertGreater(bus["requests"], first["buses"][index]["requests"])
-                for name in [name for name, (_, kind) in BUS.items() if kind == "u32"]:
+                for name in [name for name, (_, kind) in BUS.items() if kind == "u32" and name != "echoes"]:  # no member of it
                     self.assertTrue(first["buses"][index][name] <= bus[name] <= now[name], name)
 
     def test_it_tells_of_a_bus_that_is_lost(self):

@@ -129,12 +129,13 @@ std::string owner_text(const HandView& view) {
 
 std::string hand_line(AxisNumber axis, const HandView& view, std::string_view doing) {
   constexpr int kOfATurn = 4, kOfAnRpm = 1;
-  // Its speed is read less often than its state, and may be that of before.
+  // Its speed is read less often than its state, and may be that of before: what stands shows none.
   constexpr double kTremble = 1;  // rpm
-  const bool old_speed = view.state == AxisState::standstill && std::abs(view.rpm.value_or(0)) > kTremble;
+  const bool old_speed =
+      view.rpm_good && view.state == AxisState::standstill && std::abs(view.rpm.value_or(0)) > kTremble;
   std::string out =
       fmt::format("axis {}  {}  {}  {}", axis, shown_number(view.turns, view.turns_good, kOfATurn, "turns"),
-                  shown_number(view.rpm, view.rpm_good && !old_speed, kOfAnRpm, "rpm"),
+                  shown_number(old_speed ? 0 : view.rpm, view.rpm_good, kOfAnRpm, "rpm"),
                   axis_state_text(static_cast<std::uint32_t>(view.state),
                                   view.has(AxisInput::stop_latched) && !view.has(AxisInput::moving)));
   if (!view.in_sight())

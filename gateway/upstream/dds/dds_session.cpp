@@ -134,7 +134,8 @@ void DdsSession::on_record(const Record& record, Instant now) {
   Impl& it = *impl_;
   if (const auto* const writer = std::get_if<WriterRecord>(&record)) {
     const std::string line = it.clients.on_writer(*writer);
-    if (!line.empty() && it.told.line) it.told.line(line);
+    const auto& tell = it.told.once ? it.told.once : it.told.line;
+    if (!line.empty() && tell) tell(line);
   }
   if (const auto* const heartbeat = std::get_if<HeartbeatRecord>(&record)) it.clients.on_heartbeat(*heartbeat, now);
   if (const auto* const namesake = std::get_if<NamesakeRecord>(&record)) {

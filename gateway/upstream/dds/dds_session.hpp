@@ -36,6 +36,8 @@ struct DdsTold {
   std::function<void(const std::string&)> line{};
   /// Another gateway has our name, or has it no more: where its axis was seen, for an event.
   std::function<void(bool taken, const std::string& where)> name_taken{};
+  /// A line for the log that comes once for each writer; none: `line` takes it.
+  std::function<void(const std::string&)> once{};
 };
 
 class DdsSession {

@@ -30,7 +30,10 @@ DdsServer::DdsServer(boost::asio::io_context& io, Runtime& runtime, const DdsSet
       patience_(runtime.make_timer([this] { on_patience_ended(); })),
       session_(settings, image, events, commands, [this] { turn_timer_->expires_at(runtime_.now()); },
                {[this](const std::string& line) { log_.write(LogLevel::info, "dds", printable(line)); },
-                [this](bool taken, const std::string& where) { on_name_taken(taken, where); }}) {}
+                [this](bool taken, const std::string& where) { on_name_taken(taken, where); },
+                [this](const std::string& line) {
+                  log_.write(LogLevel::info, "dds", printable(line), LogPace::each);  // that of each writer
+                }}) {}
 
 DdsServer::~DdsServer() { stop(); }
 
