@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "adapters/modbus_rtu/rtu_crc.hpp"
+#include "gateway/core/rtu_crc.hpp"
 
 namespace axisgate::modbus_rtu {
 

@@ -7,8 +7,8 @@
 #include <cassert>
 #include <utility>
 
-#include "adapters/modbus_rtu/rtu_crc.hpp"
 #include "adapters/modbus_rtu/rtu_text.hpp"
+#include "gateway/core/rtu_crc.hpp"
 
 namespace axisgate::modbus_rtu {
 

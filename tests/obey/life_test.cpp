@@ -17,6 +17,14 @@ class Life : public testing::TestWithParam<Subject> {
     ASSERT_EQ(client.command(plant.endless_command()), kOk);
     ASSERT_TRUE(plant.turns_within(1s));
   }
+  /// Its motor runs, its connection ends, and there is another one of it.
+  void comes_back(Plant& plant) {
+    plant.ready();
+    start(plant, plant.a);
+    plant.a.disconnect();
+    plant.run(800ms);
+    plant.a.connect();
+  }
   /// A PLC's block that asks for nothing it has not asked for before.
   Write scanned(Plant& plant) { return block(row::target_position, 45, plant.endless_target()); }
   void stops_by_its_lease(Plant& plant) {
@@ -119,11 +127,7 @@ TEST_P(Life, OfASilentOwnerIsNotEndedByAnotherConnectionOfItsAddress) {
 
 TEST_P(Life, OfAnOrphanGoesOnWithAnyWriteOfItsAddressAndRole) {
   Plant plant(GetParam(), with_leases());
-  plant.ready();
-  start(plant, plant.a);
-  plant.a.disconnect();
-  plant.run(800ms);
-  plant.a.connect();
+  comes_back(plant);
   // It asks for nothing: command 0.
   const Write idle = block(row::command, row::command_id, {});
   EXPECT_EQ(plant.a.write(idle), kOk);
@@ -135,11 +139,7 @@ TEST_P(Life, OfAnOrphanGoesOnWithAnyWriteOfItsAddressAndRole) {
 
 TEST_P(Life, OfAnOrphanGoesOnWithAChangedHeartbeat) {
   Plant plant(GetParam(), with_leases());
-  plant.ready();
-  start(plant, plant.a);
-  plant.a.disconnect();
-  plant.run(800ms);
-  plant.a.connect();
+  comes_back(plant);
   EXPECT_EQ(plant.a.row(row::heartbeat, 1), kOk);
   EXPECT_EQ(plant.a.word(shown::owner), kMe);
   plant.run(1500ms);
@@ -183,11 +183,7 @@ TEST_P(Life, OfAnOrphanIsNotTakenByTheGatewaysHeartbeat) {
 
 TEST_P(Life, OfAnOrphanGoesOnWithTheFirstBlockOfItsReturnThoughThatIsOnlyRemembered) {
   Plant plant(GetParam(), with_leases());
-  plant.ready();
-  start(plant, plant.a);
-  plant.a.disconnect();
-  plant.run(800ms);
-  plant.a.connect();
+  comes_back(plant);
   EXPECT_EQ(plant.a.command(plant.endless_command(), 7), kOk) << "an id that is the first of its address";
   EXPECT_EQ(plant.a.word(shown::owner), kMe);
   plant.run(1500ms);

@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "adapters/modbus_rtu/rtu_codec.hpp"
-#include "adapters/modbus_rtu/rtu_crc.hpp"
 #include "adapters/serial/serial_port.hpp"
+#include "gateway/core/rtu_crc.hpp"
 
 namespace axisgate::modbus_rtu {
 

@@ -15,7 +15,7 @@
 #include <variant>
 
 #include "adapters/modbus_rtu/rtu_codec.hpp"
-#include "adapters/modbus_rtu/rtu_crc.hpp"
+#include "gateway/core/rtu_crc.hpp"
 
 namespace axisgate::modbus_rtu {
 

@@ -120,20 +120,20 @@ void BringUp::written() {
 
 void BringUp::write_refused(bool for_now, Instant now) {
   read_back_ = false;
-  const int tries = amending_ ? 1 : kWriteTries;
+  const int tries = amending_ ? 1 : ObjectTries::kTries;
   if (for_now && ++write_tries_ < tries) {
-    write_again_ = now + write_tries_ * kFirstPause;
+    write_again_ = now + write_tries_ * ObjectTries::kFirstPause;
     return;
   }
   setup_written_ = true;
   if (!for_now || !setup_ || setup_at_ >= setup_->size()) return;
   refused_for_now_.push_back((*setup_)[setup_at_]);
-  amend_due_ = now + std::max(amend_pause_, kFirstPause);
+  amend_due_ = now + std::max(amend_pause_, ObjectTries::kFirstPause);
 }
 
 void BringUp::begin_amending(Instant now) {
   amending_ = true;
-  amend_pause_ = std::clamp(2 * amend_pause_, kFirstPause, kLongestPause);
+  amend_pause_ = std::clamp(2 * amend_pause_, ObjectTries::kFirstPause, ObjectTries::kLongestPause);
   amend_due_ = kNever;
   read_back_ = setup_written_ = false;
   setup_ = std::exchange(refused_for_now_, {});

@@ -12,6 +12,7 @@
 
 #include "gateway/drive/device/node_setup.hpp"
 #include "gateway/drive/device/node_start.hpp"
+#include "gateway/drive/device/object_tries.hpp"
 #include "gateway/drive/device/poll_plan.hpp"
 #include "gateway/drive/state/object_store.hpp"
 
@@ -33,10 +34,8 @@ class BringUp {
   [[nodiscard]] std::optional<Next> next(const ObjectStore& store);
   /// The write given by next() was acknowledged, or its outcome is unknown: it is read back next.
   void written();
-  /// The drive refused the write given by next(). `for_now`: it is tried kWriteTries times, ever later.
+  /// The drive refused the write given by next(). `for_now`: it has as many tries as a read (ObjectTries), ever later.
   void write_refused(bool for_now, Instant now);
-  static constexpr int kWriteTries = 3;
-  static constexpr Duration kFirstPause = std::chrono::milliseconds(500), kLongestPause = std::chrono::seconds(60);
   /// The write given by next() is not to be sent before.
   [[nodiscard]] Instant write_again() const { return write_again_; }
   /// A drive that is brought up refused some of its setup for now: when it is tried again; kNever: it did not.
@@ -52,9 +51,8 @@ class BringUp {
   void read_back_answered() { read_back_ = false; }
   /// A Next::exchange was answered or refused, or is given up as unanswered.
   void answered(const bus::ExchangeResult& result);
-  /// A Next::exchange was not answered: true after kExchangeTries, when it is given up.
-  [[nodiscard]] bool unanswered() { return ++exchange_tries_ >= kExchangeTries; }
-  static constexpr int kExchangeTries = 3;
+  /// A Next::exchange was not answered: true after as many tries as a read has, when it is given up.
+  [[nodiscard]] bool unanswered() { return ++exchange_tries_ >= ObjectTries::kTries; }
   /// Some axis was found enabled: of its setup nothing is written until leave().
   [[nodiscard]] bool adopted() const { return adopted_; }
   void leave() { adopted_ = false; }

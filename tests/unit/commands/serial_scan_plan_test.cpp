@@ -9,7 +9,7 @@
 
 #include "adapters/kinco/kinco_exchange.hpp"
 #include "adapters/modbus_rtu/rtu_codec.hpp"
-#include "adapters/modbus_rtu/rtu_crc.hpp"
+#include "gateway/core/rtu_crc.hpp"
 #include "tests/stage/profile_once.hpp"
 
 namespace axisgate::app {
@@ -146,7 +146,7 @@ TEST(SerialScan, ReadsOfTheOtherProtocolAreNoKincoWriteWhereverOneBegins) {
                               static_cast<Byte>(asked.exchange.object.index & 0xFF),
                               0,
                               static_cast<Byte>(asked.exchange.size / 2)};
-      const std::uint16_t crc = modbus_rtu::crc16(frame);
+      const std::uint16_t crc = crc16(frame);
       frame.push_back(static_cast<Byte>(crc & 0xFF));
       frame.push_back(static_cast<Byte>(crc >> 8));
       line.insert(line.end(), frame.begin(), frame.end());

@@ -3,23 +3,21 @@
 #pragma once
 
 #include "adapters/modbus_rtu/rtu_codec.hpp"
-#include "adapters/modbus_rtu/rtu_crc.hpp"
+#include "gateway/core/rtu_crc.hpp"
 #include "tests/unit/bus/wire_stage.hpp"
 
 namespace axisgate::test {
 
 /// The frame as it is on the wire.
 inline ByteRow with_crc(ByteRow frame) {
-  const std::uint16_t crc = modbus_rtu::crc16(frame);
+  const std::uint16_t crc = crc16(frame);
   frame.push_back(static_cast<Byte>(crc & 0xFF));
   frame.push_back(static_cast<Byte>(crc >> 8));
   return frame;
 }
 inline ByteRow with_crc(std::string_view hex) { return with_crc(from_hex(hex)); }
 /// What the wire sees of it.
-inline ByteRow without_crc(const ByteRow& frame) {
-  return {frame.begin(), frame.end() - std::ptrdiff_t{modbus_rtu::kCrcSize}};
-}
+inline ByteRow without_crc(const ByteRow& frame) { return {frame.begin(), frame.end() - std::ptrdiff_t{kCrcSize}}; }
 
 /// As both Kinco sheets describe them: low word first, and 0x81 for the error of a read.
 inline modbus_rtu::RtuNode kinco_node(std::uint8_t node = 1) {

@@ -9,8 +9,8 @@
 
 #include "adapters/kinco/kinco_exchange.hpp"
 #include "adapters/modbus_rtu/rtu_codec.hpp"
-#include "adapters/modbus_rtu/rtu_crc.hpp"
 #include "gateway/config/adapter_names.hpp"
+#include "gateway/core/rtu_crc.hpp"
 
 namespace axisgate::app {
 namespace {
@@ -39,7 +39,7 @@ std::vector<Byte> bytes_of(const std::string& protocol, const bus::Exchange& exc
   }
   const modbus_rtu::Frame frame = modbus_rtu::request_of(exchange, {});
   std::vector<Byte> out(frame.begin(), frame.end());
-  const std::uint16_t crc = modbus_rtu::crc16(out);
+  const std::uint16_t crc = crc16(out);
   out.push_back(static_cast<Byte>(crc & 0xFF));
   out.push_back(static_cast<Byte>(crc >> 8));
   return out;

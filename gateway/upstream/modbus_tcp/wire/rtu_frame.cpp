@@ -1,29 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/modbus_tcp/wire/rtu_frame.hpp"
 
+#include "gateway/core/rtu_crc.hpp"
+
 namespace axisgate::modbus_tcp {
 namespace {
 
 constexpr std::size_t kShortRequest = 8;  // unit, function, address, count or value, CRC
 constexpr std::size_t kByteCount = 6;     // of functions 15 and 16, behind the same
-constexpr std::size_t kCrc = 2;
 
 std::size_t size_of_request(Bytes bytes) {
   const Byte function = bytes[1];
   if (function >= 1 && function <= 6) return kShortRequest;
-  if (function == 15 || function == 16) return kByteCount + 1U + bytes[kByteCount] + kCrc;
+  if (function == 15 || function == 16) return kByteCount + 1U + bytes[kByteCount] + kCrcSize;
   return 0;
-}
-
-std::uint16_t crc16(Bytes bytes) {
-  constexpr std::uint16_t kPolynomial = 0xA001;
-  std::uint16_t crc = 0xFFFF;
-  for (const Byte byte : bytes) {
-    crc = static_cast<std::uint16_t>(crc ^ byte);
-    for (int bit = 0; bit < 8; ++bit)
-      crc = static_cast<std::uint16_t>((crc & 1U) != 0 ? (crc >> 1U) ^ kPolynomial : crc >> 1U);
-  }
-  return crc;
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sum at the end of each Modbus RTU frame: CRC-16, polynomial 0xA001 reflected, start 0xFFFF, low byte first on the
 // wire (Modbus over serial line V1.02, 6.2.2). Promises 0 for a frame together with its own CRC. Never used to build
-// what the product sends: libmodbus does that; here it judges the frames that libmodbus passes on unjudged, and knows a
-// request that comes back.
+// what the product sends: libmodbus does that; here it judges the frames that libmodbus passes on unjudged, knows a
+// request that comes back, and one that comes by TCP.
 #pragma once
 
 #include "gateway/core/bytes.hpp"
 
-namespace axisgate::modbus_rtu {
+namespace axisgate {
 
 inline constexpr std::size_t kCrcSize = 2;
 
@@ -24,4 +24,4 @@ inline constexpr std::size_t kCrcSize = 2;
   return crc;
 }
 
-}  // namespace axisgate::modbus_rtu
+}  // namespace axisgate
