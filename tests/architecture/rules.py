@@ -5,6 +5,9 @@ import re
 import sys
 from pathlib import Path
 
+from proofs import fault_proofs, rule_proofs
+from sources import CODE, SOURCE_FOLDERS, files, lines
+
 # The way of a value, wire to socket, and of a command, socket to wire. The first pattern that a folder fits holds: beside its own
 # headers, and those of folders of the same pattern, it may include those that are named here. Which library includes which, its
 # CMakeLists.txt says (DEPENDS).
@@ -66,24 +69,10 @@ IMPURE = re.compile(r'#include <(boost/asio|boost/beast|sys/socket|sys/epoll|pol
                     r'|(steady|system|high_resolution)_clock::now|std::chrono::\w*clock::now|\bsleep_for\b|\brand\(')
 
 LONGEST_FILE = 400
-SOURCE_FOLDERS = ("adapters", "gateway", "tests", "deploy", "schemas")
-CODE = {".cpp", ".hpp", ".py", ".cmake"}
 # Written in halves so that this file does not name what it forbids.
 FORBIDDEN_WORDS = re.compile("|".join(["/wo" "rk/", "/fa" "rm/", r"\.\./sha" "red", "before" "-stop", "GTEST_" "SKIP", "DIS" "ABLED_",
                                        "TO" "DO", "FIX" "ME", r"EXPECT_TRUE\(tr" r"ue\)"]))
 INCLUDE = re.compile(r'^\s*#include "([^"]+)"')
-
-
-def files(root, suffixes):
-    """All files of the repository with these suffixes, as paths relative to its root."""
-    for folder in SOURCE_FOLDERS:
-        for path in sorted((root / folder).rglob("*")):
-            if path.is_file() and path.suffix in suffixes and "__pycache__" not in path.parts:
-                yield path.relative_to(root).as_posix()
-
-
-def lines(root, name):
-    return enumerate((root / name).read_text(encoding="utf-8").splitlines(), 1)
 
 
 def layer_of(name):
@@ -259,7 +248,7 @@ BARE_CITES = ("tests/model/", "tests/obey/", "tests/judged/")
 BARE = re.compile(r"(?<![\d.])(3\.\d)\s([A-Z][^,;:.)\"]*)")
 POINTS = re.compile(r"[Dd]esign 7, points? (\d+)(?: and (\d+))?")
 # Numbers of rules that no page of the repository has. Bytes in hex look alike: others stand beside them.
-LOST = re.compile(r"Design-\d|design-\d|(?<![0-9A-F] )\b[AB](?:[1-9]|1\d)\b(?! [0-9A-F]{2}\b)")
+LOST = re.compile(r"Design-\d|design-\d|(?<![0-9A-F] )\b(?:[AB](?:[1-9]|1\d)|D[1-9]\d{0,2})\b(?! [0-9A-F]{2}\b)")
 PROMISE = re.compile(r"\bP\d\b")
 
 
@@ -339,49 +328,9 @@ def licence(root):
             yield f"{name}:{1 + behind}: the line before all others, behind #! or <?xml, is: {wanted}"
 
 
-FAULTS = 36
-C_TEST = re.compile(r"^\s*TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)", re.M)
-STORIES = {"stories": "tests/integration", "vcan_stories": "tests/vcan", "modbus_clients": "tests/integration/modbus_clients"}
-
-
-def tests_of(root):
-    """All tests by the names that docs/faults.md uses."""
-    names = {f"Architecture.{rule}" for rule in RULES}
-    for path in (root / "tests").rglob("*_test.cpp"):
-        names.update(".".join(found) for found in C_TEST.findall(path.read_text(encoding="utf-8")))
-    for prefix, folder in STORIES.items():
-        # A story of tests/integration that speaks to CAN runs on real interfaces as well.
-        for path in (root / folder).glob("*_test.py"):
-            cls = ""
-            for found in re.finditer(r"^class (\w+)|^    def (test_\w+)", path.read_text(encoding="utf-8"), re.M):
-                cls = found[1] or cls
-                if found[2]:
-                    names.add(f"{prefix}.{path.stem.removesuffix('_test')}.{cls}.{found[2]}")
-    return names
-
-
-def fault_proofs(root):
-    """Each fault of docs/faults.md has a test that exists."""
-    name = "docs/faults.md"
-    known, title, proofs, faults = tests_of(root), 0, 0, 0
-    for number, line in [*lines(root, name), (0, "## end")]:
-        if line.startswith("## "):
-            if title and not proofs:
-                yield f"{name}:{title}: a fault without a test that proves it"
-            title, proofs = number, 0
-            faults += number > 0
-            if number and not line.startswith(f"## {faults}. "):
-                yield f"{name}:{number}: this is fault {faults}"
-        elif line.startswith("- "):
-            proofs += 1
-            if line[2:].strip("`") not in known:
-                yield f"{name}:{number}: there is no test {line[2:]}"
-    if faults != FAULTS:
-        yield f"{name}:1: {faults} faults, and there are {FAULTS}"
-
-
 RULES = {"arrows": arrows, "one_place": one_place, "deciding": deciding, "headers": headers, "lengths": lengths, "words": words,
-         "field_words": field_words, "cites": cites, "licence": licence, "fault_proofs": fault_proofs}
+         "field_words": field_words, "cites": cites, "licence": licence, "fault_proofs": fault_proofs,
+         "rule_proofs": rule_proofs}
 
 if __name__ == "__main__":
     if len(sys.argv) != 2 or sys.argv[1] not in RULES:

@@ -6,6 +6,7 @@ import unittest
 from pathlib import Path
 
 import rules
+from proofs import FAULTS, RULES_AND_DECISIONS
 
 HEADER = "// What it is.\n// Promises this.\n// Never that.\n#pragma once\n"
 
@@ -149,15 +150,32 @@ class Rules(unittest.TestCase):
         self.write("tests/unit/a_test.cpp", "TEST_P(Cable, IsPulled) {}\n")
         self.write("tests/integration/cable_test.py", "class Pulled(Story):\n    def test_idle(self):\n")
         good = "- `Cable.IsPulled`\n- `stories.cable.Pulled.test_idle`\n"
-        page = "".join(f"## {n}. A fault\n{good}" for n in range(1, rules.FAULTS + 1))
+        page = "".join(f"## {n}. A fault\n{good}" for n in range(1, FAULTS + 1))
         self.write("docs/faults.md", page)
         self.assertEqual(self.breaches("fault_proofs"), [])
         self.write("docs/faults.md", page.replace("- `stories.cable.Pulled.test_idle`", "- `stories.cable.Pulled.test_moving`", 1))
         self.assert_breach("fault_proofs", "docs/faults.md:3")
         self.write("docs/faults.md", page.replace(good, "", 1))
         self.assert_breach("fault_proofs", "docs/faults.md:1")
-        self.write("docs/faults.md", page.replace(f"## {rules.FAULTS}. A fault\n{good}", ""))
+        self.write("docs/faults.md", page.replace(f"## {FAULTS}. A fault\n{good}", ""))
         self.assert_breach("fault_proofs", "docs/faults.md:1")
+
+    def test_a_rule_without_its_proof_an_id_used_twice_and_too_much_to_read_are_found(self):
+        self.write("tests/unit/a_test.cpp", "TEST(Unheeded, StopIsNotDone) {}\n")
+        self.write("tests/unit/modbus_tcp/dialogues/order.txt", "== a stop goes first\n")
+        self.write("gateway/a.cpp", "// as STOP-2 says; HALF-STOP-9 is another\n")
+        row = "| STOP-1 | A stop stops | it must | `Unheeded.StopIsNotDone` |\n"
+        good = f"# Stops\n{row}| STOP-2 | All stops stop | as well | `order: a stop goes first`, `Unheeded.*` |\n"
+        self.write("docs/rules/stops.md", good)
+        self.assertEqual(self.breaches("rule_proofs"), [])
+        for wrong, place in ((good.replace("`Unheeded.StopIsNotDone`", "`Unheeded.StopIsDone`"), "docs/rules/stops.md:2"),
+                             (good.replace("`Unheeded.*`", "`Heeded.*`"), "docs/rules/stops.md:3"),
+                             (good.replace("`Unheeded.StopIsNotDone`", "none"), "docs/rules/stops.md:2"),
+                             (good.replace(" it must |", ""), "docs/rules/stops.md:2"),
+                             (good + row, "docs/rules/stops.md:4"), (row, "gateway/a.cpp:1"),
+                             (good + "x" * RULES_AND_DECISIONS, "docs/rules:1"), ("# Stops\n", "docs/rules:1")):
+            self.write("docs/rules/stops.md", wrong)
+            self.assert_breach("rule_proofs", place)
 
     def test_a_source_without_its_licence_is_found(self):
         self.write("gateway/core/good.cpp", "// SPDX-" "License-Identifier: Apache-2.0\nint x;\n")

@@ -14,8 +14,8 @@ import unittest
 
 from page_commands import SOURCE, commands, of_page, pages, single
 
-# What is no more, and what was decided about it.
-OF_THE_PAST = ("CHANGELOG.md", "docs/decisions.md")
+# What is no more.
+OF_THE_PAST = ("CHANGELOG.md",)
 
 
 def read(path):

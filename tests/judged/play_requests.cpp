@@ -42,7 +42,7 @@ void Play::send(std::size_t client, Write write, bool at_once) {
   const bool posted = plant_.listener.posted_writes && !is_dds(client) && !of_object;
   if (!is_dds(client) && !of_object) {
     told_.at(client).reset();
-    // What could not be read has not been written, and register 25 tells nothing of it (D363).
+    // What could not be read has not been written, and register 25 tells nothing of it (ANS-11).
     const bool perhaps_unread = plant_.listener.offline_reads_fail && write.function == fc::read_write;
     newest_.at(client) = perhaps_unread ? 0 : request;
   }

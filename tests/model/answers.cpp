@@ -67,7 +67,7 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
       next.owner = asked.client;
       next.lease_until(sight_.now_ms + options_.lease_of(asked.client));
     }
-    // An enable of which nobody knows: whether it is taken back once it shows is not said (D152).
+    // An enable of which nobody knows: whether it is taken back once it shows is not said (ANS-6).
     constexpr std::int64_t kTakenBackMs = 6000;
     if (lost && pending.enables && exceptions.contains(kNoAnswer)) next.taken_back_by_ms = sight_.now_ms + kTakenBackMs;
     if (withdrawn && !expected) {

@@ -238,7 +238,7 @@ int Contract::send(std::size_t client, const Write& write) {
       const bool differs = !(none.motion() == next.motion()) || none.accepted != next.accepted ||
                            none.enabled != next.enabled || none.latched != next.latched ||
                            none.faulted != next.faulted || none.owner != next.owner;
-      // Of function 23 the read is judged first, and where that is answered 0x0B nothing is written (D363).
+      // Of function 23 the read is judged first, and where that is answered 0x0B nothing is written (ANS-11).
       if (options_.reads_fail && write.function == fc::read_write && trouble_ && !pending.verdict.stop) {
         worlds.push_back(world);
         (worlds.back().pending[number] = pending).unread = true;

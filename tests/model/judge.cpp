@@ -53,10 +53,10 @@ Judge::Edge Judge::command_edge(const Rows& rows, bool single) {
   const std::int64_t id = rows.contains(row::command_id) ? rows.at(row::command_id) : 0;
   ClientMemory& mine = me();
   const std::optional<std::int64_t> before = mine.command.value;
-  // "The command is new if the id differs from the last non-zero id of this address", and of its connection (D410).
+  // "The command is new if the id differs from the last non-zero id of this address", and of its connection.
   const std::optional<std::int64_t> last_id = this->last_id();
   const bool repeats = mine.own_id == id;
-  // Of a pair that a new connection brings back D422 says more.
+  // Of a pair that a new connection brings back NEW-1 says more.
   auto& ids = world_.clients[std::min(options_.address_of(client_), kModbus)].ids;
   const bool comes_back = !ids.insert(id).second && !mine.own_id;
   Edge edge = Edge::not_new;

@@ -76,8 +76,8 @@ void Judge::begin_jog(std::int64_t direction, Verdict& verdict) {
   verdict = {"jogs", {0}};
 }
 
-// D451: a run that is no jog ends where the two come to be 1 together; while they stay so, a jog alone does. Whether it
-// halts a move is not said.
+// JOG-6: a run that is no jog ends where the two come to be 1 together; while they stay so, a jog alone does. Whether
+// it halts a move is not said.
 void Judge::jog_both(bool newly, Verdict& verdict) {
   const bool runs = world_.jog != 0 || (newly && world_.motor == Motor::runs && world_.motion().kind != Motor::unknown);
   if (newly) stopped_ = true;

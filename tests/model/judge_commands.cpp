@@ -90,8 +90,8 @@ bool Judge::at_rest() const {
          !world_.broken && !world_.adopted && !world_.held && world_.awaits == 0 && world_.pending.empty();
 }
 
-// 3.3 What asks: "the last accepted set-point is the one that every start uses": the speed of a move (D387). A homing
-// has speeds of its own.
+// 3.3 What asks: "the last accepted set-point is the one that every start uses": the speed of a move (MOVE-17). A
+// homing has speeds of its own.
 std::int64_t Judge::fastest_of(std::int64_t start) const {
   if (!seen_.stands || !seen_.clear || seen_.troubled || !world_.earlier.empty()) return kNever;
   if (start == kHome) return options_.homing_speed;

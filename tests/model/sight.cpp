@@ -80,7 +80,7 @@ bool Contract::motion_fits(World& world, const Sight& sight) const {
   if (settled) world.earlier.clear();
   const bool stands = sight.velocity == 0;
   const Motion motion = world.motion();
-  // 3.3: "Limits per axis ..., whatever the role and the way in", and whatever the drive holds (D384).
+  // 3.3: "Limits per axis ..., whatever the role and the way in", and whatever the drive holds (MOVE-16).
   const std::int64_t fastest = std::min(options_.velocity_limit, motion.kind == Motor::stands ? kNever : world.fastest);
   if (!trouble_ && std::abs(sight.velocity) > fastest + off(fastest)) return false;
   if (motion.kind == Motor::unknown) return true;

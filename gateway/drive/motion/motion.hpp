@@ -106,7 +106,7 @@ class Motion {
   void observe(const AxisFacts& facts, Duration homing_timeout);
   /// Homing has run longer than its timeout: the axis must be halted (once).
   [[nodiscard]] bool take_homing_timeout();
-  /// A value that came by itself shows its end, and may be of before its start (D33): only a read made now settles it.
+  /// A value that came by itself shows its end, and may be of before its start (ANS-2): only a read now settles it.
   [[nodiscard]] bool end_wants_sample(const AxisFacts& facts) const;
   /// The drive has told that it is at its target, and the position shown is of before: it is read next, and only then
   /// is the motion completed. Who acts on the end of a move looks where the axis is.

@@ -52,7 +52,7 @@ TEST_P(CanMotion, AbsoluteMovesEndWhereTheyWereSent) {
   }
 }
 
-// It was told up to a second late, where nothing else was asked of the node meanwhile (D33).
+// It was told up to a second late, where nothing else was asked of the node meanwhile (ANS-2).
 TEST_P(CanMotion, TheEndOfAMoveIsToldAsSoonAsTheDriveShowsIt) {
   fast();
   constexpr std::uint16_t kTargetReached = 1U << 10;
