@@ -239,7 +239,7 @@ def field_words(root):
                 yield f"{name}:{text.count(chr(10), 0, token.start()) + 1}: {breach}"
 
 
-# What comments cite: a section of ARCHITECTURE.md with the heading below it, a point of section 7, a promise of section 8.
+# What comments cite: a section that ARCHITECTURE.md lists, with a heading of it, a point of "How it is built", a promise.
 SECTION = r"""(\d(?:\.\d)?)(?![\d/]|\.\d)(?:(?:\s|,?\s")([A-Z][^,;:.)"]*)"?)?"""
 CITE = re.compile(rf"[Dd]esign {SECTION}(?:(?:,|,?\sand)\s(?:(?=\d\.)|(?<=and\s)){SECTION})*")
 SECTION = re.compile(SECTION)
@@ -253,17 +253,16 @@ PROMISE = re.compile(r"\bP\d\b")
 
 
 def cited(root):
-    """Of ARCHITECTURE.md: its sections with the headings below them, the points of section 7, the promises of section 8."""
-    sections, points, promises, current = {}, set(), set(), ""
+    """Of ARCHITECTURE.md: the sections that may be cited with their headings, its points, its promises."""
+    sections, points, promises, heading = {}, set(), set(), ""
     for _, line in lines(root, "ARCHITECTURE.md"):
-        if found := re.match(r"###? (\d(?:\.\d)?)\.? ", line):
-            current = found[1]
-            sections[current] = []
-        elif line.startswith("#### "):
-            sections[current].append(line[5:])
-        elif current == "7" and (found := re.match(r"(\d+)\. ", line)):
+        if line.startswith("## "):
+            heading = line[3:]
+        elif heading == "What comments cite" and (found := re.match(r"\| (\d(?:\.\d)?) \|[^|]*\|([^|]*)\|", line)):
+            sections[found[1]] = list(filter(None, found[2].strip().split("; ")))
+        elif heading == "How it is built" and (found := re.match(r"(\d+)\. ", line)):
             points.add(found[1])
-        elif current == "8" and (found := re.match(r"\| (P\d) ", line)):
+        elif found := re.match(r"\| (P\d) ", line):
             promises.add(found[1])
     return sections, points, promises
 

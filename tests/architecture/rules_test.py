@@ -121,8 +121,8 @@ class Rules(unittest.TestCase):
         self.write("adapters/serial/b.cpp", "std::string group;  // in the order of the members of a group\n")
         self.assertEqual(self.breaches("field_words"), [])
 
-    ARCHITECTURE = """## 3. Modbus-TCP\n### 3.3 Writes\n#### Edges\n### 3.4 Motion\n#### Owed stops\n## 7. How it is built
-1. **Pure.**\n2. **One thread.**\n## 8. Promises\n| P2 | fast |\n"""
+    ARCHITECTURE = """## How it is built\n1. **Pure.**\n2. **One thread.**\n## Promises\n| P2 | fast |\n## What comments cite
+| 3 | Modbus-TCP | | |\n| 3.3 | writes | Edges | |\n| 3.4 | motion | Owed stops | |\n| 7 | built | | |\n| 8 | promises | | |\n"""
 
     def test_a_cite_of_what_is_not_there_is_found(self):
         self.write("ARCHITECTURE.md", self.ARCHITECTURE)
