@@ -79,11 +79,12 @@ std::string log_kind(std::string_view message) {
 }
 
 // Those of which nothing is left to be told make way.
-bool LogLimit::has_room(Instant now) {
-  if (kinds_.size() < kMaxKinds) return true;
+bool LogLimit::has_room(LogPace pace, Instant now) {
+  const std::size_t most = pace == LogPace::second ? kMaxKinds : kMaxKinds - kKindsOfCommands;
+  if (kinds_.size() < most) return true;
   std::erase_if(
       kinds_, [now](const auto& each) { return each.second.left_out.lines == 0 && now - each.second.told >= kMinute; });
-  return kinds_.size() < kMaxKinds;
+  return kinds_.size() < most;
 }
 
 std::optional<std::uint64_t> LogLimit::takes(const Line& line, LogPace pace, Instant now) {
@@ -93,7 +94,7 @@ std::optional<std::uint64_t> LogLimit::takes(const Line& line, LogPace pace, Ins
   key += log_kind(line.message);
   auto found = kinds_.find(key);
   if (found == kinds_.end()) {
-    if (!has_room(now)) {
+    if (!has_room(pace, now)) {
       ++of_other_kinds_;
       return std::nullopt;
     }

@@ -35,6 +35,8 @@ class LogLimit {
   static constexpr Duration kSecond = std::chrono::seconds(1);
   /// Kinds of a minute that are told apart. What is new beyond them is counted in one line.
   static constexpr std::size_t kMaxKinds = 1024;
+  /// Of them for commands, stops and faults alone, however many kinds come from outside.
+  static constexpr std::size_t kKindsOfCommands = 256;
 
   struct Line {
     LogLevel level = LogLevel::info;
@@ -58,7 +60,7 @@ class LogLimit {
     Instant told = kLongAgo;
     LeftOut left_out{};
   };
-  [[nodiscard]] bool has_room(Instant now);
+  [[nodiscard]] bool has_room(LogPace pace, Instant now);
 
   std::map<std::string, Kind, std::less<>> kinds_;
   std::uint64_t of_other_kinds_ = 0;

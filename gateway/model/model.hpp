@@ -112,7 +112,8 @@ struct Binding {
   std::vector<std::pair<std::int64_t, std::int64_t>> codes{};
   PollClass poll = PollClass::normal;
   bool writable = false;
-  Range limits;  ///< register units: profile, drive, width and axis limits together
+  bool limited = false;  ///< the configuration limits it
+  Range limits;          ///< register units: profile, drive, width and axis limits together
 
   /// Exact, rounded once, half away from zero; no value where it does not fit the register (design 2).
   [[nodiscard]] std::optional<std::int64_t> to_register(std::int64_t raw) const;
@@ -393,8 +394,7 @@ struct DriveModel {
                                                const std::function<std::optional<std::int64_t>(ObjectId)>& number_of);
 
 /// The setup list as it is due by what the drive holds: all of `setup`, then each of `factory_writes` whose object
-/// holds a number it takes the place of, and whose amount is known and fits. Afterwards its object holds another
-/// number, so that it is not due again.
+/// holds a number it takes the place of, and whose amount is known and fits; once written it is not due again.
 [[nodiscard]] std::vector<ObjectWrite> setup_writes(
     const DriveModel& model, const std::function<std::optional<std::int64_t>(ObjectId)>& number_of);
 

@@ -188,6 +188,25 @@ INSTANTIATE_TEST_SUITE_P(All, UnheardRestart,
                          testing::ValuesIn(subjects([](Subject s) { return is_cia402(s) && minds_silence(s); })),
                          named);
 
+// Whatever the drive holds, nobody can say that it is within the limit.
+TEST(UnknownSpeed, UnderALimitStartsNoMove) {
+  PlantOptions options;
+  options.velocity_limit = 50'000;
+  Plant plant(Subject::md_can, options);
+  auto& faults = *plant.stage.at_link(0, [](auto& link) { return &link.line().faults(0); });
+  const simulated::DriveFaults::Place speed{0x6081, 0};
+  faults.spoil(speed, {});
+  plant.ready();
+  ASSERT_EQ(plant.a.row(row::target_position, kNear), kOk);
+  EXPECT_EQ(plant.a.command(kMove), kFailed);
+  EXPECT_TRUE(plant.logged("profile_velocity has a limit: no motion by it starts"));
+  plant.run(500ms);
+  EXPECT_TRUE(plant.stands());
+  faults.mend(speed);
+  EXPECT_TRUE(plant.stage.run_until([&] { return plant.a.command(kMove).ok(); }, 62s));
+  EXPECT_LE(std::abs(plant.comes_to_rest_at() - kNear), kClose);
+}
+
 // --- A counter that runs over ---------------------------------------------------------------------------------------
 
 TEST(WrappedCounter, EndsTheReferenceOfADriveThatSaysHomedAllTheSame) {

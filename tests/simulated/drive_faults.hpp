@@ -77,10 +77,11 @@ class DriveFaults {
   // One object of the drive, as its requests name it: an object's index and sub, a register, a query code and 0.
   using Place = std::pair<std::uint16_t, std::uint8_t>;
   // What becomes of requests for it: no answer, or this refusal (abort code, exception; a Keya on a serial line has
-  // none). Reads alone: what only writes of it meet is a drive of another kind.
+  // none). Reads alone, unless it says otherwise.
   struct Spoilt {
     std::optional<std::uint32_t> refused_with;
     bool writes_too = false;
+    bool reads = true;
   };
   void spoil(Place place, Spoilt how) { spoilt_[place] = how; }
   void mend(Place place) { spoilt_.erase(place); }
@@ -89,7 +90,7 @@ class DriveFaults {
     const auto found = spoilt_.lower_bound(place);
     if (found == spoilt_.end() || found->first.first >= place.first + count) return std::nullopt;
     if (count == 1 && found->first != place) return std::nullopt;
-    return write && !found->second.writes_too ? std::nullopt : std::optional(found->second);
+    return (write ? found->second.writes_too : found->second.reads) ? std::optional(found->second) : std::nullopt;
   }
 
   // Does this fault strike now? Uses up one of the `next` ones first.

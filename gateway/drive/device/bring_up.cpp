@@ -83,11 +83,14 @@ bool BringUp::lacks_needed(const ObjectStore& store) const {
   return false;
 }
 
+std::vector<ObjectWrite> BringUp::setup_due(const ObjectStore& store) const {
+  return setup_writes(model_,
+                      [&](ObjectId id) { return store[id].known ? std::optional(store[id].number) : std::nullopt; });
+}
+
 std::optional<BringUp::Next> BringUp::next_setup(const ObjectStore& store) {
   // Judged once: what is written here must not make its own reason go away.
-  if (!setup_)
-    setup_ = setup_writes(
-        model_, [&](ObjectId id) { return store[id].known ? std::optional(store[id].number) : std::nullopt; });
+  if (!setup_) setup_ = setup_due(store);
   while (setup_at_ < setup_->size()) {
     const ObjectWrite& setup = (*setup_)[setup_at_];
     if (read_back_ && !store[setup.object].refused) return Next{setup.object, false, 0};
@@ -131,12 +134,16 @@ void BringUp::write_refused(bool for_now, Instant now) {
   amend_due_ = now + std::max(amend_pause_, ObjectTries::kFirstPause);
 }
 
-void BringUp::begin_amending(Instant now) {
+// What a client has written meanwhile stays.
+void BringUp::begin_amending(const ObjectStore& store, Instant now) {
   amending_ = true;
   amend_pause_ = std::clamp(2 * amend_pause_, ObjectTries::kFirstPause, ObjectTries::kLongestPause);
   amend_due_ = kNever;
   read_back_ = setup_written_ = false;
   setup_ = std::exchange(refused_for_now_, {});
+  std::erase_if(*setup_, [due = setup_due(store)](const ObjectWrite& refused) {
+    return std::ranges::none_of(due, [&](const ObjectWrite& each) { return each.object == refused.object; });
+  });
   setup_at_ = 0;
   write_again_ = now;
   unheld_.clear();

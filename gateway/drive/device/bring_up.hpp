@@ -40,8 +40,9 @@ class BringUp {
   [[nodiscard]] Instant write_again() const { return write_again_; }
   /// A drive that is brought up refused some of its setup for now: when it is tried again; kNever: it did not.
   [[nodiscard]] Instant amend_due() const { return amend_due_; }
-  /// From now on next() gives what was refused for now, once each, and nothing else.
-  void begin_amending(Instant now);
+  /// From now on next() gives what was refused for now and is still due by what the drive holds, once each, and nothing
+  /// else.
+  void begin_amending(const ObjectStore& store, Instant now);
   [[nodiscard]] bool amending() const { return amending_; }
   /// What is left of it is tried again later.
   void end_amending(Instant now);
@@ -81,6 +82,7 @@ class BringUp {
   [[nodiscard]] bool any_enabled(const ObjectStore& store) const;
   [[nodiscard]] bool is_node() const { return is_canopen(model_); }
   [[nodiscard]] bool lacks_needed(const ObjectStore& store) const;
+  [[nodiscard]] std::vector<ObjectWrite> setup_due(const ObjectStore& store) const;
   [[nodiscard]] std::optional<Next> next_setup(const ObjectStore& store);
   const DriveModel& model_;
   IdentityCheck identity_;

@@ -93,6 +93,19 @@ void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::Exchange
   bus_.wait(jobs_.setup, turn_.now + std::chrono::seconds(1));
 }
 
+namespace {
+
+// What a limit is held against, and cannot be read.
+std::string limited_by(const DriveModel& model, ObjectId id) {
+  for (const AxisModel& axis : model.axes)
+    for (const Binding& binding : axis.bindings)
+      if (binding.object == id && binding.limited && binding.writable)
+        return fmt::format("; {} has a limit: no motion by it starts", row(binding.quantity).name);
+  return {};
+}
+
+}  // namespace
+
 // One line for each object, until it answers again.
 void Drive::tell_given_up(ObjectId id) {
   const ObjectDef& object = model_.object(id);
@@ -104,7 +117,8 @@ void Drive::tell_given_up(ObjectId id) {
                     refusal ? fmt::format("was refused (0x{:08X})", *refusal) : "was not answered", uses_of(model_, id),
                     model_.needs_for_state(id) ? "nothing is known of the axis without it, and it is asked each 2 s"
                     : model_.needs(id)         ? "nothing moves without it, and it is asked ever more seldom"
-                                               : "the axis goes on without it, and it is asked ever more seldom"));
+                                               : "the axis goes on without it, and it is asked ever more seldom") +
+            limited_by(model_, id));
 }
 
 // Without its state there is no axis: a drive that was brought up waits for it again. What moves by it is stopped.
@@ -221,7 +235,7 @@ void Drive::amend_setup() {
   if (bring_up_.amending() && jobs_.setup == 0) bring_up_.end_amending(turn_.now);  // it was given up with the queue
   const bool may = turn_.link == LinkState::online && jobs_.setup == 0 && !end_.begun() && !enable_is_asked();
   if (!may || turn_.now < bring_up_.amend_due()) return;
-  bring_up_.begin_amending(turn_.now);
+  bring_up_.begin_amending(store_, turn_.now);
   jobs_.setup = queue_own(bus::Priority::setup);
 }
 

@@ -163,7 +163,7 @@ bool DriveReads::expects_silence(const bus::Exchange& exchange) const {
 
 void DriveReads::in_vain(ObjectId object, const ObjectTries::Refusal& refusal, Instant now) {
   const bool given_up = tries_.in_vain(object, refusal, needed(object), now);
-  if (given_up && !needed(object)) store_.refused(object);
+  if (given_up && !needed(object)) store_.unresponsive(object);
   if (tries_.again(object) > now) plan_.rest(object, tries_.again(object));
 }
 

@@ -82,6 +82,8 @@ void Drive::left_operational(bus::NodeState state) {
            fmt::format("the node is {} by no command of ours, or has missed its start: it is polled, and set up and "
                        "started again in {} ms, or when its motor is disabled",
                        bus::text(state), std::chrono::duration_cast<std::chrono::milliseconds>(pause).count()));
+  // It may have started anew while nobody heard it.
+  store_.lose_sight();
   reads_.outdate_mapped();
   unmap_values();
 }

@@ -38,6 +38,8 @@ void add_speeds(const AxisCore& core, int mode, Plan& plan) {
         static_cast<void>(add_write(core, each, {told->second.value, told->second.raw}, plan));
       continue;
     }
+    // Nobody knows what it holds, and it may be beyond the limit.
+    if (binding->limited && state.unresponsive) plan.refusal = refusal(Errc::state_unsuitable);
     const bool limited = binding->limits.max < range_of(row(each).type).max;
     if (state.out_of_sight && limited && state.known && core.facts().enabled()) {
       plan.add(Action::read(binding->object));

@@ -19,6 +19,7 @@ struct ObjectState {
   bool cached = false;         ///< the drive is known to hold it now
   bool refused = false;        ///< the drive does not have it: not asked again until the next bring-up
   bool unlike = false;         ///< refused here: the drive has it in another width than its profile
+  bool unresponsive = false;   ///< refused here: the drive may have it, and answers others
   bool unverified = false;     ///< acknowledged, but not read back yet
   bool unsure = false;         ///< a write of it may or may not have happened, and it was not read since
   bool out_of_sight = false;   ///< the drive was silent, or obeyed another master, since: it may hold anything
@@ -96,6 +97,7 @@ class ObjectStore {
         .number = number, .known = true, .cached = cached, .emulated = true, .sent_at = sent_at, .exchange = exchange};
   }
   void refused(ObjectId id) { at(id) = {.refused = true}; }
+  void unresponsive(ObjectId id) { at(id) = {.refused = true, .unresponsive = true}; }
   void unlike(ObjectId id) { at(id) = {.refused = true, .unlike = true}; }
   /// A write of it may or may not have happened.
   void invalidate(ObjectId id) {

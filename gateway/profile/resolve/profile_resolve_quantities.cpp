@@ -208,6 +208,7 @@ class AxisQuantities {
                "leaves no value for " + std::string(row.name) + ", which this drive takes from " +
                    std::to_string(out.limits.min) + " to " + std::to_string(out.limits.max));
     out.limits = allowed;
+    out.limited = own.range.min != INT64_MIN || own.range.max != INT64_MAX;
   }
 
   [[nodiscard]] Range profile_limit(const QuantitySpec& spec) const {

@@ -112,6 +112,8 @@ TEST_F(LimitedLog, IsBoundedWhateverIsSaid) {
   };
   for (std::size_t i = 0; i < 4 * LogLimit::kMaxKinds; ++i) say(kind(i));
   EXPECT_LE(lines.size(), LogLimit::kMaxKinds);
+  say("fault 0x3210", LogPace::second, "axis 2");
+  EXPECT_EQ(lines.back(), "axis 2: fault 0x3210") << "there is always room for what an axis did";
   log.tell_left_out();
   EXPECT_TRUE(lines.back().starts_with("log: more kinds of lines within a minute than are told apart (the newest of "));
   pass(60s);

@@ -221,6 +221,18 @@ TEST(RefusedSetup, IsWrittenWhenTheDriveTakesIt) {
   }
 }
 
+TEST(RefusedSetup, IsNotWrittenOverWhatAClientHasWrittenSince) {
+  constexpr std::int64_t kRamp = 12'345;
+  TableRig rig(Subject::leadshine);
+  const Place deceleration{0x6084, 0};
+  faults(rig).spoil(deceleration, {.refused_with = 0x08000022, .writes_too = true, .reads = false});
+  ASSERT_TRUE(rig.stage.run_until([&] { return online(rig); }, 20s));
+  faults(rig).mend(deceleration);
+  ASSERT_EQ(rig.stage.write(1, Quantity::profile_deceleration, kRamp).outcome.code, Errc::ok);
+  rig.stage.run(62s);
+  EXPECT_EQ(rig.axis()[Quantity::profile_deceleration].value, kRamp);
+}
+
 // Until it has answered anything, "there is no such object" says nothing of the drive.
 TEST(RefusedAtItsStart, ByADriveThatStillStartsIsNotForEver) {
   for (const Subject subject : {Subject::id286pro, Subject::jd_rtu, Subject::leadshine, Subject::jd_serial}) {
