@@ -164,8 +164,12 @@ void Arbiter::wait(JobId id, Instant until) {
 
 bool Arbiter::go_on_as(JobId id, const BusJob& rest) {
   Entry* entry = find(id);
-  if (entry == nullptr || !entry->started || full(rest)) return false;
-  entry->job = rest;
+  if (entry == nullptr || !entry->started) return false;
+  BusJob job = rest;
+  job.drive = entry->job.drive;
+  job.axis = entry->job.axis;
+  if (full(job)) return false;
+  entry->job = job;
   return true;
 }
 

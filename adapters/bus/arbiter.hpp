@@ -72,8 +72,8 @@ class Arbiter {
   /// The bus job has ended, by its owner's word. Unknown ids are ignored: it may have been ended by a stop meanwhile.
   /// An ending of it that was not taken yet is withdrawn: no bus job ends twice.
   void finish(JobId id);
-  /// A started bus job goes on as another of its axis, and keeps its place: of a stop, what stood beside it. False:
-  /// there is no room in its class, or it has ended meanwhile.
+  /// A started bus job goes on as another, and keeps its place: of a stop, what stood beside it. It stays its drive's
+  /// and its axis's, whatever `rest` says of them. False: there is no room in its class, or it has ended meanwhile.
   [[nodiscard]] bool go_on_as(JobId id, const BusJob& rest);
   /// The drive's next poll is due then; kNever: none.
   void set_poll_due(DriveSlot drive, Instant due);

@@ -31,6 +31,7 @@ PlantOptions Play::options_of(const Program& program, std::uint64_t seed) {
   if (program.leases) options.lease = lease_of(program, seed);
   options.seed = seed;
   options.neighbour = seed % 2 == 0;
+  options.neighbour_first = seed % 4 == 2;
   if (seed % 3 == 0) options.open_points = seed;
   // What a listener may be told, each in some of the runs.
   options.listener.client_is_address = seed % 4 == 1;

@@ -213,6 +213,30 @@ TEST_P(CrossingWithDisable, AnEnableBesideAStoppingControlwordHolds) {
   }
 }
 
+// It has no more time than one that comes alone, and is withdrawn as that is; a later one is not.
+TEST_P(CrossingWithDisable, AnEnableBesideAStoppingControlwordNeverComesLate) {
+  plant_.emplace(GetParam());
+  plant_->ready_but_disabled();
+  Client& owner = plant_->a;
+  const auto both = [](std::int64_t word, std::int64_t command, std::int64_t id) {
+    return block(row::controlword, row::command_id,
+                 {{row::controlword, word}, {row::command, command}, {row::command_id, id}});
+  };
+  ASSERT_EQ(owner.write(both(15, 0, 1)), kOk);
+  lock(plant_->stage, GetParam(), true);
+  const Instant asked_at = plant_->stage.runtime().now();
+  EXPECT_EQ(owner.write(both(0, kEnable, 2)), kFailed);
+  EXPECT_LE(plant_->stage.runtime().now() - asked_at, plant_->listener.reply_deadline);
+  plant_->run(1s);
+  lock(plant_->stage, GetParam(), false);
+  plant_->run(3s);
+  EXPECT_FALSE(*plant_->motor().enabled);
+  EXPECT_EQ(owner.write(both(1, kEnable, 3)), kOk);
+  plant_->run(1s);
+  EXPECT_TRUE(*plant_->motor().enabled);
+  EXPECT_EQ(owner.word(shown::axis_state), kStandstill);
+}
+
 // A disabling controlword beside an enable: the order of one request is the controlword, then the command.
 TEST_P(CrossingWithDisable, AnEnableBehindADisablingControlwordIsDoneOrNotAnswered) {
   for (const std::int64_t word : {7, 6}) {

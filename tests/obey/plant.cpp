@@ -21,6 +21,7 @@ void expect(bool what, const std::string& why) {
 std::vector<GatewayStage::Line> one_line(Subject subject, const PlantOptions& options) {
   std::vector<GatewayStage::Line> lines;
   lines.push_back(line_with(subject, options.lease, options.neighbour));
+  lines.back().last_first = options.neighbour_first;
   if (options.open_points) draw_open_points(lines.back(), *options.open_points);
   if (options.velocity_limit) {
     GatewayStage::Line& line = lines.back();

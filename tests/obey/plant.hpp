@@ -21,6 +21,7 @@ struct PlantOptions {
   std::uint64_t seed = 1;
   std::optional<std::uint64_t> open_points{};  ///< drawn from this (open_points.hpp); none: as the sheets print them
   bool neighbour = false;                      ///< a second drive on the line, where one may be (subject.hpp)
+  bool neighbour_first = false;                ///< which the configuration names before it
   /// `limits.velocity` of axis 1; the drive keeps its maker's speed of moves.
   std::optional<std::int64_t> velocity_limit{};
   bool other_bus = false;  ///< a line of its own beside it, with axis kAxisOfOtherBus

@@ -285,11 +285,43 @@ TEST_P(HaltedHoming, ByRawWordsIsNoMoveToAnOlderTarget) {
   EXPECT_EQ(a_.word(shown::axis_state), kHoming);
 }
 
+// Of two drives on a line each has its stops, and what stands beside them, for itself.
+class StopsOfTheSecondDrive : public testing::TestWithParam<Subject> {
+ protected:
+  StopsOfTheSecondDrive() {
+    plant_.ready();
+    EXPECT_EQ(write({{row::controlword, 0x000F}}), kOk) << "only remembered";
+    EXPECT_EQ(plant_.set_endless(a_), kOk);
+    EXPECT_EQ(a_.command(plant_.endless_command()), kOk);
+    EXPECT_TRUE(plant_.turns_within(1s));
+  }
+  Answer write(const Rows& rows) { return a_.rows(row::controlword, row::target_velocity + 1, rows); }
+  Plant plant_{GetParam(), {.neighbour = true, .neighbour_first = true}};
+  Client& a_ = plant_.a;
+  Client& b_ = plant_.b;
+};
+
+// The word 0 is a stop; what stands beside it goes on as a command, of the same drive.
+TEST_P(StopsOfTheSecondDrive, CarryOutWhatStandsBesideThem) {
+  ASSERT_EQ(b_.command(kHalt), kOk);
+  const bool speeds = has_speeds(GetParam());
+  Rows rows{{row::controlword, 0}};
+  rows[speeds ? row::target_velocity : row::target_position] = speeds ? kOtherSpeed : kEndless;
+  EXPECT_EQ(write(rows), kOk);
+  EXPECT_TRUE(plant_.comes_to_stand());
+  EXPECT_EQ(b_.coil(coil::fault_reset, true), kOk) << "nothing is left that it would wait for";
+  EXPECT_EQ(a_.command(kEnable), kOk);
+  EXPECT_EQ(a_.command(plant_.endless_command()), kOk);
+  EXPECT_TRUE(plant_.keeps_turning());
+  EXPECT_TRUE(!speeds || plant_.reaches(kOtherSpeed)) << plant_.velocity();
+}
+
 // A JD has no halt but the quick stop.
 INSTANTIATE_TEST_SUITE_P(Every, HaltedHoming,
                          testing::Values(Subject::md_serial, Subject::md_rtu, Subject::md_can, Subject::leadshine),
                          named);
 INSTANTIATE_TEST_SUITE_P(Every, Stops, testing::ValuesIn(kSubjects), named);
+INSTANTIATE_TEST_SUITE_P(Every, StopsOfTheSecondDrive, testing::ValuesIn(subjects(may_have_neighbour)), named);
 
 }  // namespace
 }  // namespace axisgate::test::obey

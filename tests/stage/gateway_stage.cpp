@@ -53,6 +53,7 @@ std::vector<drive::DriveModel> models_on(const GatewayStage::Line& line, const s
     add(line.keya_drives);
   else
     add(line.drives);
+  if (line.last_first) std::ranges::reverse(models);
   return models;
 }
 

@@ -71,6 +71,7 @@ class GatewayStage {
     /// Of all axes of the line. None: leases are off, as tests that speak of no owner need it; what the axes' own
     /// configuration says of a lease does not count.
     std::optional<LeaseRules> lease{};
+    bool last_first = false;  ///< the configuration names its drives from the last one on
   };
   explicit GatewayStage(std::vector<Line> lines, std::uint64_t seed = 1);
 

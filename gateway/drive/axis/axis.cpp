@@ -323,7 +323,6 @@ void Axis::carry_on(Pending& pending) {
     return on_job_ended(pending.id, Errc::dropped_by_stop);
   // The stop is done; the rest of its write batch goes on where it stands, and has no precedence any more.
   bus::BusJob rest = job_for(core_, pending.command_sequence->batch(), false);
-  rest.axis = slot_;
   rest.read.reset();
   rest.setpoints_only = false;
   rest.start_by = kNever;

@@ -200,6 +200,8 @@ class Axis {
   [[nodiscard]] bool runs_unwatched() const;
   [[nodiscard]] bool waits_for_stop(const Pending& pending) const;
   [[nodiscard]] bool is_behind_rest_of_stop(const Pending& pending) const;
+  /// A stop of it waits or is under way, or what stood beside one.
+  [[nodiscard]] bool carries_out_stop() const;
   void hold_rest(const Pending& pending);
   void end_jog();
   void halt_jog(const std::string& why);

@@ -87,7 +87,7 @@ void Axis::observe_owed() {
   owed_.link_back(core_.turn.now);
   const auto state = state_of(static_cast<std::uint16_t>(status.number));
   take_back_enable(state);
-  if (!owed_.owed() || stopping() || ends_what_is_owed()) return;
+  if (!owed_.owed() || carries_out_stop() || ends_what_is_owed()) return;
   tell_end(owed_.state_read(state, status.exchange, core_.shows_torque() && core_.facts().moving));
   if (const auto stop = owed_.due(core_.turn.now)) send_owed(*stop);
 }
@@ -151,7 +151,7 @@ void Axis::send_owed(StopKind stop) {
 void Axis::note_stop(const Pending& pending, bool ended) {
   const CommandSequence& command_sequence = *pending.command_sequence;
   const auto kind = kind_of(command_sequence.batch());
-  if (!command_sequence.is_stop() || !kind) return;
+  if (!command_sequence.began_as_stop() || !kind) return;
   if (command_sequence.begun()) owed_.sending();
   const bool confirmed = command_sequence.stop_confirmed();
   const bool goes_back = *kind == StopKind::halt && halts_by_position(core_);

@@ -17,7 +17,7 @@ bool Axis::waits_for_stop(const Pending& pending) const {
 bool Axis::is_behind_rest_of_stop(const Pending& pending) const {
   for (const Pending& older : pending_) {
     if (&older == &pending) return false;
-    if (older.command_sequence->is_stop() && !stops_alone(older.command_sequence->batch())) return true;
+    if (older.command_sequence->began_as_stop() && !stops_alone(older.command_sequence->batch())) return true;
   }
   return false;
 }
@@ -25,13 +25,20 @@ bool Axis::is_behind_rest_of_stop(const Pending& pending) const {
 // The newer stop goes first; of what stands beside the two the older set-points are not the last ones accepted.
 void Axis::hold_rest(const Pending& pending) {
   CommandSequence& sequence = *pending.command_sequence;
-  if (!sequence.is_stop() || stops_alone(sequence.batch())) return;
+  if (!sequence.began_as_stop() || stops_alone(sequence.batch())) return;
   sequence.hold_rest(is_behind_rest_of_stop(pending) ? core_.turn.now + kStopsFirst : kLongAgo);
 }
 
 bool Axis::stopping() const {
   return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
     return p.command_sequence->is_stop() && !p.command_sequence->stop_is_over();
+  });
+}
+
+// An owed one that is sent again would drop what stands beside it.
+bool Axis::carries_out_stop() const {
+  return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
+    return p.command_sequence->began_as_stop() && !p.command_sequence->stop_is_over();
   });
 }
 

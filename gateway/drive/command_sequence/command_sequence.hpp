@@ -60,10 +60,8 @@ class CommandSequence {
   [[nodiscard]] bool would_repeat() const { return phase_ == Phase::stop && stop_attempt_.may_repeat(); }
   /// A long object is under way: another exchange with this drive would end it.
   [[nodiscard]] bool chain_open() const { return mailbox_.chain_open() && !finished(); }
-  /// The stop itself is over: what is left of the write batch has no claim to go first.
-  [[nodiscard]] bool stop_is_over() const {
-    return stop_ && !stop_attempt_.handed_over() && phase_ > Phase::settle_stop;
-  }
+  /// A stop whose own part is over: what is left of the write batch has no claim to go first.
+  [[nodiscard]] bool stop_is_over() const { return is_stop() && phase_ > Phase::settle_stop; }
   /// What stands beside the stop waits until then at least, kLongAgo: for nothing. That of an older stop comes first
   /// (design 3.3, the order of one axis).
   void hold_rest(Instant until) { rest_held_ = until; }
@@ -73,7 +71,9 @@ class CommandSequence {
   void stop_was_handed_over() { stop_attempt_.hand_over(); }
   [[nodiscard]] const WriteBatch& batch() const { return batch_; }
   [[nodiscard]] const BatchResult& result() const { return result_; }
-  [[nodiscard]] bool is_stop() const { return stop_; }
+  /// What stands beside a stop is none, once it was queued anew.
+  [[nodiscard]] bool is_stop() const { return stop_ && !stop_attempt_.handed_over(); }
+  [[nodiscard]] bool began_as_stop() const { return stop_; }
   /// The next move is a write that belongs to the stop: it passes a suspect drive's resynchronisation read.
   [[nodiscard]] bool passes_resync();
 

@@ -191,7 +191,7 @@ std::string CommandSequence::missed() const {
 // A start waits for its drive no longer, and the drive must not come back to it; nor may a mode that comes late make
 // the motor follow what it did not follow before.
 Command CommandSequence::withdrawn_by() const {
-  if (stop_ || writes_.count == 0) return Command::none;
+  if (is_stop() || writes_.count == 0) return Command::none;
   const bool enabled = core_.facts().enabled();
   if (batch_.command == Command::enable || (asks_to_enable(batch_) && !enabled)) return Command::disable;
   const bool starts = needs_ready(batch_.command);

@@ -84,6 +84,22 @@ TEST_F(ArbiterTest, what_stood_beside_a_stop_falls_to_the_next_one) {
   EXPECT_EQ(serve(), std::nullopt);
 }
 
+TEST_F(ArbiterTest, what_stood_beside_a_stop_stays_its_drives_and_its_axis) {
+  bus::BusJob of_axis = stop(1);
+  of_axis.axis = 1;
+  const JobId of_stop = submit(of_axis);
+  ASSERT_EQ(exchange(), of_stop);
+  ASSERT_TRUE(arbiter.go_on_as(of_stop, command(0)));
+  const JobId of_first_drive = submit(stop(0));
+  EXPECT_EQ(serve(), of_first_drive);
+  EXPECT_EQ(exchange(), of_stop) << "a stop of another drive drops nothing of it";
+  EXPECT_EQ(granted_drive, 1);
+  of_axis.axis = 0;
+  const JobId of_other_axis = submit(of_axis);
+  EXPECT_EQ(serve(), of_other_axis);
+  EXPECT_EQ(serve(), of_stop);
+}
+
 TEST_F(ArbiterTest, only_a_started_job_goes_on_and_only_where_there_is_room) {
   const JobId of_stop = submit(stop(0));
   EXPECT_FALSE(arbiter.go_on_as(of_stop, command(0))) << "it has not begun";
