@@ -307,12 +307,12 @@ LICENCE = "SPDX-License-Identifier: Apache-2.0"
 COMMENTS = {("// ", ""): (".cpp", ".hpp", ".c", ".h", ".cpp.in", ".hpp.in", ".mjs", ".idl"), ("(* ", " *)"): (".st",),
             ("<!-- ", " -->"): (".urdf", ".xacro")}
 HASHED = (".py", ".cmake", ".sh", ".service", ".rules", ".yaml", ".yml", "CMakeLists.txt", "Containerfile", "Dockerfile", ".clang-format",
-          ".clang-tidy", ".editorconfig")
+          ".clang-tidy", ".clangd", ".editorconfig")
 
 
 def licence(root):
     """Every source file says its licence in its first line, or in the one behind #! or <?xml."""
-    tops = (root / name for name in ("CMakeLists.txt", ".clang-format", ".clang-tidy", ".editorconfig"))
+    tops = (root / name for name in ("CMakeLists.txt", ".clang-format", ".clang-tidy", ".clangd", ".editorconfig"))
     below = (path for folder in (*SOURCE_FOLDERS, ".ci", ".devcontainer", ".githooks", ".github") for path in sorted((root / folder).rglob("*")))
     for path in (*tops, *below):
         name = path.relative_to(root).as_posix()

@@ -232,11 +232,14 @@ extern "C" { struct C { int c; }; }"""
         self.write("gateway/core/CMakeLists.txt", "add_library(x)\n")
         self.write("gateway/core/empty.cpp", "")
         self.write("gateway/profile/eds/eds.cpp", "int x;\n")
+        self.write(".githooks/hook", "#!/bin/sh\n")
+        self.write(".github/workflows/ci.yml", "name: ci\n")
+        self.write(".editorconfig", "root = true\n")
         self.write("deploy/plc/block.st", "// SPDX-" "License-Identifier: Apache-2.0\n")
         self.write("deploy/robot.urdf", '<?xml version="1.0"?>\n<!-- SPDX-' 'License-Identifier: Apache-2.0 -->\n')
         self.assertEqual([breach.split(": ")[0] for breach in self.breaches("licence")],
-                         ["gateway/core/CMakeLists.txt:1", "gateway/core/empty.cpp:1", "gateway/profile/eds/eds.cpp:1", "deploy/plc/block.st:1",
-                          "deploy/script:2"])
+                         [".editorconfig:1", "gateway/core/CMakeLists.txt:1", "gateway/core/empty.cpp:1", "gateway/profile/eds/eds.cpp:1",
+                          "deploy/plc/block.st:1", "deploy/script:2", ".githooks/hook:2", ".github/workflows/ci.yml:1"])
 
 
 if __name__ == "__main__":
