@@ -5,6 +5,7 @@ import re
 import sys
 from pathlib import Path
 
+from class_sizes import class_sizes
 from proofs import fault_proofs, rule_proofs
 from sources import CODE, SOURCE_FOLDERS, files, lines
 
@@ -177,7 +178,7 @@ def lengths(root):
 
 
 def words(root):
-    top = [p.relative_to(root).as_posix() for p in root.iterdir() if p.is_file() and p.suffix in {".md", ".txt", ".json", ""}]
+    top = [p.relative_to(root).as_posix() for p in root.iterdir() if p.is_file() and p.name != ".git" and p.suffix in {".md", ".txt", ".json", ""}]
     for name in list(files(root, CODE | {".md", ".json", ".service", ".rules", ".txt", ""})) + sorted(top):
         try:
             for number, line in lines(root, name):
@@ -305,13 +306,14 @@ LICENCE = "SPDX-License-Identifier: Apache-2.0"
 # How a comment opens and closes; by the end of a file's name. What is not named here opens with #.
 COMMENTS = {("// ", ""): (".cpp", ".hpp", ".c", ".h", ".cpp.in", ".hpp.in", ".mjs", ".idl"), ("(* ", " *)"): (".st",),
             ("<!-- ", " -->"): (".urdf", ".xacro")}
-HASHED = (".py", ".cmake", ".sh", ".service", ".rules", ".yaml", ".yml", "CMakeLists.txt", "Containerfile", ".clang-format", ".clang-tidy")
+HASHED = (".py", ".cmake", ".sh", ".service", ".rules", ".yaml", ".yml", "CMakeLists.txt", "Containerfile", "Dockerfile", ".clang-format",
+          ".clang-tidy", ".clangd", ".editorconfig")
 
 
 def licence(root):
     """Every source file says its licence in its first line, or in the one behind #! or <?xml."""
-    tops = (root / name for name in ("CMakeLists.txt", ".clang-format", ".clang-tidy"))
-    below = (path for folder in SOURCE_FOLDERS + (".ci",) for path in sorted((root / folder).rglob("*")))
+    tops = (root / name for name in ("CMakeLists.txt", ".clang-format", ".clang-tidy", ".clangd", ".editorconfig"))
+    below = (path for folder in (*SOURCE_FOLDERS, ".ci", ".devcontainer", ".githooks", ".github") for path in sorted((root / folder).rglob("*")))
     for path in (*tops, *below):
         name = path.relative_to(root).as_posix()
         if not path.is_file() or "__pycache__" in path.parts:
@@ -328,8 +330,8 @@ def licence(root):
 
 
 RULES = {"arrows": arrows, "one_place": one_place, "deciding": deciding, "headers": headers, "lengths": lengths, "words": words,
-         "field_words": field_words, "cites": cites, "licence": licence, "fault_proofs": fault_proofs,
-         "rule_proofs": rule_proofs}
+         "field_words": field_words, "cites": cites, "licence": licence, "class_sizes": class_sizes,
+         "fault_proofs": fault_proofs, "rule_proofs": rule_proofs}
 
 if __name__ == "__main__":
     if len(sys.argv) != 2 or sys.argv[1] not in RULES:

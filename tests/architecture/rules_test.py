@@ -6,6 +6,7 @@ import unittest
 from pathlib import Path
 
 import rules
+from class_sizes import MOST_FIELDS, MOST_FUNCTIONS, class_sizes, classes_of
 from proofs import FAULTS, RULES_AND_DECISIONS
 
 HEADER = "// What it is.\n// Promises this.\n// Never that.\n#pragma once\n"
@@ -177,6 +178,51 @@ class Rules(unittest.TestCase):
             self.write("docs/rules/stops.md", wrong)
             self.assert_breach("rule_proofs", place)
 
+    def sizes(self, text):
+        return {found.name: (found.functions, found.fields) for found in classes_of(text)}
+
+    def test_functions_and_fields_of_a_class_are_counted(self):
+        for members, has in (("int a, b = 2, *c; int d{1}, e[3]{};", (0, 5)), ("unsigned f : 3, g : 1, : 4; unsigned int : 0;", (0, 2)),
+                             ("static constexpr int kA = 1; static inline int b_{2}; inline static const std::array<int, 2> c{1, 2};", (0, 0)),
+                             ("using A = int; typedef int B; friend class C; friend bool operator==(A, B) { return true; } static_assert(f(1), \"(\");", (0, 0)),
+                             ("X() = default; explicit X(int a, int b) : a_{a}, b_(b), c_<int>{1} { f(); } ~X();", (3, 0)),
+                             ("int f() const { int local; if (a) { return 1; } return 2; } int a;", (1, 1)), ("void f(), g(int);", (2, 0)),
+                             ("bool operator()(int) const; bool operator<(X) const; auto operator<=>(const X&) const = default; operator bool() const;", (4, 0)),
+                             ("std::function<void(int)> f; std::map<int, std::vector<int>> g = h<int, int>(1, 2); void (*i)(int); int (&j)[2];", (0, 4)),
+                             ("template <class T, int N = 3> requires(N > 2) T f(T t); template <typename T> struct In { T t; };", (1, 0)),
+                             ("virtual auto f(int a = g(1)) -> std::vector<int> = 0; [[nodiscard]] decltype(f(1)) g() noexcept(true);", (2, 0)),
+                             ("std::function<int()> f = [] { return 1; }; int a = g(1, 2), b = 3; decltype(f(1)) c; alignas(8) char d;", (0, 5)),
+                             ("// int a;\n/* int b; */ char c = '\\''; const char* d = \"; int e;\"; int f = 1'000;\n#define G int g;\n", (0, 3)),
+                             ("enum class E : int { one, two }; enum { three } a; struct F; struct F* b; class C f(); E e{E::one};", (1, 3)),
+                             ("struct { int a; } b, c; union { int d; float e; }; struct { int x, y; void f(); } at;", (0, 5)),
+                             ("public: int a; private: void f(); protected: class B;", (1, 1))):
+            self.assertEqual(self.sizes(f"namespace n {{ class X final : public A<int>, B {{ {members} }}; }}").get("n::X"), has, members)
+
+    def test_nested_classes_have_their_own_members(self):
+        text = """int f(struct A* a) { return 1; }
+namespace a::b { namespace { enum E { e }; }
+template <class T> class X {
+  struct Y : Z, W { int a; struct V { void f(); }; };
+  Y y; Y g() { struct L { int a; }; return {}; }
+};
+inline X<int> x{1};
+struct X<int>::Q { int q; }; }
+extern "C" { struct C { int c; }; }"""
+        self.assertEqual(self.sizes(text), {"a::b::X": (1, 1), "a::b::X::Y": (0, 1), "a::b::X::Y::V": (1, 0), "a::b::X::Q": (0, 1), "C": (0, 1)})
+
+    def test_a_class_that_is_too_large_or_no_more_as_large_as_listed_is_found(self):
+        def breaches(functions, fields, **larger):
+            self.write("adapters/a.hpp", "struct X {\n" + "void f();\n" * functions + "int a;\n" * fields + "};\n")
+            return [breach.removeprefix("adapters/a.hpp:1: X ") for breach in class_sizes(self.root, larger)]
+        self.assertEqual(breaches(MOST_FUNCTIONS, MOST_FIELDS), [])
+        self.assertIn("declares 46 functions and has 18 fields", *breaches(MOST_FUNCTIONS + 1, MOST_FIELDS))
+        self.assertIn("declares 45 functions and has 19 fields", *breaches(MOST_FUNCTIONS, MOST_FIELDS + 1))
+        self.assertEqual(breaches(50, 20, X=(50, 20)), [])
+        self.assertIn("has 51 functions, and may have no more than it had, 50", *breaches(51, 20, X=(50, 20)))
+        self.assertIn("has 19 fields now: lower it to 19", *breaches(50, 19, X=(50, 20)))
+        self.assertIn("take it out of LARGER", *breaches(40, 18, X=(50, 20)))
+        self.assertIn("there is no class Y", *breaches(1, 1, Y=(50, 20)))
+
     def test_a_source_without_its_licence_is_found(self):
         self.write("gateway/core/good.cpp", "// SPDX-" "License-Identifier: Apache-2.0\nint x;\n")
         self.write("deploy/good", "#!/bin/sh\n# SPDX-" "License-Identifier: Apache-2.0\n")
@@ -186,11 +232,14 @@ class Rules(unittest.TestCase):
         self.write("gateway/core/CMakeLists.txt", "add_library(x)\n")
         self.write("gateway/core/empty.cpp", "")
         self.write("gateway/profile/eds/eds.cpp", "int x;\n")
+        self.write(".githooks/hook", "#!/bin/sh\n")
+        self.write(".github/workflows/ci.yml", "name: ci\n")
+        self.write(".editorconfig", "root = true\n")
         self.write("deploy/plc/block.st", "// SPDX-" "License-Identifier: Apache-2.0\n")
         self.write("deploy/robot.urdf", '<?xml version="1.0"?>\n<!-- SPDX-' 'License-Identifier: Apache-2.0 -->\n')
         self.assertEqual([breach.split(": ")[0] for breach in self.breaches("licence")],
-                         ["gateway/core/CMakeLists.txt:1", "gateway/core/empty.cpp:1", "gateway/profile/eds/eds.cpp:1", "deploy/plc/block.st:1",
-                          "deploy/script:2"])
+                         [".editorconfig:1", "gateway/core/CMakeLists.txt:1", "gateway/core/empty.cpp:1", "gateway/profile/eds/eds.cpp:1",
+                          "deploy/plc/block.st:1", "deploy/script:2", ".githooks/hook:2", ".github/workflows/ci.yml:1"])
 
 
 if __name__ == "__main__":

@@ -198,6 +198,15 @@ class PagesCommands(unittest.TestCase):
                     print(f"{page}: {' '.join(command.split())}: {how}", file=sys.stderr)
         self.assertGreater(len(found), 150)
 
+    def test_what_is_run_by_itself_is_a_script_that_knows_its_options(self):
+        """By continuous integration, and where a development container is made."""
+        run = [line for path in sorted(SOURCE.glob(".github/workflows/*.yml")) for line in re.findall(r"^ +- run: (.*)$", path.read_text(encoding="utf-8"), re.M)]
+        run += [command for key, command in json.loads(read(".devcontainer/devcontainer.json")).items() if key.endswith("Command")]
+        ours_of_them = [words for command in run for words in single(command) if re.match(r"(tests|\.ci)/", words[0])]
+        self.assertEqual([wrong for words in ours_of_them if (wrong := script(words))], [])
+        self.assertIn([".ci/run"], ours_of_them)
+        self.assertGreater(len(ours_of_them), 4)
+
     def test_what_a_test_takes_from_a_page_is_there(self):
         for page, begins, _ in taken_from_pages():
             of_page(page, begins)
