@@ -6,7 +6,7 @@ import unittest
 from pathlib import Path
 
 import rules
-from class_sizes import MOST_FIELDS, MOST_FUNCTIONS, class_sizes, classes_of
+from class_sizes import FEWEST_FUNCTIONS, MOST_FIELDS, MOST_FUNCTIONS, class_sizes, classes_of
 from proofs import FAULTS, RULES_AND_DECISIONS
 
 HEADER = "// What it is.\n// Promises this.\n// Never that.\n#pragma once\n"
@@ -215,6 +215,7 @@ extern "C" { struct C { int c; }; }"""
             self.write("adapters/a.hpp", "struct X {\n" + "void f();\n" * functions + "int a;\n" * fields + "};\n")
             return [breach.removeprefix("adapters/a.hpp:1: X ") for breach in class_sizes(self.root, larger)]
         self.assertEqual(breaches(MOST_FUNCTIONS, MOST_FIELDS), [])
+        self.assertEqual(breaches(FEWEST_FUNCTIONS - 1, MOST_FIELDS + 1), [], "a record")
         self.assertIn("declares 46 functions and has 18 fields", *breaches(MOST_FUNCTIONS + 1, MOST_FIELDS))
         self.assertIn("declares 45 functions and has 19 fields", *breaches(MOST_FUNCTIONS, MOST_FIELDS + 1))
         self.assertEqual(breaches(50, 20, X=(50, 20)), [])
