@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What comes from a descriptor that the shell shares with us, as it comes, and the end of it: a terminal that was
-// closed, a pipe nobody writes to. Promises that the loop never waits for it, and that its end is told once. Never
+// closed, a pipe nobody writes to. Promises that the loop never waits for it, and that its end is reported once. Never
 // changes the descriptor: O_NONBLOCK would be set for the shell as well.
 #pragma once
 

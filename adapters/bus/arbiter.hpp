@@ -57,7 +57,7 @@ class Arbiter {
   };
   /// Whose exchange goes on the wire now; none while one is outstanding, the line must be silent or nobody is ready.
   /// A granted bus job is started: its axis's other bus jobs of the same class wait until it is finished (setup: its
-  /// drive's; stops do not wait). A granted poll is spent: the drive says anew when its next one is due.
+  /// drive's; stops do not wait). A granted poll is spent: the drive says again when its next one is due.
   [[nodiscard]] std::optional<Grant> next(Instant now);
   /// The drive granted last had nothing to send after all: the wire is free again at once, the turn is spent. That
   /// bus job, if it is not finished, or that drive's next poll is granted after kDeclinePause at the earliest.

@@ -180,11 +180,11 @@ void Bus::look_for_noise() {
   int& in_a_row = noisy_timeouts_[outstanding_->drive];
   if (wire_->statistics().bad_frames == outstanding_->bad_frames) {
     in_a_row = 0;
-  } else if (++in_a_row == kNoisyTimeoutsTold) {
+  } else if (++in_a_row == kNoisyTimeoutsReported) {
     log_.write(LogLevel::warning, log_source(),
                fmt::format("node {}: noise came in place of its answer {} times in a row: are there two drives with "
                            "this number? Else cable, termination, baud and parity",
-                           outstanding_->exchange.node, kNoisyTimeoutsTold));
+                           outstanding_->exchange.node, kNoisyTimeoutsReported));
   }
 }
 

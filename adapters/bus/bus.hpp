@@ -34,7 +34,7 @@ class BusDrive {
   virtual void on_link(bool up) = 0;
   /// The number by which unsolicited events name it; 0: it takes none.
   [[nodiscard]] virtual std::uint8_t node() const { return 0; }
-  /// What it said unasked. Where it has started anew or is gone, its exchange on the wire has ended before (link_lost).
+  /// Its unsolicited event. Where it has restarted or is gone, its exchange on the wire has ended before (link_lost).
   virtual void on_unsolicited(const UnsolicitedEvent& /*unsolicited*/) {}
 };
 
@@ -95,7 +95,7 @@ class Bus final : private WireEvents {
     std::uint32_t bad_frames = 0;  ///< of the wire, when it was sent
   };
   /// Timeouts of a drive in a row, each with a bad frame in place of its answer, after which the log says so.
-  static constexpr int kNoisyTimeoutsTold = 3;
+  static constexpr int kNoisyTimeoutsReported = 3;
   /// Callbacks to drives in one turn of the loop; more go on in the next turn, so that other buses keep their
   /// deadlines.
   static constexpr int kMaxTurnsPerPump = 64;

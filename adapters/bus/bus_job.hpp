@@ -32,7 +32,7 @@ inline constexpr std::size_t kMaxWritesPerJob = 24;
 using JobId = std::uint64_t;
 
 /// What a plain read asks for. The same object in another width is another question: where replies carry no width
-/// (Modbus RTU) it has another answer, and elsewhere the width asked for decides what its client is told.
+/// (Modbus RTU) it has another answer, and elsewhere the width asked for decides what its client is answered.
 struct PlainRead {
   ObjectAddress object;
   std::uint8_t size = 0;  ///< bytes

@@ -32,7 +32,7 @@ class ByteLink {
   /// Only while up. The bytes are copied; a short write is finished by the link, a failed one is reported as down
   /// later.
   virtual void send(Bytes bytes) = 0;
-  /// Closes and opens anew, for a line that babbles. While up: reports down with `why`, then up when
+  /// Closes and opens again, for a line that babbles. While up: reports down with `why`, then up when
   /// it is open again; either may come from inside this call or later. While down: tries again at once.
   virtual void reopen(std::string_view why) = 0;
 };

@@ -11,7 +11,7 @@ void LineRemarks::tell_of(const EchoWatch& echo, Instant now) {
   if (echo.only_copies()) {
     tell(only_copies_, "only copies of our own requests come: the adapter hears itself, or the line is looped", now);
   }
-  if (std::exchange(told_belief_, echo.belief()) != echo.belief() && echo.belief() == EchoWatch::Belief::echoes) {
+  if (std::exchange(logged_belief_, echo.belief()) != echo.belief() && echo.belief() == EchoWatch::Belief::echoes) {
     tell(echoes_, "the line echoes: a copy of each request comes back, and is dropped and counted", now);
   }
 }
@@ -23,11 +23,11 @@ void LineRemarks::misfit(std::string_view asked, std::string_view came, std::str
 }
 
 void LineRemarks::tell(Kind& kind, std::string message, Instant now) {
-  if (kind.told_at != kLongAgo && now - kind.told_at < kPause) {
+  if (kind.logged_at != kLongAgo && now - kind.logged_at < kPause) {
     ++kind.left_out;
     return;
   }
-  kind.told_at = now;
+  kind.logged_at = now;
   if (const std::uint32_t left_out = std::exchange(kind.left_out, 0); left_out > 0) {
     message += fmt::format("; {} more since the last such line", left_out);
   }

@@ -28,7 +28,7 @@ class LineRemarks {
 
  private:
   struct Kind {
-    Instant told_at = kLongAgo;
+    Instant logged_at = kLongAgo;
     std::uint32_t left_out = 0;
   };
   void tell(Kind& kind, std::string message, Instant now);
@@ -37,7 +37,7 @@ class LineRemarks {
   std::string source_;
   Kind only_copies_;
   Kind misfit_;
-  EchoWatch::Belief told_belief_ = EchoWatch::Belief::unknown;
+  EchoWatch::Belief logged_belief_ = EchoWatch::Belief::unknown;
   Kind echoes_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether a serial line can be spoken on: its link, and the noise on it.
-// Promises that a line that babbles is opened anew kReopensInARow times and then reported down until it is quiet, with
+// Promises that a line that babbles is opened again kReopensInARow times and then reported down until it is quiet, with
 // a look at it each kSecondLook, and that the bus hears of up and down in turn. Never looks into a byte: the wire says
 // what was an answer and what was noise.
 #pragma once
@@ -25,9 +25,9 @@ class LineWatch {
 
   /// What it asks of the wire.
   struct Line {
-    /// Opens the link anew; down and up may be told from inside it.
+    /// Opens the link again; down and up may be reported from inside it.
     std::function<void(std::string_view why)> reopen;
-    /// The line is given up, and the link stays open: what is outstanding is to be dropped, before the bus is told.
+    /// The line is given up, and the link stays open: what is outstanding is to be dropped, before the bus hears of it.
     std::function<void()> drop;
   };
 
@@ -42,7 +42,7 @@ class LineWatch {
   /// Bytes came that belong to no frame.
   void on_noise();
 
-  /// As the bus was told last.
+  /// As reported to the bus last.
   [[nodiscard]] bool up() const { return reported_up_; }
   /// Noise goes on, but for a pause of NoiseWatch::kPause at most.
   [[nodiscard]] bool noisy() const { return noise_.heard_lately(runtime_.now()); }

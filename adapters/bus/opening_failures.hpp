@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a link could not be opened, as it tells it while it goes on trying each second. Promises that a reason is told
+// Why a link could not be opened, as it logs it while it goes on trying each second. Promises that a reason is logged
 // once, until another one comes or the link was open in between. Never opens or ends anything.
 #pragma once
 
@@ -16,8 +16,8 @@ class OpeningFailures {
     last_ = why;
     log.write(OpeningFailure{source, why});
   }
-  /// It was told in another way: as the loss of a link that was up.
-  void was_told(const std::string& why) { last_ = why; }
+  /// The reason was reported in another way: as the loss of a link that was up.
+  void was_reported(const std::string& why) { last_ = why; }
   void opened() { last_.clear(); }
 
  private:

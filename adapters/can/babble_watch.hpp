@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How many frames of one identifier come in a second.
-// Promises that no more than the limit pass in one second, and that an id over it is told once in kTellAgain.
+// Promises that no more than the limit pass in one second, and that an id over it is reported once in kTellAgain.
 // Never looks at a frame or a clock.
 #pragma once
 
@@ -14,7 +14,7 @@ inline constexpr int kMaxProcessDataPerSecond = 1000;
 /// Heartbeats and EMCY: a heartbeat every 20 ms would be three times as fast as any drive sheet suggests.
 inline constexpr int kMaxSignsPerSecond = 50;
 /// SDO replies that nobody asked for; those that were asked for come as fast as we ask.
-inline constexpr int kMaxUnaskedRepliesPerSecond = 50;
+inline constexpr int kMaxUnsolicitedRepliesPerSecond = 50;
 
 class BabbleWatch {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The receive filters of a link: what the kernel is told, and what is looked at once more here.
+// The receive filters of a link: what the kernel is given, and what is looked at once more here.
 // Promises that nothing is passed by passes() but what some filter passes, and that for_kernel() lets all of that
 // through, with at most as many filters as asked for. Never drops a filter.
 #pragma once

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A CAN link with what every protocol on it does alike: frames out and in are counted and, where asked for, told in the
-// log. Promises that no frame passes uncounted. Never knows what a frame means.
+// A CAN link with what every protocol on it does alike: frames out and in are counted and, where asked for, written to
+// the log. Promises that no frame passes uncounted. Never knows what a frame means.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@
 
 namespace axisgate::can {
 
-/// Frames that pass: those whose id differs from `id` in no bit of `mask`; standard and extended ids are told apart.
+/// Frames that pass: those whose id differs from `id` in no bit of `mask`; standard and extended ids are distinguished.
 struct CanFilter {
   std::uint32_t id = 0;
   std::uint32_t mask = kMaxStandardId;

@@ -49,7 +49,7 @@ class LawicelDecoder {
  public:
   /// The line that this byte completes, if it does.
   std::optional<LawicelLine> push(Byte byte);
-  /// Forgets half a line: the port was opened anew.
+  /// Forgets half a line: the port was opened again.
   void clear() { line_.clear(); }
   /// Bytes that belonged to no line, since construction.
   [[nodiscard]] std::uint32_t bad_bytes() const { return bad_bytes_; }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The dialogue with a Lawicel adapter: close, bit rate, open, then frames, and now and then its status.
 // Promises to get an adapter going that never answers as well as one that answers everything, one frame after another
-// at the pace of its serial port, and to begin anew a second after the adapter has refused, overflowed or babbled.
-// Never looks at a clock, and never waits for the acknowledgement of a frame.
+// at the pace of its serial port, and to begin from scratch a second after the adapter has refused, overflowed or
+// babbled. Never looks at a clock, and never waits for the acknowledgement of a frame.
 #pragma once
 
 #include <string>
@@ -42,7 +42,7 @@ class LawicelSession {
   [[nodiscard]] Instant due(Instant now) const;
   /// What is to be sent through the port now.
   [[nodiscard]] std::string take_output();
-  /// As the adapter told it; empty where it did not.
+  /// As the adapter reported it; empty where it did not.
   [[nodiscard]] const std::string& version() const { return version_; }
   [[nodiscard]] bool answers() const { return answers_; }
   [[nodiscard]] CanTrouble& trouble() { return trouble_; }

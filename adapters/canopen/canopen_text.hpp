@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A CANopen frame in words, for the decode log: "SDO read 6041:00 of node 3".
-// Promises one short line for any frame. Which service a frame is of is told by its COB-ID alone.
+// Promises one short line for any frame. Which service a frame is of follows from its COB-ID alone.
 // Never decides anything.
 #pragma once
 

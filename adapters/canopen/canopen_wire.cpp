@@ -13,8 +13,8 @@
 #include "adapters/canopen/canopen_text.hpp"
 #include "adapters/canopen/heartbeat_plan.hpp"
 #include "adapters/canopen/nmt.hpp"
+#include "adapters/canopen/node_events.hpp"
 #include "adapters/canopen/sdo_client.hpp"
-#include "adapters/canopen/unasked.hpp"
 
 namespace axisgate::canopen {
 
@@ -41,7 +41,7 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   static constexpr Duration kTellInsteadAgain = std::chrono::minutes(1);
   struct Node {
     std::uint8_t number = 0;
-    Unasked unasked;
+    NodeEvents events;
     Instant tell_instead_at = kLongAgo;
     std::uint32_t instead_untold = 0;
   };
@@ -57,7 +57,7 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   void send_heartbeat(Instant now);
   void transmit(std::uint8_t node, const SdoFrames& frames);
   void on_reply_frame(Node& node, Bytes bytes, Instant now);
-  void tell(Node& node, const Unasked::News& news);
+  void tell(Node& node, const NodeEvents::News& news);
   void tell_instead(Node& node, const SdoClient::Instead& instead);
   void meet_stranger(const CobId& id, Bytes bytes);
   void watch_nodes(Instant now);
@@ -96,10 +96,10 @@ CanopenWire::CanopenWire(CanopenSettings settings, std::unique_ptr<can::CanLink>
   for (const CanopenNode& node : settings_.nodes) {
     assert(node.node >= kFirstNode && node.node <= kLastNode && find(node.node) == nullptr);
     nodes_.push_back({.number = node.node,
-                      .unasked = Unasked({.node = node.node,
-                                          .heartbeat = node.heartbeat,
-                                          .guard_time = node.guard_time,
-                                          .life_factor = node.life_factor})});
+                      .events = NodeEvents({.node = node.node,
+                                            .heartbeat = node.heartbeat,
+                                            .guard_time = node.guard_time,
+                                            .life_factor = node.life_factor})});
     if (node.sdo_block) sdo_.offer_block(node.node);
   }
 }
@@ -125,7 +125,7 @@ void CanopenWire::send(const bus::Exchange& exchange) {
   // A new heartbeat period is a new rhythm, not a second device.
   constexpr std::uint16_t kProducerHeartbeatTime = 0x1017;
   if (exchange.access == bus::Access::write && exchange.object.index == kProducerHeartbeatTime) {
-    if (Node* node = find(exchange.node)) node->unasked.on_changed_by_us();
+    if (Node* node = find(exchange.node)) node->events.on_changed_by_us();
   }
   constexpr std::uint16_t kConsumerHeartbeatTime = 0x1016;
   tells_to_listen_ = exchange.access == bus::Access::write && exchange.object.index == kConsumerHeartbeatTime;
@@ -145,7 +145,7 @@ void CanopenWire::send_command(const bus::Exchange& exchange) {
   for (Node& node : nodes_) {
     if (exchange.node != 0 && exchange.node != node.number) continue;
     transmit(node.number, sdo_.interrupt(node.number));
-    node.unasked.on_changed_by_us();
+    node.events.on_changed_by_us();
   }
   line_.send(nmt_frame(*command, exchange.node), true);
   owed_ = bus::ExchangeResult{};
@@ -164,13 +164,13 @@ void CanopenWire::abandon() {
 
 void CanopenWire::map_process_data(std::uint8_t node, std::uint8_t number, const bus::ProcessMap& objects) {
   assert(number >= 1 && number <= kTpdos);
-  if (Node* found = find(node)) found->unasked.map(number, objects);
+  if (Node* found = find(node)) found->events.map(number, objects);
 }
 
 bool CanopenWire::call(std::uint8_t node) {
   Node* found = find(node);
   if (line_.up() && found != nullptr) {
-    found->unasked.call();
+    found->events.call();
     line_.send(guard_frame(node));
   }
   return true;
@@ -190,7 +190,7 @@ void CanopenWire::on_link_up() {
   const Instant now = runtime_.now();
   line_.on_up();
   sdo_.reset();
-  for (Node& node : nodes_) node.unasked.link_up(now);
+  for (Node& node : nodes_) node.events.link_up(now);
   heartbeat_.begin(now);
   sync_.begin(now);
   timer_->expires_at(now);  // our first heartbeat goes out before anything else is due
@@ -201,7 +201,7 @@ void CanopenWire::on_link_down(std::string_view why) {
   if (!line_.on_down()) return;
   sdo_.reset();
   owed_.reset();
-  for (Node& node : nodes_) node.unasked.link_down();
+  for (Node& node : nodes_) node.events.link_down();
   timer_->expires_at(kNever);
   events_->on_wire_down(why);
 }
@@ -221,7 +221,7 @@ void CanopenWire::on_frame(const can::CanFrame& frame, Instant received) {
     on_reply_frame(*node, frame.bytes(), now);
     return;
   }
-  const Unasked::News news = node->unasked.on_frame(*id, frame.bytes(), now);
+  const NodeEvents::News news = node->events.on_frame(*id, frame.bytes(), now);
   line_.tell(frame, news.bad ? "  (bad)" : "");
   if (news.restarted()) sdo_.restarted(node->number);
   if (id->service != Service::tpdo) arm();
@@ -233,12 +233,12 @@ void CanopenWire::on_reply_frame(Node& node, Bytes bytes, Instant now) {
   switch (heard.what) {
     case SdoClient::Heard::What::bad:
       line_.count_bad_frame();
-      tell(node, node.unasked.on_stray_reply(false, now));
+      tell(node, node.events.on_stray_reply(false, now));
       return;
     case SdoClient::Heard::What::late:
     case SdoClient::Heard::What::second_reply:
       line_.count_late_reply();
-      tell(node, node.unasked.on_stray_reply(heard.what == SdoClient::Heard::What::second_reply, now));
+      tell(node, node.events.on_stray_reply(heard.what == SdoClient::Heard::What::second_reply, now));
       if (heard.acknowledges_write)
         events_->on_unsolicited({.kind = bus::UnsolicitedEvent::Kind::foreign_write, .node = node.number});
       return;
@@ -257,7 +257,7 @@ void CanopenWire::on_reply_frame(Node& node, Bytes bytes, Instant now) {
 }
 
 /// Last in whatever calls it: the bus may send from inside.
-void CanopenWire::tell(Node& node, const Unasked::News& news) {
+void CanopenWire::tell(Node& node, const NodeEvents::News& news) {
   if (news.bad) line_.count_bad_frame();
   if (news.guard) line_.send(guard_frame(node.number));
   for (const bus::UnsolicitedEvent& unsolicited : news.unsolicited_events) events_->on_unsolicited(unsolicited);
@@ -302,20 +302,20 @@ void CanopenWire::on_timer() {
 /// What the loop kept waiting gets one more turn to come in, before anybody is said to be gone.
 void CanopenWire::watch_nodes(Instant now) {
   for (Node& node : nodes_) {
-    const Instant due = node.unasked.next_deadline();
+    const Instant due = node.events.next_deadline();
     if (due > now || !line_.up()) continue;
     if (now - due > kStalled && watch_again_ < due) {
       watch_again_ = now;
       return;
     }
-    tell(node, node.unasked.on_deadline(now));
+    tell(node, node.events.on_deadline(now));
   }
 }
 
 void CanopenWire::arm() {
   if (!line_.up()) return;
   Instant next = owed_ ? runtime_.now() : std::min(heartbeat_.next_deadline(), sync_.next_deadline());
-  for (const Node& node : nodes_) next = std::min(next, node.unasked.next_deadline());
+  for (const Node& node : nodes_) next = std::min(next, node.events.next_deadline());
   timer_->expires_at(next);
 }
 

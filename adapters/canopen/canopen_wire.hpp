@@ -3,7 +3,7 @@
 // guarding, EMCY, process data and SYNC.
 // Promises at most one reply per send(), none after abandon() or a loss of the link, and none but to the request that
 // asked for it (node, command, index, sub-index, toggle); that a transfer given up is aborted at the server; that what
-// nodes say by themselves is told in order and within bounds.
+// nodes send unsolicited is reported in order and within bounds.
 // Never queues or repeats a request, and never judges a value.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace axisgate::canopen {
 /// What the wire must know of a drive before it speaks to it.
 struct CanopenNode {
   std::uint8_t node = 1;  ///< 1 to 126
-  Duration heartbeat{};   ///< the period it is told to send one in; 0: none is expected
+  Duration heartbeat{};   ///< the period it is configured to send one in; 0: none is expected
   Duration guard_time{};  ///< node guarding by us, this often; 0: none
   std::uint8_t life_factor = 3;
   bool sdo_block = false;  ///< its server offers block transfer
@@ -44,10 +44,11 @@ struct CanopenSettings {
 /// - An object over kMaxObjectBytes: refused, detail 0x05040005, and not `for_now`.
 /// - Wrong CRC, a length other than the server said, blocks that never arrive: bad_reply; the detail is the abort sent.
 /// - Part::next where no such chain is open (something else was done with the node): refused for now, 0x08000022.
-/// - A node that has started anew answers nothing any more: `started` is told, the exchange is left to the bus, and its
+/// - A node that has restarted answers nothing any more: `started` is reported, the exchange is left to the bus, and
+/// its
 ///   process data are dropped until they are mapped again.
 /// A node whose server has no block transfer after all, or wants longer blocks, is served in segments. Of our own
-/// heartbeat only the very first comes behind a boot-up: after a loss of the link we have not started anew.
+/// heartbeat only the very first comes behind a boot-up: after a loss of the link we have not restarted.
 /// `runtime` and `log` must outlive the wire. Each node may be named once.
 [[nodiscard]] std::unique_ptr<bus::Wire> make_canopen_wire(CanopenSettings settings, std::unique_ptr<can::CanLink> link,
                                                            Runtime& runtime, const Log& log);

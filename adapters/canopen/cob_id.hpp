@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The predefined connection set of CiA 301 section 7.3.5: which COB-ID carries what of which node.
-// Promises that every id of the set is told apart, and that the filters let through what the configured nodes send by
-// it, of any other node its signs of life and errors, which are few, and nothing else. Never knows an id that was moved
-// elsewhere: the profiles leave them where they are.
+// Promises that every id of the set is distinguished, and that the filters let through what the configured nodes send
+// by it, of any other node its signs of life and errors, which are few, and nothing else. Never knows an id that was
+// moved elsewhere: the profiles leave them where they are.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two devices under one node number, as their heartbeats give them away.
-// Promises to suspect nothing of one device alone: whatever period it has, and whatever state we told it to take.
+// Promises to suspect nothing of one device alone: whatever period it has, and whatever state we commanded.
 // Never looks at a clock.
 #pragma once
 

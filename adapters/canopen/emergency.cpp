@@ -19,16 +19,16 @@ std::optional<bus::UnsolicitedEvent> decode_emergency(std::uint8_t node, Bytes b
 
 std::optional<bus::UnsolicitedEvent> EmergencyLimit::pass(bus::UnsolicitedEvent emergency, Instant now) {
   if (now >= window_end_) {
-    told_ = 0;
+    reported_ = 0;
     window_end_ = now + kWindow;
   }
   const bool reset = emergency.code == 0;
-  if (!reset && told_ >= kMaxEmergencies) {
+  if (!reset && reported_ >= kMaxEmergencies) {
     held_ = emergency;
     ++held_count_;
     return std::nullopt;
   }
-  ++told_;
+  ++reported_;
   // What was held back came before this one.
   emergency.repeats = std::exchange(held_count_, 0);
   held_.reset();
@@ -39,7 +39,7 @@ std::optional<bus::UnsolicitedEvent> EmergencyLimit::take_held(Instant now) {
   if (!held_ || now < window_end_) return std::nullopt;
   bus::UnsolicitedEvent last = *std::exchange(held_, std::nullopt);
   last.repeats = std::exchange(held_count_, 0) - 1;
-  told_ = 1;
+  reported_ = 1;
   window_end_ = now + kWindow;
   return last;
 }

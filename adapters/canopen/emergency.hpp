@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EMCY frames (CiA 301 section 7.2.7), and how many of them are told.
+// EMCY frames (CiA 301 section 7.2.7), and how many of them are reported.
 // Promises that "error reset" always passes, and of all else kMaxEmergencies in a second: the first ones at once, the
 // last one when the second is over, with the number of those between.
 // Never judges a code. Never looks at a clock.
@@ -20,7 +20,7 @@ class EmergencyLimit {
   static constexpr int kMaxEmergencies = 4;
   static constexpr Duration kWindow = std::chrono::seconds(1);
 
-  /// The unsolicited event to be told now, if it may be.
+  /// The unsolicited event to be reported now, if it may be.
   [[nodiscard]] std::optional<bus::UnsolicitedEvent> pass(bus::UnsolicitedEvent emergency, Instant now);
   /// The last of those that were held back, once their second is over.
   [[nodiscard]] std::optional<bus::UnsolicitedEvent> take_held(Instant now);
@@ -30,7 +30,7 @@ class EmergencyLimit {
  private:
   std::optional<bus::UnsolicitedEvent> held_;
   std::uint32_t held_count_ = 0;
-  int told_ = 0;
+  int reported_ = 0;
   Instant window_end_ = kLongAgo;
 };
 

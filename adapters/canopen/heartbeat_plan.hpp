@@ -31,9 +31,9 @@ class PeriodPlan {
 class HeartbeatPlan {
  public:
   explicit HeartbeatPlan(Duration period) : period_(period) {}
-  /// One is due now, and then each period: the link is up, or a drive has just been told to listen.
+  /// One is due now, and then each period: the link is up, or a drive has just been configured to listen.
   void begin(Instant now) { period_.begin(now); }
-  /// The first one ever comes behind a boot-up. Not so after a loss of the link: we did not start anew, and a drive
+  /// The first one ever comes behind a boot-up. Not so after a loss of the link: we did not restart, and a drive
   /// that heard nothing of the loss would take it for a reason to stop.
   [[nodiscard]] boost::container::static_vector<can::CanFrame, 2> due(Instant now, std::uint8_t own_node) {
     boost::container::static_vector<can::CanFrame, 2> frames;

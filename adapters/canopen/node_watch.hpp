@@ -36,7 +36,7 @@ class NodeWatch {
       const ErrorControl& heard, Instant now);
   /// Frames under its id are dropped, its own may be among them: it is not missed for what we did not look at.
   void on_flood(Instant now);
-  /// Its next sign of life is told, whether it is news or not. A guarding frame must be sent.
+  /// Its next sign of life is reported, whether it is news or not. A guarding frame must be sent.
   void call() { called_ = true; }
 
   struct Due {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The SDO client of one bus: one exchange outstanding, and for each node at most one open transfer.
 // Promises that a reply ends only the exchange that asked for it; that a transfer which something else interrupts, or
-// which is given up, is aborted at its server; that a second reply to a finished request is told; that an abort which
-// names no object is believed only where nothing else is left that it could answer.
-// Never sends: it says what to send. Never looks at a clock.
+// which is given up, is aborted at its server; that a second reply to a finished request is reported; that an abort
+// which names no object is believed only where nothing else is left that it could answer. Never sends: it says what to
+// send. Never looks at a clock.
 #pragma once
 
 #include <array>
@@ -54,7 +54,7 @@ class SdoClient {
   [[nodiscard]] Abandoned abandon();
   /// The open transfer of a node ends because something else is done with the node. To send to it.
   [[nodiscard]] SdoFrames interrupt(std::uint8_t node);
-  /// The node has started anew: it knows of no transfer. What was asked is over; its answer may come all the same.
+  /// The node has restarted: it knows of no transfer. What was asked is over; its answer may come all the same.
   void restarted(std::uint8_t node);
   /// The link is lost.
   void reset();
@@ -77,7 +77,7 @@ class SdoClient {
     /// Objects of requests that were given up, or ended by an abort of ours, which may still be answered. A server
     /// answers in order: the answer to another object shows that nothing of it comes any more.
     boost::container::static_vector<bus::ObjectAddress, kMaxGivenUp> given_up{};
-    bool gave_up_more = false;                     ///< than `given_up` holds: until the node or the link starts anew
+    bool gave_up_more = false;                     ///< than `given_up` holds: until the node or the link restarts
     std::optional<bus::ObjectAddress> stranger{};  ///< answered, while another object was waited for
 
     [[nodiscard]] bool may_still_answer() const { return gave_up_more || !given_up.empty(); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The requests of one Keya CAN bus: one outstanding, and what became of those before.
-// Promises that a reply ends only the exchange that asked for it, and that a second reply to a finished one is told.
-// Never sends, and never looks at a clock.
+// Promises that a reply ends only the exchange that asked for it, and that a second reply to a finished one is
+// reported. Never sends, and never looks at a clock.
 #pragma once
 
 #include <array>

@@ -16,7 +16,7 @@ namespace axisgate::keya {
 
 inline constexpr std::uint32_t kCommandId = 0x06000000;    ///< + node: to the drive
 inline constexpr std::uint32_t kReplyId = 0x05800000;      ///< + node: from it, asked for
-inline constexpr std::uint32_t kHeartbeatId = 0x07000000;  ///< + node: from it, each second, unasked
+inline constexpr std::uint32_t kHeartbeatId = 0x07000000;  ///< + node: from it, each second, unsolicited
 
 /// Who sent what, as the id says it.
 struct CanOrigin {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one Keya drive shows of itself on CAN without being asked: its heartbeat, and replies that nobody waits for.
-// Promises unsolicited events in the order of the frames, within bounds: an id that babbles is thinned and told once in
-// BabbleWatch::kTellAgain, a duplicate node-ID once in kTellDuplicateNodeAgain. Never says that a drive is gone:
-// timeouts tell that, since nothing is known of how regular its heartbeat is. Never looks at a clock.
+// Promises unsolicited events in the order of the frames, within bounds: an id that babbles is thinned and reported
+// once in BabbleWatch::kTellAgain, a duplicate node-ID once in kTellDuplicateNodeAgain. Never says that a drive is
+// gone: timeouts tell that, since nothing is known of how regular its heartbeat is. Never looks at a clock.
 #pragma once
 
 #include <boost/container/static_vector.hpp>
@@ -38,7 +38,7 @@ class CanSigns {
   Instant last_heartbeat_ = kLongAgo;
   Instant tell_duplicate_node_at_ = kLongAgo;
   can::BabbleWatch heartbeats_{can::kMaxSignsPerSecond};
-  can::BabbleWatch stray_replies_{can::kMaxUnaskedRepliesPerSecond};
+  can::BabbleWatch stray_replies_{can::kMaxUnsolicitedRepliesPerSecond};
 };
 
 }  // namespace axisgate::keya

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keya's own protocol on a CAN link, as the bus sees it: requests out, answers back, heartbeats as unsolicited events.
 // Promises at most one reply per send(), none after abandon() or a loss of the link, and none but to the request that
-// asked for it (node, index, sub-index); that what drives say unasked is told in order and within bounds.
+// asked for it (node, index, sub-index); that what drives send unsolicited is reported in order and within bounds.
 // Never queues or repeats a request, and never judges a value.
 #pragma once
 

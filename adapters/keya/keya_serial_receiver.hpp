@@ -3,8 +3,8 @@
 // Promises that a heartbeat, an echo or another's frame is never taken for the answer: a query's echo is byte for byte
 // the answer whose data are all 0, "no fault, standing still", and is one only on a line that is known not to echo, nor
 // a frame that began before the request; that noise before the answer gives way byte by byte; that a window of twelve
-// bytes in which the awaited answer may begin anew is decided only by what follows it: another start byte, or silence.
-// RS232 has no sum. Counts what it skips. Never allocates, and never looks at a clock: silence is told.
+// bytes in which the awaited answer may begin again is decided only by what follows it: another start byte, or silence.
+// RS232 has no sum. Counts what it skips. Never allocates, and never looks at a clock: silence is passed in.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keya's serial protocols on a line of bytes, as the bus sees them: queries and control frames out, answers back.
 // Promises at most one reply per send(), none after abandon() or a loss of the link; that a frame cut off by silence
-// does not spoil the next one; that a line that babbles is opened anew three times and then reported down until it is
+// does not spoil the next one; that a line that babbles is opened again three times and then reported down until it is
 // quiet. Never queues or repeats a request, and never judges a value.
 #pragma once
 
@@ -22,7 +22,7 @@ struct KeyaSerialSettings {
   std::uint32_t baud = 115200;
 };
 
-/// RS232 joins two: its frames carry no number, and its heartbeat is told of this one.
+/// RS232 joins two: its frames carry no number, and its heartbeat is reported of this one.
 inline constexpr std::uint8_t kRs232Node = 1;
 
 /// A frame that has begun and does not go on for so long is over. Longer than a USB adapter's latency timer (16 ms),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Kinco's serial protocol on a line of bytes, as the bus sees it: frames out, answers back.
 // Promises at most one reply per send(), none after abandon() or a loss of the link, and that a line that babbles is
-// opened anew three times and then reported down until it is quiet. Never queues or repeats a
+// opened again three times and then reported down until it is quiet. Never queues or repeats a
 // request, and never judges a value.
 #pragma once
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds frames in the bytes of a Modbus RTU line: by the length that their function byte tells, as libmodbus does it,
 // but for what libmodbus cannot tell from a frame: glitch bytes before one, and the copy of our own request, whose
-// third byte would be read as the length of an answer. Promises that such a copy is told whole, as any other frame, and
-// that a frame that may still become one is waited for. Never judges a CRC or what a frame means, and holds no more
+// third byte would be read as the length of an answer. Promises that such a copy is returned whole, as any other frame,
+// and that a frame that may still become one is waited for. Never judges a CRC or what a frame means, and holds no more
 // than kHolds bytes.
 #pragma once
 
@@ -48,7 +48,7 @@ class FrameFinder {
 
   boost::container::static_vector<Byte, kMaxFrame + 2> request_;  ///< the newest
   boost::container::static_vector<Byte, kHolds> held_;
-  std::size_t taken_ = 0;  ///< bytes at the head that were told
+  std::size_t taken_ = 0;  ///< bytes at the head that were returned
   bus::GlitchSkip glitch_;
 };
 

@@ -13,7 +13,7 @@
 
 namespace axisgate::modbus_rtu {
 
-/// Number of an exchange: frames heard are told apart from those of the one before by it. 0: nobody had asked yet.
+/// Number of an exchange: frames heard are distinguished from those of the one before by it. 0: nobody had asked yet.
 using ExchangeNumber = std::uint64_t;
 
 /// Longest frame without its CRC: unit address and a PDU of 253 bytes (Modbus application protocol V1.1b3, 4.1).
@@ -51,8 +51,8 @@ class RtuLink {
   /// Its exchange was given up: a frame that still waits to leave shall not leave any more. Nothing to do for a link
   /// whose frames never wait.
   virtual void withdraw(ExchangeNumber number) { static_cast<void>(number); }
-  /// Closes and opens anew, for a line that babbles. While up: reports down with `why`, then up when it is open again.
-  /// While down: tries again at once. Nothing to do for a link that cannot be opened anew.
+  /// Closes and opens again, for a line that babbles. While up: reports down with `why`, then up when it is open again.
+  /// While down: tries again at once. Nothing to do for a link that cannot be opened again.
   virtual void reopen(std::string_view why) { static_cast<void>(why); }
 };
 

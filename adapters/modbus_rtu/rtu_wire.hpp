@@ -3,7 +3,7 @@
 // Promises at most one reply per send(), none after abandon() or a loss of the link, none for a frame that was heard
 // before its request was sent, that is the answer before said again by a drive that answers twice, or that may be the
 // echo of its request; and that a line
-// that babbles is opened anew three times and then reported down until it is quiet. Never queues or repeats a request,
+// that babbles is opened again three times and then reported down until it is quiet. Never queues or repeats a request,
 // and never judges a value.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells when a path appears: a device plugged in, or udev's symlink to it made anew.
+// Tells when a path appears: a device plugged in, or udev's symlink to it made again.
 // Promises at least one call for each appearance while its folder exists; a folder that comes and goes itself (udev
 // removes an empty /dev/serial/by-id) is found again by renew(). Never opens or follows the path, and never reports
 // twice in one turn.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A serial port that is kept open: the ByteLink of the product, on Boost.Asio.
-// Promises bytes in order, a loss told once with its reason, a new try each second and at once when the path appears,
-// and exclusive use. A device that is missing at the start is a matter for the log, not an error. Never blocks,
-// never interprets a byte, and never calls its events once destroyed.
+// Promises bytes in order, a loss reported once with its reason, a new try each second and at once when the path
+// appears, and exclusive use. A device that is missing at the start is a matter for the log, not an error. Never
+// blocks, never interprets a byte, and never calls its events once destroyed.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ namespace axisgate::serial {
 
 class SerialLink final : public bus::ByteLink {
  public:
-  /// More than this unsent: the port takes nothing (a flow control that nobody serves), and is opened anew.
+  /// More than this unsent: the port takes nothing (a flow control that nobody serves), and is opened again.
   static constexpr std::size_t kMaxUnsent = 4096;
   static constexpr std::size_t kReadSize = 512;
 

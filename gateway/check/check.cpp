@@ -70,8 +70,9 @@ void add_keya(std::string& out, const BusConfig& bus, const BusBudget& budget) {
     add_line(out, "keep-alive",
              fmt::format("{} writes each {:.0f} ms, with every axis enabled", budget.kept_alive.reads,
                          in_ms(budget.kept_alive.period)));
-  if (adapter::keya(bus.adapter) && budget.load_unasked > 0)
-    add_line(out, "unasked", fmt::format("heartbeats of the drives: {:.1f} % of the line", budget.load_unasked / 10.0));
+  if (adapter::keya(bus.adapter) && budget.load_unsolicited > 0)
+    add_line(out, "unasked",
+             fmt::format("heartbeats of the drives: {:.1f} % of the line", budget.load_unsolicited / 10.0));
 }
 
 void add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::DriveModel>& drives,

@@ -84,7 +84,7 @@ ReportLines can_lines(const BusConfig& bus, const std::vector<drive::DriveModel>
   out.emplace_back(
       "unasked", fmt::format("TPDOs as often as they may come, heartbeats and guarding: {:.1f} % of the line; without "
                              "any mapping the polls would take {:.1f} %",
-                             budget.load_unasked / 10.0, budget.load_unmapped / 10.0));
+                             budget.load_unsolicited / 10.0, budget.load_unmapped / 10.0));
   return out;
 }
 

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "gateway/check/check.hpp"
-#include "gateway/commands/common/faults_told.hpp"
+#include "gateway/commands/common/config_faults.hpp"
 #include "gateway/process/descriptor_needs.hpp"
 #include "gateway/upstream/dds_host/program.hpp"
 #include "gateway/upstream/modbus_tcp/server/descriptors.hpp"

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "gateway/commands/check_command.hpp"
-#include "gateway/commands/command_hand.hpp"
+#include "gateway/commands/command_manual.hpp"
 #include "gateway/commands/command_words.hpp"
 #include "gateway/commands/commission/commission_command.hpp"
 #include "gateway/commands/common/exit_codes.hpp"
@@ -40,7 +40,7 @@ struct Parsed {
   ScanOptions scan;
   ExplainOptions explain;
   ReloadOptions reload;
-  HandCommands hand;
+  ManualCommands manual;
   std::string scan_nodes;
   std::string scan_stations;
   std::function<int()> chosen;
@@ -295,7 +295,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   add_check(app, parsed);
   add_map(app, parsed);
   add_top(app, parsed);
-  add_hand_commands(app, parsed.hand, parsed.chosen);
+  add_manual_commands(app, parsed.manual, parsed.chosen);
   add_topics(app, parsed);
   add_profile(app, parsed);
   add_commission(app, parsed);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "gateway/commands/common/faults_told.hpp"
+#include "gateway/commands/common/config_faults.hpp"
 #include "gateway/config/config_loader.hpp"
 #include "gateway/image/listing/map_listing.hpp"
 

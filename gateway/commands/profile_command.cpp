@@ -11,7 +11,7 @@
 #include <fstream>
 #include <variant>
 
-#include "gateway/commands/common/faults_told.hpp"
+#include "gateway/commands/common/config_faults.hpp"
 #include "gateway/profile/eds/eds_compare.hpp"
 #include "gateway/profile/read/profile_loader.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// `axisgate reload CONFIG`: has the gateway that runs with this file read it anew. Promises to say what was changed, or
-// why nothing was, and to wait for that as long as the gateway lives, not for one that hangs. Never checks or changes
-// anything itself.
+// `axisgate reload CONFIG`: has the gateway that runs with this file read it again. Promises to say what was changed,
+// or why nothing was, and to wait for that as long as the gateway lives, not for one that hangs. Never checks or
+// changes anything itself.
 #pragma once
 
 #include <string>

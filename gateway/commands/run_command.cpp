@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "adapters/asio/asio_runtime.hpp"
+#include "gateway/commands/common/config_faults.hpp"
 #include "gateway/commands/common/end_signals.hpp"
-#include "gateway/commands/common/faults_told.hpp"
 #include "gateway/compose/gateway.hpp"
 #include "gateway/compose/start_lines.hpp"
 #include "gateway/config/config_loader.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `axisgate run CONFIG`: the gateway itself.
-// Promises to return only when it was told to end (SIGINT, SIGTERM) or could not start, with the process's exit code.
+// Promises to return only when it was asked to end (SIGINT, SIGTERM) or could not start, with the process's exit code.
 // Never opens anything where the configuration is wrong.
 #pragma once
 

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <variant>
 
-#include "gateway/commands/common/faults_told.hpp"
+#include "gateway/commands/common/config_faults.hpp"
 #include "gateway/config/config_loader.hpp"
 #include "gateway/upstream/dds_host/program.hpp"
 

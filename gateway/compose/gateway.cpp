@@ -52,7 +52,7 @@ Gateway::Gateway(const Config& config, const Models& models, Runtime& runtime, c
       closing_(runtime.make_timer([this] {
         if (closed_) std::exchange(closed_, nullptr)();
       })),
-      let_go_ended_(runtime.make_timer([this] { letting_go_.reset(); })) {
+      bus_release_ended_(runtime.make_timer([this] { bus_release_.reset(); })) {
   for (std::size_t i = 0; i < config.buses.size(); ++i) buses_.push_back(make_bus(config.buses[i], models[i], i));
   image_.buses.resize(buses_.size());
   for (std::size_t i = 0; i < buses_.size(); ++i) image_.buses[i].name = buses_[i]->name();
@@ -89,14 +89,14 @@ void Gateway::reload(const ReloadPlan& plan, Config wanted, Models models,
                      std::function<void(std::vector<std::string>)> done) {
   std::vector<BusLine*> leaving;
   for (const std::size_t place : plan.leaving_buses) leaving.push_back(buses_[place].get());
-  let_go_ended_->expires_at(kNever);  // of the reload before
-  letting_go_ = std::make_unique<LetGo>(runtime_, leaving, std::move(last_word),
-                                        [this, plan, wanted = std::move(wanted), models = std::move(models),
-                                         done = std::move(done)](std::vector<std::string> why_not) {
-                                          let_go_ended_->expires_at(runtime_.now());
-                                          if (why_not.empty()) replace(plan, wanted, models);
-                                          done(std::move(why_not));
-                                        });
+  bus_release_ended_->expires_at(kNever);  // of the reload before
+  bus_release_ = std::make_unique<BusRelease>(runtime_, leaving, std::move(last_word),
+                                              [this, plan, wanted = std::move(wanted), models = std::move(models),
+                                               done = std::move(done)](std::vector<std::string> why_not) {
+                                                bus_release_ended_->expires_at(runtime_.now());
+                                                if (why_not.empty()) replace(plan, wanted, models);
+                                                done(std::move(why_not));
+                                              });
 }
 
 // Those that go first: a device, or an axis number, may be another bus's now.
@@ -124,7 +124,7 @@ void Gateway::replace(const ReloadPlan& plan, const Config& wanted, const Models
 void Gateway::close(std::function<void()> closed) {
   if (stopping_) return;
   stopping_ = true;
-  letting_go_.reset();  // what it has closed is open again, and closed below
+  bus_release_.reset();  // what it has closed is open again, and closed below
   image_.gateway.state = GatewayState::stopping;
   closed_ = std::move(closed);
   closing_->expires_at(runtime_.now() + kClosing);

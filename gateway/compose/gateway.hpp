@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "gateway/compose/bus_line.hpp"
-#include "gateway/compose/let_go.hpp"
+#include "gateway/compose/bus_release.hpp"
 #include "gateway/compose/reload_plan.hpp"
 #include "gateway/config/config.hpp"
 #include "gateway/drive/device/drive.hpp"
@@ -37,17 +37,17 @@ class Gateway final : public CommandPort {
   /// Opens the wires. A device that is missing is picked up when it appears.
   void start();
   /// The end on purpose: from now on only stops are accepted; what waits ends as never started, what is on a wire is
-  /// awaited. A drive that watches for a dead gateway, and of which a read shows that no motor has torque, is told not
+  /// awaited. A drive that watches for a dead gateway, and of which a read shows that no motor has torque, is set not
   /// to; every other one keeps what it does, and will miss the gateway (SECURITY.md). `closed` is called once, after
   /// kClosing at the latest.
   void close(std::function<void()> closed);
   /// Goes on with another configuration: buses that `plan` keeps are untouched, the others end, and those of `wanted`
   /// that are new begin. All of it or nothing: `done` is called once, in a turn of its own, with the reasons why
-  /// nothing was done. `last_word` is asked when the buses are let go, and may still give such reasons.
+  /// nothing was done. `last_word` is asked when the buses are to be released, and may still give such reasons.
   /// One at a time; not while the gateway ends. When the gateway ends meanwhile, nothing is done.
   void reload(const ReloadPlan& plan, Config wanted, Models models, std::function<std::vector<std::string>()> last_word,
               std::function<void(std::vector<std::string> why_not)> done);
-  [[nodiscard]] bool reloads() const { return letting_go_ != nullptr; }
+  [[nodiscard]] bool reloads() const { return bus_release_ != nullptr; }
   [[nodiscard]] bool ends() const { return stopping_; }
   /// The last word before everything is taken apart: nothing is sent any more, whoever goes.
   void stop();
@@ -109,8 +109,8 @@ class Gateway final : public CommandPort {
   std::size_t open_drives_ = 0;
   std::function<void()> closed_{};
   std::unique_ptr<Timer> closing_;
-  std::unique_ptr<LetGo> letting_go_;
-  std::unique_ptr<Timer> let_go_ended_;  ///< takes letting_go_ away in a turn of its own
+  std::unique_ptr<BusRelease> bus_release_;
+  std::unique_ptr<Timer> bus_release_ended_;  ///< takes bus_release_ away in a turn of its own
   bool dds_down_ = false;
   bool name_taken_ = false;
   bool listener_down_ = false;

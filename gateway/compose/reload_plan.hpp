@@ -2,7 +2,7 @@
 // What a reload changes: the running configuration against the wanted one. Pure.
 // Promises that a bus whose section and profiles say the same is untouched, wherever it stands in the file; that a
 // listener that says the same keeps its connections; that what cannot change while the gateway runs is refused by its
-// key. Never asks whether a motor has torque: gateway/compose/let_go.hpp does.
+// key. Never asks whether a motor has torque: gateway/compose/bus_release.hpp does.
 #pragma once
 
 #include <optional>

@@ -61,11 +61,11 @@ BusTiming timing_of(const BusConfig& bus) {
     timing.on_wire = 2 * timing.begun;
   } else if (bus.adapter == adapter::kKeyaCan) {
     timing.begun = extended_frame_time(bus.bitrate, kLongestFrame);
-    timing.unasked = timing.begun;
+    timing.unsolicited = timing.begun;
     timing.on_wire = 2 * timing.begun;
   } else if (adapter::keya_serial(bus.adapter)) {
     timing.control = characters_time(bus.baud, kKeyaFrame);
-    timing.unasked = bus.adapter == adapter::kKeyaRs232 ? timing.control : Duration{};
+    timing.unsolicited = bus.adapter == adapter::kKeyaRs232 ? timing.control : Duration{};
     timing.on_wire = 2 * timing.control;
   } else if (bus.adapter == adapter::kModbusRtu) {
     timing.rtu_baud = bus.baud;
@@ -121,8 +121,8 @@ void add_keep_alives(BusBudget& budget, const BusTiming& timing, const drive::Dr
 
 /// Keya: a drive's heartbeats.
 double heartbeat_share(const BusTiming& timing, const drive::DriveModel& model) {
-  const Duration every = model.unasked.every;
-  return share_of(timing.unasked, every == Duration{} ? kAssumedHeartbeat : every);
+  const Duration every = model.unsolicited.every;
+  return share_of(timing.unsolicited, every == Duration{} ? kAssumedHeartbeat : every);
 }
 
 /// On CANopen what is mapped is asked for now and then alone. Gives the share of the line it would take unmapped.
@@ -148,7 +148,7 @@ Duration shortest_period(const drive::TpdoProperties& tpdo, Duration sync) {
   return tpdo.event_ms ? std::min<Duration>(on_change, milliseconds(*tpdo.event_ms)) : on_change;
 }
 
-double unasked_share(const BusTiming& timing, const drive::DriveModel& model) {
+double unsolicited_share(const BusTiming& timing, const drive::DriveModel& model) {
   const drive::CanopenProperties& facts = model.canopen;
   const auto frame = [&](int bytes) { return can_frame_time(timing.can_bitrate, bytes); };
   double share = share_of(frame(1), facts.heartbeat) + share_of(frame(0) + frame(1), facts.guard_time);
@@ -173,16 +173,16 @@ double own_share(const BusTiming& timing, const std::vector<drive::DriveModel>& 
 
 void plan_can(BusBudget& budget, const BusTiming& timing, const std::vector<drive::DriveModel>& drives) {
   double unmapped = 0;
-  double unasked = own_share(timing, drives);
+  double unsolicited = own_share(timing, drives);
   for (const drive::DriveModel& model : drives) {
     const Duration confirm = model.canopen.confirm;
     Duration& period = budget.confirmed.period;
     period = period == Duration{} ? confirm : std::min(period, confirm);
     unmapped += add_sdo_polls(budget, timing, model);
-    unasked += unasked_share(timing, model);
+    unsolicited += unsolicited_share(timing, model);
   }
   budget.load_unmapped = permille_of(unmapped);
-  budget.load_unasked = permille_of(unasked);
+  budget.load_unsolicited = permille_of(unsolicited);
 }
 
 }  // namespace
@@ -200,7 +200,7 @@ BusBudget plan_bus(const BusTiming& timing, const std::vector<drive::DriveModel>
     add_keep_alives(budget, timing, model);
     heartbeats += heartbeat_share(timing, model);
   }
-  budget.load_unasked = permille_of(heartbeats);
+  budget.load_unsolicited = permille_of(heartbeats);
   if (can) plan_can(budget, timing, drives);
   budget.exchange = longest + answer;
   budget.load_on_wire = load_permille(budget, &BusBudget::Polled::on_wire);

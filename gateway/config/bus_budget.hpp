@@ -22,7 +22,7 @@ inline constexpr Duration kAssumedSdoAnswer = std::chrono::milliseconds(1);
 /// Above this share of the line the polls leave commands little room; suggested periods stay below it.
 inline constexpr int kComfortablePermille = 800;
 /// What nodes send by themselves goes before every request on CAN: it may take this share of the line.
-inline constexpr int kUnaskedPermille = 400;
+inline constexpr int kUnsolicitedPermille = 400;
 /// And reading what comes by TPDO all the same, this one.
 inline constexpr int kConfirmPermille = 300;
 /// Keya: how often a drive is taken to send its heartbeat where nobody has stated it.
@@ -38,7 +38,7 @@ struct BusTiming {
   int parity_bits = 0;            ///< of modbus-rtu: 0 or 1
   std::uint32_t can_bitrate = 0;  ///< canopen; else 0
   Duration begun{};               ///< on CAN: a frame of another node that has just begun; else 0
-  Duration unasked{};             ///< keya-can, keya-rs232: a heartbeat of the drive; else 0
+  Duration unsolicited{};         ///< keya-can, keya-rs232: a heartbeat of the drive; else 0
   Duration control{};             ///< Keya's serial protocols: a control frame, which nobody answers; else 0
 };
 
@@ -74,8 +74,8 @@ struct BusBudget {
   int load_on_wire = 0;   ///< 0.1 %, drives that answer at once
   int load_answered = 0;  ///< 0.1 %, drives that answer after answer_of()
   int load_unmapped = 0;  ///< canopen: load_answered where the drives map nothing; else load_answered
-  /// 0.1 %, what comes unasked. canopen: TPDOs as often as they may, heartbeats, guarding, SYNC; Keya: heartbeats.
-  int load_unasked = 0;
+  /// 0.1 %, unsolicited frames. canopen: TPDOs as often as they may, heartbeats, guarding, SYNC; Keya: heartbeats.
+  int load_unsolicited = 0;
   Duration exchange{};  ///< the longest request, with the slowest answer_of()
   Duration cycle{};     ///< in which each fast value is read once; longer than its period where the bus is over 100 %
   Duration command_wait{};               ///< the exchange on the wire, and one poll whose turn it is
@@ -85,7 +85,7 @@ struct BusBudget {
 
   [[nodiscard]] int load_confirmed() const;  ///< of load_answered, what `confirmed` takes
   [[nodiscard]] int load_fixed() const;      ///< and `kept_alive` with it: no poll period changes it
-  [[nodiscard]] bool overloaded() const { return load_answered > 1000 || load_on_wire + load_unasked > 1000; }
+  [[nodiscard]] bool overloaded() const { return load_answered > 1000 || load_on_wire + load_unsolicited > 1000; }
 };
 
 [[nodiscard]] BusBudget plan_bus(const BusTiming& timing, const std::vector<drive::DriveModel>& drives);

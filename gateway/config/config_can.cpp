@@ -41,9 +41,9 @@ void check_bitrate(const ConfigNode& node, const BusConfig& bus, bool lawicel, C
 
 /// TPDOs win the line against every SDO request, stops among them: they must not fill it, however much moves at once.
 void stretch_tpdos(const BusConfig& bus, std::vector<drive::DriveModel>& drives) {
-  const int load = plan_bus(timing_of(bus), drives).load_unasked;
-  if (load <= kUnaskedPermille) return;
-  const auto factor = static_cast<std::uint32_t>((load + kUnaskedPermille - 1) / kUnaskedPermille);
+  const int load = plan_bus(timing_of(bus), drives).load_unsolicited;
+  if (load <= kUnsolicitedPermille) return;
+  const auto factor = static_cast<std::uint32_t>((load + kUnsolicitedPermille - 1) / kUnsolicitedPermille);
   const auto longer = [&](std::uint16_t time) {
     return static_cast<std::uint16_t>(std::min(time * factor, kLongestInhibit));
   };

@@ -41,7 +41,7 @@ class Log {
   /// `source` says who speaks: "bus lift-serial", "axis 1", "modbus 127.0.0.1:50312".
   void write(LogLevel level, std::string_view source, std::string_view message, LogPace pace = LogPace::minute) const;
   void write(const OpeningFailure& failure) const;
-  /// Of a limited log, from time to time: what was left out and no later line has told of.
+  /// Of a limited log, from time to time: what was left out and no later line has told.
   void tell_left_out() const;
 
  private:

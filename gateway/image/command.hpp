@@ -65,7 +65,7 @@ inline constexpr std::uint16_t kStoppingBits = 0x0006;
 [[nodiscard]] constexpr bool is_jog(Command c) { return c == Command::jog_forward || c == Command::jog_reverse; }
 /// A command, or a button's press: it asks the axis to move.
 [[nodiscard]] constexpr bool asks_to_move(Command c) { return starts_motion(c) || is_jog(c); }
-/// A stop, or what is one where it ends a motion: coil 7 let go of a run, coil 8 or 9 of a jog (design 3.4 Stops).
+/// A stop, or what is one where it ends a motion: coil 7 released in a run, coil 8 or 9 of a jog (design 3.4 Stops).
 [[nodiscard]] constexpr bool asks_to_stop(Command c) {
   return is_stop(c) || c == Command::jog_end || c == Command::end_run;
 }
@@ -107,9 +107,10 @@ struct WriteBatch {
   /// The request asks for something that makes its client the owner (design 3.5: offsets 40..79, coils 4..9, coil 0 =
   /// 1, a mailbox or 43/13 write).
   bool claims = false;
-  /// A write of any kind, for an axis that waits for its client: an orphan lease of its own hand is taken over by it,
-  /// whatever it asks. A write batch that asks for nothing is submitted for this, and for its sign of life, alone.
-  bool is_write = false;
+  /// A write of any kind, for an axis that waits for its client: an orphan lease of its own origin and role is taken
+  /// over by it, whatever it asks. A write batch that asks for nothing is submitted for this, and for its sign of life,
+  /// alone.
+  bool reclaims = false;
   bool all_zero = false;    ///< a block of nothing but zeros: it takes over no adopted axis
   bool zero_speed = false;  ///< registers 40 to 54, all 0: its owner's run, on or asked for, goes on with target 0
   bool renews = true;       ///< false: it was written too long ago to be a sign of life

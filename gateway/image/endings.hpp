@@ -28,7 +28,7 @@ class Endings {
   /// link_state is 2 or 3 no longer.
   void lost() { breakdown_ = ++now_; }
 
-  /// Another client's stop, a fault or a link loss: what `me` asked for before must be armed anew.
+  /// Another client's stop, a fault or a link loss: what `me` asked for before must be armed again.
   [[nodiscard]] bool interrupted(Point since, ClientId me) const {
     return breakdown_ > since || stops_.by_another(since, me);
   }
@@ -44,7 +44,7 @@ class Endings {
     ClientId by = 0;
     Point by_others = 0;
     void note(Point at, ClientId who) {
-      if (at < last) {  // told late: what was accepted after it was told before
+      if (at < last) {  // reported late: what was accepted after it was reported before
         if (who != by) by_others = std::max(by_others, at);
         return;
       }

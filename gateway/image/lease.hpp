@@ -51,14 +51,15 @@ struct ClientLife {
 };
 
 /// The same program, as far as anybody can tell: a connection that goes on where another one of it has ended.
-[[nodiscard]] inline bool same_hand(const ClientLife& a, const ClientLife& b) {
+[[nodiscard]] inline bool same_origin_and_role(const ClientLife& a, const ClientLife& b) {
   return a.origin == b.origin && a.role == b.role;
 }
 
 /// It can be the gone owner's program, come back. One that was connected while the owner still asked is another program
 /// at its address.
 [[nodiscard]] inline bool may_be_back_as(const ClientLife& client, const ClientLife& owner) {
-  return same_hand(client, owner) && !owner.connected && (!client.opened || *client.opened >= owner.last_request);
+  return same_origin_and_role(client, owner) && !owner.connected &&
+         (!client.opened || *client.opened >= owner.last_request);
 }
 
 /// What keeps a lease alive.

@@ -22,7 +22,7 @@ struct Option {
   std::string value;  // what its value is called, "FILE"; empty: it takes none
   Takes takes = Takes::nothing;
   std::vector<std::string> words;  // the only values that it takes, where these are words
-  std::string initial;             // what it is without being given; empty: not told
+  std::string initial;             // what it is without being given; empty: not shown
   std::string what;
   bool required = false;
   bool repeated = false;

@@ -90,7 +90,7 @@ struct DriveConstant {
 };
 
 /// What of a binding's scale and limits waits for constants that are read from the drive: raw_per_unit is made as
-/// fixed * product(mul) / product(div), and the limits anew from it. Without any, the binding is whole from the start.
+/// fixed * product(mul) / product(div), and the limits again from it. Without any, the binding is whole from the start.
 struct ScaleRecipe {
   Rational fixed{1};
   std::vector<std::size_t> mul, div;    ///< positions in DriveModel::constants
@@ -294,7 +294,7 @@ struct ResyncRead {
 
 /// What stands against a late reply after a timeout (design 7, point 4).
 struct ResyncProperties {
-  std::vector<ResyncRead> candidates;  ///< reads whose replies can be told from one another
+  std::vector<ResyncRead> candidates;  ///< reads whose replies can be distinguished from one another
   /// Modbus RTU: the reply of a read tells its length and nothing else. Elsewhere a reply names its object.
   bool by_length = false;
   Duration worst_reply = std::chrono::milliseconds(500);
@@ -340,7 +340,7 @@ struct CanopenProperties {
 };
 
 /// Values that a drive sends by itself, in a frame of its own (Keya's heartbeat).
-struct UnaskedProperties {
+struct UnsolicitedProperties {
   Duration every{};  ///< 0: not known
   std::vector<ObjectId> objects;
 };
@@ -369,11 +369,11 @@ struct DriveModel {
   std::string loss_text;               ///< what the drive then does, and what is not known of it; may be empty
   /// The drive disables itself unless it is commanded so often (profile key "keepalive"); 0: it does not.
   Duration keep_alive{};
-  std::vector<ObjectId> composed{};  ///< Keya's serial protocols: the fields of the control frame
-  UnaskedProperties unasked{};       ///< Keya's CAN protocol
-  RtuProperties rtu;                 ///< Modbus RTU alone
-  CanopenProperties canopen;         ///< CANopen alone
-  Nvm nvm = Nvm::no;                 ///< of objects that are not in `objects` (the mailbox reaches them)
+  std::vector<ObjectId> composed{};     ///< Keya's serial protocols: the fields of the control frame
+  UnsolicitedProperties unsolicited{};  ///< Keya's CAN protocol
+  RtuProperties rtu;                    ///< Modbus RTU alone
+  CanopenProperties canopen;            ///< CANopen alone
+  Nvm nvm = Nvm::no;                    ///< of objects that are not in `objects` (the mailbox reaches them)
   std::array<Duration, 3> poll_period{std::chrono::milliseconds(20), std::chrono::milliseconds(100),
                                       std::chrono::milliseconds(1000)};
 

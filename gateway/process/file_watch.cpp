@@ -33,8 +33,8 @@ void FileWatch::look() {
 
 void FileWatch::on_looked(const std::string& file) {
   timer_->expires_at(runtime_.now() + kPeriod);
-  if (file.empty() == told_.empty()) return;
-  told_ = file;
+  if (file.empty() == reported_.empty()) return;
+  reported_ = file;
   on_change_(file);
 }
 

@@ -36,7 +36,7 @@ class FileWatch {
   Runtime& runtime_;
   std::vector<drive::FileRead> watched_;  ///< the thread's, once it runs
   std::function<void(const std::string&)> on_change_;
-  std::string told_;
+  std::string reported_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< what is posted to the loop may outlive this
   std::unique_ptr<Timer> timer_;
   boost::asio::thread_pool thread_{1};  ///< last: joined before the rest goes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A reload of the running gateway: reads the configuration anew and has the gateway go on with it, or
+// A reload of the running gateway: reads the configuration again and has the gateway go on with it, or
 // says why it stays as it was. Promises all or nothing; that the file is read and checked on a thread of its own, so
 // that the loop never waits for a disk; that a bus or listener whose section says the same is not touched. Never stops,
 // enables or moves anything, and never closes the connection of a client whose axis is enabled.

@@ -52,7 +52,7 @@ struct Service::Teller {
     std::unique_lock lock(mutex);
     ended = true;
     changed.notify_all();
-    changed.wait_for(lock, kLastTold, [this] { return untold.empty(); });
+    changed.wait_for(lock, kLastReport, [this] { return untold.empty(); });
   }
 };
 

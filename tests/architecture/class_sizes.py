@@ -10,7 +10,7 @@ FEWEST_FUNCTIONS = 7
 # Those that are larger: (functions, fields) as they are. A figure here only ever becomes smaller, and no class is added.
 LARGER = {
     "axisgate::app::Gateway": (32, 21),
-    "axisgate::app::HandPlan": (51, 30),
+    "axisgate::app::ManualPlan": (51, 30),
     "axisgate::bus::Bus": (37, 19),
     "axisgate::can::SocketCanLink": (18, 25),
     "axisgate::drive::Axis": (128, 27),

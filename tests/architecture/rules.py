@@ -61,7 +61,7 @@ ONE_PLACE = {
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
 DECIDING = ("gateway/core/", "gateway/image/", "gateway/model/", "gateway/profile/", "gateway/drive/", "gateway/config/", "gateway/check/",
-            "gateway/compose/", "gateway/commands/commission/commission_plan", "gateway/commands/hand/plan/", "gateway/commands/scan/plan/",
+            "gateway/compose/", "gateway/commands/commission/commission_plan", "gateway/commands/manual/plan/", "gateway/commands/scan/plan/",
             "gateway/commands/view/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/",
             "gateway/upstream/dds_host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/", "adapters/canopen/",
             "adapters/keya/", "adapters/can/")
@@ -210,6 +210,18 @@ PRIVATE_HERE = {
     ("adapters/bus/", "gateway/drive/", "tests/unit/bus/"): {
         "bus job": r"\b[aA]n order\b|\bOrder(?:Id)?\b|\borders (?:per|of a)\b|\bon_order_\w+"},
 }
+# What headers say of their subject in a word that says nothing: in comments, and in the names of things and of files.
+VAGUE_NOTES = {"again, from scratch": r"\banew\b", "unsolicited": r"\bunasked\b", "manual, or the client's origin": r"\bhand\b"}
+VAGUE_NAMES = {
+    "again": r"(?:\b|\w_)anew(?:\b|_\w*)|\w*Anew\w*", "unsolicited": r"(?:\b|\w+_)unasked(?:\b|_\w*)|\w*Unasked\w*",
+    "manual": r"\bhand\b|\w*Hand(?=[A-Z])\w*|\b(?:command|add|by)_hand\w*|\bhand_(?!over\b)\w+",
+    "release": r"\b(?:let|letting)_go\w*|\bLetGo\b", "publisher": r"\bshown_axis\b|\bShownAxis\b",
+    "same_origin_and_role": r"\b(?:same|own)_hand\b", "on_unreachable": r"\blose_sight\b", "what is lost": r"\bforgotten_\b",
+    "how the jog ended": r"\bjog_left_\b", "what is not new": r"\bholds_in_vain\b", "what is repeated": r"\bbrings_back\b",
+    "what a write does": r"\bis_write\b", "the report that is taken": r"\btake_news\b",
+}
+# It means answering, reporting, sending, showing and telling apart; in the log alone it means one thing.
+TOLD = {"answered, reported, sent, shown or logged": r"\b(?:\w+_)?[tT]old(?:_\w*)?\b|\w*[a-z]Told\w*"}
 # A group of processes.
 PRIVATE_ELSEWHERE = ("gateway/upstream/dds_host/child_process.cpp",)
 
@@ -238,6 +250,22 @@ def field_words(root):
             known = PRIVATE_PROSE if token["note"] else PRIVATE_NAMES
             if breach := private(token[0].lower() if token["note"] else token[0], known) or private(token[0], here):
                 yield f"{name}:{text.count(chr(10), 0, token.start()) + 1}: {breach}"
+        if name.endswith(".hpp") and name.startswith(("gateway/", "adapters/")):
+            yield from vague(name, text)
+
+
+def vague(name, text):
+    """Of a header: its own name, its comments and its identifiers."""
+    told = {} if "log" in name.rsplit("/", 1)[1] else TOLD
+    if breach := private(name.replace("/", " ").replace(".", " "), VAGUE_NAMES | told):
+        yield f"{name}:1: {breach}"
+    for token in C_TOKEN.finditer(text):
+        if token.lastgroup == "text" or token["text"]:
+            continue
+        known = (VAGUE_NOTES if token["note"] else VAGUE_NAMES) | told
+        said = re.sub(r"`[^`]*`", "", token[0].lower()) if token["note"] else token[0]
+        if (token["note"] or token["name"]) and (breach := private(said, known)):
+            yield f"{name}:{text.count(chr(10), 0, token.start()) + 1}: {breach}"
 
 
 # What comments cite: a section that ARCHITECTURE.md lists, with a heading of it, a point of "How it is built", a promise.

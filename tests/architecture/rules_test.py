@@ -112,6 +112,18 @@ class Rules(unittest.TestCase):
         self.assertEqual([breach.split(": ")[0] for breach in self.breaches("field_words")],
                          ["adapters/bus/d.hpp:1", "gateway/core/a.cpp:1", "gateway/core/b.cpp:1", "gateway/drive/c.cpp:1"])
 
+    def test_a_word_that_says_nothing_is_found_in_a_header(self):
+        self.write("gateway/core/a.hpp", "/// Begins anew.\nvoid take_unasked();\nclass HandPlan;\nbool told_up_;\n/// What it was told.\n")
+        self.write("gateway/core/let_go.hpp", "")
+        self.assertEqual([breach.split(": ")[0] for breach in self.breaches("field_words")],
+                         [f"gateway/core/a.hpp:{line}" for line in range(1, 6)] + ["gateway/core/let_go.hpp:1"])
+
+    def test_such_a_word_is_let_pass_in_the_log_in_a_source_and_in_another_word(self):
+        self.write("gateway/core/log.hpp", "Instant told;  // when it was told\n")
+        self.write("gateway/core/a.cpp", "bool anew;\n")
+        self.write("gateway/core/a.hpp", "void hand_over();  // a handshake with a handler\nint native_handle; bool is_write_function();\n")
+        self.assertEqual(self.breaches("field_words"), [])
+
     def test_a_private_word_on_a_page_is_found(self):
         self.write("docs/a.md", "A drive.\nLate replies meet a fence.\n")
         self.assert_breach("field_words", "docs/a.md:2")

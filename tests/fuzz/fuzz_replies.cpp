@@ -4,7 +4,7 @@
 #include "adapters/can/can_error.hpp"
 #include "gateway/commands/scan/plan/scan_table.hpp"
 #include "gateway/commands/scan/plan/serial_scan_plan.hpp"
-#include "gateway/commands/view/hand_view.hpp"
+#include "gateway/commands/view/manual_view.hpp"
 #include "gateway/profile/read/profile_loader.hpp"
 #include "tests/fuzz/input.hpp"
 #include "tests/fuzz/targets.hpp"
@@ -103,17 +103,18 @@ void serial_scan(Input input) {
 }
 
 void hand_replies(Input input) {
-  const app::HandListener listener{.order = static_cast<app::WordOrder>(input.below(3)), .float_numbers = input.yes()};
+  const app::ManualListener listener{.order = static_cast<app::WordOrder>(input.below(3)),
+                                     .float_numbers = input.yes()};
   while (input.more()) {
     const Bytes reply = input.bytes(input.word() % 260);
     must_be_shown(app::exception_text(app::exception_in(reply)), false);
     must(app::identification_in(reply).size() <= reply.size(), "an object is part of its reply");
-    const auto registers = app::registers_in(reply, app::kHandRegisters);
-    must(!registers || registers->size() == app::kHandRegisters, "as many registers as were asked for");
+    const auto registers = app::registers_in(reply, app::kManualRegisters);
+    must(!registers || registers->size() == app::kManualRegisters, "as many registers as were asked for");
     const auto inputs = app::inputs_in(reply, 13);
     if (!registers) continue;
-    const app::HandView view = app::hand_view(*registers, inputs.value_or(input.word()), listener);
-    must_be_shown(app::hand_line(1, view, "moves"), false);
+    const app::ManualView view = app::manual_view(*registers, inputs.value_or(input.word()), listener);
+    must_be_shown(app::manual_line(1, view, "moves"), false);
     must_be_shown(app::owner_text(view), false);
   }
 }

@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kEnable = 1, kDisable = 2, kNeverStarted = 6;
-constexpr Duration kBoth = 2 * app::kLettingGo;
+constexpr Duration kBoth = 2 * app::kBusReleaseStep;
 
 void change_timeout(app::Config& config) { config.buses.at(0).timeout += 1ms; }
 void take_out(app::Config& config) { config.buses.clear(); }

@@ -238,12 +238,12 @@ TEST(Keya, MapsTheTpdosTheDriveHasByItself) {
 
 TEST(Keya, WhatComesUnaskedIsNeverAskedFor) {
   const DriveModel model = keya::model(keya::drive("keya-can"));
-  EXPECT_EQ(model.unasked.every, std::chrono::seconds(1));
-  EXPECT_THAT(names(model, model.unasked.objects), testing::UnorderedElementsAre("A.work_mode", "interface"));
+  EXPECT_EQ(model.unsolicited.every, std::chrono::seconds(1));
+  EXPECT_THAT(names(model, model.unsolicited.objects), testing::UnorderedElementsAre("A.work_mode", "interface"));
   EXPECT_EQ(keya::object(model, "A.work_mode").address, (bus::ObjectAddress{0x7000, 0, 7}));
-  for (const ObjectId object : model.unasked.objects) EXPECT_FALSE(model.object(object).readable);
+  for (const ObjectId object : model.unsolicited.objects) EXPECT_FALSE(model.object(object).readable);
   for (const std::string protocol : {"canopen", "keya-rs232", "keya-rs485"})
-    EXPECT_THAT(keya::model(keya::drive(protocol)).unasked.objects, IsEmpty());
+    EXPECT_THAT(keya::model(keya::drive(protocol)).unsolicited.objects, IsEmpty());
 }
 
 TEST(Keya, ItsFaultsHaveTheManualsRemediesAndDisabledIsNone) {

@@ -91,7 +91,7 @@ void SlcanLink::take(const LawicelLine& line) {
   const std::weak_ptr alive(alive_);
   obey();
   report();
-  if (alive.expired() || line.kind != Kind::frame || !told_up_ || !filters_.passes(line.frame)) return;
+  if (alive.expired() || line.kind != Kind::frame || !reported_up_ || !filters_.passes(line.frame)) return;
   events_->on_frame(line.frame, now);
 }
 
@@ -107,18 +107,18 @@ void SlcanLink::obey() {
   const std::string output = session_.take_output();
   if (!output.empty()) port_->send(Bytes(reinterpret_cast<const Byte*>(output.data()), output.size()));
   const Instant now = runtime_.now();
-  const bool something_waits = !backlog_.empty() || session_.up() != told_up_;
+  const bool something_waits = !backlog_.empty() || session_.up() != reported_up_;
   timer_->expires_at(something_waits ? now : session_.due(now));
 }
 
 void SlcanLink::report() {
-  if (session_.up() == told_up_) {
-    if (!told_up_ && !session_.why().empty()) failures_.tell(log_, log_source_, session_.why());
+  if (session_.up() == reported_up_) {
+    if (!reported_up_ && !session_.why().empty()) failures_.tell(log_, log_source_, session_.why());
     return;
   }
-  told_up_ = session_.up();
-  if (!told_up_) {
-    failures_.was_told(session_.why());
+  reported_up_ = session_.up();
+  if (!reported_up_) {
+    failures_.was_reported(session_.why());
     events_->on_link_down(session_.why());
     return;
   }

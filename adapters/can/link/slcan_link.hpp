@@ -54,7 +54,7 @@ class SlcanLink final : public CanLink, private bus::ByteLinkEvents {
   LawicelSession session_;
   bus::NoiseWatch noise_;
   std::vector<Byte> backlog_;
-  bool told_up_ = false;
+  bool reported_up_ = false;
   bool ever_up_ = false;
   bus::OpeningFailures failures_;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);

@@ -44,8 +44,8 @@ void SocketCanLink::arm() {
   const Instant now = runtime_.now();
   Instant next = std::min({reopen_.due(), send_again_at_, clog_look_at_});
   if (socket_.is_open()) next = std::min(next, faults_.due(now));
-  if (told_up_) next = std::min(next, queue_.overdue_at());
-  if (!broken_.empty() || (told_up_ && !clogged_.empty())) next = now;
+  if (reported_up_) next = std::min(next, queue_.overdue_at());
+  if (!broken_.empty() || (reported_up_ && !clogged_.empty())) next = now;
   timer_->expires_at(next);
 }
 
@@ -121,15 +121,15 @@ void SocketCanLink::take(const Received& received) {
   } else if (received.kind == Received::Kind::frame) {
     const StillOpen still_open(opening_);
     faults_.on_frame();
-    if (!told_up_) judge();
-    if (still_open && told_up_ && filters_.passes(received.frame)) {
+    if (!reported_up_) judge();
+    if (still_open && reported_up_ && filters_.passes(received.frame)) {
       events_->on_frame(received.frame, now - received.age);
     }
   }
 }
 
 void SocketCanLink::send(const CanFrame& frame, bool urgent) {
-  if (!told_up_ || !broken_.empty() || !clogged_.empty()) return;
+  if (!reported_up_ || !broken_.empty() || !clogged_.empty()) return;
   if (!queue_.push(frame, urgent, runtime_.now())) {
     clogged_ = fmt::format("{}: nobody acknowledges or the bus is overloaded: {} frames wait to be sent", interface_,
                            queue_.size());
@@ -182,9 +182,9 @@ std::string SocketCanLink::trouble_now() const {
 void SocketCanLink::judge() {
   if (!socket_.is_open()) return;
   const std::string trouble = trouble_now();
-  if (trouble.empty() == told_up_) return;
-  told_up_ = trouble.empty();
-  if (!told_up_) {
+  if (trouble.empty() == reported_up_) return;
+  reported_up_ = trouble.empty();
+  if (!reported_up_) {
     queue_.clear();
     send_again_at_ = kNever;
     arm();
@@ -214,8 +214,8 @@ void SocketCanLink::lose(const std::string& why) {
   close();
   reopen_.on_loss(runtime_.now());
   arm();
-  if (std::exchange(told_up_, false)) {
-    failures_.was_told(why);
+  if (std::exchange(reported_up_, false)) {
+    failures_.was_reported(why);
     events_->on_link_down(why);
   } else {
     failures_.tell(log_, log_source_, why);

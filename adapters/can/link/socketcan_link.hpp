@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A CAN link through an interface of Linux (SocketCAN), on Boost.Asio.
-// Promises what CanLink promises, and that an interface that is missing, down, gone or made anew is told once with what
-// to do about it and picked up again: each second, and at once when the system tells of it. Never configures the
-// interface (bit rate, restart after bus-off: the administrator's), never blocks, and never calls its events once
+// Promises what CanLink promises, and that an interface that is missing, down, gone or created again is reported once
+// with what to do about it and picked up again: each second, and at once when the system tells of it. Never configures
+// the interface (bit rate, restart after bus-off: the administrator's), never blocks, and never calls its events once
 // destroyed.
 #pragma once
 
@@ -69,13 +69,13 @@ class SocketCanLink final : public CanLink {
   SendQueue queue_;
   CanTrouble trouble_;
   bus::OpeningFailures failures_;
-  std::string broken_;              ///< found while sending; told from the loop, so that send() calls nobody back
+  std::string broken_;              ///< found while sending; reported from the loop, so that send() calls nobody back
   std::string clogged_;             ///< the queue stayed full: why the link is down
   Instant clog_look_at_ = kNever;   ///< when the queue is looked at again
   Instant send_again_at_ = kNever;  ///< the queue was full: when it is tried again
   std::uint32_t dropped_ = 0;       ///< by the system, on this socket
-  bool running_ = true;             ///< as the last message told
-  bool told_up_ = false;
+  bool running_ = true;             ///< as the last message said
+  bool reported_up_ = false;
   bool ever_up_ = false;
   boost::asio::posix::stream_descriptor socket_;
   /// Counts openings: handlers of an earlier one that are still in the queue of the loop are out of date. Shared with

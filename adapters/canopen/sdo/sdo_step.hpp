@@ -46,7 +46,7 @@ struct SdoStep {
   return over(std::move(result));
 }
 
-/// The server is told `code`.
+/// The server is sent an abort with `code`.
 [[nodiscard]] inline SdoStep aborting(bus::ObjectAddress object, std::uint32_t code, bus::ExchangeResult result) {
   SdoStep step = over(std::move(result));
   step.frames.push_back(abort_frame(object, code));

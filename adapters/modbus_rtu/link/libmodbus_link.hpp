@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The serial line of one Modbus RTU bus over libmodbus: the RtuLink of the product.
-// Promises a loss told at once with its reason, also while its worker waits for the rest of a frame, a new try each
+// Promises a loss reported at once with its reason, also while its worker waits for the rest of a frame, a new try each
 // second and at once when the path appears, exclusive use, and that a port whose descriptor libmodbus cannot serve is
 // down and not the end of the process. A device that is missing at the start is a matter for the log, not an error.
 // Never blocks the core's thread but for its worker's last step in its destructor; never calls its events from

@@ -137,7 +137,7 @@ Heard LibmodbusPort::receive(bool may_read) {
     const FrameFinder::Found found = finder_.next(!may_read && patience_left() == Duration{});
     if (found.kind != FrameFinder::Found::Kind::nothing) {
       begun_at_ = clock_now();  // of what follows
-      return told(found);
+      return heard_of(found);
     }
     if (!may_read) return {};
     Heard lost;
@@ -160,7 +160,7 @@ bool LibmodbusPort::read_more(Heard& lost) {
   return false;
 }
 
-Heard LibmodbusPort::told(const FrameFinder::Found& found) {
+Heard LibmodbusPort::heard_of(const FrameFinder::Found& found) {
   using Kind = FrameFinder::Found::Kind;
   switch (found.kind) {
     case Kind::copy:

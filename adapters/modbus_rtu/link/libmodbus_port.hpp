@@ -20,7 +20,7 @@
 
 namespace axisgate::modbus_rtu {
 
-/// How much later than the line itself an adapter may hand bytes on: a USB adapter's latency timer is 16 ms, and the
+/// How much later than the line itself an adapter may pass bytes on: a USB adapter's latency timer is 16 ms, and the
 /// machine has its own moments.
 inline constexpr Duration kAdapterLatency = std::chrono::milliseconds(30);
 
@@ -72,7 +72,7 @@ class LibmodbusPort {
 
   [[nodiscard]] bool selectable() const;
   [[nodiscard]] bool read_more(Heard& lost);
-  [[nodiscard]] Heard told(const FrameFinder::Found& found);
+  [[nodiscard]] Heard heard_of(const FrameFinder::Found& found);
   [[nodiscard]] Heard judged(Bytes frame);
   [[nodiscard]] Duration patience() const;
 

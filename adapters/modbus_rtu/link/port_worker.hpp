@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The thread of one port: what waits for a device, or for the rest of a frame, does that here and not on the core's.
-// Promises that what it is told is taken up as soon as no frame is half read, that what it hears is told on the core's
-// thread in order, each frame with the number of the newest frame sent before it, and that it calls nobody once it is
-// destroyed. Never decides: it opens, sends and listens as it is told, and keeps no more than kMaxHeard frames.
+// Promises that what it is asked is taken up as soon as no frame is half read, that what it hears is reported on the
+// core's thread in order, each frame with the number of the newest frame sent before it, and that it calls nobody once
+// it is destroyed. Never decides: it opens, sends and listens as it is asked, and keeps no more than kMaxHeard frames.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace axisgate::modbus_rtu {
 
-/// Numbers openings: what is told of an earlier one is out of date.
+/// Numbers openings: what is reported of an earlier one is out of date.
 using OpeningNumber = std::uint64_t;
 
 class PortWorkerEvents {
@@ -36,9 +36,10 @@ class PortWorkerEvents {
 
 class PortWorker {
  public:
-  /// Frames and runs of noise that wait for the core's thread; what comes beyond is dropped, its bytes told as noise.
+  /// Frames and runs of noise that wait for the core's thread; what comes beyond is dropped, its bytes reported as
+  /// noise.
   static constexpr std::size_t kMaxHeard = 32;
-  /// Before a frame is sent, what has come unasked is read: at most so many times.
+  /// Before a frame is sent, what has come unsolicited is read: at most so many times.
   static constexpr int kMaxReadsBeforeSending = 32;
 
   /// `context` is the core's and must outlive the worker; `events` are called on its thread.

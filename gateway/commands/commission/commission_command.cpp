@@ -12,7 +12,7 @@
 #include "adapters/asio/asio_runtime.hpp"
 #include "adapters/asio/line_input.hpp"
 #include "gateway/commands/commission/commission_plan.hpp"
-#include "gateway/commands/common/faults_told.hpp"
+#include "gateway/commands/common/config_faults.hpp"
 #include "gateway/compose/gateway.hpp"
 #include "gateway/config/config_loader.hpp"
 #include "gateway/process/device_wires.hpp"
@@ -117,10 +117,10 @@ class Commissioning {
   [[nodiscard]] std::vector<AxisShown> axes_now() {
     std::vector<AxisShown> out;
     for (const drive::AxisModel& axis : model_.axes) {
-      const bool told = std::all_of(axis.state_sources.begin(), axis.state_sources.end(),
-                                    [&](drive::ObjectId id) { return model_.object(id).emulated || read(id); });
+      const bool state_known = std::all_of(axis.state_sources.begin(), axis.state_sources.end(),
+                                           [&](drive::ObjectId id) { return model_.object(id).emulated || read(id); });
       const AxisImage& image = *bench_.gateway().image().find(axis.number);
-      out.push_back({axis.number, image.link_state, told, image.has(AxisInput::enabled)});
+      out.push_back({axis.number, image.link_state, state_known, image.has(AxisInput::enabled)});
     }
     return out;
   }

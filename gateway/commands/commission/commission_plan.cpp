@@ -80,7 +80,7 @@ std::optional<bool> is_bad(const drive::DriveModel& model, const drive::Check& c
 std::string objection(const std::vector<AxisShown>& axes) {
   for (const AxisShown& axis : axes) {
     if (axis.link != LinkState::online) return fmt::format("axis {} is not online ({})", axis.number, text(axis.link));
-    if (!axis.told) return fmt::format("axis {} does not tell whether it is enabled", axis.number);
+    if (!axis.state_known) return fmt::format("axis {} does not tell whether it is enabled", axis.number);
     if (axis.enabled)
       return fmt::format("axis {} is enabled: disable it first, settings are not changed under torque", axis.number);
   }
@@ -123,8 +123,8 @@ std::string question(const drive::DriveModel& model, const drive::Check& check, 
                   value ? fmt::format("{:#x}", *value) : "not known", check.text);
   for (const drive::ObjectWrite& write : check.remedy) {
     const auto now = number_of(shown, write.object);
-    const bool told = now && tells(model.object(write.object));
-    out += fmt::format("    {}{}\n", text(model, write), told ? fmt::format("  (now {:#x})", *now) : "");
+    const bool state_known = now && tells(model.object(write.object));
+    out += fmt::format("    {}{}\n", text(model, write), state_known ? fmt::format("  (now {:#x})", *now) : "");
   }
   return out;
 }

@@ -17,7 +17,7 @@ namespace axisgate::app {
 
 struct Finding {
   const drive::Check* check = nullptr;
-  bool known = false;  ///< the drive told the value
+  bool known = false;  ///< the value was read from the drive
   bool bad = false;
   std::int64_t value = 0;
 };
@@ -44,7 +44,7 @@ using Numbers = std::map<drive::ObjectId, std::int64_t>;
 struct AxisShown {
   AxisNumber number = 0;
   LinkState link = LinkState::unknown;
-  bool told = false;  ///< what tells its state could be read just now
+  bool state_known = false;  ///< the objects that hold its state could be read just now
   bool enabled = false;
 };
 /// Why nothing may be written to this drive now; empty: it may.

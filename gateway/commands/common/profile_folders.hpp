@@ -18,7 +18,7 @@ namespace axisgate::app {
 [[nodiscard]] std::vector<std::string> profile_folders(const std::string& given);
 
 /// All profiles of the folders; of two with one name, the first. Bases are left out; one with mistakes as
-/// well, and told on stderr.
+/// well, and reported on stderr.
 [[nodiscard]] std::vector<drive::Profile> profiles_in(const std::vector<std::string>& folders);
 
 }  // namespace axisgate::app

@@ -14,7 +14,7 @@
 
 #include "gateway/commands/client/host_port.hpp"
 #include "gateway/commands/client/top_client.hpp"
-#include "gateway/commands/common/faults_told.hpp"
+#include "gateway/commands/common/config_faults.hpp"
 #include "gateway/commands/top/top_screen.hpp"
 #include "gateway/commands/view/top_table.hpp"
 #include "gateway/config/config_loader.hpp"

@@ -59,7 +59,7 @@ void Axis::on_bring_up() {
   counted_.reset();
   // What was not held before is not held until it is read.
   if (core_.loss_stop_ms != kGoesOn) core_.loss_stop_ms = loss_stop_ms(core_.drive, std::nullopt);
-  lose_sight();
+  on_unreachable();
   if (!core_.is_virtual()) return;
   core_.machine.reset();
   core_.store.forget(core_.model.statusword);
@@ -367,7 +367,7 @@ void Axis::complete(bus::JobId id, const BatchResult& result) {
   }
   name_limit(pending.command_sequence->batch(), told);
   if (told.outcome.code != Errc::ok) {
-    forget_told(core_, pending.command_sequence->batch());
+    forget_accepted_speeds(core_, pending.command_sequence->batch());
     if (!pending.command_sequence->begun()) forget_accepted(pending.command_sequence->batch());
   }
   if (!pending.by_mailbox) {

@@ -2,14 +2,14 @@
 // One axis at work: takes write batches, queues them with the bus, carries them out one after another and shows the
 // axis's image. Promises each write batch one result; a stop taken at any time, ahead of everything; callbacks only
 // after the image shows what they tell. Never enables or moves the axis by itself: it stops one whose owner has fallen
-// silent, a jog whose button is let go, a homing out of time, and a motion that nobody can watch, nothing else.
+// silent, a jog whose button is released, a homing out of time, and a motion that nobody can watch, nothing else.
 #pragma once
 
 #include <memory>
 #include <string_view>
 #include <vector>
 
-#include "gateway/drive/axis/shown_axis.hpp"
+#include "gateway/drive/axis/axis_publisher.hpp"
 #include "gateway/drive/axis/telling.hpp"
 #include "gateway/drive/command_sequence/command_sequence.hpp"
 #include "gateway/drive/motion/accepted.hpp"
@@ -38,18 +38,18 @@ class Axis {
   [[nodiscard]] bool owner_asks(ClientId client, Quantity quantity, std::int64_t value) const;
   [[nodiscard]] std::int32_t set_position_value() const { return core_.set_position_value; }
 
-  /// The drive comes up anew: nothing is known, nothing survives.
+  /// The drive comes up from scratch: nothing is known, nothing survives.
   void on_bring_up();
-  /// The drive has sent an emergency code; 0: what it told of is over.
+  /// The drive has sent an emergency code; 0: the reported emergency is over.
   void on_emergency(std::uint16_t code) { core_.fault.emergency(code, core_.turn.now, core_.store.exchange()); }
   /// What is to be read next so that a fault can be shown with its cause; and it goes on the wire.
   [[nodiscard]] std::optional<ObjectId> cause_to_read() const { return core_.fault.next(core_.turn.now); }
   void cause_asked() { core_.fault.asked(core_.turn.now); }
   /// What came by itself shows the end of the motion, and a read must settle it.
   [[nodiscard]] bool end_wants_sample() const { return core_.motion.end_wants_sample(core_.facts()); }
-  /// The axis has shown a fault until now; told once.
+  /// The axis has shown a fault until now; reported once.
   [[nodiscard]] bool fault_is_over() { return core_.fault.take_over(); }
-  /// It says that it has started anew: no motor of it has torque.
+  /// It says that it has restarted: no motor of it has torque.
   void on_restarted();
   /// It was suspect: it may have restarted unseen.
   void on_invalidated() { reference_invalidated_ = true; }
@@ -58,7 +58,7 @@ class Axis {
   void set_alarm(AxisAlarm alarm, bool on);
   /// Whether its drive holds what makes it notice a dead gateway; none: nobody knows.
   void set_loss_reaction(std::optional<bool> holds);
-  /// New samples are in the store: what is made from them is made anew.
+  /// New samples are in the store: what is made from them is made again.
   void on_samples();
   /// The drive's own constants were read: scales and limits have changed.
   void on_scale();
@@ -190,7 +190,7 @@ class Axis {
   void observe_stop();
   void watch_enable(const CommandSequence& unknown);
   void take_back_enable(State402 state);
-  void lose_sight();
+  void on_unreachable();
   void send_owed(StopKind stop);
   void note_stop(const Pending& pending, bool ended);
   void note_begun(const Pending& pending, bool done);
@@ -205,7 +205,7 @@ class Axis {
   void hold_rest(const Pending& pending);
   void end_jog();
   void halt_jog(const std::string& why);
-  void stop_jog(std::string told);
+  void stop_jog(std::string event_text);
   [[nodiscard]] bool stop_comes_first(const WriteBatch& batch) const;
   [[nodiscard]] bool may_be_enabled() const;
   [[nodiscard]] bool zero_may_move() const;
@@ -226,8 +226,8 @@ class Axis {
   // A state that did not come in time (axis_time.cpp).
   [[nodiscard]] Instant decide_by(const WriteBatch& batch) const;
   void tell_not_reached(const Pending& pending);
-  void withdraw(const WriteBatch& asked, Command stop, const BatchResult& told, std::vector<Waiting> waiting);
-  // Who asked for what, and what became of it (axis_told.cpp).
+  void withdraw(const WriteBatch& asked, Command stop, const BatchResult& answer, std::vector<Waiting> waiting);
+  // Who asked for what, and what became of it (axis_events.cpp).
   void tell_asked(const WriteBatch& asked, const WriteBatch& carried_out);
   void tell_owner(const std::string& what);
   void tell_refused(const WriteBatch& asked, const BatchResult& result);
@@ -244,14 +244,14 @@ class Axis {
   AxisImage& image_;
   bus::AxisSlot slot_;
   AxisCore core_;
-  ShownAxis shown_;
+  AxisPublisher shown_;
   std::vector<Pending> pending_;
   std::vector<Due> due_;
   bool reference_invalidated_ = false;
   bool holds_method_ = false;              ///< its drive was seen to hold the homing_method that a client has written
   bool faulted_ = false;                   ///< as seen last
   std::optional<std::int64_t> counted_{};  ///< the position as the drive counts, as seen last without a gap
-  bool forgotten_ = false;  ///< its drive holds other speeds than it was told, and a start will tell it anew
+  bool speeds_lost_ = false;  ///< its drive holds other speeds than it was sent; a start will write them again
   struct {
     std::optional<ClientId> client{};
     std::shared_ptr<const ClientLife> life{};
@@ -261,10 +261,10 @@ class Axis {
   std::optional<ClientId> taken_by_{};  ///< its take-over's halt is under way
   Accepted accepted_;
   Jog jog_;
-  bool jog_left_ = false;           ///< one has ended without a halt, and nothing was started since
-  Instant jog_started_ = kLongAgo;  ///< until then it stood, or moved otherwise
-  Instant position_at_ = kLongAgo;  ///< the newest sample of the position
-  Duration position_gap_{};         ///< between two of them, while it jogs
+  bool jog_ended_without_halt_ = false;  ///< a jog has ended without a halt, and nothing was started since
+  Instant jog_started_ = kLongAgo;       ///< until then it stood, or moved otherwise
+  Instant position_at_ = kLongAgo;       ///< the newest sample of the position
+  Duration position_gap_{};              ///< between two of them, while it jogs
   OwedStop owed_;
   StopWatch stop_watch_;
   LateEnable late_enable_;

@@ -89,7 +89,7 @@ void Axis::watch_position() {
 
 void Axis::observe_jog() {
   watch_position();
-  jog_left_ = jog_left_ && core_.motion.running() == MotionKind::none;
+  jog_ended_without_halt_ = jog_ended_without_halt_ && core_.motion.running() == MotionKind::none;
   if (!jog_.active()) return;
   if (!core_.reachable()) {
     jog_.carry();
@@ -98,7 +98,7 @@ void Axis::observe_jog() {
   const bool goes_on = jog_.carried() && core_.facts().enabled();
   if (!jog_is_starting() && !goes_on && core_.motion.running() != MotionKind::velocity) {
     end_jog();  // a fault, a stop, or another command: only a new press jogs again
-    jog_left_ = true;
+    jog_ended_without_halt_ = true;
     return;
   }
   end_jog_at_limit();
@@ -135,9 +135,9 @@ void Axis::end_jog() {
 }
 
 // Its motor has no other dead man.
-void Axis::stop_jog(std::string told) {
+void Axis::stop_jog(std::string event_text) {
   end_jog();
-  host_.event(image_.number, EventKind::warning, 0, std::move(told));
+  host_.event(image_.number, EventKind::warning, 0, std::move(event_text));
   stop_by_itself(Command::halt, false, [](const BatchResult&) {});
 }
 

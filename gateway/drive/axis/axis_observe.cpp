@@ -21,8 +21,8 @@ void Axis::on_scale() {
     return core_.model.binding(each.second.quantity)->to_raw(each.second.value, core_.object(each.first));
   };
   // What the drive cannot hold any more is forgotten: what it holds is held against the limits.
-  std::erase_if(core_.told, [&](const auto& each) { return !raw_of(each); });
-  for (auto& each : core_.told) each.second.raw = *raw_of(each);
+  std::erase_if(core_.accepted_speeds, [&](const auto& each) { return !raw_of(each); });
+  for (auto& each : core_.accepted_speeds) each.second.raw = *raw_of(each);
 }
 
 void Axis::observe() {
@@ -84,12 +84,12 @@ void Axis::observe_counter() {
 void Axis::observe_volatile() {
   const bool remembers = !core_.is_virtual() || !core_.model.virtual_axis->gate_only;
   if (remembers || core_.turn.link != LinkState::online || !pending_.empty()) return;
-  const bool forgotten = std::ranges::any_of(core_.told, [this](const auto& told) {
+  const bool speeds_lost = std::ranges::any_of(core_.accepted_speeds, [this](const auto& told) {
     const ObjectState& state = core_.store[told.first];
     const bool read = state.known && !state.unverified && !state.unsure && !state.clamped;
     return read && core_.object(told.first).nvm == Nvm::no && state.number != told.second.raw;
   });
-  if (std::exchange(forgotten_, forgotten) || !forgotten) return;
+  if (std::exchange(speeds_lost_, speeds_lost) || !speeds_lost) return;
   const bool may_run = holds_motor(core_.facts().state);
   core_.make(core_.model.controlword, 0);
   on_unseen_restart("it has restarted, too quickly to go offline: enable it anew");

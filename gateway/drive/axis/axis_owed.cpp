@@ -67,11 +67,11 @@ void Axis::on_restarted() {
   owed_.restarted();
 }
 
-void Axis::lose_sight() {
+void Axis::on_unreachable() {
   core_.motion.disarm();
   late_enable_.lost();
   owed_.link_lost(shown_.heard(), core_.store.exchange());
-  if (owed_.take_news())
+  if (owed_.take_gate_report())
     host_.event(image_.number, EventKind::command, 0, "the drive is out of reach: a stop is owed until it is back");
 }
 
@@ -80,7 +80,7 @@ void Axis::observe_owed() {
   const ObjectState& status = core_.store[core_.model.statusword];
   const bool gone = link == LinkState::unknown || link == LinkState::offline || link == LinkState::link_down;
   if (gone) {
-    lose_sight();
+    on_unreachable();
     return;
   }
   if (!status.known) return;
@@ -111,7 +111,7 @@ void Axis::take_back_enable(State402 state) {
 }
 
 void Axis::tell_end(OwedStop::End end) {
-  if (end == OwedStop::End::none || !owed_.take_told()) return;
+  if (end == OwedStop::End::none || !owed_.take_end_report()) return;
   std::string how = "the drive has shown it";
   if (end == OwedStop::End::disabled) how = "the axis is read disabled";
   if (end == OwedStop::End::enabled) how = "an enable came later";

@@ -61,14 +61,15 @@ void Axis::claim(const WriteBatch& batch) {
 }
 
 bool Axis::waits_for(const WriteBatch& batch) const {
-  return batch.is_write && ownership_.waits_for(batch.life, batch.all_zero);
+  return batch.reclaims && ownership_.waits_for(batch.life, batch.all_zero);
 }
 
 void Axis::make_owner(const WriteBatch& batch) {
   const auto before = ownership_.owner();
   const Ownership::Taken taken = ownership_.take(batch.life, core_.turn.now);
   if (taken == Ownership::Taken::nothing) return;
-  if (taken != Ownership::Taken::orphan && taken != Ownership::Taken::same_hand) core_.motion.owner_changed();
+  if (taken != Ownership::Taken::orphan && taken != Ownership::Taken::same_origin_and_role)
+    core_.motion.owner_changed();
   if (jog_.client() != batch.client) halt_jog("another client has taken the axis");
   tell_owner(drive::text(taken, *batch.life) + named_before(before));
 }
@@ -93,7 +94,8 @@ bool Axis::claims_late(Pending& pending) {
 // What a connection that has ended has asked for is its successor's, too.
 bool Axis::is_anothers(const WriteBatch& batch) const {
   const auto& owner = ownership_.owner();
-  return owner && batch.life && owner->id != batch.client && (is_dds(*batch.life) || !same_hand(*owner, *batch.life));
+  return owner && batch.life && owner->id != batch.client &&
+         (is_dds(*batch.life) || !same_origin_and_role(*owner, *batch.life));
 }
 
 std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback on_result) {
@@ -103,8 +105,8 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
   // Bits 0..3 = 6 or 7 are a stop of the owner's in a block of registers as well.
   if (batch.controlword && ownership_.is_owner(batch.client)) batch.single_controlword = true;
   // A coil that is held although its jog has ended asks for nothing until it was 0.
-  const bool holds_in_vain = batch.jog_again && !jog_.again(*batch.jog_again, batch.client, core_.turn.now);
-  if (holds_in_vain) batch.jog_again.reset();
+  const bool hold_is_not_new = batch.jog_again && !jog_.again(*batch.jog_again, batch.client, core_.turn.now);
+  if (hold_is_not_new) batch.jog_again.reset();
   // While something may run, the end of a run is a stop, and so open to every operator.
   if (batch.command == Command::end_run && may_run()) batch.command = Command::halt;
   Errc refusal = judge_owner(batch);
@@ -144,7 +146,7 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
   }
   if (asks_nothing(batch)) {
     const BatchResult result = nothing_asked(batch);
-    return holds_in_vain ? BatchResult{{Errc::not_new, 0}} : result;
+    return hold_is_not_new ? BatchResult{{Errc::not_new, 0}} : result;
   }
   // A stop is accepted in every state, also where it cannot be sent.
   const bool stop = holds_stop(batch);
@@ -170,7 +172,7 @@ BatchResult Axis::nothing_asked(const WriteBatch& batch) {
 // does not tell in which mode it runs, nor does a Keya on CANopen.
 bool Axis::may_be_jog() const {
   const AxisFacts facts = core_.facts();
-  if (jog_left_ && runs_unwatched()) return true;
+  if (jog_ended_without_halt_ && runs_unwatched()) return true;
   if (!core_.motion.found_at_start() || !facts.enabled()) return false;
   const bool tells_mode = !core_.is_virtual() || (!core_.model.virtual_axis->gate_only && facts.mode != 0);
   return tells_mode ? core_.motion.goes_on(Quantity::target_velocity, facts) : facts.moving;
@@ -213,7 +215,7 @@ std::optional<BatchResult> Axis::release(const WriteBatch& batch, BatchCallback 
   if (ownership_.owner() && ownership_.waits_for(batch.life, batch.all_zero)) claim(batch);
   WriteBatch rest = batch;
   rest.command = Command::none;
-  if (!ownership_.is_owner(batch.client)) rest.claims = rest.is_write = false;
+  if (!ownership_.is_owner(batch.client)) rest.claims = rest.reclaims = false;
   if (asks_nothing(rest)) return released(batch);
   auto done = submit(rest, [this, batch, on_result](const BatchResult& result) {
     on_result(result.outcome.code == Errc::ok ? released(batch) : result);

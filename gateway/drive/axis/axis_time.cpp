@@ -85,7 +85,7 @@ void Axis::tell_not_reached(const Pending& pending) {
 }
 
 // In its client's name: it has ended nothing of its own. Not confirmed, the stop is owed.
-void Axis::withdraw(const WriteBatch& asked, Command stop, const BatchResult& told, std::vector<Waiting> waiting) {
+void Axis::withdraw(const WriteBatch& asked, Command stop, const BatchResult& answer, std::vector<Waiting> waiting) {
   constexpr Duration kMostWaits = std::chrono::seconds(1);  // of a request without a time of its own
   WriteBatch batch;
   batch.client = asked.client;
@@ -104,12 +104,12 @@ void Axis::withdraw(const WriteBatch& asked, Command stop, const BatchResult& to
   job.axis = slot_;
   const AxisHost::Queued queued = host_.queue(std::move(job));
   if (queued.code != Errc::ok) {
-    due_.push_back({told, std::move(waiting)});
+    due_.push_back({answer, std::move(waiting)});
     return;
   }
   pending.id = queued.id;
-  BatchCallback tell = [told, waiting = std::move(waiting)](const BatchResult&) {
-    for (const Waiting& client : waiting) client.tell(told);
+  BatchCallback tell = [answer, waiting = std::move(waiting)](const BatchResult&) {
+    for (const Waiting& client : waiting) client.tell(answer);
   };
   pending.callbacks.push_back({std::move(tell), kNever, batch.answer_by});
   pending_.push_back(std::move(pending));

@@ -119,7 +119,7 @@ std::string command_text(const AxisCore& core, const WriteBatch& batch, std::uin
   const auto target = target_of(batch.command);
   if (target && !sets(batch, *target))
     if (const auto value = target_before(core, *target)) add(value_text(core, *target, *value));
-  const std::size_t shown = std::min(batch.setpoints.size(), kMaxToldValues);
+  const std::size_t shown = std::min(batch.setpoints.size(), kMaxShownValues);
   for (std::size_t i = 0; i < shown; ++i) add(value_text(core, batch.setpoints[i].quantity, batch.setpoints[i].value));
   if (batch.setpoints.size() > shown) add(fmt::format("{} values more", batch.setpoints.size() - shown));
   if (batch.object) add(object_text(*batch.object));

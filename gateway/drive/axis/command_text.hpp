@@ -15,7 +15,7 @@
 namespace axisgate::drive {
 
 /// Set-points of one request that are written out; of more, their number.
-inline constexpr std::size_t kMaxToldValues = 6;
+inline constexpr std::size_t kMaxShownValues = 6;
 
 /// "3 rpm", "12.5 turns"; a code as its number.
 [[nodiscard]] std::string limit_text(const AxisCore& core, const PassedLimit& passed);

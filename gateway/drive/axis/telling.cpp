@@ -60,13 +60,14 @@ std::optional<std::uint64_t> Telling::of_stream(const Request& request, Duration
     }
     stream->request = request;
   }
-  const bool goes_on = stream->newest != kLongAgo && now - stream->newest < pause && now - stream->told < kStreamTold;
+  const bool goes_on =
+      stream->newest != kLongAgo && now - stream->newest < pause && now - stream->logged_at < kStreamRepeat;
   stream->newest = now;
   if (goes_on || !bucket.takes(now)) {
     ++stream->left_out;
     return std::nullopt;
   }
-  stream->told = now;
+  stream->logged_at = now;
   return std::exchange(stream->left_out, 0);
 }
 

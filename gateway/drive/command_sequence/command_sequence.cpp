@@ -189,7 +189,7 @@ CommandSequence::Move CommandSequence::advance() {
         core_.make(emulated.object, emulated.number);
       acted_ = acted_ || in_command();
       result_.command_sent = result_.command_sent || in_command();
-    } else if (enables_unasked(action)) {
+    } else if (enables_uncommanded(action)) {
       // It was enabled when this was planned. The same word would now take it back there, which nobody asked for.
       if (phase_ == Phase::stop) {
         stop_attempt_.withhold();
@@ -209,7 +209,7 @@ bool CommandSequence::tells_enable(const Action& action) const {
 }
 
 // A word with the bits of operation enabled, for an axis that is not, by a write batch that does not ask for an enable.
-bool CommandSequence::enables_unasked(const Action& action) const {
+bool CommandSequence::enables_uncommanded(const Action& action) const {
   const bool asked = batch_.command == Command::enable || phase_ == Phase::controlword;
   if (asked || action.kind != Action::Kind::write || writes_.verifying || !tells_enable(action)) return false;
   const AxisFacts facts = core_.facts();

@@ -34,7 +34,7 @@ class CommandSequence {
   };
   /// Goes as far as it can without the wire. The exchange of the answer is only for looking ahead.
   [[nodiscard]] Move advance();
-  /// As advance(), and its exchange goes on the wire now: what is only planned is planned anew, with what is known by
+  /// As advance(), and its exchange goes on the wire now: what is only planned is planned again, with what is known by
   /// now.
   [[nodiscard]] Move granted();
   /// The result of the exchange given last. `sent_at`: when it was sent. `trusted`: the drive was not suspect; else an
@@ -67,11 +67,11 @@ class CommandSequence {
   void hold_rest(Instant until) { rest_held_ = until; }
   /// A state read after the stop's last sending has confirmed it.
   [[nodiscard]] bool stop_confirmed() const { return stop_attempt_.confirmed(); }
-  /// The rest of the write batch was queued anew, without the stop's precedence.
+  /// The rest of the write batch was queued again, without the stop's precedence.
   void stop_was_handed_over() { stop_attempt_.hand_over(); }
   [[nodiscard]] const WriteBatch& batch() const { return batch_; }
   [[nodiscard]] const BatchResult& result() const { return result_; }
-  /// What stands beside a stop is none, once it was queued anew.
+  /// What stands beside a stop is none, once it was queued again.
   [[nodiscard]] bool is_stop() const { return stop_ && !stop_attempt_.handed_over(); }
   [[nodiscard]] bool began_as_stop() const { return stop_; }
   /// The next move is a write that belongs to the stop: it passes a suspect drive's resynchronisation read.
@@ -103,7 +103,7 @@ class CommandSequence {
     return phase_ == Phase::controlword || phase_ == Phase::preparation || phase_ == Phase::command;
   }
   [[nodiscard]] bool tells_enable(const Action& action) const;
-  [[nodiscard]] bool enables_unasked(const Action& action) const;
+  [[nodiscard]] bool enables_uncommanded(const Action& action) const;
   [[nodiscard]] bool is_command_of_motion(ObjectId object) const;
   [[nodiscard]] bool has_lost_torque() const;
   [[nodiscard]] bool within_nvm_budget(const bus::Exchange& exchange);

@@ -49,16 +49,16 @@ bus::Exchange MailboxAccess::next(const DriveModel& drive, const ObjectRequest& 
 }
 
 Outcome MailboxAccess::take(const DriveModel& drive, const ObjectRequest& request, const bus::ExchangeResult& result,
-                            BatchResult& told) {
+                            BatchResult& answer) {
   if (result.code != Errc::ok) {
-    if (result.code == Errc::refused_by_drive) told.abort_code = abort_code(drive, result.detail);
+    if (result.code == Errc::refused_by_drive) answer.abort_code = abort_code(drive, result.detail);
     return {result.code, result.detail};
   }
   chain_open_ = result.more;
   done_ = !chain_open_;
   if (chain_open_ || request.write) return {Errc::ok, 0};
   if (result.bytes) {
-    told.object_bytes = result.bytes;
+    answer.object_bytes = result.bytes;
     return {Errc::ok, 0};
   }
   // Neighbours may have been read in the same request.
@@ -66,8 +66,8 @@ Outcome MailboxAccess::take(const DriveModel& drive, const ObjectRequest& reques
   const auto field = std::find_if(result.fields.begin(), result.fields.end(),
                                   [&](const bus::ReplyField& f) { return f.object == asked; });
   if (field == result.fields.end()) return {Errc::bad_reply, 0};
-  told.object_data = field->raw;
-  told.object_size = field->size;
+  answer.object_data = field->raw;
+  answer.object_size = field->size;
   return {Errc::ok, 0};
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The object of the mailbox within a command sequence: its exchanges, one after the other, and what their answers come
 // to for who asked (design 3.1, FC 43/13). Pure. Promises that the parts of a long object go in order, from the first
-// to the last, and that a refusal is told as CiA 301 would have said it. Never looks at the axis's state, and decides
-// nothing about other writes.
+// to the last, and that a refusal is answered with the abort code of CiA 301. Never looks at the axis's state, and
+// decides nothing about other writes.
 #pragma once
 
 #include "adapters/bus/exchange.hpp"
@@ -21,9 +21,9 @@ class MailboxAccess {
   [[nodiscard]] static bool is_needless(const AxisCore& core, const ObjectRequest& request);
   /// What goes on the wire next.
   [[nodiscard]] bus::Exchange next(const DriveModel& drive, const ObjectRequest& request) const;
-  /// The result of the exchange given last. What was read, or how it was refused, goes into `told`.
+  /// The result of the exchange given last. What was read, or how it was refused, goes into `answer`.
   [[nodiscard]] Outcome take(const DriveModel& drive, const ObjectRequest& request, const bus::ExchangeResult& result,
-                             BatchResult& told);
+                             BatchResult& answer);
 
   /// Nothing is left to send.
   [[nodiscard]] bool done() const { return done_; }

@@ -42,7 +42,7 @@ class StopAttempt {
   void state_was_read() { confirmed_ = confirmed_ || !withheld_; }
   [[nodiscard]] bool confirmed() const { return confirmed_; }
 
-  /// The rest of its write batch was queued anew, without the stop's precedence.
+  /// The rest of its write batch was queued again, without the stop's precedence.
   void hand_over() { handed_over_ = true; }
   [[nodiscard]] bool handed_over() const { return handed_over_; }
 

@@ -62,7 +62,7 @@ class BringUp {
   [[nodiscard]] bool has_setup() const { return !model_.setup.empty() || !model_.factory_writes.empty() || is_node(); }
   /// How the drive differs from the configured one; empty: it does not.
   [[nodiscard]] const std::string& mismatch() const { return identity_.mismatch(); }
-  /// It refuses what its profile needs; empty: it has it all. True: that is news, to be told.
+  /// It refuses what its profile needs; empty: it has it all. True: that is news, to be reported.
   bool found_lacking(const std::string& what) {
     const std::string before = std::exchange(lacks_, what);
     completed_ = what.empty() && (completed_ || !before.empty());

@@ -26,16 +26,16 @@ ControlFrame::Motor ControlFrame::motor(bus::AxisSlot slot) const {
 }
 
 // A motor that was never told anything and shows enabled was found so: it stays so.
-bool ControlFrame::on(const ObjectState& told, const MotorShows& shows) const {
+bool ControlFrame::on(const ObjectState& commanded, const MotorShows& shows) const {
   if (shows.disabling) return false;
-  const bool was_on = told.known && told.number != 0;
-  return was_on ? shows.enabled || shows.enabling : shows.enabled && !told.known;
+  const bool was_on = commanded.known && commanded.number != 0;
+  return was_on ? shows.enabled || shows.enabling : shows.enabled && !commanded.known;
 }
 
-std::optional<std::int64_t> ControlFrame::value(const ObjectState& told, const MotorShows& shows, bool on,
+std::optional<std::int64_t> ControlFrame::value(const ObjectState& commanded, const MotorShows& shows, bool on,
                                                 bool stop) const {
   if (shows.mode == kModePosition) {
-    if (told.known) return told.number;
+    if (commanded.known) return commanded.number;
     // Never commanded: 0 would be a place to go to. It stays where it is, once that is known and stands still.
     const bool here = shows.position && (!shows.moving || stop);
     if (here || !on) return shows.position.value_or(0);
@@ -43,7 +43,7 @@ std::optional<std::int64_t> ControlFrame::value(const ObjectState& told, const M
   }
   // Whether a code without this motor's bit disables it is not printed: it would stand then.
   if (!on) return 0;
-  if (told.known) return told.number;
+  if (commanded.known) return commanded.number;
   // Found running, or holding by torque: nobody knows at what. Only a stop may make it 0.
   if (stop || (!shows.moving && shows.mode != kModeTorque)) return 0;
   return std::nullopt;

@@ -3,7 +3,7 @@
 // Pure: what was written last and what the motors show go in, the frame comes out. Promises that a motor is on in it
 // only if this write turns it on, or if it was on by the last frame (or found so) and shows enabled now, or is about to
 // by a client's word: one that has tripped never comes back by a frame meant for its neighbour; and that a motor which
-// is not moved by this write keeps what it was told. Never guesses what a motor that somebody else has started should
+// is not moved by this write keeps what it was sent. Never guesses what a motor that somebody else has started should
 // do: it says that it cannot.
 #pragma once
 
@@ -47,8 +47,8 @@ class ControlFrame {
   };
   [[nodiscard]] std::optional<Desired> desired(const bus::Exchange& write, const ObjectStore& store, bus::AxisSlot slot,
                                                const MotorShows& shows, bool stop) const;
-  [[nodiscard]] bool on(const ObjectState& told, const MotorShows& shows) const;
-  [[nodiscard]] std::optional<std::int64_t> value(const ObjectState& told, const MotorShows& shows, bool on,
+  [[nodiscard]] bool on(const ObjectState& commanded, const MotorShows& shows) const;
+  [[nodiscard]] std::optional<std::int64_t> value(const ObjectState& commanded, const MotorShows& shows, bool on,
                                                   bool stop) const;
 
   const DriveModel& model_;

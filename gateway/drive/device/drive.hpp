@@ -118,7 +118,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void go_offline();
   void on_write_without_owner(const bus::Exchange& exchange, const bus::ExchangeResult& result, bool trusted);
   void on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& result);
-  /// `restarted`: the drive comes up anew; else a running one was adopted and is only set up now.
+  /// `restarted`: the drive comes up from scratch; else a running one was adopted and is only set up now.
   void begin_bring_up(bool restarted);
   void carry_on_bring_up(const bus::Exchange& exchange, const bus::ExchangeResult& result);
   void end_bring_up();
@@ -141,7 +141,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void on_values(const bus::ReplyFields& fields);
   void on_emergency(const bus::UnsolicitedEvent& unsolicited);
   void left_operational(bus::NodeState state);
-  [[nodiscard]] bool may_be_set_up_anew() const;
+  [[nodiscard]] bool may_be_set_up_again() const;
   [[nodiscard]] bool enable_is_asked() const;
   void map_values();
   void watch_positions();

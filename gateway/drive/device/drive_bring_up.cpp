@@ -29,7 +29,7 @@ std::optional<bus::Exchange> Drive::next_of_bring_up() {
     return std::nullopt;
   }
   if (next->exchange) {
-    if (next->exchange->access == bus::Access::command) bring_up_.start().told(turn_.now);
+    if (next->exchange->access == bus::Access::command) bring_up_.start().commanded(turn_.now);
     return next->exchange;
   }
   const Instant read_again = bring_up_.reads_back() ? kLongAgo : reads_.tries().again(next->object);
@@ -125,8 +125,8 @@ void Drive::tell_given_up(ObjectId id) {
 void Drive::on_given_up() {
   const auto given_up = reads_.take_given_up();
   if (given_up.empty()) return;
-  for (const auto& [object, untold] : given_up) {
-    if (untold) tell_given_up(object);
+  for (const auto& [object, first_report] : given_up) {
+    if (first_report) tell_given_up(object);
     if (brought_up())
       for (auto& axis : axes_) axis->on_blind(object);
   }
@@ -220,7 +220,7 @@ void Drive::judge_loss_reaction() {
 }
 
 // An enable that is under way, or waits for its turn, would meet the NMT commands of a bring-up.
-bool Drive::may_be_set_up_anew() const {
+bool Drive::may_be_set_up_again() const {
   const bool due = bring_up_.adopted() || bring_up_.completed() || bring_up_.start().is_due(turn_.now);
   return due && !end_.begun() && !enable_is_asked();
 }
@@ -247,7 +247,7 @@ void Drive::end_amending() {
 
 // Full bring-up at the first disabled state after an adoption, or after the node left operational.
 void Drive::leave_adoption() {
-  if (!may_be_set_up_anew()) return;
+  if (!may_be_set_up_again()) return;
   // A drive that stands in quick stop active holds its motor: bring-up would find it enabled, and adopt it again.
   const bool enabled = std::any_of(axes_.begin(), axes_.end(), [this](const auto& a) {
     const AxisFacts facts = a->core().facts();

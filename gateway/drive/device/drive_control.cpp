@@ -54,7 +54,7 @@ std::optional<bus::Exchange> DriveControl::whole(const Turn& turn, const bus::Ex
 }
 
 // A repetition changes nothing, whether it arrived or not.
-void DriveControl::told(const bus::ObjectAddress& address, std::uint32_t raw, Errc code, Instant sent_at) {
+void DriveControl::on_written(const bus::ObjectAddress& address, std::uint32_t raw, Errc code, Instant sent_at) {
   const ObjectId id = model_.find(address);
   if (id == kNoObject) return;
   const std::int64_t number = model_.object(id).number(raw);
@@ -75,8 +75,9 @@ void DriveControl::on_result(const bus::Exchange& exchange, const bus::ExchangeR
   if (result.code == Errc::refused_by_drive) return;
   const bool frame = frame_.carries(exchange);
   if (frame)
-    for (const bus::Neighbour& neighbour : exchange.more) told(neighbour.object, neighbour.raw, result.code, sent_at);
-  if (frame || (repeated && result.code == Errc::ok)) told(exchange.object, exchange.raw, result.code, sent_at);
+    for (const bus::Neighbour& neighbour : exchange.more)
+      on_written(neighbour.object, neighbour.raw, result.code, sent_at);
+  if (frame || (repeated && result.code == Errc::ok)) on_written(exchange.object, exchange.raw, result.code, sent_at);
   if (result.code == Errc::ok && (trusted || frame)) keep_alive_.written(written, sent_at);
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a drive is told beside one's own commands: the keep-alive that it needs to go on, and the frames that tell all
-// of its motors at once what to do. Pure: the drive and its axes as they are in this turn go in. Promises that a frame
-// goes by a state which was shown lately, that a repetition goes before everything but a stop, that nothing is repeated
-// to a drive that was adopted or owes a reply, and that what a frame has told counts for all of its motors. Never sends
-// and never enables: what it gives is sent by the drive, in a turn that was somebody's.
+// What a drive is sent beside a client's commands: the keep-alive that it needs to go on, and the frames that command
+// all of its motors at once what to do. Pure: the drive and its axes as they are in this turn go in. Promises that a
+// frame goes by a state which was shown lately, that a repetition goes before everything but a stop, that nothing is
+// repeated to a drive that was adopted or owes a reply, and that what a frame has written counts for all of its motors.
+// Never sends and never enables: what it gives is sent by the drive, in a turn that was somebody's.
 #pragma once
 
 #include <optional>
@@ -39,7 +39,7 @@ class DriveControl {
   DriveControl(const DriveModel& model, ObjectStore& store)
       : model_(model), store_(store), frame_(model), keep_alive_(model) {}
 
-  /// The drive comes up anew: nothing that was sent counts.
+  /// The drive comes up from scratch: nothing that was sent counts.
   void reset() { keep_alive_.reset(); }
   /// This drive needs either: a turn has to be shown to it.
   [[nodiscard]] bool concerned() const { return keep_alive_.wanted() || !model_.composed.empty(); }
@@ -71,7 +71,7 @@ class DriveControl {
   [[nodiscard]] std::vector<MotorShows> motors_show(const Turn& turn) const;
   [[nodiscard]] bool may_repeat(const Turn& turn) const;
   [[nodiscard]] std::optional<KeepAlive::Repeat> repeat_for(const AxisTurn& axis) const;
-  void told(const bus::ObjectAddress& address, std::uint32_t raw, Errc code, Instant sent_at);
+  void on_written(const bus::ObjectAddress& address, std::uint32_t raw, Errc code, Instant sent_at);
 
   const DriveModel& model_;
   ObjectStore& store_;

@@ -22,7 +22,7 @@ bool DriveEnd::take_back() {
   return std::exchange(why_, std::nullopt) != Closing::look;
 }
 
-std::string DriveEnd::told() const {
+std::string DriveEnd::event_text() const {
   if (why_ != Closing::gateway_ends || outcome() == Disarming::Outcome::nothing_to_do) return {};
   return "the gateway ends: " + std::string(text(outcome()));
 }

@@ -13,7 +13,7 @@ namespace axisgate::drive {
 
 /// Why a drive is closed.
 enum class Closing : std::uint8_t {
-  gateway_ends,  ///< where no motor has torque, the drive is told not to miss the gateway; any other one stops as if
+  gateway_ends,  ///< where no motor has torque, the drive is set not to miss the gateway; any other one stops as if
                  ///< the gateway had died
   look,          ///< to be taken away, if no motor has torque: that is read, and nothing is written
   taken_away     ///< as gateway_ends, while the gateway goes on
@@ -46,8 +46,8 @@ class DriveEnd {
   }
   [[nodiscard]] Disarming::Outcome outcome() const { return disarming_.outcome(); }
   /// What the log says at its end; empty: nothing.
-  [[nodiscard]] std::string told() const;
-  /// Nothing of the drive is on the wire or waits for it: whom to tell, once; none: nobody, or he was told.
+  [[nodiscard]] std::string event_text() const;
+  /// Nothing of the drive is on the wire or waits for it: whom to answer, once; none: nobody, or the answer was given.
   [[nodiscard]] std::function<void()> take_closed();
 
  private:

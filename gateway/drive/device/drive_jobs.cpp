@@ -151,7 +151,7 @@ std::optional<bus::Exchange> Drive::next_of_end() {
 
 void Drive::finish_end() {
   bus_.finish(std::exchange(jobs_.end, 0));
-  if (const std::string told = end_.told(); !told.empty()) tell_all(EventKind::boot, 0, told);
+  if (const std::string told = end_.event_text(); !told.empty()) tell_all(EventKind::boot, 0, told);
 }
 
 void Drive::tell_closed() {

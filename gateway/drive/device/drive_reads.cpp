@@ -20,7 +20,7 @@ DriveReads::DriveReads(DriveModel& model, ObjectStore& store)
       constants_(model.constants.size()),
       mapped_(model.objects.size(), false) {
   for (const ObjectDef& object : model.objects) width_.push_back(object.size);
-  map_unasked();
+  map_unsolicited();
 }
 
 // --- What is read next -----------------------------------------------------------------------------------------------
@@ -32,7 +32,7 @@ void DriveReads::restart(Instant now) {
   silent_.reset();
   answers_ = false;
   probes_ = 0;
-  wide_told_ = false;
+  wide_reported_ = false;
   plan_.restart(now);
 }
 
@@ -108,7 +108,7 @@ void DriveReads::timed_out(const bus::Exchange& exchange, const Asked& asked, In
   resync_.lost(exchange, now);
   const bool plain = exchange.access == bus::Access::read && !asked.resync && !asked.probe && !asked.counted;
   if (plain && !silent_) silent_ = {exchange, asked};
-  store_.lose_sight();
+  store_.lose_contact();
 }
 
 // An error answer is no answered resynchronisation read; the next candidate is tried.
@@ -239,7 +239,7 @@ void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField
     store_.read(id, narrow.number(field.raw), asked.sent_at);
   } else if (wide) {
     store_.read(id, *wide, asked.sent_at);
-    if (!asked.probe && !std::exchange(wide_told_, true))
+    if (!asked.probe && !std::exchange(wide_reported_, true))
       taken.unlike.push_back(width_text(object, field) +
                              ": the bytes above are empty: taken, and so is whatever else "
                              "this drive answers so");
@@ -282,10 +282,10 @@ void DriveReads::map(ObjectId object, std::optional<Duration> event) {
 }
 
 // What a drive sends by itself, whatever we tell it: mapped for good.
-void DriveReads::map_unasked() {
-  for (const ObjectId id : model_.unasked.objects) {
+void DriveReads::map_unsolicited() {
+  for (const ObjectId id : model_.unsolicited.objects) {
     mapped_[id] = true;
-    if (model_.unasked.every > Duration{} && !tells_state(id)) store_.set_period(id, model_.unasked.every);
+    if (model_.unsolicited.every > Duration{} && !tells_state(id)) store_.set_period(id, model_.unsolicited.every);
   }
 }
 
@@ -303,7 +303,7 @@ void DriveReads::outdate_mapped() {
     if (mapped_[i]) store_.outdate(static_cast<ObjectId>(i));
 }
 
-void DriveReads::take_unasked(const bus::ReplyFields& fields, Instant now) {
+void DriveReads::take_unsolicited(const bus::ReplyFields& fields, Instant now) {
   for (const bus::ReplyField& field : fields) {
     const ObjectId id = model_.find(field.object);
     if (id == kNoObject || !mapped_[id] || field.size != model_.object(id).size) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a drive is read for by the gateway itself, and what becomes of the answers (design 7, points 4 and 6): the poll
 // plan, what is read along in one request, the resynchronisation read after a timeout, what is asked in vain, and what
-// comes unasked. Pure: exchanges, results and instants go in. Promises that no answer counts while a late one could
+// comes unsolicited. Pure: exchanges, results and instants go in. Promises that no answer counts while a late one could
 // pass for it, that what the drive does not have is not asked again before the next bring-up, that one object which
 // does not answer, or is refused for now, costs the others nothing, and that a number of another width than the
 // profile's is shown nowhere. Never sends, and never judges whether the drive is there.
@@ -35,7 +35,7 @@ class DriveReads {
 
   // --- What is read next ---------------------------------------------------------------------------------------------
 
-  /// The drive comes up anew: nothing is known of it, all is due, and nothing is owed.
+  /// The drive comes up from scratch: nothing is known of it, all is due, and nothing is owed.
   void restart(Instant now);
   [[nodiscard]] std::optional<bus::Exchange> poll(Instant now) const;
   [[nodiscard]] Instant poll_due() const { return plan_.next_due(); }
@@ -89,10 +89,11 @@ class DriveReads {
   /// The drive has answered. True: that proves that nothing is owed.
   bool answered(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked, Instant now);
   struct Taken {
-    bool samples = false;               ///< there are new ones
-    bool back = false;                  ///< an object that was given up has answered
-    bool scales = false;                ///< a constant of the drive was read: scales and limits have changed
-    std::vector<std::string> unlike{};  ///< objects of another width than the profile says, taken or not, to be told
+    bool samples = false;  ///< there are new ones
+    bool back = false;     ///< an object that was given up has answered
+    bool scales = false;   ///< a constant of the drive was read: scales and limits have changed
+    std::vector<std::string>
+        unlike{};  ///< objects of another width than the profile says, taken or not, to be reported
   };
   /// Of an answer that counts: what it tells goes into the store.
   [[nodiscard]] Taken take(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
@@ -100,7 +101,7 @@ class DriveReads {
   /// A read of several objects that was refused: true where it is tried again in smaller parts.
   [[nodiscard]] bool split(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked);
 
-  // --- What comes unasked --------------------------------------------------------------------------------------------
+  // --- Unsolicited values --------------------------------------------------------------------------------------------
 
   /// It comes by TPDO from now on; `event`: its timer.
   void map(ObjectId object, std::optional<Duration> event);
@@ -108,7 +109,7 @@ class DriveReads {
   void unmap(Instant now);
   /// What came by TPDO so far is no sample of the drive as it is now.
   void outdate_mapped();
-  void take_unasked(const bus::ReplyFields& fields, Instant now);
+  void take_unsolicited(const bus::ReplyFields& fields, Instant now);
   /// The position of this axis must not hang on a TPDO that has failed to come while it moves.
   void watch_position(const AxisModel& axis, bool moves, Instant now);
 
@@ -116,8 +117,8 @@ class DriveReads {
   /// A position that comes by TPDO is read after so long without one while its axis moves.
   static constexpr Duration kMovingConfirm = std::chrono::milliseconds(250);
 
-  void map_unasked();
-  /// After the silence, of a drive whose replies are told apart still. `trusted`: what its answer then is.
+  void map_unsolicited();
+  /// After the silence, of a drive whose replies are distinguished still. `trusted`: what its answer then is.
   [[nodiscard]] bus::Exchange after_silence(Asked& asked, bool Asked::*trusted);
   void take_field(const bus::Exchange& exchange, const bus::ReplyField& field, const Asked& asked, Taken& taken,
                   Instant now);
@@ -146,8 +147,8 @@ class DriveReads {
   std::size_t probes_ = 0;  ///< of a drive that owes nothing
   std::vector<std::optional<Rational>> constants_;
   std::vector<std::uint8_t> width_;
-  bool wide_told_ = false;    ///< since bring-up: that it answers more bytes than an object has
-  std::vector<bool> mapped_;  ///< objects that come by TPDO
+  bool wide_reported_ = false;  ///< since bring-up: that it answers more bytes than an object has
+  std::vector<bool> mapped_;    ///< objects that come by TPDO
   std::uint64_t invalidations_seen_ = 0;
 };
 

@@ -39,7 +39,7 @@ void Drive::on_unsolicited(const bus::UnsolicitedEvent& unsolicited) {
       break;
     case bus::UnsolicitedEvent::Kind::foreign_write:
       // As after a timeout: whatever it holds is read anew, and every start writes what it goes by.
-      store_.lose_sight();
+      store_.lose_contact();
       break;
     case bus::UnsolicitedEvent::Kind::babbling:
       tell_all(EventKind::warning, unsolicited.code,
@@ -83,7 +83,7 @@ void Drive::left_operational(bus::NodeState state) {
                        "started again in {} ms, or when its motor is disabled",
                        bus::text(state), std::chrono::duration_cast<std::chrono::milliseconds>(pause).count()));
   // It may have started anew while nobody heard it.
-  store_.lose_sight();
+  store_.lose_contact();
   reads_.outdate_mapped();
   unmap_values();
 }
@@ -99,7 +99,7 @@ void Drive::on_gone() {
 void Drive::on_values(const bus::ReplyFields& fields) {
   // A drive that owes a reply is not trusted in anything, until its resynchronisation read is answered.
   if (!brought_up() || reads_.suspect()) return;
-  reads_.take_unasked(fields, turn_.now);
+  reads_.take_unsolicited(fields, turn_.now);
   for (auto& axis : axes_) {
     axis->on_samples();
     if (axis->end_wants_sample()) reads_.hurry_state(axis->core().model, turn_.now);

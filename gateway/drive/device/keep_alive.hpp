@@ -18,7 +18,7 @@ class KeepAlive {
   explicit KeepAlive(const DriveModel& model);
 
   [[nodiscard]] bool wanted() const { return model_.keep_alive > Duration{}; }
-  /// The drive comes up anew: nothing that was sent counts.
+  /// The drive comes up from scratch: nothing that was sent counts.
   void reset();
   /// The drive has taken a control write of this object, sent then.
   void written(ObjectId object, Instant sent_at);

@@ -65,7 +65,7 @@ class NodePresence {
   bool heard_ = false;  ///< it gave a sign of life since it was last gone
   bool asked_ = false;  ///< to find what was there before us: a node may know neither guarding nor heartbeat
   int calls_ = 0;       ///< unanswered, since it was asked last
-  bus::NodeState state_ = bus::NodeState::unknown;  ///< as it told last
+  bus::NodeState state_ = bus::NodeState::unknown;  ///< as the node reported last
   Instant duplicate_until_ = kLongAgo;
 };
 

@@ -5,11 +5,11 @@ namespace axisgate::drive {
 
 bool NodeStart::has_left(bus::NodeState state, Instant now) const {
   const bool elsewhere = state == bus::NodeState::pre_operational || state == bus::NodeState::stopped;
-  return elsewhere && !left_ && now - told_at_ > kNmtSettles;
+  return elsewhere && !left_ && now - commanded_at_ > kNmtSettles;
 }
 
 Duration NodeStart::leave(Instant now) {
-  if (now - told_at_ > kStartHeld) backoff_.reset();
+  if (now - commanded_at_ > kStartHeld) backoff_.reset();
   const Duration pause = backoff_.next();
   due_ = now + pause;
   left_ = true;

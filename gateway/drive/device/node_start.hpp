@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a CANopen node that we have told to start stays operational. Pure: signs of life and instants go in. Promises
-// that a state from before its start counts for nothing, that a node which has left operational is to be set up and
-// started anew after a pause, and that this pause grows from one failure to the next until a start has held. Never
+// Whether a CANopen node that we have commanded to start stays operational. Pure: signs of life and instants go in.
+// Promises that a state from before its start counts for nothing, that a node which has left operational is to be set
+// up and restarted after a pause, and that this pause grows from one failure to the next until a start has held. Never
 // sends: an NMT command to a node whose motor is enabled is not its decision.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace axisgate::drive {
 
 class NodeStart {
  public:
-  /// A heartbeat that was on its way when the node was told to start tells of the state before.
+  /// A heartbeat that was on its way when the node was commanded to start shows the state before.
   static constexpr Duration kNmtSettles = std::chrono::milliseconds(100);
   /// A node that was operational for so long has obeyed: what takes it out of that state now is something new.
   static constexpr Duration kStartHeld = std::chrono::seconds(30);
@@ -22,21 +22,21 @@ class NodeStart {
 
   /// Bring-up begins: it is started at its end.
   void begin() { left_ = false; }
-  /// It was told to change its state.
-  void told(Instant now) { told_at_ = now; }
-  /// A sign of life of a node that was told to start: true once for each start that it has left, missed or was taken
-  /// out of.
+  /// The node was commanded to change its state.
+  void commanded(Instant now) { commanded_at_ = now; }
+  /// A sign of life of a node that was commanded to start: true once for each start that it has left, missed or was
+  /// taken out of.
   [[nodiscard]] bool has_left(bus::NodeState state, Instant now) const;
   /// It has left: the pause before it is set up again.
   Duration leave(Instant now);
-  /// It is to be set up and started anew.
+  /// The node is to be set up and started again.
   [[nodiscard]] bool is_due(Instant now) const { return left_ && now >= due_; }
   /// When is_due() changes by time alone.
   [[nodiscard]] Instant deadline(Instant now) const { return left_ && now < due_ ? due_ : kNever; }
 
  private:
   bus::Backoff backoff_;
-  Instant told_at_ = kLongAgo;
+  Instant commanded_at_ = kLongAgo;
   bool left_ = false;
   Instant due_ = kLongAgo;
 };

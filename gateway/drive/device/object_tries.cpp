@@ -10,12 +10,12 @@
 namespace axisgate::drive {
 
 void ObjectTries::restart() {
-  for (Entry& e : entries_) e = {.told = e.told};
+  for (Entry& e : entries_) e = {.reported = e.reported};
   given_up_.clear();
 }
 
 void ObjectTries::keep_given_up(ObjectId object, Instant now) {
-  entries_[object] = {.tries = kTries, .pause = kFirstPause, .again = now + kFirstPause, .told = true};
+  entries_[object] = {.tries = kTries, .pause = kFirstPause, .again = now + kFirstPause, .reported = true};
 }
 
 bool ObjectTries::in_vain(ObjectId object, const Refusal& refusal, bool needed, Instant now) {
@@ -29,7 +29,7 @@ bool ObjectTries::in_vain(ObjectId object, const Refusal& refusal, bool needed, 
   const Duration longest = needed ? kLongestNeeded : kLongestPause;
   e.pause = e.pause == Duration{} ? kFirstPause : std::min(2 * e.pause, longest);
   e.again = now + e.pause;
-  if (!was_given_up) given_up_.push_back({object, !std::exchange(e.told, true)});
+  if (!was_given_up) given_up_.push_back({object, !std::exchange(e.reported, true)});
   return true;
 }
 

@@ -27,7 +27,7 @@ class ObjectTries {
 
   explicit ObjectTries(std::size_t objects) : entries_(objects) {}
 
-  /// The drive comes up anew: each object has its tries again. What was told of it stays told.
+  /// The drive comes up from scratch: each object has its tries again. What was reported of it is not reported again.
   void restart();
   /// It stays given up, through a restart() that is none of the drive's.
   void keep_given_up(ObjectId object, Instant now);
@@ -41,7 +41,7 @@ class ObjectTries {
   [[nodiscard]] const Refusal& refusal(ObjectId object) const { return entries_[object].refusal; }
   struct GivenUp {
     ObjectId object = kNoObject;
-    bool untold = false;  ///< for the first time since it answered last
+    bool first_report = false;  ///< for the first time since it answered last
   };
   /// Since the last call, each once.
   [[nodiscard]] std::vector<GivenUp> take_given_up();
@@ -52,7 +52,7 @@ class ObjectTries {
     Duration pause{};
     Instant again = kLongAgo;
     Refusal refusal{};
-    bool told = false;
+    bool reported = false;
   };
   std::vector<Entry> entries_;
   std::vector<GivenUp> given_up_;  ///< each object once

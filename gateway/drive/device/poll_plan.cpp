@@ -17,14 +17,14 @@ void add(std::vector<PollItem>& items, ObjectId object, PollClass poll_class) {
 }
 
 /// It comes by itself, in a known beat, and is asked for never; but the state is.
-bool comes_unasked(const DriveModel& model, ObjectId id) {
-  if (model.unasked.every == Duration{}) return false;
+bool comes_unsolicited(const DriveModel& model, ObjectId id) {
+  if (model.unsolicited.every == Duration{}) return false;
   const auto has = [id](const std::vector<ObjectId>& list) {
     return std::find(list.begin(), list.end(), id) != list.end();
   };
   const bool state =
       std::any_of(model.axes.begin(), model.axes.end(), [&](const AxisModel& axis) { return has(axis.state_sources); });
-  return !state && has(model.unasked.objects);
+  return !state && has(model.unsolicited.objects);
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ std::vector<PollItem> poll_items(const DriveModel& model) {
   // Scales depend on them, and a panel or the mailbox may change what they follow from.
   for (const ObjectId id : constant_objects(model)) add(items, id, PollClass::slow);
   std::erase_if(items, [&](const PollItem& item) {
-    return !model.object(item.object).readable || comes_unasked(model, item.object);
+    return !model.object(item.object).readable || comes_unsolicited(model, item.object);
   });
   for (PollItem& item : items)
     for (const TpdoProperties& tpdo : model.canopen.tpdos)

@@ -46,7 +46,7 @@ class Resync {
   /// Silence was kept until silent_until(), and nothing else tells replies apart: nothing counts as owed any more.
   void waited_out() { forget(); }
 
-  /// After the silence replies are told apart still: by counting, or by a length that is owed no more.
+  /// After the silence replies are distinguished still: by counting, or by a length that is owed no more.
   [[nodiscard]] bool counts_out() const;
   /// The read whose reply counts for nothing but its number; only where there is no candidate and counts_out().
   [[nodiscard]] ResyncRead counted();
@@ -56,7 +56,7 @@ class Resync {
   void refused(const bus::Exchange& exchange, Instant now);
 
  private:
-  /// All by which the reply of a read can be told from others.
+  /// All by which the reply of a read can be distinguished from others.
   struct Likeness {
     bus::ObjectAddress object;   ///< where replies name it
     std::uint8_t registers = 0;  ///< where they do not

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The set-points of one axis that were accepted last, whoever wrote them and whatever was sent to the drive for them.
-// Promises that a velocity or torque is forgotten with everything that makes it needed anew (design 3.4 What
+// Promises that a velocity or torque is forgotten with everything that makes it needed again (design 3.4 What
 // survives). Never decides what is accepted: the axis does.
 #pragma once
 
@@ -17,7 +17,7 @@ class Accepted {
   void note(Quantity quantity, std::int64_t value, std::uint64_t ends) { at(quantity) = Entry{value, ends}; }
   /// It was accepted and never begun: nobody knows any more what is wanted.
   void forget(Quantity quantity) { at(quantity).reset(); }
-  /// The drive has come up anew: parameters are what it holds, targets are as they were asked for.
+  /// The drive has come up from scratch: parameters are what it holds, targets are as they were asked for.
   void forget_parameters() {
     for (std::size_t i = 0; i < entries_.size(); ++i)
       if (!is_target(static_cast<Quantity>(i))) entries_[i].reset();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A jog: the axis runs while a button is held, and not a moment longer (design 3.4 Jog). Pure.
 // Promises that it ends by itself once its coil was not written 1 again within its time, and that nothing but a new
-// press begins it anew. Never moves or stops an axis: the axis asks it, and halts.
+// press begins it again. Never moves or stops an axis: the axis asks it, and halts.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An enable that may still come although its client was told that it has failed, or that nobody knows. Pure: instants
-// go in. Promises that torque which comes so late is to be taken away again as long as it can be that enable's, and
-// never once a later enable was accepted. Never sends.
+// An enable that may still come although its client was answered that it has failed, or that nobody knows. Pure:
+// instants go in. Promises that torque which comes so late is to be taken away again as long as it can be that
+// enable's, and never once a later enable was accepted. Never sends.
 #pragma once
 
 #include "gateway/core/clock.hpp"

@@ -109,9 +109,9 @@ void Motion::owner_changed() {
   if (!follows) mark_targets(false);
 }
 
-void Motion::mark_targets(bool anew) {
+void Motion::mark_targets(bool fresh) {
   for (const Target target : {kVelocity, kTorque})
-    if (wanted_[target]) wanted_[target]->anew = anew;
+    if (wanted_[target]) wanted_[target]->fresh = fresh;
 }
 
 void Motion::mode_changed() {

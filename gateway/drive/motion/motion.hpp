@@ -22,7 +22,7 @@ struct Wanted {
   std::optional<std::int64_t> exact{};  ///< as the drive counts, where the object mailbox gave it so
   /// False: a velocity or torque that came in the request of a stop, or from who owns the axis no more. A command
   /// starts by it, and an enable; no raw word or mode on an axis that is enabled does.
-  bool anew = true;
+  bool fresh = true;
 };
 
 class Motion {
@@ -32,7 +32,7 @@ class Motion {
 
   // --- Stops and the stop latch -------------------------------------------------------------------------------------
 
-  /// A stop was accepted: the motion is over, velocity and torque are needed anew. `latch`: quick_stop and lease
+  /// A stop was accepted: the motion is over, velocity and torque are needed again. `latch`: quick_stop and lease
   /// actions.
   void stop(bool latch, Instant now);
   /// How many stops were accepted: what a write batch that was accepted before the newest one starts or enables does
@@ -108,8 +108,8 @@ class Motion {
   [[nodiscard]] bool take_homing_timeout();
   /// A value that came by itself shows its end, and may be of before its start (ANS-2): only a read now settles it.
   [[nodiscard]] bool end_wants_sample(const AxisFacts& facts) const;
-  /// The drive has told that it is at its target, and the position shown is of before: it is read next, and only then
-  /// is the motion completed. Who acts on the end of a move looks where the axis is.
+  /// The drive has reported that it is at its target, and the position shown is of before: it is read next, and only
+  /// then is the motion completed. Who acts on the end of a move looks where the axis is.
   [[nodiscard]] bool end_wants_position() const { return ended_by_.has_value(); }
   /// Whether it stands after a stop only a velocity sampled now can tell.
   [[nodiscard]] bool rest_wants_sample(const AxisFacts& facts) const;
@@ -133,11 +133,11 @@ class Motion {
 
  private:
   void end(MotionState how);
-  void mark_targets(bool anew);
+  void mark_targets(bool fresh);
   void complete(Instant now);
   /// The statusword shows the end of the motion: completes it once the position shown is no older.
   void complete_with_position(const AxisFacts& facts);
-  /// A velocity sampled since the newest start, stop or end can be told by it shows that the axis stands.
+  /// A velocity sampled late enough to show the newest start, stop or end shows that the axis stands.
   [[nodiscard]] bool stands(const AxisFacts& facts) const;
   void observe_homing(const AxisFacts& facts, Duration timeout);
   [[nodiscard]] bool move_under_way(const AxisFacts& facts) const;

@@ -56,20 +56,20 @@ class OwedStop {
   void link_lost(Instant heard, std::uint64_t exchange);
   /// It has answered again.
   void link_back(Instant now);
-  /// It says that it has started anew.
+  /// It says that it has restarted.
   void restarted() { uncertain_ = uncertain_ || stop_.has_value(); }
 
   [[nodiscard]] bool owed() const { return stop_.has_value(); }
   [[nodiscard]] bool halts() const { return stop_ == StopKind::halt; }
   /// Until the axis is seen to be stopped nothing but stops and reads passes: the drive was lost since.
   [[nodiscard]] bool gates() const { return owed() && by_loss_; }
-  /// It is to be told that nothing but stops and reads passes: once for each stop that is owed.
-  [[nodiscard]] bool take_news() { return gates() && !std::exchange(told_, true); }
-  /// The same was told of the stop that has ceased to be owed: once.
-  [[nodiscard]] bool take_told() { return std::exchange(told_, false); }
+  /// It is to be reported that nothing but stops and reads passes: once for each stop that is owed.
+  [[nodiscard]] bool take_gate_report() { return gates() && !std::exchange(reported_, true); }
+  /// The gating was reported of the stop that has ceased to be owed: once.
+  [[nodiscard]] bool take_end_report() { return std::exchange(reported_, false); }
   /// What must be sent now: the axis was read enabled since the last attempt.
   [[nodiscard]] std::optional<StopKind> due(Instant now) const;
-  /// When due() may change without anything being told.
+  /// When due() may change without anything being reported.
   [[nodiscard]] Instant next_deadline(Instant now) const {
     return read_enabled_ && not_before_ > now ? not_before_ : kNever;
   }
@@ -84,7 +84,7 @@ class OwedStop {
   bool uncertain_ = false;     ///< restarted, or away for long
   bool sent_ = false;          ///< at least once
   bool read_enabled_ = false;  ///< since the last attempt
-  bool told_ = false;          ///< an event has told of it: its end is told as well
+  bool reported_ = false;      ///< an event has reported that it gates: its end is reported as well
   std::uint64_t after_ = 0;    ///< only samples of later exchanges count
   Instant not_before_ = kLongAgo;
 };

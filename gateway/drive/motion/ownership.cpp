@@ -18,7 +18,7 @@ Ownership::Taken Ownership::how(const ClientLife& client) const {
   if (!lease_.owner) return Taken::open;
   if (may_be_back_as(client, *lease_.owner)) return Taken::orphan;  // however strong: nobody is its own rival
   if (stronger(client, *lease_.owner)) return Taken::weaker;
-  return same_hand(*lease_.owner, client) ? Taken::same_hand : Taken::lower_rank;
+  return same_origin_and_role(*lease_.owner, client) ? Taken::same_origin_and_role : Taken::lower_rank;
 }
 
 Errc Ownership::judge(const ClientPtr& client, bool claims) const {
@@ -60,8 +60,8 @@ Errc Ownership::may_take_over(const ClientPtr& client) const {
   if (!client || !lease_.owner || lease_.owner->id == client->id) return Errc::ok;
   // Strength, not the hand, decides between DDS writers that are there.
   const Taken taken = how(*client);
-  const bool own_hand = taken == Taken::orphan || (taken == Taken::same_hand && !client->strength);
-  return own_hand || lease_.owner->rank < client->rank ? Errc::ok : Errc::not_owner;
+  const bool same_program = taken == Taken::orphan || (taken == Taken::same_origin_and_role && !client->strength);
+  return same_program || lease_.owner->rank < client->rank ? Errc::ok : Errc::not_owner;
 }
 
 Errc Ownership::release(const ClientPtr& client, bool enabled, Instant now) {
@@ -102,7 +102,7 @@ std::string text(Ownership::Taken taken, const ClientLife& client) {
     case Ownership::Taken::orphan:
       return client.name + (client.strength ? " goes on as the owner, for another writer of its participant"
                                             : " is back and goes on as the owner: its connection had ended");
-    case Ownership::Taken::same_hand:
+    case Ownership::Taken::same_origin_and_role:
       return client.name + " has taken the axis over from another connection of its address";
     case Ownership::Taken::weaker:
       return client.name + " has taken the axis over from a weaker DDS writer";

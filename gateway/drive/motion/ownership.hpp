@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who owns one axis, and until when (design 3.5). Pure: requests and instants in, verdicts out.
 // Promises at most one owner; that nobody is refused where leases are off; that a lease runs out at the instant its
-// rules say, and is told so exactly once. Never stops an axis: the axis does what its lease's action says.
+// rules say, and its end is reported exactly once. Never stops an axis: the axis does what its lease's action says.
 #pragma once
 
 #include <memory>
@@ -27,18 +27,18 @@ class Ownership {
 
   /// How a client became the owner.
   enum class Taken : std::uint8_t {
-    nothing,     ///< it was the owner already, or leases are off
-    free,        ///< nobody owned the axis
-    open,        ///< of an axis that was enabled without an owner
-    orphan,      ///< of its own address, whose connection had ended, and which it may be the return of
-    same_hand,   ///< of its own address, by command take_over
-    weaker,      ///< of a DDS writer of less strength
-    lower_rank,  ///< by command take_over
+    nothing,               ///< it was the owner already, or leases are off
+    free,                  ///< nobody owned the axis
+    open,                  ///< of an axis that was enabled without an owner
+    orphan,                ///< of its own address, whose connection had ended, and which it may be the return of
+    same_origin_and_role,  ///< of its own address, by command take_over
+    weaker,                ///< of a DDS writer of less strength
+    lower_rank,            ///< by command take_over
   };
-  /// After judge() has admitted its claim. The lease runs anew from now.
+  /// After judge() has admitted its claim. The lease runs from the beginning from now.
   Taken take(const ClientPtr& client, Instant now);
-  /// A write of any kind takes this lease over: an orphan of the client's own hand, or, unless it is nothing but zeros,
-  /// that of an axis which was found enabled.
+  /// A write of any kind takes this lease over: an orphan of the client's own origin and role, or, unless it is nothing
+  /// but zeros, that of an axis which was found enabled.
   [[nodiscard]] bool waits_for(const ClientPtr& client, bool all_zero) const;
   /// A write of this client to the axis. `beats`: register 56 has changed; `asks`: it asks for something. Others'
   /// writes renew nothing, and while the axis is disabled only what asks does.

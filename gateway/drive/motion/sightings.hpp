@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What samples have shown of one axis until now, and what a new one shows that those before did not: a fault, the loss
-// of the drive, that it is disabled. Pure. Promises that each such change is told once, and that an axis which was
+// of the drive, that it is disabled. Pure. Promises that each such change is reported once, and that an axis which was
 // found enabled counts as found until it was out of that state, or something was asked of it. Never decides what a
 // change ends: the motion rules do.
 #pragma once

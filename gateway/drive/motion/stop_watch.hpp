@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a motor goes on obeying a stop that was told done: from one look to the next it gets slower, until it stands.
-// Pure: what the drive shows goes in. Promises that a ramp which takes no longer than some forty seconds is none that
-// goes on, and that each stop is told to be unheeded once. Never looks at an axis without torque, and never sends.
+// Whether a motor goes on obeying a stop that was answered done: from one look to the next it gets slower, until it
+// stands. Pure: what the drive shows goes in. Promises that a ramp which takes no longer than some forty seconds is
+// none that goes on, and that each stop is reported as unheeded once. Never looks at an axis without torque, and never
+// sends.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +19,7 @@ inline constexpr std::int64_t kPartSlower = 50;
 
 class StopWatch {
  public:
-  /// In each of these it must get slower, or in the time in which its velocity can be told, where that is longer.
+  /// In each of these it must get slower, or in the time in which its velocity can be measured, where that is longer.
   static constexpr Duration kWindow = std::chrono::seconds(1);
 
   /// What is watched: the stop with this number (Motion::stops()).

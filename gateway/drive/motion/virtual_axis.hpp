@@ -41,7 +41,7 @@ class VirtualAxis {
     std::uint64_t invalidations = 0;
   };
 
-  /// The drive comes up anew: switch on disabled, nothing known.
+  /// The drive comes up from scratch: switch on disabled, nothing known.
   void reset() { *this = VirtualAxis{}; }
   /// The drive counts from somewhere else: what a homing has found is true no more.
   void forget_homing() {
@@ -86,7 +86,7 @@ class VirtualAxis {
 
   Gate gate_ = Gate::unknown;
   bool found_enabled_ = false;
-  bool shows_gate_ = false;  ///< what a disabled axis was told (6, 7) shows: its drive has an enable of its own
+  bool shows_gate_ = false;  ///< what a disabled axis was sent (6, 7) shows: its drive has an enable of its own
   Run run_;
   End end_ = End::none;
 };

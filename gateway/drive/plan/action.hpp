@@ -28,7 +28,7 @@ enum class Mark : std::uint8_t {
   not_homed,
   borrow_homing,  ///< set_position is about to change method and offset
   return_homing,  ///< and has put them back
-  look_again,     ///< the rest of this part is planned anew with what was just read
+  look_again,     ///< the rest of this part is planned again with what was just read
 };
 
 struct Action {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Admission: what can be told of a write batch before it is queued (design 3.3 Outcomes). Pure.
+// Admission: what can be judged of a write batch before it is queued (design 3.3 Outcomes). Pure.
 // Promises that a write batch it lets pass asks only for what this drive has, within the limits of axis, profile and
 // drive. Never looks at the state of the motion: that is judged when the write batch's turn has come.
 #pragma once
@@ -10,7 +10,7 @@
 
 namespace axisgate::drive {
 
-/// ok, not_supported, bad_value, or still_in_setup where the drive has not told yet what it needs to be judged.
+/// ok, not_supported, bad_value, or still_in_setup where the drive has not reported yet what it needs to be judged.
 [[nodiscard]] Errc admit(const AxisCore& core, const WriteBatch& batch);
 /// The number nearest to what a write batch asks for that its row would take, where it is beyond a limit.
 struct PassedLimit {

@@ -165,7 +165,7 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
     const Binding* binding = core.model.binding(q);
     if (binding == nullptr || !binding->writable || moves_by_write(core, binding->object)) continue;
     Wanted wanted = keep_wanted ? core.running_target(q) : Wanted{};
-    if (!wanted.anew && core.facts().enabled()) wanted = {};
+    if (!wanted.fresh && core.facts().enabled()) wanted = {};
     const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, core.object(binding->object));
     add_running_target(core, binding->object, raw.value_or(0), plan, look_again);
   }
@@ -218,14 +218,14 @@ void note_told(AxisCore& core, const Setpoint& sp) {
   const Binding* binding = core.model.binding(sp.quantity);
   if (!is_speed(sp.quantity) || binding == nullptr || binding->object == kNoObject) return;
   const auto raw = sp.exact ? sp.exact : binding->to_raw(sp.value, core.object(binding->object));
-  if (raw) core.told.insert_or_assign(binding->object, AxisCore::Told{sp.quantity, sp.value, *raw});
+  if (raw) core.accepted_speeds.insert_or_assign(binding->object, AxisCore::AcceptedSpeed{sp.quantity, sp.value, *raw});
 }
 
 }  // namespace
 
-void forget_told(AxisCore& core, const WriteBatch& batch) {
+void forget_accepted_speeds(AxisCore& core, const WriteBatch& batch) {
   for (const Setpoint& sp : batch.setpoints)
-    if (const Binding* binding = core.model.binding(sp.quantity)) core.told.erase(binding->object);
+    if (const Binding* binding = core.model.binding(sp.quantity)) core.accepted_speeds.erase(binding->object);
 }
 
 void remember_setpoints(AxisCore& core, const WriteBatch& batch) {

@@ -31,8 +31,8 @@ void add_speeds(const AxisCore& core, int mode, Plan& plan) {
     const Binding* binding = core.model.binding(each);
     if (binding == nullptr || !core.model.takes(each)) continue;
     const ObjectState& state = core.store[binding->object];
-    const auto told = core.told.find(binding->object);
-    if (told != core.told.end() && !state.clamped) {
+    const auto told = core.accepted_speeds.find(binding->object);
+    if (told != core.accepted_speeds.end() && !state.clamped) {
       // After a mode change it is taken to be as it was: what a start takes longer is a button's time.
       if (!state.known || state.out_of_sight || state.number != told->second.raw)
         static_cast<void>(add_write(core, each, {told->second.value, told->second.raw}, plan));

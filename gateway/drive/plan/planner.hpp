@@ -14,12 +14,12 @@ namespace axisgate::drive {
 /// Rows 72 to 75 are checked as a pair: what is written against what is written with it, or else cached.
 [[nodiscard]] bool limits_in_order(const AxisCore& core, const WriteBatch& batch);
 /// Where the axis may be sent: within the limits of axis and profile, and those that the drive holds, as far as they
-/// are known, or is told in the same write batch. 0 and 0 is how drives are told to have none.
+/// are known, or is written in the same write batch. 0 and 0 is how drives are set to have none.
 [[nodiscard]] Range position_range(const AxisCore& core, const WriteBatch& batch = {});
 /// Parameters and set-points: those that may reach the drive now.
 [[nodiscard]] Plan plan_setpoints(const AxisCore& core, const WriteBatch& batch);
 /// What was asked for here has failed: no start goes by it.
-void forget_told(AxisCore& core, const WriteBatch& batch);
+void forget_accepted_speeds(AxisCore& core, const WriteBatch& batch);
 /// Targets are remembered in the motion rules even where they may not reach the drive now.
 void remember_setpoints(AxisCore& core, const WriteBatch& batch);
 /// The mode a command needs: writes it and waits for the display.
@@ -55,7 +55,7 @@ void remember_setpoints(AxisCore& core, const WriteBatch& batch);
 
 /// The stop of a write batch: commands 2, 3, 4, a raw controlword, or both.
 /// @param unheeded the drive has acknowledged it, and shows that it went on. One that begins to listen with a first
-///   controlword only (its profile's setup writes it) is told that word: it ends the torque.
+///   controlword only (its profile's setup writes it) is sent that word: it ends the torque.
 [[nodiscard]] Plan plan_stop(const AxisCore& core, const WriteBatch& batch, bool unheeded = false);
 /// How long a stop may take to show: a ramp at the drive's own deceleration. Meanwhile it is repeated
 /// (CommandSequence).
@@ -86,7 +86,7 @@ void add_quiet_setpoint(const AxisCore& core, const Steps* steps, Plan& plan);
 
 /// Appends another plan; false where that one is refused (its refusal becomes this plan's).
 bool append(Plan& plan, Plan more);
-/// The state is read, and all is planned anew by it.
+/// The state is read, and all is planned again by it.
 [[nodiscard]] Plan look_at_state(const AxisCore& core);
 /// Appends the profile's steps.
 void add_steps(const AxisCore& core, const Steps& steps, Plan& plan);
@@ -102,7 +102,7 @@ void add_speeds(const AxisCore& core, int mode, Plan& plan);
 /// numbers.
 [[nodiscard]] bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan);
 /// Makes the velocity and torque set-points in the drive 0, or, with `keep_wanted`, what was asked for since the last
-/// stop; of an axis that is enabled only what was asked for anew (Wanted::anew).
+/// stop; of an axis that is enabled only what was asked for again (Wanted::fresh).
 void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan);
 /// Makes the position set-point the actual position.
 void add_target_here(const AxisCore& core, Plan& plan);

@@ -50,12 +50,12 @@ struct AxisCore {
   std::optional<SentTo> sent_to{};
   /// A speed or ramp as a client has asked for it last. Every start goes by it (design 3.3, set-points), also where the
   /// drive has restarted since and holds its own.
-  struct Told {
+  struct AcceptedSpeed {
     Quantity quantity{};
     std::int64_t value = 0;  ///< in register units
     std::int64_t raw = 0;    ///< in the drive's numbers
   };
-  std::map<ObjectId, Told> told{};
+  std::map<ObjectId, AcceptedSpeed> accepted_speeds{};
   NvmBudget nvm{};
 
   /// link_state online or suspect.

@@ -32,8 +32,8 @@ void FaultWatch::observe(const Seen& seen) {
   seen_ = seen.at;
   if (seen.faulted && !fault_) begin_fault(seen);
   if (!seen.faulted && fault_) {
-    missed_ = missed_ || !told_;
-    fault_ = told_ = false;
+    missed_ = missed_ || !named_;
+    fault_ = named_ = false;
     over_ = true;
     emergency_ = {};  // it was this fault's, and names none that comes after
   }
@@ -50,7 +50,7 @@ void FaultWatch::observe(const Seen& seen) {
 
 void FaultWatch::begin_fault(const Seen& seen) {
   fault_ = true;
-  told_ = false;
+  named_ = false;
   code_ = 0;
   since_ = seen.at;
   risen_ = seen.statusword_exchange;
@@ -89,9 +89,9 @@ void FaultWatch::begin_round(CauseObjects objects) {
 void FaultWatch::name(std::uint16_t code) {
   if (!fault_) return;
   if (code != 0) code_ = code;
-  if (told_) return;
-  told_ = (fresh_ && this->code() != 0) || seen_ - since_ >= kCauseTime;
-  if (told_) code_ = this->code();
+  if (named_) return;
+  named_ = (fresh_ && this->code() != 0) || seen_ - since_ >= kCauseTime;
+  if (named_) code_ = this->code();
 }
 
 std::uint16_t FaultWatch::code() const {

@@ -46,12 +46,13 @@ class FaultWatch {
   void observe(const Seen& seen);
   /// What the words that count name after observe(); 0: nothing.
   void name(std::uint16_t code);
-  /// The drive has sent an emergency code; 0: what it told of is over. `exchange`: the newest one on the bus then.
+  /// The drive has sent an emergency code; 0: the reported emergency is over. `exchange`: the newest one on the bus
+  /// then.
   void emergency(std::uint16_t code, Instant now, std::uint64_t exchange) { emergency_ = {code, now, exchange}; }
   void forget_emergency() { emergency_ = {}; }
 
   /// A fault whose cause is not known yet: what tells of it is shown as it was.
-  [[nodiscard]] bool withheld() const { return fault_ && !told_; }
+  [[nodiscard]] bool withheld() const { return fault_ && !named_; }
   /// A word names something, and the statusword was not read after it: whether it is a fault is not known yet.
   [[nodiscard]] bool words_ahead() const { return !fault_ && ahead_since_ != kLongAgo; }
   /// A sample of this exchange says something of what the statusword shows now.
@@ -60,9 +61,9 @@ class FaultWatch {
   }
   /// What this fault was named by its words, or else by what the drive has sent; 0: nothing, or there is no fault.
   [[nodiscard]] std::uint16_t code() const;
-  /// A fault came and went before its cause was known; told once.
+  /// A fault came and went before its cause was known; reported once.
   [[nodiscard]] bool take_missed();
-  /// A fault is over: what its words hold now is worth a look; told once.
+  /// A fault is over: what its words hold now is worth a look; reported once.
   [[nodiscard]] bool take_over();
 
   /// What is to be read next, before anything but stops; none: nothing now.
@@ -78,7 +79,7 @@ class FaultWatch {
   void begin_round(CauseObjects objects);
 
   bool fault_ = false;
-  bool told_ = false;
+  bool named_ = false;
   bool fresh_ = false;  ///< all that names causes was read after the fault was seen
   bool missed_ = false;
   bool over_ = false;

@@ -114,11 +114,11 @@ class ObjectStore {
     ++invalidations_;
   }
   /// The same, after a timeout or another master's write.
-  void lose_sight() {
+  void lose_contact() {
     invalidate_all();
     for (ObjectState& s : states_) s.out_of_sight = !s.emulated;
   }
-  /// How often invalidate_all() was called: whoever keeps the image true reads everything anew then.
+  /// How often invalidate_all() was called: whoever keeps the image true reads everything again then.
   [[nodiscard]] std::uint64_t invalidations() const { return invalidations_; }
   /// What it was last may be true, but nothing confirms it any more: good only when it is read again.
   void outdate(ObjectId id) {

@@ -40,10 +40,10 @@ struct DataType {
 /// Where an object is found on one protocol.
 struct Place {
   bus::ObjectAddress address;
-  bool write_only = false;  ///< keya-*: a command, which no query tells
-  bool composed = false;    ///< keya-rs232, keya-rs485: a field of the one control frame
-  bool turns_on = false;    ///< of those: says that its motor is to be on
-  bool unasked = false;     ///< keya-can: in a frame that the drive sends by itself; nothing asks for it
+  bool write_only = false;   ///< keya-*: a command, which no query tells
+  bool composed = false;     ///< keya-rs232, keya-rs485: a field of the one control frame
+  bool turns_on = false;     ///< of those: says that its motor is to be on
+  bool unsolicited = false;  ///< keya-can: in a frame that the drive sends by itself; nothing asks for it
   std::optional<DataType> type;
   bool derived = false;  ///< follows from a rule of the manual's table, not printed
 };

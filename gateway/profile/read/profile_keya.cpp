@@ -104,7 +104,7 @@ class PlaceInFrame {
     if (std::none_of(kHeartbeatFields.begin(), kHeartbeatFields.end(), here))
       return refuse("a heartbeat holds two bytes each from bytes 0, 2 and 4 on, and one at 6 and at 7");
     out.address = {kHeartbeat, 0, static_cast<std::uint8_t>(byte)};
-    out.unasked = true;
+    out.unsolicited = true;
     return out;
   }
 

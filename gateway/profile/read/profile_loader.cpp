@@ -86,7 +86,7 @@ LoadedProfile load_profile(const std::string& path, const std::vector<std::strin
   read_keepalive(reading);
   check_protocols(reading);
   check_keepalive(reading);
-  check_unasked_writes(reading);
+  check_unsolicited_writes(reading);
   check_stops_start_nothing(reading);
   read_constant_rules(reading);
   check_state_places(reading);

@@ -200,7 +200,7 @@ void check_stops_start_nothing(Reading& reading) {
     if (moves_nothing(command.command)) each_step(command, check);
 }
 
-void check_unasked_writes(Reading& reading) {
+void check_unsolicited_writes(Reading& reading) {
   const std::vector<std::string> moving = moving_objects(reading);
   for (const WriteSpec& write : reading.profile.setup) check_write(reading, moving, write);
   for (const CheckSpec& check : reading.profile.checks)

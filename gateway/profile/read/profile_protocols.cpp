@@ -172,7 +172,7 @@ void check_resync(Reading& reading, const std::string& name, const ProtocolSpec&
       reading.fault(at, "object \"" + wanted + "\" has no address on " + name);
     else if (!object.readable)
       reading.fault(at, "object \"" + wanted + "\" cannot be read, so it is no resynchronisation read");
-    else if (place->second.unasked)
+    else if (place->second.unsolicited)
       reading.fault(at, "object \"" + wanted + "\" comes unasked, so it is no resynchronisation read");
     else if (name != "modbus-rtu" && !addresses.insert(asked_for(place->second.address)).second)
       reading.fault(at, "the same address stands in this list already");

@@ -128,7 +128,7 @@ void check_stops_by_word(Reading& reading, const CommandSpec& command, const std
 /// What stops, clears or stores gives the motor no speed and no torque.
 void check_turns_nothing(Reading& reading, const CommandSpec& command);
 /// After all: neither setup nor a remedy enables the motor or gives it a mode or a target.
-void check_unasked_writes(Reading& reading);
+void check_unsolicited_writes(Reading& reading);
 /// No command of a virtual axis that moves nothing may write what enables or moves it elsewhere.
 void check_stops_start_nothing(Reading& reading);
 

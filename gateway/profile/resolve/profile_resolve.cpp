@@ -212,7 +212,7 @@ void resolve_objects(Resolving& r) {
     def.size = type.size;
     def.is_signed = type.is_signed;
     def.printed = object.numbers();
-    def.readable = object.readable && !at.write_only && !at.unasked;
+    def.readable = object.readable && !at.write_only && !at.unsolicited;
     def.writable = object.writable;
     def.composed = at.composed;
     def.turns_on = at.turns_on;

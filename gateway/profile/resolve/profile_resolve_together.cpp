@@ -47,14 +47,14 @@ void list_composed(DriveModel& model) {
   });
 }
 
-void list_unasked(Resolving& r) {
+void list_unsolicited(Resolving& r) {
   if (r.input.protocol == "keya-can")
-    r.model.unasked.every = r.profile.protocols.find(r.input.protocol)->second.heartbeat;
+    r.model.unsolicited.every = r.profile.protocols.find(r.input.protocol)->second.heartbeat;
   for (const Object& object : r.profile.objects) {
     const auto place = object.places.find(r.input.protocol);
     const auto id = r.ids.find(object.name);
-    if (place != object.places.end() && place->second.unasked && id != r.ids.end())
-      r.model.unasked.objects.push_back(id->second);
+    if (place != object.places.end() && place->second.unsolicited && id != r.ids.end())
+      r.model.unsolicited.objects.push_back(id->second);
   }
 }
 
@@ -63,7 +63,7 @@ void list_unasked(Resolving& r) {
 void resolve_together(Resolving& r) {
   name_aliases(r.model);
   list_composed(r.model);
-  list_unasked(r);
+  list_unsolicited(r);
 }
 
 }  // namespace axisgate::drive

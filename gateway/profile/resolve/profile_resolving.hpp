@@ -43,7 +43,7 @@ class Resolving {
   /// The motor that an axis is, and the axis that a motor is (kNoAxis: none).
   [[nodiscard]] bus::AxisSlot motor(bus::AxisSlot slot) const;
   [[nodiscard]] bus::AxisSlot axis_of(bus::AxisSlot motor) const;
-  /// The mode that the maker's tool has given this axis's motor; none where the drive is simply told.
+  /// The mode that the maker's tool has given this axis's motor; none where the drive is simply sent one.
   [[nodiscard]] std::optional<std::int16_t> configured_mode(bus::AxisSlot slot) const;
   /// Whether the axis can have a mode, and follow a set-point in one of its modes.
   [[nodiscard]] bool can_have(bus::AxisSlot slot, std::int16_t mode) const;

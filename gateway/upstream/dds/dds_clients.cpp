@@ -106,7 +106,7 @@ void DdsClients::take_back(const Guid& writer, bool own_alone, Instant now) {
     sign.client = client->life->id;
     sign.role = client->life->role;
     sign.life = client->life;
-    sign.is_write = sign.beats = true;
+    sign.reclaims = sign.beats = true;
     static_cast<void>(commands_.submit(each.axis, sign, [](const BatchResult&) {}));
   }
 }
@@ -177,9 +177,8 @@ std::string DdsClients::on_writer(const WriterRecord& record) {
       client.life->strength = record.strength;
       client.life->name = name_of(record.writer);
     }
-    told = told_of_liveliness(record.liveliness);
-    if (!told.empty())
-      told = std::exchange(client.told_of_liveliness, true) ? "" : name_of(record.writer) + ": " + told;
+    told = liveliness_remark(record.liveliness);
+    if (!told.empty()) told = std::exchange(client.liveliness_logged, true) ? "" : name_of(record.writer) + ": " + told;
   }
   look_at_deadlines();
   return told;

@@ -4,8 +4,9 @@
 // asked for. What a client that is gone has left is taken over by its own liveliness when it is back, and by the
 // heartbeat of a writer of its participant that was not heard before. Promises that the number of what is remembered is
 // bounded, and that none makes way for a newcomer that owns an axis, holds a button or may have a motor running; that a
-// writer whose end is told or who does not come back is dead to its leases; that the silence of axisgate-dds itself is
-// not taken for theirs for as long as their grace. Never speaks to an axis, but to say that a client is gone or back.
+// writer whose end is reported or who does not come back is dead to its leases; that the silence of axisgate-dds itself
+// is not taken for theirs for as long as their grace. Never speaks to an axis, but to say that a client is gone or
+// back.
 #pragma once
 
 #include <deque>
@@ -24,10 +25,10 @@ namespace axisgate::dds {
 
 /// Ids of DDS writers are from here on: below are those of Modbus clients.
 inline constexpr ClientId kFirstDdsClient = ClientId{1} << 63U;
-/// Writers that were not told of (or not again, after axisgate-dds was started anew) for so long are gone: their grace,
+/// Writers that were not reported (or not again, after axisgate-dds was restarted) for so long are gone: their grace,
 /// and the time in which a new participant finds the others.
 inline constexpr Duration kReturnsWithin = std::chrono::seconds(8);
-/// Writers at a time that nobody has told of, and whose heartbeats are remembered for their first command.
+/// Writers at a time that were not reported, and whose heartbeats are remembered for their first command.
 inline constexpr std::size_t kMaxBeatsBefore = 64;
 
 /// A jog command is a button that is pressed: the same one again is the button held, until command 33, or the other
@@ -48,17 +49,17 @@ struct LeftAxis {
 /// One writer. `life` is null as long as it has asked for nothing; it outlives the client where it owns an axis.
 struct DdsClient {
   std::shared_ptr<ClientLife> life{};
-  std::int32_t strength = 0;  ///< as it was told of
+  std::int32_t strength = 0;  ///< as reported
   std::string where{};
   std::map<AxisNumber, HeldJog> held{};
   std::map<AxisNumber, SteadyNs> released{};  ///< when the newest jog_end was received, of axes that are there
   bool commands = false;                   ///< it writes axis_command; else it may be one that asks for objects alone
   bool unleased = false;                   ///< it has commanded an axis that nobody owns: a motor may run by it
-  Instant returns_by = kNever;             ///< kNever: it was told of since the link is up
+  Instant returns_by = kNever;             ///< kNever: it was reported since the link is up
   bool beats_alone = false;                ///< nothing but its heartbeats is known of it
   std::optional<std::uint32_t> counter{};  ///< of its last heartbeat
   std::optional<Duration> lease_limit{};   ///< of the same: it holds for a client that it becomes later, too
-  bool told_of_liveliness = false;         ///< the log has its line
+  bool liveliness_logged = false;          ///< the log has its line
   std::vector<LeftAxis> left{};            ///< not taken over so far; at most one an axis
   bool heard = false;                      ///< it has given a sign of life
 };
@@ -119,7 +120,7 @@ class DdsClients {
   CommandPort& commands_;
   Clients clients_;
   /// Buttons of writers that were taken for gone, kMaxWriters at most, the newest last: one that comes back still holds
-  /// them, and has not pressed them anew.
+  /// them, and has not pressed them again.
   std::deque<std::pair<Guid, std::map<AxisNumber, HeldJog>>> held_before_;
   /// Those that are gone and owned an axis when they went; at most one an axis.
   std::map<Guid, ClientId> gone_owners_;

@@ -120,7 +120,7 @@ WriteBatch DdsRequests::new_batch(std::shared_ptr<const ClientLife> life, bool f
   batch.client = life->id;
   batch.role = life->role;
   batch.life = std::move(life);
-  batch.renews = batch.is_write = fresh;
+  batch.renews = batch.reclaims = fresh;
   batch.start_by = now + settings_.start_deadline;
   batch.answer_by = now + settings_.reply_deadline;
   return batch;

@@ -25,20 +25,20 @@ UnitsOfAxes units_of(const std::vector<AxisUnits>& axes) {
 
 struct DdsSession::Impl {
   Impl(DdsSettings with, ProcessImage& of, const EventRing& ring, CommandPort& commands, std::function<void()> on_wake,
-       DdsTold to_tell)
+       DdsReports to_tell)
       : settings(std::move(with)),
         image(of),
         units(units_of(settings.units)),
         wake(std::move(on_wake)),
-        told(std::move(to_tell)),
+        reports(std::move(to_tell)),
         signs(settings.max_age, settings.start_deadline),
         identities(settings),
         clients(identities, signs, image, commands),
         namesakes(image),
         requests(
             settings, units, image, commands, clients, signs, namesakes, stop_order, replies, [this] { wake_up(); },
-            told.line),
-        ros(settings, units, image, commands, signs, identities, namesakes, stop_order, told.line),
+            reports.line),
+        ros(settings, units, image, commands, signs, identities, namesakes, stop_order, reports.line),
         events(ring),
         states(settings.min_period, settings.max_period) {
     add_axes(kLongAgo);
@@ -68,7 +68,7 @@ struct DdsSession::Impl {
   void look_at_name() {
     if (namesakes.taken() == name_taken) return;
     name_taken = namesakes.taken();
-    if (told.name_taken) told.name_taken(name_taken, namesakes.text());
+    if (reports.name_taken) reports.name_taken(name_taken, namesakes.text());
   }
   [[nodiscard]] Record gateway_sample(Instant now) {
     gateway_due = now + kGatewayPeriod;
@@ -79,7 +79,7 @@ struct DdsSession::Impl {
   ProcessImage& image;
   UnitsOfAxes units;
   std::function<void()> wake;
-  DdsTold told;
+  DdsReports reports;
   SignsOfLife signs;
   Identities identities;
   DdsClients clients;
@@ -96,8 +96,9 @@ struct DdsSession::Impl {
 };
 
 DdsSession::DdsSession(DdsSettings settings, ProcessImage& image, const EventRing& events, CommandPort& commands,
-                       std::function<void()> wake, DdsTold told)
-    : impl_(std::make_unique<Impl>(std::move(settings), image, events, commands, std::move(wake), std::move(told))) {}
+                       std::function<void()> wake, DdsReports reports)
+    : impl_(std::make_unique<Impl>(std::move(settings), image, events, commands, std::move(wake), std::move(reports))) {
+}
 
 DdsSession::~DdsSession() {
   impl_->image.changes.wake = [] {};
@@ -134,7 +135,7 @@ void DdsSession::on_record(const Record& record, Instant now) {
   Impl& it = *impl_;
   if (const auto* const writer = std::get_if<WriterRecord>(&record)) {
     const std::string line = it.clients.on_writer(*writer);
-    const auto& tell = it.told.once ? it.told.once : it.told.line;
+    const auto& tell = it.reports.once ? it.reports.once : it.reports.line;
     if (!line.empty() && tell) tell(line);
   }
   if (const auto* const heartbeat = std::get_if<HeartbeatRecord>(&record)) it.clients.on_heartbeat(*heartbeat, now);

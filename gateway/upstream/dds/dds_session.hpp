@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The DDS session of the gateway: what axisgate-dds is told of the image, and what DDS clients ask of axes (design 4).
+// The DDS session of the gateway: what axisgate-dds is sent of the image, and what DDS clients ask of axes (design 4).
 // Promises that the newest state of an axis wins where the process is slow, that every request gets exactly one reply,
 // and that a DDS client is admitted, owns, leases and is refused as a Modbus client is. Never blocks, never knows a
 // socket, a process or a DDS type, and never sends what it was not asked for by next().
@@ -30,8 +30,8 @@ inline constexpr std::size_t kMaxRepliesWaiting = 256;
 /// All that the ring has: at a start with many axes more happens than a process that starts beside them can take.
 inline constexpr std::size_t kMaxEventsWaiting = kMaxEvents;
 
-/// What the gateway is told of the domain.
-struct DdsTold {
+/// What is reported to the gateway of the domain.
+struct DdsReports {
   /// A line for the log, of a request that is refused before it comes to an axis.
   std::function<void(const std::string&)> line{};
   /// Another gateway has our name, or has it no more: where its axis was seen, for an event.
@@ -45,7 +45,7 @@ class DdsSession {
   /// Takes image.changes for itself (its wake() calls `wake`, which arms a timer and no more). Settings stay as they
   /// are; axes and units until take_axes().
   DdsSession(DdsSettings settings, ProcessImage& image, const EventRing& events, CommandPort& commands,
-             std::function<void()> wake, DdsTold told = {});
+             std::function<void()> wake, DdsReports reports = {});
   ~DdsSession();
   DdsSession(const DdsSession&) = delete;
   DdsSession& operator=(const DdsSession&) = delete;
@@ -60,7 +60,7 @@ class DdsSession {
   /// What it has sent. Replies may be due at once: call next().
   void on_record(const Record& record, Instant now);
   /// The reply to one more record has a place. Read nothing from the process before it has: of requests beyond that
-  /// nobody is told, and nothing in them but a stop is carried out.
+  /// nobody is answered, and nothing in them but a stop is carried out.
   [[nodiscard]] bool has_room() const;
 
   /// What is to be sent now: replies before events before states. None: nothing before wake_at(), or the next wake().

@@ -21,16 +21,16 @@ JointView joint_view(const AxisImage& axis, double position, double tolerance, C
   return view;
 }
 
-void JointStream::begin_anew() {
+void JointStream::restart() {
   in_step_.reset();
   asked_.reset();
   waiting_.reset();
-  told_astray_ = false;
+  astray_reported_ = false;
   refused_ = false;
 }
 
 void JointStream::look_for_endings(const JointView& axis) {
-  if (!axis.ready || (in_step_ && axis.endings.ended(since_, axis.client))) begin_anew();
+  if (!axis.ready || (in_step_ && axis.endings.ended(since_, axis.client))) restart();
 }
 
 // A velocity leads away from the position that the stream was at, so each way of control comes into step by itself.
@@ -41,15 +41,15 @@ bool JointStream::in_step(const JointTarget& target, double position, const Join
       target.is_velocity ? target.value == 0 : std::fabs(position - axis.position) <= axis.tolerance;  // NaN: no
   if (!there) {
     leaving_ = in_step_.has_value();
-    if (leaving_) begin_anew();
-    astray_ = !std::exchange(told_astray_, true);
+    if (leaving_) restart();
+    astray_ = !std::exchange(astray_reported_, true);
     return false;
   }
   in_step_ = target.is_velocity;
   since_ = axis.endings.now();
   asked_.reset();
   waiting_.reset();
-  told_astray_ = false;
+  astray_reported_ = false;
   return true;
 }
 
@@ -64,7 +64,7 @@ JointTarget JointStream::ask(const JointTarget& target) {
 std::optional<JointTarget> JointStream::on_sample(const Guid& writer, const JointTarget& target, double position,
                                                   const JointView& axis) {
   astray_ = leaving_ = false;
-  if (writer != writer_) begin_anew();
+  if (writer != writer_) restart();
   writer_ = writer;
   look_for_endings(axis);
   if (!in_step(target, position, axis)) return std::nullopt;
@@ -81,7 +81,7 @@ std::optional<JointTarget> JointStream::on_result(Errc code, const JointView& ax
   refused_ = code != Errc::ok;
   // What the axis cannot do is not asked again and again; what had no room or no answer may be, by a newer sample.
   if (code != Errc::ok && code != Errc::bad_value) asked_.reset();
-  if (code == Errc::not_owner) begin_anew();
+  if (code == Errc::not_owner) restart();
   look_for_endings(axis);
   const auto next = std::exchange(waiting_, std::nullopt);
   if (!next || next == asked_) return std::nullopt;

@@ -38,7 +38,7 @@ class JointStream {
   /// What was asked has this result. The next one, if one waits.
   [[nodiscard]] std::optional<JointTarget> on_result(Errc code, const JointView& axis);
   /// The axis was enabled or sent to its home: from now on the stream must be seen where it is.
-  void begin_anew();
+  void restart();
   /// It has just turned out, for the first time since the stream last acted, that it is not where the enabled axis is.
   [[nodiscard]] bool take_astray();
   /// What was sampled last is what is asked of the axis, or waits to be: neither out of step nor refused.
@@ -62,7 +62,7 @@ class JointStream {
   bool busy_ = false;
   bool refused_ = false;  ///< what was asked last
   bool leaving_ = false;
-  bool told_astray_ = false;
+  bool astray_reported_ = false;
   bool astray_ = false;
 };
 

@@ -2,7 +2,7 @@
 // Other gateways that publish axes under our key: two of one name in a domain, to which every command would go.
 // Promises that one which was seen counts until its writer is gone, as long as the two have an axis in common, also one
 // that a reload has added; that an axis counts no more once the other has given it up; and that what was known before
-// axisgate-dds was started anew counts until others have had the time to be found again. Never counts a participant
+// axisgate-dds was restarted counts until others have had the time to be found again. Never counts a participant
 // that says nothing.
 #pragma once
 

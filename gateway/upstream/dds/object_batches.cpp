@@ -34,7 +34,7 @@ PlannedObject plan_object(const ObjectRequestRecord& record, const WriteBatch& f
   WriteBatch batch = from;
   batch.beats = true;
   batch.claims = record.write;
-  batch.is_write = from.is_write && record.write;
+  batch.reclaims = from.reclaims && record.write;
   batch.command_id = static_cast<std::uint16_t>(record.request_id & 0xFFFFU);
   ObjectRequest request{record.write, record.index, record.subindex, record.size};
   if (record.write && record.size == 0) request.bytes = std::make_shared<const std::vector<Byte>>(record.data);

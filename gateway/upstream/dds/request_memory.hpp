@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which requests were seen lately, of each DDS writer: so that one that comes again is not run again, and its result is
-// told once more.
+// answered once more.
 // Promises that a request stays known for kRequestsKept after it came last; that memory is bounded, and where it is
 // full it says so instead of forgetting; that no writer can take the room of the others. Never knows what a request
 // asks for.

@@ -131,7 +131,7 @@ WriteBatch RosRequests::new_batch(const Joint& joint, bool renews) const {
   batch.client = joint.life->id;
   batch.role = joint.life->role;
   batch.life = joint.life;
-  batch.is_write = true;
+  batch.reclaims = true;
   batch.renews = batch.beats = renews;
   batch.start_by = joint.newest + settings_.start_deadline;
   batch.answer_by = joint.newest + settings_.reply_deadline;
@@ -256,7 +256,7 @@ void RosRequests::ask(AxisNumber number, std::optional<JointTarget> target) {
 // The axis has another gateway beside this one. Its stream must come into step anew: where it is by the time that the
 // name is free nobody knows. Whoever asks a run for a position does not ask for the run any more.
 void RosRequests::refuse_start(const AxisImage& axis, Joint& joint) {
-  joint.stream.begin_anew();
+  joint.stream.restart();
   static_cast<void>(joint.stream.on_result(Errc::never_started, view_of(axis, joint)));
   if (velocity_runs(axis)) halt(axis.number, joint);
   complain(fmt::format("joint_commands starts nothing on {}: {} has our name", axis.name, namesakes_.text()),
@@ -302,7 +302,7 @@ void RosRequests::on_action(const RosActionRecord& record, Instant now) {
   if (command == Command::home) return home(record.axis, joint, now);
   const bool renews = acts && fresh;
   if (renews) heard(*axis, joint, now);
-  if (!is_stop(command) && acts) joint.stream.begin_anew();
+  if (!is_stop(command) && acts) joint.stream.restart();
   WriteBatch batch = new_batch(joint, renews);
   batch.command = command;
   batch.claims = !is_stop(command);
@@ -321,7 +321,7 @@ void RosRequests::home(AxisNumber number, Joint& joint, Instant now) {
   };
   const auto at_once = commands_.submit(number, batch, done);
   if (at_once) done(*at_once);
-  if (!at_once || at_once->outcome.code == Errc::ok) joint.stream.begin_anew();
+  if (!at_once || at_once->outcome.code == Errc::ok) joint.stream.restart();
 }
 
 }  // namespace axisgate::dds

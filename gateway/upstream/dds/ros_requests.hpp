@@ -78,7 +78,7 @@ class RosRequests {
   StopOrder& stop_order_;
   TellLine tell_;
   LineBucket lines_;
-  std::map<std::string, Instant> complaints_;  ///< when each was told last; at most kMaxComplaints
+  std::map<std::string, Instant> complaints_;  ///< when each was logged last; at most kMaxComplaints
   std::map<AxisNumber, Joint> joints_;
   /// Callbacks hold it weakly: they may come when this is gone.
   std::shared_ptr<RosRequests> self_{this, [](RosRequests*) {}};

@@ -20,7 +20,7 @@ bool SignsOfLife::counts(const HeartbeatRecord& heartbeat, std::optional<std::ui
          fresh(heartbeat.written, now);
 }
 
-std::string told_of_liveliness(LivelinessKind kind) {
+std::string liveliness_remark(LivelinessKind kind) {
   if (kind == LivelinessKind::endless || is_sign_of_life(kind)) return {};
   return std::string("its ") + (kind == LivelinessKind::automatic ? "AUTOMATIC" : "MANUAL_BY_PARTICIPANT") +
          " liveliness counts for nothing: its axes need samples, MANUAL_BY_TOPIC, or axisgate/heartbeat";

@@ -31,7 +31,7 @@ class SignsOfLife {
   Duration longest_wait_;
 };
 
-/// What is to be told of a writer whose liveliness counts for nothing; empty: nothing.
-[[nodiscard]] std::string told_of_liveliness(LivelinessKind kind);
+/// What the log is to say of a writer whose liveliness counts for nothing; empty: nothing.
+[[nodiscard]] std::string liveliness_remark(LivelinessKind kind);
 
 }  // namespace axisgate::dds

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One run of a program: started beside the gateway, joined to it by a socket pair, waited for by its pidfd.
-// Promises that its end is told once, with its status, that nothing of it is left behind, and that signals go to this
-// very process, never to another one that got its number. Never waits for it but in the destructor, kEndsWithin at
+// Promises that its end is reported once, with its status, that nothing of it is left behind, and that signals go to
+// this very process, never to another one that got its number. Never waits for it but in the destructor, kEndsWithin at
 // most.
 #pragma once
 

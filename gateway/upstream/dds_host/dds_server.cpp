@@ -220,7 +220,7 @@ void DdsServer::on_end(const ProcessEnd& end) {
   const ProcessEnd how = std::exchange(cause_, {}).value_or(end);
   if (reports_.address_missing) reports_.address_missing(has_no_address(how));
   const auto next = plan_.on_end(how, now);
-  if (next.told) reports_.event(EventKind::warning, *next.told);
+  if (next.report) reports_.event(EventKind::warning, *next.report);
   patience_->expires_at(now + next.pause);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The DDS server of the gateway: runs axisgate-dds, starts it again when it ends, and carries records between it and
 // the DDS server. Promises that nothing of it waits for that process, that one turn of the loop does bounded work, and
-// that every end is told (event, log, alarm). Never sends from inside a turn of a drive: what changes there arms a
+// that every end is reported (event, log, alarm). Never sends from inside a turn of a drive: what changes there arms a
 // timer.
 #pragma once
 
@@ -28,7 +28,7 @@ namespace axisgate::dds {
 inline constexpr int kMaxReadATurn = 64;
 inline constexpr int kMaxSentATurn = 128;
 
-/// What the gateway is told of the process.
+/// What is reported to the gateway of the process.
 struct DdsReports {
   std::function<void(EventKind, std::string)> event;
   std::function<void(bool down)> down;                  ///< gateway alarm dds_process_down
@@ -71,7 +71,7 @@ class DdsServer {
   void wait_for_room();
   /// Nothing goes over the socket any more; the process is to end by itself.
   void drop_link();
-  /// It is not to go on: killed, and told for `cause`.
+  /// It is not to go on: killed, and reported for `cause`.
   void fail(ProcessEnd cause);
   void on_end(const ProcessEnd& end);
   void take_last_lines(Instant now);

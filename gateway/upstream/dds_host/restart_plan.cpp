@@ -17,11 +17,11 @@ std::string seconds_text(Duration time) {
 
 std::string RestartPlan::on_ready(const std::string& version, Instant now) {
   ready_ = now;
-  told_.reset();
+  reported_.reset();
   const std::uint32_t failed = std::exchange(failed_, 0);
-  std::string told = "axisgate-dds " + version + " runs";
-  if (failed > 1) told += ", after " + std::to_string(failed) + " ends";
-  return told;
+  std::string report = "axisgate-dds " + version + " runs";
+  if (failed > 1) report += ", after " + std::to_string(failed) + " ends";
+  return report;
 }
 
 RestartPlan::Next RestartPlan::on_end(const ProcessEnd& end, Instant now) {
@@ -30,15 +30,15 @@ RestartPlan::Next RestartPlan::on_end(const ProcessEnd& end, Instant now) {
   Next next;
   next.pause = has_no_address(end) ? kAddressPause : std::exchange(pause_, std::min(pause_ * 2, kLongestPause));
   ++failed_;
-  if (told_ == end) return next;
-  told_ = end;
-  next.told = text(end);
+  if (reported_ == end) return next;
+  reported_ = end;
+  next.report = text(end);
   if (end.how == ProcessEnd::How::not_found)
-    *next.told += "; it is looked for again from time to time";
+    *next.report += "; it is looked for again from time to time";
   else if (has_no_address(end))
-    *next.told += "; trying again each second";
+    *next.report += "; trying again each second";
   else
-    *next.told += "; started again in " + seconds_text(next.pause);
+    *next.report += "; started again in " + seconds_text(next.pause);
   return next;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// When axisgate-dds is started again after an end, and what is told of it.
+// When axisgate-dds is started again after an end, and what is reported of it.
 // Promises a quick first restart, pauses that double while it fails, and one message a change: an end that only repeats
-// the one before is counted, not told. Never starts or ends a process itself.
+// the one before is counted, not reported. Never starts or ends a process itself.
 #pragma once
 
 #include <cstdint>
@@ -27,20 +27,20 @@ inline constexpr Duration kEndsWithin = std::chrono::seconds(2);
 
 class RestartPlan {
  public:
-  /// What is told, once, when it is ready.
+  /// What is reported, once, when it is ready.
   [[nodiscard]] std::string on_ready(const std::string& version, Instant now);
 
   struct Next {
     Duration pause{};
-    std::optional<std::string> told{};  ///< none: it repeats what was told last
+    std::optional<std::string> report{};  ///< none: it repeats what was reported last
   };
   [[nodiscard]] Next on_end(const ProcessEnd& end, Instant now);
 
  private:
   std::optional<Instant> ready_{};
   Duration pause_ = kFirstPause;
-  std::optional<ProcessEnd> told_{};  ///< since it was ready last
-  std::uint32_t failed_ = 0;          ///< ends since it was ready last
+  std::optional<ProcessEnd> reported_{};  ///< since it was ready last
+  std::uint32_t failed_ = 0;              ///< ends since it was ready last
 };
 
 }  // namespace axisgate::dds

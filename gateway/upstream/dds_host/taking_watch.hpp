@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether axisgate-dds still takes what it is sent, told by how much of it lies unread in the socket.
+// Whether axisgate-dds still takes what it is sent, judged by how much of it lies unread in the socket.
 // Promises that a slow reader is never taken for a dead one: what it takes makes less unread than was sent.
 // Never looks at the socket itself.
 #pragma once

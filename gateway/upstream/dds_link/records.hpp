@@ -216,7 +216,7 @@ struct ObjectRequestRecord {
 };
 
 /// A sample of ROS 2's joint_commands, as it came: its lists need not be of one length. A name that no axis can have is
-/// empty here; of lists longer than kMaxJoints one more is told.
+/// empty here; of lists longer than kMaxJoints one more is recorded.
 struct JointCommandsRecord {
   Guid writer{};
   SteadyNs written = 0;  ///< its source timestamp

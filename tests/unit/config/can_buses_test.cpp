@@ -66,21 +66,21 @@ TEST(CanBus, TpdosAndHeartbeatsTakeTheirShare) {
   model.objects[0].size = 4;
   model.objects[1].size = 4;
   model.canopen.tpdos.push_back({1, {0, 1}, 255, 50, milliseconds(5), {}});
-  EXPECT_EQ(plan_bus(timing, {model}).load_unasked, 27) << "135 us each 5 ms";
+  EXPECT_EQ(plan_bus(timing, {model}).load_unsolicited, 27) << "135 us each 5 ms";
   model.canopen.tpdos[0].event_ms = 1;
-  EXPECT_EQ(plan_bus(timing, {model}).load_unasked, 135) << "the timer comes before the inhibit time is over";
+  EXPECT_EQ(plan_bus(timing, {model}).load_unsolicited, 135) << "the timer comes before the inhibit time is over";
   model.canopen.tpdos[0].type = 2;
   model.canopen.sync = milliseconds(5);
-  EXPECT_EQ(plan_bus(timing, {model}).load_unasked, 25) << "each second SYNC, 135 us in 10 ms, and SYNC itself";
+  EXPECT_EQ(plan_bus(timing, {model}).load_unsolicited, 25) << "each second SYNC, 135 us in 10 ms, and SYNC itself";
   model.canopen.tpdos.clear();
   model.canopen.sync = {};
   model.canopen.heartbeat = milliseconds(10);
   model.canopen.own_heartbeat = milliseconds(10);
-  EXPECT_EQ(plan_bus(timing, {model, model}).load_unasked, 20) << "two of them, and one of ours";
+  EXPECT_EQ(plan_bus(timing, {model, model}).load_unsolicited, 20) << "two of them, and one of ours";
   model.canopen.heartbeat = {};
   model.canopen.own_heartbeat = {};
   model.canopen.guard_time = milliseconds(10);
-  EXPECT_EQ(plan_bus(timing, {model}).load_unasked, 12);
+  EXPECT_EQ(plan_bus(timing, {model}).load_unsolicited, 12);
 }
 
 TEST(CanBus, FewDrivesKeepTheirInhibitTimes) {
@@ -93,7 +93,7 @@ TEST(CanBus, TpdosOfManyDrivesLeaveTheLineToRequests) {
   for (const std::string profile : {"leadshine-ld2-can", "kinco-jd", "kinco-md"}) {
     const LoadedConfig loaded = load_bus(several(profile, 30));
     const BusBudget budget = plan_of(loaded);
-    EXPECT_LE(budget.load_unasked, kUnaskedPermille + 50) << profile << ": heartbeats are not stretched";
+    EXPECT_LE(budget.load_unsolicited, kUnsolicitedPermille + 50) << profile << ": heartbeats are not stretched";
     const drive::TpdoProperties& tpdo = loaded.models.at(0).at(0).canopen.tpdos.at(0);
     const drive::TpdoProperties alone = load_bus(drive(profile, 1)).models.at(0).at(0).canopen.tpdos.at(0);
     EXPECT_GT(*tpdo.inhibit, *alone.inhibit);

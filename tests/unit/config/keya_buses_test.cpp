@@ -99,11 +99,11 @@ TEST(KeyaBus, NothingKeepsADriveEnabledWhereItHasNoWatchdog) {
 
 TEST(KeyaBus, HeartbeatsAreLoadWhereTheDriveSendsThem) {
   // 640 us of each second, in 0.1 %, rounded up; two drives send two.
-  EXPECT_EQ(plan_of(load_keya("keya-can", keya(1))).load_unasked, 1);
-  EXPECT_EQ(plan_of(load_keya("keya-can", keya(1) + ", " + keya(2))).load_unasked, 2);
+  EXPECT_EQ(plan_of(load_keya("keya-can", keya(1))).load_unsolicited, 1);
+  EXPECT_EQ(plan_of(load_keya("keya-can", keya(1) + ", " + keya(2))).load_unsolicited, 2);
   // Nobody has stated how often on RS232: 1.04 ms in 100 ms are assumed.
-  EXPECT_EQ(plan_of(load_keya("keya-rs232", keya(1))).load_unasked, 11);
-  EXPECT_EQ(plan_of(load_keya("keya-rs485", keya(1))).load_unasked, 0);
+  EXPECT_EQ(plan_of(load_keya("keya-rs232", keya(1))).load_unsolicited, 11);
+  EXPECT_EQ(plan_of(load_keya("keya-rs485", keya(1))).load_unsolicited, 0);
 }
 
 TEST(KeyaBus, ItsPeriodsLeaveRoomForCommandsHoweverManyDrivesShareIt) {

@@ -122,7 +122,7 @@ TEST_F(Stream, MustBeSeenAtTheAxisAgainAfterAnythingThatEndsMotions) {
   each([&] { axis.endings.lost(); });
   each([&] { axis.endings.commanded(kAnother, axis.endings.accepted()); });
   each([&] { axis.ready = false; });
-  each([&] { stream.begin_anew(); });
+  each([&] { stream.restart(); });
 }
 
 TEST_F(Stream, GoesOnBesideItsOwnCommands) {

@@ -58,29 +58,29 @@ TEST(RestartPlan, DoesNotCountTheTimeInWhichItWasNotReady) {
 
 TEST(RestartPlan, TellsAnEndAndWhenItGoesOn) {
   RestartPlan plan;
-  EXPECT_THAT(plan.on_end(kCrash, kStart).told,
+  EXPECT_THAT(plan.on_end(kCrash, kStart).report,
               Optional(std::string("axisgate-dds crashed: signal 11 (SEGV); started again in 0.2 s")));
 }
 
 TEST(RestartPlan, TellsWhatRepeatsItselfOnce) {
   RestartPlan plan;
-  EXPECT_TRUE(plan.on_end(kNoParticipant, kStart).told);
-  EXPECT_FALSE(plan.on_end(kNoParticipant, kStart).told);
-  EXPECT_FALSE(plan.on_end(kNoParticipant, kStart).told);
+  EXPECT_TRUE(plan.on_end(kNoParticipant, kStart).report);
+  EXPECT_FALSE(plan.on_end(kNoParticipant, kStart).report);
+  EXPECT_FALSE(plan.on_end(kNoParticipant, kStart).report);
 }
 
 TEST(RestartPlan, TellsAnotherEndAndTheSameOneAfterItWasReady) {
   RestartPlan plan;
-  EXPECT_TRUE(plan.on_end(kNoParticipant, kStart).told);
-  EXPECT_TRUE(plan.on_end(kCrash, kStart).told);
+  EXPECT_TRUE(plan.on_end(kNoParticipant, kStart).report);
+  EXPECT_TRUE(plan.on_end(kCrash, kStart).report);
   EXPECT_EQ(plan.on_ready("1.2", kStart), "axisgate-dds 1.2 runs, after 2 ends");
-  EXPECT_TRUE(plan.on_end(kCrash, kStart).told);
+  EXPECT_TRUE(plan.on_end(kCrash, kStart).report);
   EXPECT_EQ(plan.on_ready("1.2", kStart), "axisgate-dds 1.2 runs");
 }
 
 TEST(RestartPlan, SaysThatAMissingProgramIsLookedForAgain) {
   RestartPlan plan;
-  EXPECT_THAT(plan.on_end({ProcessEnd::How::not_found, 0, "there is no /usr/bin/axisgate-dds"}, kStart).told,
+  EXPECT_THAT(plan.on_end({ProcessEnd::How::not_found, 0, "there is no /usr/bin/axisgate-dds"}, kStart).report,
               Optional(std::string("axisgate-dds is not installed: there is no /usr/bin/axisgate-dds; it is looked for "
                                    "again from time to time")));
 }
@@ -88,11 +88,11 @@ TEST(RestartPlan, SaysThatAMissingProgramIsLookedForAgain) {
 TEST(RestartPlan, LooksEachSecondForAnInterfaceThatIsNotThereYet) {
   const ProcessEnd no_address{ProcessEnd::How::exited, kExitNoAddress};
   RestartPlan plan;
-  EXPECT_THAT(plan.on_end(no_address, kStart).told,
+  EXPECT_THAT(plan.on_end(no_address, kStart).report,
               Optional(std::string("axisgate-dds has no address yet on one of its `interfaces`, which its own line of "
                                    "the log names; trying again each second")));
   EXPECT_THAT(pauses_ms(plan, 9, no_address), Each(1000));
-  EXPECT_FALSE(plan.on_end(no_address, kStart).told) << "once";
+  EXPECT_FALSE(plan.on_end(no_address, kStart).report) << "once";
   EXPECT_EQ(plan.on_end(kCrash, kStart).pause, kFirstPause) << "it has failed in nothing";
 }
 

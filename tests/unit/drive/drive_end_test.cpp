@@ -50,7 +50,7 @@ TEST(DriveEnd, ADriveOfWhichNothingIsKnownIsAskedNothingAndToldOf) {
   EXPECT_TRUE(it.end.begun());
   EXPECT_FALSE(it.end.next());
   EXPECT_EQ(it.end.outcome(), Disarming::Outcome::unknown);
-  EXPECT_NE(it.end.told(), "");
+  EXPECT_NE(it.end.event_text(), "");
 }
 
 // It is to be taken away if no motor has torque: that nobody can tell of a drive in its bring-up.
@@ -68,7 +68,7 @@ TEST(DriveEnd, WhatTheLogSaysIsTheEndOfTheGatewayAlone) {
     ASSERT_TRUE(it.begin(why));
     EXPECT_EQ(it.play(), std::vector<std::int64_t>{0});
     EXPECT_EQ(it.end.outcome(), Disarming::Outcome::disarmed);
-    EXPECT_EQ(it.end.told().empty(), why == Closing::taken_away) << it.end.told();
+    EXPECT_EQ(it.end.event_text().empty(), why == Closing::taken_away) << it.end.event_text();
   }
 }
 

@@ -224,12 +224,12 @@ drive::DriveModel keya_model(const KeyaOptions& options) {
   model.keep_alive = options.keep_alive;
   model.resync.candidates = {{motors[0].fault, 0}, {motors[0].speed, 0}, {motors[0].position, 0}};
   model.resync.worst_reply = 200ms;
-  if (options.unasked) {
-    model.unasked.every = options.unasked_every;
+  if (options.unsolicited) {
+    model.unsolicited.every = options.unsolicited_every;
     // One motor's temperature comes by itself and by nothing else, the other's in both ways.
     make.at(motors[0].temperature).address = {0x0700, 1};
     make.at(motors[0].temperature).readable = false;
-    model.unasked.objects = {angle, motors[0].fault, motors[0].temperature, motors[1].temperature};
+    model.unsolicited.objects = {angle, motors[0].fault, motors[0].temperature, motors[1].temperature};
   }
   return std::move(make.model);
 }

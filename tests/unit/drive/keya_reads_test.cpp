@@ -160,7 +160,7 @@ bus::UnsolicitedEvent values(std::initializer_list<bus::ReplyField> fields) {
 }
 
 TEST(KeyaUnasked, WhatComesInAKnownBeatIsNeverPolledButTheStateIs) {
-  KeyaRig rig({.unasked_every = 1s, .unasked = true});
+  KeyaRig rig({.unsolicited_every = 1s, .unsolicited = true});
   rig.online();
   const auto items = drive::poll_items(rig.drive->model());
   const auto polled = [&](const std::string& name) {
@@ -173,7 +173,7 @@ TEST(KeyaUnasked, WhatComesInAKnownBeatIsNeverPolledButTheStateIs) {
 }
 
 TEST(KeyaUnasked, ReceptionConfirmsAValueAndItsAbsenceMakesItStale) {
-  KeyaRig rig({.unasked_every = 1s, .unasked = true});
+  KeyaRig rig({.unsolicited_every = 1s, .unsolicited = true});
   rig.online();
   rig.wire->tell(values({{{0x0700, 1}, 1, 55}}));
   rig.run(2500ms);
@@ -184,7 +184,7 @@ TEST(KeyaUnasked, ReceptionConfirmsAValueAndItsAbsenceMakesItStale) {
 }
 
 TEST(KeyaUnasked, InAnUnknownBeatValuesAreTakenAsTheyComeAndPolledAllTheSame) {
-  KeyaRig rig({.unasked = true});
+  KeyaRig rig({.unsolicited = true});
   rig.online();
   const auto items = drive::poll_items(rig.drive->model());
   EXPECT_TRUE(

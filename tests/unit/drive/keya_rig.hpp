@@ -37,8 +37,8 @@ struct KeyaOptions {
   Duration keep_alive{};               ///< 0: none
   LeaseRules lease{.on = false};
   Duration reply_delay = std::chrono::milliseconds(2);
-  Duration unasked_every{};
-  bool unasked = false;
+  Duration unsolicited_every{};
+  bool unsolicited = false;
 };
 [[nodiscard]] drive::DriveModel keya_model(const KeyaOptions& options);
 

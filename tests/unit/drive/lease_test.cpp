@@ -207,7 +207,7 @@ TEST(Lease, AnAxisFoundEnabledIsStoppedUnlessAClientWritesToIt) {
     axis.rig.mark();
     if (taken) {
       WriteBatch heartbeat;
-      heartbeat.is_write = true;
+      heartbeat.reclaims = true;
       EXPECT_EQ(axis.ask(axis.panel, heartbeat), Errc::ok);
       axis.keep(axis.panel, 4s);
       EXPECT_TRUE(axis.rig.writes().empty());

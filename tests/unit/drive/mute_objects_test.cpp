@@ -39,7 +39,7 @@ struct Readable {
   std::string name;
   Place place;
   bool tells_state;  ///< without it there is no axis
-  bool unasked;      ///< the drive tells it by itself
+  bool unsolicited;  ///< the drive tells it by itself
 };
 
 /// What the profile has of this drive, and on CANopen what the gateway reads beside it; each place once.
@@ -47,18 +47,18 @@ std::vector<Readable> readable(Subject subject) {
   TableRig rig(subject);
   std::vector<Readable> out;
   const drive::DriveModel& drive = model(rig);
-  const auto add = [&](const std::string& object, Place place, bool tells_state, bool unasked) {
+  const auto add = [&](const std::string& object, Place place, bool tells_state, bool unsolicited) {
     const auto same = std::find_if(out.begin(), out.end(), [&](const Readable& r) { return r.place == place; });
     if (same == out.end())
-      out.push_back({object, place, tells_state, unasked});
+      out.push_back({object, place, tells_state, unsolicited});
     else
-      *same = {same->name, place, same->tells_state || tells_state, same->unasked || unasked};
+      *same = {same->name, place, same->tells_state || tells_state, same->unsolicited || unsolicited};
   };
   for (std::size_t i = 0; i < drive.objects.size(); ++i) {
     const drive::ObjectDef& object = drive.objects[i];
     if (object.emulated || !object.readable) continue;
     const auto id = static_cast<drive::ObjectId>(i);
-    const auto& by_itself = drive.unasked.objects;
+    const auto& by_itself = drive.unsolicited.objects;
     add(object.name, place_of(subject, object.address), drive.needs_for_state(id),
         std::find(by_itself.begin(), by_itself.end(), id) != by_itself.end());
   }
@@ -93,7 +93,7 @@ TEST_P(MuteObject, FromTheStartCostsItselfAloneOrIsNamed) {
       ASSERT_TRUE(came) << "one object keeps the whole axis away";
       continue;
     }
-    if (object.unasked) {
+    if (object.unsolicited) {
       EXPECT_TRUE(came) << "it comes by itself";
       continue;
     }
@@ -118,7 +118,7 @@ TEST_P(MuteObject, WhileOnlineCostsItselfAlone) {
     const std::uint32_t valid = rig.axis().valid_bits();
     faults(rig).spoil(object.place, {});
     rig.stage.run(60s);
-    const bool by_itself = object.unasked || drive::is_canopen(model(rig));
+    const bool by_itself = object.unsolicited || drive::is_canopen(model(rig));
     if (object.tells_state && !by_itself) {
       EXPECT_EQ(rig.axis().link_state, LinkState::setup);
     } else if (!object.tells_state) {
@@ -141,7 +141,7 @@ TEST_P(MuteObject, WhileOnlineCostsItselfAlone) {
 TEST_P(MuteObject, ThatAMotionNeedsStopsTheMotor) {
   for (const Readable& object : readable(GetParam())) {
     const bool position = object.name == "position_actual" || object.name == "A.position";
-    if ((!object.tells_state && !position) || object.unasked) continue;
+    if ((!object.tells_state && !position) || object.unsolicited) continue;
     TableRig rig(GetParam());
     if (drive::is_canopen(model(rig))) continue;  // both come by TPDO, whoever reads them or not
     SCOPED_TRACE(object.name);

@@ -124,7 +124,7 @@ TEST(NodePresence, ADuplicateNodeIdIsShownForAMinuteAfterItsLastSign) {
 TEST(NodeStart, AHeartbeatOfBeforeTheStartSaysNothing) {
   NodeStart start(kTimeout);
   start.begin();
-  start.told(kBegin);
+  start.commanded(kBegin);
   EXPECT_FALSE(start.has_left(NodeState::pre_operational, kBegin + NodeStart::kNmtSettles));
   EXPECT_TRUE(start.has_left(NodeState::pre_operational, kBegin + NodeStart::kNmtSettles + 1ms));
   EXPECT_TRUE(start.has_left(NodeState::stopped, kBegin + 1s));
@@ -135,7 +135,7 @@ TEST(NodeStart, AHeartbeatOfBeforeTheStartSaysNothing) {
 TEST(NodeStart, ANodeThatHasLeftIsStartedAnewAfterAPauseAndToldOfOnce) {
   NodeStart start(kTimeout);
   start.begin();
-  start.told(kBegin);
+  start.commanded(kBegin);
   ASSERT_EQ(start.deadline(kBegin), kNever);
   EXPECT_EQ(start.leave(kBegin + 1s), 500ms);
   EXPECT_FALSE(start.has_left(NodeState::stopped, kBegin + 2s)) << "told already";
@@ -149,13 +149,13 @@ TEST(NodeStart, ANodeThatHasLeftIsStartedAnewAfterAPauseAndToldOfOnce) {
 
 TEST(NodeStart, ThePauseGrowsUntilAStartHasHeld) {
   NodeStart start(kTimeout);
-  start.told(kBegin);
+  start.commanded(kBegin);
   EXPECT_EQ(start.leave(kBegin + 1s), 500ms);
-  start.told(kBegin + 2s);
+  start.commanded(kBegin + 2s);
   EXPECT_EQ(start.leave(kBegin + 3s), 1s);
-  start.told(kBegin + 5s);
+  start.commanded(kBegin + 5s);
   EXPECT_EQ(start.leave(kBegin + 5s + NodeStart::kStartHeld), 2s);
-  start.told(kBegin + 1min);
+  start.commanded(kBegin + 1min);
   EXPECT_EQ(start.leave(kBegin + 1min + NodeStart::kStartHeld + 1ms), 500ms);
 }
 

@@ -139,7 +139,7 @@ TEST_F(Owned, TakeOverBetweenConnectionsOfOneAddressAndRoleNeedsNoRank) {
   const auto again = client(7, "10.0.0.1");
   EXPECT_EQ(o.may_take_over(client(8, "10.0.0.1", Role::engineer)), Errc::not_owner) << "another role";
   EXPECT_EQ(o.may_take_over(again), Errc::ok);
-  EXPECT_EQ(o.take(again, kStart + 10ms), Taken::same_hand);
+  EXPECT_EQ(o.take(again, kStart + 10ms), Taken::same_origin_and_role);
   EXPECT_EQ(o.judge(plc, true), Errc::not_owner);
 }
 

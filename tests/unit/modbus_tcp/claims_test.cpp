@@ -154,7 +154,7 @@ TEST(Claims, every_batch_names_the_life_of_its_client) {
     EXPECT_EQ(batch.life->origin, kPlc);
     EXPECT_EQ(batch.life->name, "192.168.1.7:50000");
     EXPECT_TRUE(batch.life->connected);
-    EXPECT_TRUE(batch.is_write || batch.object) << "a sign of life, and what an orphan lease waits for";
+    EXPECT_TRUE(batch.reclaims || batch.object) << "a sign of life, and what an orphan lease waits for";
   }
 }
 

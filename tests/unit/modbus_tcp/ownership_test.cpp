@@ -174,7 +174,7 @@ TEST_F(Life, OfAnAddressIsToldByWritesThatAreAcceptedFromWhoMayCommand) {
     return life->last_request == desk.runtime.now();
   };
   EXPECT_FALSE(lives(pump, "06 00 B5 60 64")) << "the object of a read to come";
-  EXPECT_FALSE(last().renews || last().is_write);
+  EXPECT_FALSE(last().renews || last().reclaims);
   EXPECT_FALSE(lives(pump, "10 00 B4 00 04 08 00 01 60 64 00 00 00 04")) << "a read by the mailbox";
   EXPECT_FALSE(lives(pump, "2B 0D 00 00 01 60 64 00 00 00 00 00")) << "and by 43/13";
   EXPECT_FALSE(lives(pump, "06 00 9A 00 63")) << "no command";
@@ -214,11 +214,11 @@ TEST_F(Life, AChangedGatewayHeartbeatAsksNothingOfWhatAnEndedConnectionHasLeft) 
 
 TEST_F(Life, AHeartbeatOfTheAxisThatStandsStillIsNoWrite) {
   EXPECT_TRUE(is_done(plc.write(156, 1)));
-  EXPECT_TRUE(last().is_write);
+  EXPECT_TRUE(last().reclaims);
   EXPECT_TRUE(is_done(plc.write(156, 1)));
-  EXPECT_FALSE(last().is_write) << "nobody has come back";
+  EXPECT_FALSE(last().reclaims) << "nobody has come back";
   EXPECT_TRUE(is_done(plc.write_block(154, "00 00 00 00 00 01")));
-  EXPECT_TRUE(last().is_write) << "a block is";
+  EXPECT_TRUE(last().reclaims) << "a block is";
 }
 
 TEST_F(Life, AConnectionIsAsOldAsTheOldestOfItsAddress) {

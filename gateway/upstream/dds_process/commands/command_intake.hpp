@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Commands on their way from the library's threads to the thread that sends them on: decoded, each with the time of its
 // arrival, and in that order but for stops, which go first.
-// Promises bounds, one for stops and one for all others: beyond its bound the library is told to keep a sample, and its
-// writer sends it again. Never judges a sample beyond that order: what a stop has overtaken the gateway tells by the
-// times.
+// Promises bounds, one for stops and one for all others: beyond its bound the library is asked to keep a sample, and
+// its writer sends it again. Never judges a sample beyond that order: what a stop has overtaken the gateway tells by
+// the times.
 #pragma once
 
 #include <deque>

@@ -28,7 +28,7 @@ void NamesakeWatch::on_removed(const Guid& writer) {
   if (found == others_.end()) return;
   found->second.axes.reset();
   found->second.gone = true;
-  if (found->second.told.none()) others_.erase(found);
+  if (found->second.reported.none()) others_.erase(found);
 }
 
 void NamesakeWatch::on_gateway(const Guid& writer, std::uint32_t key) {
@@ -64,10 +64,10 @@ std::vector<NamesakeRecord> NamesakeWatch::take(std::size_t most) {
       each = others_.erase(each);
       continue;
     }
-    const auto changed = other.axes ^ other.told;
+    const auto changed = other.axes ^ other.reported;
     for (std::uint16_t axis = 1; axis <= kMaxAxisNumber && changed.any() && taken.size() < most; ++axis) {
       if (!changed.test(axis)) continue;
-      other.told.flip(axis);
+      other.reported.flip(axis);
       taken.push_back({writer, axis, other.where, !other.axes.test(axis)});
     }
     ++each;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Other participants that publish states of axes under our gateway's key: found by what their writers say of
 // themselves, believed once a state of theirs was heard. Promises to tell each axis that such a writer has or has given
-// up, and its end, once each, and of what has changed back before it was told nothing. Never takes our own writer for
-// another's, nor one of which nothing is heard: that of our own former process, which a discovery server still knows.
+// up, and its end, once each, and of what has changed back before it was reported nothing. Never takes our own writer
+// for another's, nor one of which nothing is heard: that of our own former process, which a discovery server still
+// knows.
 #pragma once
 
 #include <bitset>
@@ -39,15 +40,15 @@ class NamesakeWatch {
   void on_state(const Guid& writer, std::uint32_t key, std::uint16_t axis, bool has);
   /// Somebody of our key is there, though perhaps silent: states are to be read.
   [[nodiscard]] bool any() const;
-  /// To be told since the last call, at most so many: the rest by the next.
+  /// To be reported since the last call, at most so many: the rest by the next.
   [[nodiscard]] std::vector<NamesakeRecord> take(std::size_t most);
 
  private:
   struct Other {
     std::string where{};
     std::bitset<kMaxAxisNumber + 1> axes{};
-    std::bitset<kMaxAxisNumber + 1> told{};
-    bool gone = false;  ///< and its end is to be told
+    std::bitset<kMaxAxisNumber + 1> reported{};
+    bool gone = false;  ///< and its end is to be reported
   };
   const std::uint32_t key_;
   mutable std::mutex mutex_;

@@ -45,14 +45,14 @@ void WriterWatch::on_unmatched(const Guid& writer) {
   if (known == nullptr) return;
   known->matched = false;
   known->heard = false;
-  known->lost_since = known->told;
+  known->lost_since = known->reported;
 }
 
 void WriterWatch::on_removed(const Guid& writer) {
   const std::lock_guard lock(mutex_);
   Writer* known = find(writer);
   if (known == nullptr) return;
-  if (!known->told) {
+  if (!known->reported) {
     writers_.erase(writer);
     return;
   }
@@ -69,7 +69,7 @@ void WriterWatch::on_liveliness(const Guid& writer, const LivelinessLease& asked
   known->asserted = known->asserted || alive;
   if (alive) return;
   known->good_until = 0;
-  known->lost_since = known->told;
+  known->lost_since = known->reported;
 }
 
 void WriterWatch::on_sample(const Guid& writer, SteadyNs now) {
@@ -87,19 +87,19 @@ WriterWatch::Changes WriterWatch::take_changes(SteadyNs now) {
   for (auto at = writers_.begin(); at != writers_.end();) {
     auto& [guid, writer] = *at;
     const bool there = writer.there(now);
-    const bool gone = writer.told && (writer.lost_since || !there);
+    const bool gone = writer.reported && (writer.lost_since || !there);
     if (gone) {
-      const WriterRecord record{guid, writer.told_statement.strength, true, writer.told_statement.where,
-                                writer.told_statement.kind};
+      const WriterRecord record{guid, writer.reported_statement.strength, true, writer.reported_statement.where,
+                                writer.reported_statement.kind};
       // Of one that is back already, the samples taken may be of its second life.
       (there ? changes.before : changes.after).push_back(record);
-      writer.told = false;
+      writer.reported = false;
     }
     writer.lost_since = false;
-    if (there && (!writer.told || writer.told_statement != writer.statement)) {
+    if (there && (!writer.reported || writer.reported_statement != writer.statement)) {
       changes.before.push_back({guid, writer.statement.strength, false, writer.statement.where, writer.statement.kind});
-      writer.told = true;
-      writer.told_statement = writer.statement;
+      writer.reported = true;
+      writer.reported_statement = writer.statement;
     }
     at = gone && !writer.matched ? writers_.erase(at) : std::next(at);
   }
@@ -110,7 +110,7 @@ std::vector<BeatRecord> WriterWatch::beats(SteadyNs now) const {
   const std::lock_guard lock(mutex_);
   std::vector<BeatRecord> records(1, BeatRecord{{}, now});
   for (const auto& [guid, writer] : writers_) {
-    if (!writer.told || !writer.asserted || writer.statement.lease.length == 0 || !writer.there(now)) continue;
+    if (!writer.reported || !writer.asserted || writer.statement.lease.length == 0 || !writer.there(now)) continue;
     if (records.back().writers.size() == kMaxBeats) records.push_back({{}, now});
     records.back().writers.push_back(guid);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The DataWriters of the command topics, as the DDS library's threads tell of them: who is there, how strong, alive or
-// not. Promises that each appearance and each loss is told once, in their order for one writer, and that no more than
-// kMaxWritersKnown are known at a time. Never knows a DDS type or a clock; locks for as long as a look at its table
-// takes.
+// not. Promises that each appearance and each loss is reported once, in their order for one writer, and that no more
+// than kMaxWritersKnown are known at a time. Never knows a DDS type or a clock; locks for as long as a look at its
+// table takes.
 #pragma once
 
 #include <compare>
@@ -54,7 +54,7 @@ class WriterWatch {
   void on_sample(const Guid& writer, SteadyNs now);
 
   struct Changes {
-    std::vector<WriterRecord> before{};  ///< to be told before the samples that were taken
+    std::vector<WriterRecord> before{};  ///< to be reported before the samples that were taken
     std::vector<WriterRecord> after{};   ///< losses: after them
     std::size_t refused = 0;             ///< writers not taken in since the last call, for want of room
   };
@@ -74,8 +74,8 @@ class WriterWatch {
     bool heard = false;       ///< by the reader of its lease: alive
     SteadyNs good_until = 0;  ///< by our own reckoning, where it is not heard
     bool lost_since = false;  ///< also if it came back
-    bool told = false;        ///< as there
-    WriterStatement told_statement{};
+    bool reported = false;    ///< as there
+    WriterStatement reported_statement{};
     [[nodiscard]] bool there(SteadyNs now) const {
       return discovered && matched && (statement.lease.length == 0 || heard || now < good_until);
     }

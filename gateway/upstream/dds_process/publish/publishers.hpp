@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The DataWriters of our own topics that go out, with the QoS that design section 4 states for each.
 // Promises that publishing waits for no reader: the newest samples of an instance take the place of older ones.
-// Never reads anything, and never disposes an instance: a drive that is gone is told by its link_state.
+// Never reads anything, and never disposes an instance: a drive that is gone is shown by its link_state.
 #pragma once
 
 #include <algorithm>

@@ -36,7 +36,7 @@ class DdsLog {
 
 /// The library's own output goes there from now on; the log must outlive the library's use. Errors alone.
 void take_over_library_log(DdsLog& log);
-/// Before the log goes. All lines told so far are in it then.
+/// Before the log goes. All lines written so far are in it then.
 void release_library_log();
 
 }  // namespace axisgate::dds

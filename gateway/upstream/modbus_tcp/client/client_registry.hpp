@@ -64,7 +64,7 @@ struct ClientAxis {
   std::uint64_t submission = 0;  ///< counts its write batches: an older one's result does not replace a newer one's
   EdgeMemory edges;
   RowMemory rows;
-  bool told_not_new = false;            ///< in the log, since something of it acted last
+  bool not_new_logged = false;          ///< in the log, since something of it acted last
   std::optional<RefusedRow> refused{};  ///< in the log, since a block of it succeeded last
   std::uint16_t command_id = 0;
   std::optional<std::uint16_t> heartbeat{};  ///< none written yet: the first one is a change
@@ -97,7 +97,7 @@ struct Client {
   ObjectBuffers objects;                  ///< function 43/13
   std::uint64_t writes = 0;               ///< counts its write requests, refused ones too
   std::optional<RefusedWrite> refused{};  ///< in the log last
-  Instant refused_told = kLongAgo;
+  Instant refusal_logged_at = kLongAgo;
 
   /// A write batch of this client that asks for nothing yet. `role`: of the connection that it asks by.
   [[nodiscard]] WriteBatch new_batch(Role role) const;

@@ -22,7 +22,7 @@ const Endings& endings_of(const Writing& writing) {
 }
 
 /// A program that has lost its connection brings what another one has stopped since.
-bool brings_back(std::uint16_t id, const CommandIds& ids, const Writing& writing) {
+bool repeats_interrupted(std::uint16_t id, const CommandIds& ids, const Writing& writing) {
   constexpr ClientId kAnybody = ~ClientId{0};
   return !writing.own.id && std::ranges::any_of(ids.overtaken, [&](const CommandIds::Overtaken& each) {
     return each.id == id && endings_of(writing).interrupted(each.since, kAnybody);
@@ -80,8 +80,8 @@ Verdict EdgeMemory::judge(Item& item, std::uint16_t value, const Kind& kind, con
     return value == 0 ? Verdict::nothing : Verdict::not_new;
   }
   if (!same) return Verdict::acts;
-  if (!kind.held_start || item.told || item.targets == writing.targets) return Verdict::nothing;
-  item.told = true;
+  if (!kind.held_start || item.answered_not_new || item.targets == writing.targets) return Verdict::nothing;
+  item.answered_not_new = true;
   return Verdict::not_new;
 }
 
@@ -99,7 +99,7 @@ Verdict EdgeMemory::conclude(Item& item, std::uint16_t value, Verdict verdict, c
   if (fresh || verdict == Verdict::acts) item.targets = writing.targets;
   if (verdict != Verdict::acts) return verdict;
   item.acted = endings_of(writing).now();
-  item.told = false;
+  item.answered_not_new = false;
   return verdict;
 }
 
@@ -135,7 +135,7 @@ Verdict EdgeMemory::command_with_id(Command value, std::uint16_t id, CommandIds&
     if (other_id || other_command || writing.form == WriteForm::single) verdict = Verdict::acts;
   } else if (value != Command::none && differs && id != writing.own.id) {
     // The first id of an address is only remembered: nobody knows whether it is one from before a restart.
-    verdict = kept && !brings_back(id, ids, writing) ? Verdict::acts : Verdict::not_new;
+    verdict = kept && !repeats_interrupted(id, ids, writing) ? Verdict::acts : Verdict::not_new;
   }
   note_id(id, verdict == Verdict::acts, ids, writing);
   if (verdict == Verdict::acts || value == Command::none) ids.seen = id;

@@ -57,7 +57,7 @@ struct Writing {
 enum class Verdict : std::uint8_t {
   nothing,  ///< it asks for nothing, or for what it has asked for already
   acts,
-  not_new,  ///< it does not act, and its client must be told (command_result 10)
+  not_new,  ///< it does not act, and its client must be answered so (command_result 10)
 };
 
 /// command_id of one axis as one address has used it; outlives its connections by kHostKept.
@@ -110,7 +110,7 @@ class EdgeMemory {
   /// Not of the jog coils.
   [[nodiscard]] CoilAsks coil(const CoilRow& coil, bool value, const Writing& writing);
   /// Both jog coils at once, since each looks at the other: 0 -> 1 starts, 1 -> 0 and both at 1 end, and where
-  /// both have come to be 1 a run ends as well. No time makes a held coil start anew.
+  /// both have come to be 1 a run ends as well. No time makes a held coil start again.
   [[nodiscard]] JogAsks jog(const JogWrite& write, const Writing& writing);
   /// A block of nothing but zeros: remembered; true where controlword goes from another value to 0, which is a stop.
   [[nodiscard]] bool zeros(const Writing& writing);
@@ -131,7 +131,7 @@ class EdgeMemory {
   /// It was refused because another client owns the axis. What it wrote stays remembered, so that a
   /// level that is written on and on starts nothing on the day on which the axis is free: 0 and then 1 does. But a
   /// level that rose in it was never taken, so its fall in a block asks for nothing: a panel's row of coils must not
-  /// stop the owner's motion when a button that was pressed in vain is let go.
+  /// stop the owner's motion when a button that was pressed in vain is released.
   void disown(std::uint64_t request);
   /// It was accepted: levels in it are this client's now, and their fall acts.
   void own(std::uint64_t request);
@@ -146,7 +146,7 @@ class EdgeMemory {
     bool done = false;                    ///< what `request` asked by it was carried out
     std::optional<Endings::Point> acted;  ///< when it acted last with this value
     std::uint64_t targets = 0;            ///< Writing::targets then
-    bool told = false;                    ///< its client was told once that it is not new
+    bool answered_not_new = false;        ///< its client was answered once that it is not new
     bool disowned = false;                ///< a 1 that another client's ownership has refused
     [[nodiscard]] bool is_on() const { return written && value != 0; }
   };

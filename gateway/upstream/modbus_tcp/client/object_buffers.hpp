@@ -40,7 +40,7 @@ class ObjectBuffers {
 
   // Written in parts. Each gives false where the part does not fit what came before, or makes it too long: all is
   // dropped then.
-  /// `start` 0 begins anew, whatever was there.
+  /// `start` 0 begins from scratch, whatever was there.
   [[nodiscard]] bool add_part(const ObjectKey& key, std::size_t start, Bytes part, Instant now);
   /// The last one. With `start` 0 it is the only one: parts of other objects stay.
   [[nodiscard]] std::optional<std::vector<Byte>> add_last(const ObjectKey& key, std::size_t start, Bytes part,

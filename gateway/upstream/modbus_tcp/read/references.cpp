@@ -94,7 +94,7 @@ ReferencePlan plan_reference(const Request& request, const UnitView& view, const
     object.count = reference.count;
   }
   WriteBatch& batch = plan.batch.emplace(client.new_batch(onlooker.role));
-  batch.claims = batch.is_write = reference.write;
+  batch.claims = batch.reclaims = reference.write;
   batch.object = std::move(object);
   return plan;
 }

@@ -84,7 +84,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
   boost::asio::ip::tcp::acceptor acceptor_;
   std::unique_ptr<Timer> resume_;
   OnListening on_listening_;
-  boost::system::error_code refused_{};  ///< why it does not listen, as it was told last
+  boost::system::error_code refused_{};  ///< why it does not listen, as reported last
   ClientCounts counts_;
   std::vector<std::shared_ptr<Connection>> open_;
   std::vector<std::shared_ptr<Connection>>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the gateway is told of the Modbus-TCP server: what to show as an event, and whether an address is missing.
-// Promises that who leaves them empty is told nothing, and served all the same.
-// Never carries what a client asked.
+// What is reported to the gateway of the Modbus-TCP server: what to show as an event, and whether an address is
+// missing. Promises that who leaves them empty gets no report, and is served all the same. Never carries what a client
+// asked.
 #pragma once
 
 #include <functional>

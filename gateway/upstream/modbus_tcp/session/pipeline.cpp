@@ -306,8 +306,8 @@ void Pipeline::log_not_new(const Entry& entry) {
   const AxisNumber axis = entry.axis;
   if (axis == 0) return;
   ClientAxis& own = client_->at(axis);
-  if (own.told_not_new) return;
-  own.told_not_new = true;
+  if (own.not_new_logged) return;
+  own.not_new_logged = true;
   context_.log.write(LogLevel::info, "modbus",
                      client_->life->name + ": a write to " + std::to_string(entry.request.write_address) + " (axis " +
                          std::to_string(axis) + ") is not new and does nothing: write 0 first");

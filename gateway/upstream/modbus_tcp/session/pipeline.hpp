@@ -34,7 +34,7 @@ class Pipeline {
   [[nodiscard]] std::size_t under_way() const { return entries_.size(); }
   /// Only while under_way() < kMaxPipelined. `came`: it waits since then, in its socket perhaps.
   void accept(const Frame& frame, Instant now, Instant came);
-  /// The end of a request, as on_result told it. Unknown numbers are harmless.
+  /// The end of a request, as on_result reported it. Unknown numbers are harmless.
   void conclude(std::uint64_t number, const Outcome& outcome, Instant now);
   /// When something is to be done although nothing came: on_deadline().
   [[nodiscard]] Instant next_deadline() const { return half_.until(); }

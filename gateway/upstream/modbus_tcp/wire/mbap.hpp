@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The MBAP framer: cuts the byte stream of a Modbus-TCP connection into requests (MODBUS Messaging on TCP/IP
-// V1.0b 3.1). Promises that any split of the stream gives the same frames, and that a header that is none is told as
-// soon as it shows. Never resynchronises: after `malformed` there is no way to know where a frame begins, and the
+// V1.0b 3.1). Promises that any split of the stream gives the same frames, and that a header that is none is reported
+// as soon as it shows. Never resynchronises: after `malformed` there is no way to know where a frame begins, and the
 // connection must close.
 #pragma once
 

@@ -122,7 +122,7 @@ void add_stops(const Request& request, std::uint16_t i, const UnitView::BitPlace
   for (const Command command : kOrder) {
     if (!has(acting, command)) continue;
     WriteBatch& batch = stops.emplace_back(axis.number, onlooker.client.new_batch(onlooker.role), memory).batch;
-    batch.is_write = true;
+    batch.reclaims = true;
     batch.command = command;
   }
 }
@@ -199,7 +199,7 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
   client.at(axis.number).edges = edges;
   onlooker.words->axes[axis.number] = words;
   WriteBatch empty = client.new_batch(onlooker.role);
-  empty.is_write = true;
+  empty.reclaims = true;
   empty.all_zero = !single && is_all_zero(request);
   add_batches(asked, empty, plan);
   return plan;

@@ -43,10 +43,10 @@ constexpr Duration kToldAgain = std::chrono::seconds(60);
 
 void log_once(const RefusedWrite& refused, const std::string& what, const std::string& why, Client& client, Instant now,
               const Log& log) {
-  if (client.refused == refused && now - client.refused_told < kToldAgain) return;
+  if (client.refused == refused && now - client.refusal_logged_at < kToldAgain) return;
   if (!client.host->refused_lines.takes(now)) return;
   client.refused = refused;
-  client.refused_told = now;
+  client.refusal_logged_at = now;
   log.write(
       LogLevel::info, "modbus",
       client.life->name + ": " + what + " is refused: " + why + left_out_text(client.host->refused_lines.left_out()));

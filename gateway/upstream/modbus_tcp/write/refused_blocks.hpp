@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a client is told of its block writes that are refused with 0x01, 0x02 or 0x03 (design 3.3 Refused blocks):
+// What a client is answered to its block writes that are refused with 0x01, 0x02 or 0x03 (design 3.3 Refused blocks):
 // where, in command_detail, and once in the log. Promises that a command of this client that is pending keeps its
 // registers, and that a scanner that repeats its block writes one line. Never decides whether a write is refused.
 #pragma once
@@ -44,7 +44,7 @@ void log_refused_object(const GeneralReference& reference, const Outcome& outcom
                         const Log& log);
 /// A lone half of this row is dropped: result 6 with the row as detail, as above, and once in the log.
 void tell_dropped_half(AxisNumber axis, std::uint16_t row, const char* why, Client& client, const Log& log);
-/// Both halves of a row have come: the next one that comes alone is told again.
+/// Both halves of a row have come: the next one that comes alone is answered again.
 void note_whole_row(ClientAxis& axis);
 /// The coil that asks for this command, of a write batch that coils have asked for.
 [[nodiscard]] std::uint16_t coil_of(Command command);

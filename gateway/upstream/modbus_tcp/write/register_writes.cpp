@@ -90,7 +90,7 @@ class BatchMaker {
   [[nodiscard]] Made make() {
     // A viewer comes this far with the mailbox alone, which it may ask to read.
     batch_.renews = !reads_alone(found_);
-    batch_.is_write = onlooker_.role >= Role::operator_ && batch_.renews;
+    batch_.reclaims = onlooker_.role >= Role::operator_ && batch_.renews;
     batch_.all_zero = batch_.zero_speed = found_.zeros;
     // Judged before anything is remembered.
     const bool only_remembered = found_.block && first_block();
@@ -104,7 +104,7 @@ class BatchMaker {
     onlooker_.words->axes[axis_] = words_;
     put_heartbeat();
     // A heartbeat that stands still is no sign of a program that has come back.
-    if (found_.rows.size() == 1 && found_.of(Source::heartbeat) != nullptr && !batch_.beats) batch_.is_write = false;
+    if (found_.rows.size() == 1 && found_.of(Source::heartbeat) != nullptr && !batch_.beats) batch_.reclaims = false;
     if (!found_.zeros && !only_remembered) put_rows();
     batch_.claims = register_claims(batch_);
     const bool commands = batch_.command != Command::none || batch_.controlword;
@@ -266,7 +266,7 @@ class BatchMaker {
 
 WriteBatch object_batch(const Mailbox& box, const Client& client, Role role) {
   WriteBatch batch = client.new_batch(role);
-  batch.claims = batch.is_write = box.request == 2;
+  batch.claims = batch.reclaims = box.request == 2;
   batch.object = ObjectRequest{box.request == 2, box.index, static_cast<std::uint8_t>(box.subindex),
                                static_cast<std::uint8_t>(box.size), box.data};
   return batch;
@@ -284,7 +284,7 @@ std::optional<AxisStop> stop_of(const RowWrites& found, const AxisImage& axis, c
     if (each.row->source == Source::command_id) id = value;
   }
   AxisStop stop{axis.number, onlooker.client.new_batch(onlooker.role), memory_of(onlooker, axis.number)};
-  stop.batch.is_write = true;
+  stop.batch.reclaims = true;
   const Writing writing = writing_to(axis, onlooker, WriteForm::block);
   EdgeMemory edges = stop.after.edges;
   if (command && *command <= kLastCommand) {

@@ -42,8 +42,8 @@ struct WritePlan {
   std::optional<WriteBatch> object;  ///< the mailbox's request, after the write batches; not waited for
   bool reads_alone = false;          ///< rows of the mailbox, and no write by it
   bool single = false;               ///< a single write: where it is not new, its answer is an exception
-  BlockWrite block{};                ///< what it is where it is none, for its client to be told of a refusal
-  bool not_new = false;              ///< something in it did not act, and its client is told: result 10
+  BlockWrite block{};                ///< what it is where it is none, for its client to be answered with a refusal
+  bool not_new = false;              ///< something in it did not act, and its client is answered: result 10
   bool repeats = false;  ///< a block in which nothing is new: its client's result stands, unless it is refused
   WriteMemory before{};  ///< of the client, before this request
 };

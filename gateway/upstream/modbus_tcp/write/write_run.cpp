@@ -68,7 +68,7 @@ std::optional<Outcome> WriteRun::carry_on() {
         plan_.axis, batch,
         [self = shared_from_this(), submission](const BatchResult& result) { self->on_result(submission, result); });
     if (!at_once) return std::nullopt;
-    const Outcome outcome = told(at_once->outcome);
+    const Outcome outcome = answered(at_once->outcome);
     // Behind a write batch that has acted the request was not refused as a whole, and others may have come since it
     // began.
     if (is_wrong(outcome.code) && next_ == 1) forget();
@@ -90,7 +90,7 @@ std::optional<Outcome> WriteRun::carry_on() {
 }
 
 /// A scanner that holds what has ended repeats itself, and its own result stands.
-Outcome WriteRun::told(const Outcome& outcome) const {
+Outcome WriteRun::answered(const Outcome& outcome) const {
   return outcome.code == Errc::not_new && !plan_.single ? Outcome{} : outcome;
 }
 
@@ -163,7 +163,7 @@ std::uint64_t WriteRun::begin(std::uint16_t command_id) {
   ClientAxis* const axis = own();
   if (axis == nullptr) return 0;
   axis->used = true;
-  axis->told_not_new = false;
+  axis->not_new_logged = false;
   axis->result = {CommandResult::pending, 0, command_id};
   return submission_ = ++axis->submission;
 }

@@ -33,7 +33,7 @@ class WriteRun : public std::enable_shared_from_this<WriteRun> {
   void on_result(std::uint64_t submission, const BatchResult& result);
   /// The client's result reads "pending"; gives the number by which settle() knows whether it is still the newest.
   std::uint64_t begin(std::uint16_t command_id);
-  [[nodiscard]] Outcome told(const Outcome& outcome) const;
+  [[nodiscard]] Outcome answered(const Outcome& outcome) const;
   void forget();
   /// What registers 25 to 27 tell the client, and of which of its write batches.
   struct Shown {

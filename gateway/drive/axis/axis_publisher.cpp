@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/axis/axis_publisher.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "gateway/drive/axis/publisher.hpp"
+
+namespace axisgate::drive {
+
+AxisPublisher::AxisPublisher(AxisCore& core, AxisImage& image, AxisHost& host)
+    : core_(core), image_(image), host_(host) {
+  show_model();
+}
+
+void AxisPublisher::show_model() { drive::show_model(core_.model, image_); }
+
+void AxisPublisher::measure_cycle() {
+  const Instant statusword_at = core_.store[core_.model.statusword].sent_at;
+  if (statusword_at <= last_statusword_) return;
+  if (last_statusword_ != kLongAgo) cycle_ = statusword_at - last_statusword_;
+  last_statusword_ = statusword_at;
+}
+
+void AxisPublisher::publish(const Jog& jog) {
+  measure_cycle();
+  watch_fault();
+  core_.motion.observe(core_.facts(), core_.model.homing_timeout);
+  tell_endings();
+  AxisImage before = image_;
+  before.lease.owner = std::exchange(owner_shown_, image_.lease.owner);  // it changes in the image itself
+  image_.link_state = core_.turn.link;
+  show_state(core_, image_);
+  if (jog.active())
+    image_.level_coils = static_cast<std::uint16_t>(image_.level_coils | (1U << jog_coil(jog.direction())));
+  if (shows_the_same(before, image_)) return;
+  ++image_.sequence;
+  if (image_.board != nullptr) image_.board->mark(image_.number);
+  tell_changes(before);
+}
+
+void AxisPublisher::watch_fault() {
+  core_.watch_fault();
+  if (core_.fault.take_missed())
+    host_.event(image_.number, EventKind::fault, 0, "a fault came and was gone before its cause could be read");
+}
+
+// What the servers must know of it: what was commanded before is over, and its client must ask anew.
+void AxisPublisher::tell_endings() {
+  if (core_.motion.faults() != faults_counted_) image_.endings.faulted();
+  if (core_.motion.losses() != losses_counted_) image_.endings.lost();
+  faults_counted_ = core_.motion.faults();
+  losses_counted_ = core_.motion.losses();
+}
+
+void AxisPublisher::tell_changes(const AxisImage& before) {
+  if (before.link_state != image_.link_state)
+    host_.event(image_.number, EventKind::link, static_cast<std::uint32_t>(image_.link_state),
+                "link " + std::string(text(before.link_state)) + " -> " + std::string(text(image_.link_state)));
+  if (!image_.reachable()) return;
+  tell_fault(before);
+  if (image_.has(AxisInput::homed) && !before.has(AxisInput::homed))
+    host_.event(image_.number, EventKind::homed, 0, "homed");
+  const std::uint32_t raised = image_.alarms & ~before.alarms;
+  for (std::size_t i = 0; i < kAxisAlarmCount; ++i) {
+    const auto alarm = static_cast<AxisAlarm>(i);
+    const bool told = alarm == AxisAlarm::profile_mismatch;  // by its drive, with what it lacks
+    if ((raised & bit(alarm)) != 0 && !told)
+      host_.event(image_.number, EventKind::warning, static_cast<std::uint32_t>(i), alarm_text(core_, alarm));
+  }
+}
+
+// --- Faults ----------------------------------------------------------------------------------------------------------
+
+void AxisPublisher::reset_asked(const std::string& by) {
+  if (fault_.since != kLongAgo) fault_.reset_by = by;
+}
+
+void AxisPublisher::tell_fault(const AxisImage& before) {
+  const bool fault = image_.has(AxisInput::fault);
+  if (fault && !before.has(AxisInput::fault)) {
+    const auto code = static_cast<std::uint32_t>(image_[Quantity::error_code].value);
+    if (fault_.since == kLongAgo) fault_ = {core_.turn.now, code, {}};
+    fault_.code = code;
+    host_.event(image_.number, EventKind::fault, code, fault_text(core_));
+  }
+  if (fault || fault_.since == kLongAgo) return;
+  const Fault over = std::exchange(fault_, {});
+  constexpr double kNsPerSecond = 1e9;
+  const double seconds = static_cast<double>((core_.turn.now - over.since).count()) / kNsPerSecond;
+  const std::string how = over.reset_by.empty() ? "without a reset by a client" : "reset by " + over.reset_by;
+  host_.event(image_.number, EventKind::warning, 0,
+              fmt::format("fault 0x{:04X} is over after {:.1f} s, {}", over.code, seconds, how));
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an axis shows: its image, brought up to date from the newest samples, and the events of what has changed in it.
+// Promises that the image's sequence steps once for each change that a client could notice, and that what a fault is
+// and how it ended is logged once. Never decides anything about the axis.
+#pragma once
+
+#include <string>
+
+#include "gateway/drive/axis/axis_host.hpp"
+#include "gateway/drive/motion/jog.hpp"
+#include "gateway/drive/state/axis_core.hpp"
+
+namespace axisgate::drive {
+
+class AxisPublisher {
+ public:
+  AxisPublisher(AxisCore& core, AxisImage& image, AxisHost& host);
+
+  /// What does not change with its samples: what it has, its limits.
+  void show_model();
+  /// A fault is seen, and named, before anything else of its sample counts.
+  void watch_fault();
+  /// Brings the image up to date.
+  void publish(const Jog& jog);
+
+  /// The axis has shown a fault until now; a client asks for its reset.
+  void reset_asked(const std::string& by);
+  /// What was asked for has failed.
+  void reset_failed() { fault_.reset_by.clear(); }
+  /// Between the last two samples of the statusword: the poll cycle as it really is.
+  [[nodiscard]] Duration cycle() const { return cycle_; }
+  /// When the newest statusword was asked for.
+  [[nodiscard]] Instant heard() const { return last_statusword_; }
+
+ private:
+  void measure_cycle();
+  void tell_endings();
+  void tell_changes(const AxisImage& before);
+  void tell_fault(const AxisImage& before);
+
+  AxisCore& core_;
+  AxisImage& image_;
+  AxisHost& host_;
+  Duration cycle_{};
+  Instant last_statusword_ = kLongAgo;
+  std::shared_ptr<const ClientLife> owner_shown_{};
+  std::uint64_t faults_counted_ = 0;
+  std::uint64_t losses_counted_ = 0;
+  struct Fault {
+    Instant since = kLongAgo;  ///< kLongAgo: there is none
+    std::uint32_t code = 0;
+    std::string reset_by{};  ///< who has asked for a reset of it last; empty: nobody
+  } fault_;
+};
+
+}  // namespace axisgate::drive
