@@ -44,9 +44,8 @@ struct CanopenSettings {
 /// - An object over kMaxObjectBytes: refused, detail 0x05040005, and not `for_now`.
 /// - Wrong CRC, a length other than the server said, blocks that never arrive: bad_reply; the detail is the abort sent.
 /// - Part::next where no such chain is open (something else was done with the node): refused for now, 0x08000022.
-/// - A node that has restarted answers nothing any more: `started` is reported, the exchange is left to the bus, and
-/// its
-///   process data are dropped until they are mapped again.
+/// - A node that has restarted answers nothing any more: `started` is reported, the exchange is left to the bus,
+///   and its process data are dropped until they are mapped again.
 /// A node whose server has no block transfer after all, or wants longer blocks, is served in segments. Of our own
 /// heartbeat only the very first comes behind a boot-up: after a loss of the link we have not restarted.
 /// `runtime` and `log` must outlive the wire. Each node may be named once.

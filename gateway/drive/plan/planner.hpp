@@ -102,7 +102,7 @@ void add_speeds(const AxisCore& core, int mode, Plan& plan);
 /// numbers.
 [[nodiscard]] bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan);
 /// Makes the velocity and torque set-points in the drive 0, or, with `keep_wanted`, what was asked for since the last
-/// stop; of an axis that is enabled only what was asked for again (Wanted::fresh).
+/// stop; of an axis that is enabled only what is fresh (Wanted::fresh).
 void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan);
 /// Makes the position set-point the actual position.
 void add_target_here(const AxisCore& core, Plan& plan);

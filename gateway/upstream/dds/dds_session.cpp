@@ -25,7 +25,7 @@ UnitsOfAxes units_of(const std::vector<AxisUnits>& axes) {
 
 struct DdsSession::Impl {
   Impl(DdsSettings with, ProcessImage& of, const EventRing& ring, CommandPort& commands, std::function<void()> on_wake,
-       DdsReports to_tell)
+       DdsDomainReports to_tell)
       : settings(std::move(with)),
         image(of),
         units(units_of(settings.units)),
@@ -79,7 +79,7 @@ struct DdsSession::Impl {
   ProcessImage& image;
   UnitsOfAxes units;
   std::function<void()> wake;
-  DdsReports reports;
+  DdsDomainReports reports;
   SignsOfLife signs;
   Identities identities;
   DdsClients clients;
@@ -96,7 +96,7 @@ struct DdsSession::Impl {
 };
 
 DdsSession::DdsSession(DdsSettings settings, ProcessImage& image, const EventRing& events, CommandPort& commands,
-                       std::function<void()> wake, DdsReports reports)
+                       std::function<void()> wake, DdsDomainReports reports)
     : impl_(std::make_unique<Impl>(std::move(settings), image, events, commands, std::move(wake), std::move(reports))) {
 }
 

@@ -31,7 +31,7 @@ inline constexpr std::size_t kMaxRepliesWaiting = 256;
 inline constexpr std::size_t kMaxEventsWaiting = kMaxEvents;
 
 /// What is reported to the gateway of the domain.
-struct DdsReports {
+struct DdsDomainReports {
   /// A line for the log, of a request that is refused before it comes to an axis.
   std::function<void(const std::string&)> line{};
   /// Another gateway has our name, or has it no more: where its axis was seen, for an event.
@@ -45,7 +45,7 @@ class DdsSession {
   /// Takes image.changes for itself (its wake() calls `wake`, which arms a timer and no more). Settings stay as they
   /// are; axes and units until take_axes().
   DdsSession(DdsSettings settings, ProcessImage& image, const EventRing& events, CommandPort& commands,
-             std::function<void()> wake, DdsReports reports = {});
+             std::function<void()> wake, DdsDomainReports reports = {});
   ~DdsSession();
   DdsSession(const DdsSession&) = delete;
   DdsSession& operator=(const DdsSession&) = delete;

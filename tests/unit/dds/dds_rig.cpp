@@ -30,7 +30,7 @@ DdsRig::DdsRig(DdsRigOptions options) : stage(lines(options)) {
   options.settings.commands = true;
   session_ = std::make_unique<dds::DdsSession>(
       options.settings, stage.gateway().image(), stage.gateway().events(), stage.gateway(), [this] { woken_ = true; },
-      dds::DdsReports{[this](const std::string& line) { told.push_back(line); }, {}});
+      dds::DdsDomainReports{[this](const std::string& line) { told.push_back(line); }, {}});
   link_up();
   if (!run_until([&] {
         return axis(kServo).link_state == LinkState::online && axis(kStepper).link_state == LinkState::online;

@@ -28,8 +28,8 @@ struct PlainSession {
     for (AxisNumber n = 1; n <= axes; ++n) add_axis(image, n);
     session = std::make_unique<dds::DdsSession>(
         std::move(with), image, ring, port, [this] { ++woken; },
-        dds::DdsReports{[this](const std::string& line) { told.push_back(line); },
-                        [this](bool taken, const std::string&) { name_taken.push_back(taken); }});
+        dds::DdsDomainReports{[this](const std::string& line) { told.push_back(line); },
+                              [this](bool taken, const std::string&) { name_taken.push_back(taken); }});
     session->on_link_up(now);
   }
 

@@ -203,7 +203,7 @@ TEST(KeyaFrameRule, AMotorIsOnOnlyIfItWasToldSoAndShowsIt) {
       for (const bool disabling : {false, true}) {
         Rule rule;
         rule.motors[0].mode = rule.motors[1].mode = 3;
-        rule.on_written("B.on", told ? 1 : 0);
+        rule.told("B.on", told ? 1 : 0);
         rule.motors[1].enabled = shows;
         rule.motors[1].disabling = disabling;
         const auto frame = rule.of("A.velocity", 5);
@@ -218,8 +218,8 @@ TEST(KeyaFrameRule, TheWriteItselfDecidesOfItsOwnMotor) {
   Rule rule;
   rule.motors[0].mode = rule.motors[1].mode = 3;
   EXPECT_EQ(KeyaRig::field(*rule.of("A.on", 1), kEnable, 1), 1);
-  rule.on_written("A.on", 1);
-  rule.on_written("A.velocity", 500);
+  rule.told("A.on", 1);
+  rule.told("A.velocity", 500);
   rule.motors[0].enabled = true;
   const auto off = rule.of("A.on", 0);
   EXPECT_EQ(KeyaRig::field(*off, kEnable, 1), 0);
@@ -230,8 +230,8 @@ TEST(KeyaFrameRule, AfterALostFrameWhatItAskedForIsAskedForAgain) {
   Rule rule;
   rule.motors[0].mode = rule.motors[1].mode = 3;
   rule.motors[1].enabled = true;
-  rule.on_written("B.on", 1);
-  rule.on_written("B.velocity", 700);
+  rule.told("B.on", 1);
+  rule.told("B.velocity", 700);
   rule.store.invalidate_all();
   EXPECT_EQ(KeyaRig::field(*rule.of("A.velocity", 1), kValue, 2), 700);
   rule.store.asked(rule.id("B.velocity"), 0, Instant{} + 2h);
@@ -248,7 +248,7 @@ TEST(KeyaFrameRule, APositionIsNeverMadeUp) {
   rule.motors[1].moving = true;
   EXPECT_FALSE(rule.of("A.on", 0));
   EXPECT_EQ(KeyaRig::field(*rule.of("A.on", 0, true), kValue, 2), -9'000) << "a stop is sent all the same";
-  rule.on_written("B.velocity", 1'234);
+  rule.told("B.velocity", 1'234);
   EXPECT_EQ(KeyaRig::field(*rule.of("A.on", 0), kValue, 2), 1'234);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Other participants that publish states of axes under our gateway's key: found by what their writers say of
 // themselves, believed once a state of theirs was heard. Promises to tell each axis that such a writer has or has given
-// up, and its end, once each, and of what has changed back before it was reported nothing. Never takes our own writer
+// up, and its end, once each, and nothing of what has changed back before its report. Never takes our own writer
 // for another's, nor one of which nothing is heard: that of our own former process, which a discovery server still
 // knows.
 #pragma once
