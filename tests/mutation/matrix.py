@@ -221,9 +221,9 @@ def table(programs, seen, tests, slowest):
         known, unknown = tests.get(folder, {}), (folder, 0)
         if not any(program == name for _, program in seen):
             continue
-        played = {number: failed for (number, program), failed in seen.items() if program == name}
-        enough = max([most for most, _ in played.values()], default=0)
         come = set().union(*cases.reached.values(), cases.everywhere)
+        played = {number: failed for (number, program), failed in seen.items() if program == name and number in come}
+        enough = max([most for most, _ in played.values()], default=0)
         out.append(f"program\t{name}\t{folder}\tplayed {len(played)} of {len(come)}" + (f", until {enough} cases fail" if enough else ""))
         rows = {}
         for case, numbers in cases.reached.items():
