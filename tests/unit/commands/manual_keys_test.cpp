@@ -5,6 +5,8 @@
 
 #include <string_view>
 
+#include "gateway/commands/manual/plan/stand_watch.hpp"
+
 namespace axisgate::app {
 namespace {
 
@@ -19,6 +21,15 @@ std::vector<ManualKey> keys(ManualKeys& from, std::string_view typed) {
 std::vector<ManualKey> keys(std::string_view typed) {
   ManualKeys from;
   return keys(from, typed);
+}
+
+TEST(StandWatch, AMotorThatTurnsEitherWayDoesNotStand) {
+  for (const double turned : {0.5, -0.5}) {
+    StandWatch watch;
+    watch.look(1.0, kLongAgo + std::chrono::seconds(1));
+    watch.look(1.0 + turned, kLongAgo + std::chrono::seconds(9));
+    EXPECT_EQ(watch.still_for(kLongAgo + std::chrono::seconds(10)), std::chrono::seconds(1)) << turned;
+  }
 }
 
 TEST(ManualKeys, ArrowsOfBothKindsOfTerminalAndSignsAreButtons) {

@@ -66,6 +66,14 @@ TEST_F(ConfigDds, IsWhereRos2NodesOfThisMachineLookForIt) {
   EXPECT_FALSE(settings("{}").shared_memory);
 }
 
+TEST_F(ConfigDds, JudgesAgesOnTheLoopbackAloneUnlessItIsToldOtherwise) {
+  EXPECT_THAT(settings("{}").max_age, Optional(milliseconds(500)));
+  EXPECT_FALSE(settings(R"({"interfaces": ["eth0"]})").max_age);
+  EXPECT_THAT(settings(R"({"interfaces": ["eth0"], "commands": true, "max_age_ms": 70})").max_age,
+              Optional(milliseconds(70)));
+  EXPECT_FALSE(settings(R"({"commands": true, "max_age_ms": 0})").max_age);
+}
+
 TEST_F(ConfigDds, TakesATolerance) {
   EXPECT_EQ(settings("{}").sync_tolerance, 0.01);
   EXPECT_EQ(settings(R"({"ros2": true, "commands": true, "sync_tolerance": 0.05})").sync_tolerance, 0.05);

@@ -24,6 +24,8 @@ TEST(ConfigFaults, KnowWhatIsWrongAtOrBelowAPlace) {
   EXPECT_FALSE(faults.within("/buses/1/drives/00"));
   EXPECT_FALSE(faults.within("/buses/10"));
   EXPECT_FALSE(faults.within("/buses/1/drives/0/"));
+  faults.add("/buses/20", "x");
+  EXPECT_FALSE(faults.within("/buses/2"));
 }
 
 TEST(ConfigFaults, DoNotMistakeAFaultOfAProfileForOneOfThisFile) {

@@ -51,6 +51,12 @@ TEST_F(Objects, AReadClaimsNothingAndAWriteClaims) {
   EXPECT_EQ(write.object->data, 0xFFFFU);
 }
 
+TEST_F(Objects, MoreBytesThanADriveTakesAreRefused) {
+  plain.port.at_once = BatchResult{};
+  EXPECT_EQ(ask(request(true, 0, 0, std::vector<Byte>(kMaxObjectBytes))), 2);
+  EXPECT_EQ(ask(request(true, 0, 0, std::vector<Byte>(kMaxObjectBytes + 1))), 17);
+}
+
 TEST_F(Objects, OfNoSizeThatThereIsOrAValueThatDoesNotFitAreRefused) {
   plain.port.at_once = BatchResult{};
   for (const std::uint8_t size : std::initializer_list<std::uint8_t>{3, 5, 8, 255})

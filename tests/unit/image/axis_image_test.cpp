@@ -36,6 +36,7 @@ TEST(Sequence, StepsForEveryChangeThatAClientCouldNotice) {
       {"the motion", [](AxisImage& a) { a.motion_state = MotionState::active; }},
       {"the motion's id", [](AxisImage& a) { a.motion_id = 9; }},
       {"an alarm", [](AxisImage& a) { a.alarms = bit(AxisAlarm::clamped); }},
+      {"the owner", [](AxisImage& a) { a.lease.owner = std::make_shared<ClientLife>(); }},
   };
   for (const Change& change : changes) {
     AxisImage changed = running_axis();
@@ -79,7 +80,9 @@ TEST(ValidBits, AreThoseOfSupportedValuesThatAreGoodNow) {
   EXPECT_EQ(axis.valid_bits(), ~0U);
   axis[Quantity::dc_voltage].valid = false;
   axis.supported &= ~bit(Quantity::statusword);
-  EXPECT_EQ(axis.valid_bits(), ~0U & ~bit(Quantity::dc_voltage) & ~bit(Quantity::statusword));
+  axis[Quantity::max_torque].received = false;
+  EXPECT_EQ(axis.valid_bits(),
+            ~0U & ~bit(Quantity::dc_voltage) & ~bit(Quantity::statusword) & ~bit(Quantity::max_torque));
 }
 
 TEST(Texts, AreThereForEveryAlarmAndState) {

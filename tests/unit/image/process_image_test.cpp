@@ -29,5 +29,21 @@ TEST(ProcessImage, KeepsAxesWhereTheyAreWhenOthersCome) {
   EXPECT_EQ(image.find(200), first);
 }
 
+TEST(ProcessImage, AnAxisThatIsTakenOutIsSeenToGoAndWhatItDidHasEnded) {
+  ProcessImage image;
+  const AxisImage* const axis = &image.add_axis(3, "lift", 0);
+  const std::uint32_t before = axis->sequence;
+  const Endings::Point since = axis->endings.now();
+  image.changes.take([](std::size_t) {});
+  image.remove_axis(3);
+  std::size_t marked = 0;
+  image.changes.take([&](std::size_t number) { marked = number; });
+  EXPECT_EQ(marked, 3U);
+  EXPECT_EQ(image.find(3), nullptr);
+  EXPECT_EQ(&image.add_axis(3, "lift", 0), axis) << "whoever holds it may go on";
+  EXPECT_EQ(axis->sequence, before + 1);
+  EXPECT_TRUE(axis->endings.interrupted(since, 1));
+}
+
 }  // namespace
 }  // namespace axisgate
