@@ -261,7 +261,7 @@ class OneRequestAConnection(Examples):
         count = 0
         while time.monotonic() < end:
             count += 1
-            self.panel.client.write(8, count)
+            self.panel.client.write(8, count % 65536)
             self.assertFalse(self.panel.shows("Stopped"))
         self.assertNotEqual(self.speed(), 0)
 
