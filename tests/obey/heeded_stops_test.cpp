@@ -207,6 +207,17 @@ TEST(UnknownSpeed, UnderALimitStartsNoMove) {
   EXPECT_LE(std::abs(plant.comes_to_rest_at() - kNear), kClose);
 }
 
+// A target is held against the limit when it is accepted, whatever the drive answers of it.
+TEST(UnknownTarget, UnderALimitHoldsUpNoMotionAndIsNotSaidTo) {
+  PlantOptions options;
+  options.velocity_limit = 50'000;
+  Plant plant(Subject::md_can, options);
+  plant.stage.at_link(0, [](auto& link) { return &link.line().faults(0); })->spoil({0x60FF, 0}, {});
+  plant.ready();
+  ASSERT_TRUE(plant.logged("0x60FF"));
+  EXPECT_FALSE(plant.logged("has a limit: no motion by it starts"));
+}
+
 // --- A counter that runs over ---------------------------------------------------------------------------------------
 
 TEST(WrappedCounter, EndsTheReferenceOfADriveThatSaysHomedAllTheSame) {

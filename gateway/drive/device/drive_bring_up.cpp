@@ -8,6 +8,7 @@
 #include "gateway/drive/device/answer_width.hpp"
 #include "gateway/drive/device/drive.hpp"
 #include "gateway/drive/device/requests.hpp"
+#include "gateway/drive/plan/planner.hpp"
 
 namespace axisgate::drive {
 
@@ -99,7 +100,7 @@ namespace {
 std::string limited_by(const DriveModel& model, ObjectId id) {
   for (const AxisModel& axis : model.axes)
     for (const Binding& binding : axis.bindings)
-      if (binding.object == id && binding.limited && binding.writable)
+      if (binding.object == id && binding.limited && is_speed_of_motion(binding.quantity))
         return fmt::format("; {} has a limit: no motion by it starts", row(binding.quantity).name);
   return {};
 }

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Speeds and ramps that a motion goes by.
+#include <algorithm>
+#include <array>
+
 #include "gateway/drive/plan/planner.hpp"
 
 namespace axisgate::drive {
@@ -23,6 +26,14 @@ std::vector<Quantity> speeds_of(int motion_mode) {
 }
 
 }  // namespace
+
+bool is_speed_of_motion(Quantity quantity) {
+  constexpr std::array kModes{1, 3, 4, 6};
+  return std::ranges::any_of(kModes, [quantity](int mode) {
+    const auto speeds = speeds_of(mode);
+    return std::ranges::find(speeds, quantity) != speeds.end();
+  });
+}
 
 // A drive that was silent may have restarted while nobody heard it: what a limit is held against is read again then.
 void add_speeds(const AxisCore& core, int mode, Plan& plan) {

@@ -98,6 +98,8 @@ void add_mode(const AxisCore& core, int mode, Plan& plan);
 /// last, where the drive holds others, having restarted perhaps; and the configured limit for what it holds beyond
 /// that, from its maker or another tool.
 void add_speeds(const AxisCore& core, int mode, Plan& plan);
+/// In some mode add_speeds() looks at it.
+[[nodiscard]] bool is_speed_of_motion(Quantity quantity);
 /// Writes the quantity's value unless the drive is known to hold it. False where it cannot be had in the drive's
 /// numbers.
 [[nodiscard]] bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan);
