@@ -4,8 +4,10 @@ import json
 
 from pymodbus.constants import DeviceInformation
 from pymodbus.mei_message import ReadDeviceInformationRequest
+from pymodbus.register_read_message import ReadWriteMultipleRegistersRequest
+from pymodbus.register_write_message import MaskWriteRegisterRequest
 
-from modbus import AXIS, NO_ADDRESS, NO_PATH, mbpoll, width
+from modbus import AXIS, NO_ADDRESS, NO_PATH, encode, mbpoll, width
 from stage import Story, main
 
 FLAT, LOW_FIRST, PER_AXIS = range(3)
@@ -87,6 +89,16 @@ class FirstContact(Story):
         self.assertEqual(self.connect(PER_AXIS, unit=255).axis(2).get("target_position"), 10000)
         with self.refused(NO_PATH):
             self.connect(PER_AXIS, unit=3).registers(2)
+
+    def test_one_request_writes_reads_and_masks(self):
+        target, method = (100 + AXIS[name][0] for name in ("target_position", "homing_method"))
+        reply = self.client.execute(ReadWriteMultipleRegistersRequest(
+            read_address=target, read_count=2, write_address=target, write_registers=encode("i32", -40000), unit=1))
+        self.assertEqual(reply.registers, encode("i32", -40000), "it reads what its write has done")
+        self.assertEqual(self.sim.object("lift/1", "607A.00"), -40000)
+        self.axis(1).set(homing_method=17)
+        self.client.execute(MaskWriteRegisterRequest(method, and_mask=0x00F0, or_mask=0x0003, unit=1))
+        self.assertEqual((self.axis(1).get("homing_method"), self.sim.object("lift/1", "6098.00")), (0x13, 0x13))
 
     def test_it_identifies_itself_on_all_levels(self):
         def read(level, first=0):

@@ -4,7 +4,7 @@ the living run on. What else a lease does is told of each drive by tests/obey an
 import time
 
 from lease_stage import ANOTHER, ME, PANEL_1, PLC, RPM, Machine, main
-from modbus import ACTIVE, BUSY, Axis, mbpoll
+from modbus import ABORTED, ACTIVE, BUSY, CONTINUOUS, Axis, mbpoll
 from processes import until
 
 RUN_VELOCITY = 8
@@ -106,6 +106,26 @@ class OneShot(Machine):
             self.assertEqual(Axis(self.peer(PLC), number).get("owner"), ME)
             mbpoll(self.ports[0], "0", first + 2, 1)
             self.until_it_stands(number)
+
+
+class NothingElseStopsIt(Machine):
+    """A stepper watches no line: without a lease its gateway stops it when the client is gone that commanded it."""
+
+    lines_of = ("stepper",)
+    lease = None
+
+    def test_its_motion_ends_with_the_connection_that_commanded_it(self):
+        self.begin()
+        first, second = self.peer(), self.peer()
+        self.set_running(Axis(first, 1))
+        second.close()
+        axis = self.watched(1)
+        self.assertEqual(axis.get("axis_state"), CONTINUOUS, "another client's end is no reason")
+        first.close()
+        axis.until(motion_state=ABORTED)
+        axis.until_input("stop_latched")
+        self.until_it_stands(1)
+        self.gateway.wait_for("axis 1: the client that commanded the motion is gone: quick stop")
 
 
 class InStop(Machine):
