@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A user's first minutes with CAN: drives of three makes on one bus are there, with good values, and do what they are told."""
-from can_stage import FAR, RPM, TURN, CanStory, main
+from can_stage import FAR, RPM, CanStory, main
 from modbus import ACTIVE, AXIS, COMPLETED, DISABLED, DISCRETE, ONLINE, STANDSTILL
 from processes import until
 

@@ -62,6 +62,7 @@ class Machine(Story):
     listener_options = {}
     allow = EVERYBODY
     reply_timeout_ms = 1000
+    bus_options = {}
 
     def listener(self, **more):
         # Long enough for a machine that is busy with something else.
@@ -81,7 +82,7 @@ class Machine(Story):
                 self.motors[number] = (line, motor)
                 entry["axes"].append({"axis": number, "name": f"{line}{motor or ''}", "lease": self.lease, **self.axis_options})
             device = f"slcan:{self.path(line)}" if can else self.path(line)
-            made = bus(device, entry, adapter=adapter, timeout_ms=self.reply_timeout_ms, **rate)
+            made = bus(device, entry, adapter=adapter, timeout_ms=self.reply_timeout_ms, **rate, **self.bus_options)
             if can:
                 made.pop("rs485")
             buses.append({**made, "name": line})
