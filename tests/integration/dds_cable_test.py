@@ -94,8 +94,6 @@ class Cable(Succession):
 
 
 class Equal(Cable):
-    takes_it_back = False
-
     def test_its_successor_has_the_axis_and_what_comes_late_moves_nothing(self):
         self.all_run(self.master, 300)
         self.all_do(self.master, target_velocity=250 * RPM)
@@ -111,37 +109,11 @@ class Equal(Cable):
             self.assert_too_late(requests)
         for number in PAIRS:
             self.until_it_turns_at(number, -200)
-        self.assert_the_masters_are_as_their_strength_has_it()
-
-    def assert_the_masters_are_as_their_strength_has_it(self):
-        wanted = DONE if self.takes_it_back else NOT_OWNER
         for number, request in self.all_ask(self.master, "run_velocity", target_velocity=250 * RPM).items():
             self.at = PAIRS[number]
             until("it is heard", lambda number=number, request=request: self.heard(number, request))
-            self.assertEqual(self.heard(number, request), [wanted])
-            self.until_it_turns_at(number, 250 if self.takes_it_back else -200)
-
-
-class Stronger(Equal):
-    relation = "stronger"
-
-    def test_its_successor_has_the_axis_and_what_comes_late_moves_nothing(self):
-        super().test_its_successor_has_the_axis_and_what_comes_late_moves_nothing()
-
-
-class Weaker(Equal):
-    relation = "weaker"
-    takes_it_back = True
-
-    def test_its_successor_has_the_axis_and_what_comes_late_moves_nothing(self):
-        super().test_its_successor_has_the_axis_and_what_comes_late_moves_nothing()
-
-
-class Shared(Equal):
-    relation = "shared"
-
-    def test_its_successor_has_the_axis_and_what_comes_late_moves_nothing(self):
-        super().test_its_successor_has_the_axis_and_what_comes_late_moves_nothing()
+            self.assertEqual(self.heard(number, request), [NOT_OWNER])
+            self.until_it_turns_at(number, -200)
 
 
 class NobodyElse(Cable):

@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""axis_command: a DDS writer of either vendor does all that a Modbus client can, gets one reply each time, and can ask nothing twice."""
+"""axis_command: a DDS writer of either vendor does what a Modbus client can. What is refused, repeated or malformed is told by
+tests/unit/dds and tests/dds_process."""
 import time
 
-from dds_stage import (BAD_VALUE, COMMAND, CYCLONE, DONE, NO_AXIS, NOT_SUPPORTED, RPM, SEEN, STATE_UNSUITABLE, TURN, VENDORS,
-                       DdsStory, main)
+from dds_stage import COMMAND, CYCLONE, DONE, RPM, STATE_UNSUITABLE, TURN, VENDORS, DdsStory, main
 from lease_stage import NOBODY
-from modbus import (ABORTED, ACTIVE, COMPLETED, CONTINUOUS, DISABLED, DISCRETE, ERROR_STOP, STANDSTILL, STOPPING, Axis)
+from modbus import ABORTED, ACTIVE, COMPLETED, CONTINUOUS, DISCRETE, STANDSTILL, STOPPING
 from processes import until
 
 UNITS = 10000  # of a turn
-HERE = 35  # homing method: this place is zero
-FAULTS = {"serial": "2601 0x0100", "leadshine": "0x0210"}
 
 
 class Commanded(DdsStory):
@@ -65,56 +63,6 @@ class Motion(Commanded):
             peer.do(number, "enable")
             axis.until(axis_state=STANDSTILL)
 
-    def test_homing_torque_and_a_new_zero(self):
-        engineer = self.peer()
-        limited = Axis(engineer, 2)
-        limited.set(max_velocity=500_000)
-        limited.command("release")
-        for peer, number, axis in self.each_axis_of_each_vendor():
-            self.prepare_by_dds(peer, number)
-            peer.do(number, "enable")
-            request = peer.ask(number, "move_relative", target_position=TURN, profile_velocity=600 * RPM)
-            peer.answer(request)
-            axis.until(motion_state=COMPLETED, motion_id=request)
-            request = peer.ask(number, "home", homing_method=HERE)
-            self.assertEqual(peer.answer(request)[0], DONE)
-            self.arrive(axis, 0, request)
-            axis.until_input("homed")
-            request = peer.ask(number, "move_absolute", target_position=TURN)
-            peer.answer(request)
-            self.arrive(axis, UNITS, request)
-            axis.until_input("moving", False)
-            if axis.get("supported_commands") >> COMMAND["set_position"] & 1:
-                peer.do(number, "set_position", set_position_value=0)
-                until("position 0", lambda axis=axis: abs(axis.get("position_actual")) <= 20)
-            if number == 2:
-                peer.do(number, "run_torque", target_torque=100)
-                axis.until(mode_display=4)
-                self.until_it_turns(number)
-                peer.do(number, "halt")
-                self.until_it_stands(number)
-
-    def test_faults_are_reset_and_parameters_saved(self):
-        for peer, number, axis in self.each_axis_of_each_vendor():
-            line = self.motors[number][0]
-            stores = int(self.sim.ask(f"stores {line}/1"))
-            peer.do(number, "save_parameters")
-            until("stored", lambda line=line, stores=stores: int(self.sim.ask(f"stores {line}/1")) > stores)
-            peer.do(number, "enable")
-            self.sim.ask(f"fault {line}/1 {FAULTS[line]}")
-            axis.until(axis_state=ERROR_STOP)
-            peer.do(number, "enable", wanted=STATE_UNSUITABLE)
-            self.sim.ask(f"clear {line}/1 {FAULTS[line]}")
-            peer.do(number, "fault_reset")
-            axis.until(axis_state=DISABLED, error_code=0)
-
-    def test_what_a_drive_cannot_do_is_not_supported(self):
-        for peer, number, axis in self.each_axis_of_each_vendor():
-            supported = axis.get("supported_commands")
-            missing = [name for name, code in COMMAND.items() if 1 <= code <= 12 and not supported >> code & 1]
-            for name in missing:
-                peer.do(number, name, wanted=NOT_SUPPORTED)
-
 
 class Jog(Commanded):
     axis_options = {"jog_timeout_ms": 600}
@@ -155,70 +103,7 @@ class LastOfItsInstance(Commanded):
         self.let_go(peer, 1)
 
 
-class Once(Commanded):
-    def test_a_request_that_comes_again_is_answered_and_not_run_again(self):
-        for peer, number, axis in self.each_axis_of_each_vendor():
-            self.prepare_by_dds(peer, number)
-            peer.do(number, "enable")
-            here = axis.get("position_actual")
-            asked = {"target_position": TURN, "profile_velocity": 600 * RPM}
-            request = peer.ask(number, "move_relative", **asked)
-            self.assertEqual(peer.answer(request)[0], DONE)
-            self.arrive(axis, here + UNITS, request)
-            since = peer.now()
-            for _ in range(3):
-                peer.ask(number, "move_relative", request, **asked)
-            until("each is answered", lambda peer=peer, request=request, since=since: len(peer.answers(request, since)) >= 3)
-            self.assertEqual([reply["result"] for reply in peer.answers(request)], [DONE, SEEN, SEEN, SEEN])
-            # Another request after it proves that nothing of the repeated ones is still to come.
-            peer.do(number, "halt")
-            self.assertAlmostEqual(axis.get("position_actual"), here + UNITS, delta=20)
-            self.assertEqual(axis.get("motion_id"), request)
-
-    def test_each_of_many_requests_has_one_reply(self):
-        for vendor in self.each_vendor():
-            peer = self.commander(vendor)
-            asked = [peer.ask(1 + i % 2, profile_velocity=(100 + i) * RPM) for i in range(100)]
-            for number in asked:
-                peer.answer(number)
-            peer.do(peer.nowhere, "enable", wanted=NO_AXIS)
-            for number in asked:
-                self.assertEqual(len(peer.answers(number)), 1, f"request {number}")
-            self.assertEqual(peer.answers(asked[-1])[0]["result"], DONE)
-            for number in self.numbers:
-                peer.do(number, "release")
-
-
 class Malformed(Commanded):
-    def test_what_makes_no_sense_is_refused_and_moves_nothing(self):
-        wrong = [("no request id", {"request_id": 0, "command": COMMAND["move_relative"], "mask": 2, "target_position": 9}, BAD_VALUE),
-                 ("an unknown command", {"command": 15}, BAD_VALUE), ("an unknown command", {"command": 255}, BAD_VALUE),
-                 ("a mask of nothing", {"command": 0}, BAD_VALUE),
-                 ("an unknown bit of the mask", {"command": 8, "mask": 0x80000004, "target_velocity": 9}, BAD_VALUE),
-                 ("a full mask", {"command": 8, "mask": 0xFFFFFFFF, "target_velocity": 9}, BAD_VALUE),
-                 ("no number", {"command": 8, "mask": 4, "target_velocity": "nan"}, BAD_VALUE),
-                 ("infinity", {"command": 6, "mask": 2, "target_position": "inf"}, BAD_VALUE),
-                 ("too much", {"command": 6, "mask": 2, "target_position": 1e300}, BAD_VALUE),
-                 ("less than nothing", {"command": 8, "mask": 4 + 32, "target_velocity": 9, "profile_velocity": -1}, BAD_VALUE),
-                 ("an unknown mode", {"command": 0, "mask": 1, "mode": 77}, BAD_VALUE),
-                 ("an unknown homing method", {"command": 10, "mask": 512, "homing_method": -99}, BAD_VALUE),
-                 ("a target beside a jog", {"command": 31, "mask": 2, "target_position": 9}, BAD_VALUE)]
-        for peer, number, axis in self.each_axis_of_each_vendor():
-            self.prepare_by_dds(peer, number)
-            peer.do(number, "enable")
-            axis.until(axis_state=STANDSTILL)
-            before = axis.get("position_actual")
-            for what, members, result in wrong:
-                self.at = f"{peer.name}, axis {number}: {what}"
-                since = peer.now()
-                request = peer.write("axis_command", axis=number, **members)
-                self.assertIn(peer.answer(request, since)[0], (result, NOT_SUPPORTED))
-                self.assertEqual(self.speed(number), 0)
-            for axis_number in (0, 499, 500, 65535):
-                self.assertEqual(peer.answer(peer.ask(axis_number, "enable"))[0], NO_AXIS)
-            self.assertEqual((axis.get("axis_state"), axis.get("position_actual")), (STANDSTILL, before))
-            peer.do(number, "run_velocity", target_velocity=100 * RPM)
-            self.until_it_turns(number)
 
     def test_bytes_that_are_no_command_hurt_nobody(self):
         """Sent as the payload of a sample: too short, too long, no encapsulation, nonsense."""
@@ -232,36 +117,6 @@ class Malformed(Commanded):
             good.do(1, profile_velocity=100 * RPM)
         self.assertEqual(self.dds_process(), process, "it goes on")
         self.assertEqual(self.speed(1), 0)
-
-
-class NotRead(Commanded):
-    def assert_commands_are_not_read(self):
-        for vendor in self.each_vendor():
-            peer = self.peer_of(vendor).read("axis_state")
-            peer.sample("axis_state", axis=1)
-            for topic in ("axis_command", "object_request"):
-                peer.say("writer", topic)
-                peer.wait("writer", topic)
-            late = self.peer_of(vendor).read("axis_state")  # discovery goes on
-            late.sample("axis_state", axis=1)
-            for topic in ("axis_command", "object_request"):
-                self.assertEqual(peer.all("matched", topic), [])
-
-
-class SwitchedOff(NotRead):
-    dds = {"commands": False}
-
-    def test_commands_are_not_even_read(self):
-        self.assert_commands_are_not_read()
-
-
-class ByDefault(NotRead):
-    """Nobody has said anything of commands."""
-
-    dds = {"commands": None}
-
-    def test_commands_are_off(self):
-        self.assert_commands_are_not_read()
 
 
 if __name__ == "__main__":

@@ -1,19 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Ten gateways of fifty axes each behind one discovery server: one reader sees all 500 axes, and `topics --all` shows them in one
-table; of two gateways with one name it says so."""
+table."""
 from own_network import make_interfaces  # first: it begins anew in a network of its own
 
 import json
 import subprocess
 
 from dds_stage import DdsStory, main
-from modbus import Client
 from processes import Program, until
 from stage import AXISGATE, Gateway
 
 GATEWAYS, AXES = 10, 50
 SERVER = "127.0.0.1:11811"
-NAME_TAKEN = 1 << 13  # alarm of a gateway
 PATIENCE = 300  # seconds: ten gateways and a reader of all of them on a machine that has other things to do
 
 
@@ -28,13 +26,13 @@ class Fleet(DdsStory):
         super().setUp()
         self.keep(Program("discovery server", ["fast-discovery-server", "-i", "0", "-l", "127.0.0.1", "-p", "11811"]))
 
-    def configure_gateway(self, name, axes=AXES, file=None):
+    def configure_gateway(self, name, axes=AXES):
         drives = [{"profile": "kinco-jd", "node": 1 + index, "axes": [{"axis": 1 + index, "name": f"axis_{1 + index}"}]} for index in range(axes)]
         config = {"gateway": {"name": name}, "modbus_tcp": [self.listener()],
                   "dds": {"domain": self.domain, "discovery_servers": [SERVER]},
                   "buses": [{"name": "line", "adapter": "kinco-serial", "device": self.path("not-plugged-in"), "poll": {"fast": 20000, "normal": 60000, "slow": 60000},
                              "drives": drives}]}
-        path = self.path(f"{file or name}.json")
+        path = self.path(f"{name}.json")
         with open(path, "w", encoding="utf-8") as out:
             json.dump(config, out)
         return path
@@ -75,36 +73,6 @@ class Fleet(DdsStory):
         gateways, _, axes = self.shown_once(path, "--all").partition("\n\n")
         return ({(row[0], int(row[2])) for line in gateways.splitlines()[1:] if (row := line.split())[1] != "gone"},
                 {(row[0], int(row[1])) for line in axes.splitlines()[1:] if (row := line.split())[2] == f"axis_{row[1]}" and row[3:]})
-
-    def test_two_gateways_of_one_name_know_it(self):
-        gateways = []
-        for file in ("first", "second"):
-            path = self.configure_gateway("cell_7", 2, file)
-            self.start_gateway(path)
-            with open(path, encoding="utf-8") as config:
-                port = int(json.load(config)["modbus_tcp"][0]["listen"].rpartition(":")[2])
-            gateways.append(self.peer_at(port))
-        other = self.configure_gateway("cell_8", 2)
-        self.start_gateway(other)
-        with open(other, encoding="utf-8") as config:
-            alone = self.peer_at(int(json.load(config)["modbus_tcp"][0]["listen"].rpartition(":")[2]))
-        until("both say so", lambda: all(gateway.gateway()["alarms"] & NAME_TAKEN for gateway in gateways))
-        self.assertFalse(alone.gateway()["alarms"] & NAME_TAKEN)
-
-    def peer_at(self, port):
-        client = Client(port)
-        self.addCleanup(client.close)
-        return client
-
-    def test_two_gateways_of_one_name_are_shown(self):
-        first, second = self.configure_gateway("cell_7", 2), self.configure_gateway("cell_7", 2, "second")
-        for path in (first, second):
-            self.start_gateway(path)
-
-        def shown():
-            return "2 GATEWAYS HAVE THIS NAME" in self.shown_once(first, "--all")
-
-        until("the name is seen to be taken", shown, PATIENCE)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """object_request: any object of any drive, by index and subindex, as axes know them."""
-from dds_stage import BAD_VALUE, DONE, NO_AXIS, NOT_OWNER, REFUSED_BY_DRIVE, SEEN, VENDORS, DdsStory, main
-from lease_stage import ME, NOBODY
-from modbus import Axis
+from dds_stage import DONE, REFUSED_BY_DRIVE, VENDORS, DdsStory, main
 
 NO_OBJECT, READ_ONLY = 0x06020000, 0x06010002
 
@@ -53,52 +51,6 @@ class Objects(Asked):
                 self.assertEqual((reply["result"], reply["detail"]), (REFUSED_BY_DRIVE, detail), reply)
                 self.assertEqual((reply["value"], reply["data"]), (0, ""))
             self.assertEqual(peer.object(1, 0x5FFF, size=2)["result"], REFUSED_BY_DRIVE)
-
-    def test_what_makes_no_sense_is_refused(self):
-        for peer in self.each_asker():
-            self.assertEqual(peer.object(77, 0x6041, size=2)["result"], NO_AXIS)
-            self.assertEqual(peer.object(1, 0x6041, size=3)["result"], BAD_VALUE)
-            self.assertEqual(peer.object(2, 0x6081, write=1, size=0)["result"], BAD_VALUE)
-            request = peer.write("object_request", request_id=0, axis=1, index=0x6041, size=2)
-            self.assertEqual(peer.answer(request, topic="object_reply")[0], BAD_VALUE)
-            first = peer.write("object_request", axis=1, index=0x6041, size=2)
-            self.assertEqual(peer.answer(first, topic="object_reply")[0], DONE)
-            since = peer.now()
-            peer.write("object_request", first, axis=1, index=0x6041, size=2)
-            self.assertEqual(peer.answer(first, since, "object_reply")[0], SEEN)
-
-
-class Owned(Asked):
-    def test_an_object_of_an_axis_that_another_owns_is_read_and_not_written(self):
-        owner = Axis(self.peer(), 2)
-        owner.set(target_velocity=1000)
-        before = self.sim.object("leadshine/1", "6083.00")
-        for peer in self.each_asker():
-            owner.client.gateway()
-            self.assertEqual(peer.object(2, 0x6083, write=1, size=4, value=4711)["result"], NOT_OWNER)
-            self.assertEqual(self.sim.object("leadshine/1", "6083.00"), before)
-            self.assertEqual(peer.object(2, 0x6083, size=4)["result"], DONE)
-            self.assertEqual(owner.get("owner"), ME)
-
-    def test_whoever_commands_an_axis_writes_its_objects_too(self):
-        for vendor in self.each_vendor():
-            peer = self.commander(vendor)
-            peer.ask_objects()
-            peer.do(2, "enable")
-            self.assertEqual(peer.object(2, 0x6083, write=1, size=4, value=4711)["result"], DONE)
-            self.assertEqual(self.sim.object("leadshine/1", "6083.00"), 4711)
-            self.let_go(peer, 2)
-            self.watched(2).until(owner=NOBODY)
-            peer.leave()
-
-
-class Operators(Asked):
-    dds = {"role": "operator"}
-
-    def test_operators_read_objects_and_write_none(self):
-        for peer in self.each_asker():
-            self.assertEqual(peer.object(2, 0x6083, size=4)["result"], DONE)
-            self.assertEqual(peer.object(2, 0x6083, write=1, size=4, value=4711)["result"], 18)
 
 
 if __name__ == "__main__":

@@ -147,19 +147,6 @@ class Control(Ros2):
             self.disable_by(hardware, enable)
             hardware.node.leave()
 
-    def test_hardware_that_takes_the_states_as_its_first_commands_moves_nothing_either(self):
-        self.move_away(1)
-        for vendor in self.each_vendor():
-            before = self.position(1)
-            hardware = self.hardware(vendor, threshold=-1, initial_states=True)
-            enable = self.topic(hardware.node, "flag", "serial/enable")
-            hardware.cycle(5)
-            self.enable_by(hardware, enable)
-            hardware.cycle(50)
-            self.assertAlmostEqual(self.position(1), before, delta=NEAR)
-            self.disable_by(hardware, enable)
-            hardware.node.leave()
-
     def test_after_a_stop_a_stream_that_goes_on_moves_nothing(self):
         for vendor in self.each_vendor():
             hardware = self.hardware(vendor, threshold=-1, initial_states=True)
@@ -181,58 +168,9 @@ class Control(Ros2):
             self.disable_by(hardware, enable)
             hardware.node.leave()
 
-    def test_a_fault_is_reset_and_an_axis_sent_home_by_its_topics(self):
-        for vendor in self.each_vendor():
-            node = self.node(vendor)
-            reset = self.topic(node, "signal", "serial/fault_reset")
-            self.topic(node, "signal", "serial/home")
-            self.sim.ask("fault serial/1 2601 0x0100")
-            self.watched(1).until_input("fault")
-            self.sim.ask("clear serial/1 2601 0x0100")
-            node.say("write", reset)
-            until("it is reset", lambda: "fault" not in self.watched(1).inputs())
-            self.assertNotIn("enabled", self.watched(1).inputs())
-            node.leave()
-
-
-class Silence(Ros2):
-    lease = {"timeout_ms": 10000}
-
-    def test_it_stops_an_axis(self):
-        for vendor in self.each_vendor():
-            hardware = self.hardware(vendor, threshold=-1, initial_states=True)
-            enable = self.topic(hardware.node, "flag", "serial/enable")
-            self.enable_by(hardware, enable)
-            self.come_into_step(hardware)
-            hardware.cycle_until("its position is good now", lambda: not math.isnan(hardware.states["serial"]))
-            hardware.commands["serial"] = hardware.states["serial"] + 500 * TURN
-            hardware.cycle_until("it moves", lambda: self.speed(1) != 0)
-            hardware.node.process.kill()
-            until("it is stopped", lambda: "stop_latched" in self.watched(1).inputs())
-            self.until_it_stands(1)
-
 
 class Seen(Ros2):
     dds = {"ros2": True, "min_period_ms": 50, "max_period_ms": 100}
-
-    def test_joint_states_come_once_a_period_with_all_joints(self):
-        master = self.commander(FAST)
-        for number in self.numbers:
-            self.run_by_dds(master, number)
-        for vendor in self.each_vendor():
-            node = self.node(vendor).read("joint_states", "best_effort")
-            node.wait("sample", "joint_states")
-            since = node.now()
-            samples = until("many", lambda node=node, since=since: (
-                found if len(found := node.samples("joint_states", since)) >= 40 else None))
-            for sample in samples:
-                self.assertEqual(sample["name"], ["serial", "leadshine"])
-                self.assertEqual((len(sample["position"]), len(sample["velocity"]), sample["effort"]), (2, 2, []))
-            self.assertTrue(any(sample["velocity"][0] > 0 for sample in samples))
-            # Each of its stamps is another one, since both motors turn: so many samples took so many periods.
-            stamps = [sample["header"]["stamp"]["sec"] + sample["header"]["stamp"]["nanosec"] / 1e9 for sample in samples]
-            self.assertGreater(stamps[-1] - stamps[0], 39 * 0.05 * 0.8)
-            node.leave()
 
     def test_diagnostics_tell_of_each_axis_in_words(self):
         for vendor in self.each_vendor():

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""axis_state and gateway_state: what subscribers of both vendors read is what the registers show."""
+"""axis_state and axis_event: what subscribers of both vendors read is what the registers show, and who comes late hears the newest. The
+rest of it is told by tests/unit/dds and, with a Fast DDS peer, by tests/dds_process."""
 import math
-import time
 from fractions import Fraction
 
-from dds_stage import RPM, VENDORS, DdsStory, main
-from modbus import AXIS, BUS, ONLINE, Axis
+from dds_stage import FAULT, RPM, VENDORS, DdsStory, main
+from modbus import AXIS, ERROR_STOP, Axis
 from processes import until
 
 PI = Fraction("3.14159265358979323846264338327950288419716939937510")
@@ -88,114 +88,22 @@ class Values(Watched):
                 self.assertEqual(sample["name"], self.motors[number][0])
                 self.assertGreater(sample["velocity"] * (1 if number == 1 else -1), 100 * RPM)
 
-    def test_an_axis_without_values_is_shown_as_such(self):
+
+class Late(Watched):
+    dds = {"max_period_ms": 600000}
+    topic = "axis_event"
+
+    def test_a_fault_is_told_with_its_code_and_who_comes_late_hears_of_it_and_of_the_last_state_of_every_axis(self):
+        self.sim.ask("fault serial/1 2601 0x0100")
+        code = self.watched(1).until(axis_state=ERROR_STOP)["error_code"]
         for reader in self.each_reader():
-            sample, block = self.newest(reader, 1)
-            self.assert_same(sample, block)
-            self.assertTrue(math.isnan(sample["motor_temperature"]), "a JD has no such sensor")
-
-    def test_numbers_of_samples_only_rise(self):
-        self.set_running(Axis(self.peer(), 2))
-        for reader in self.each_reader():
-            until("many samples", lambda reader=reader: len(reader.samples("axis_state", axis=2)) > 50)
-            numbers = [sample["sequence_number"] for sample in reader.samples("axis_state", axis=2)]
-            self.assertEqual(numbers, sorted(numbers))
-            stamps = [(sample["stamp"]["sec"], sample["stamp"]["nanosec"]) for sample in reader.samples("axis_state", axis=2)]
-            self.assertEqual(stamps, sorted(stamps))
-            self.assertLess(abs(stamps[-1][0] - time.time()), 60, "a stamp is the time of day")
-
-
-class Seldom(Watched):
-    """Nothing is sent that nobody asked for."""
-
-    dds = {"min_period_ms": 200, "max_period_ms": 600000}
-
-    def test_only_changes_are_sent_and_not_more_often_than_configured(self):
-        begun = time.monotonic()
-        master = Axis(self.peer(), 1)
-        self.set_running(master)
-        self.keep_running(master.client, [1], 1.5)
-        for reader in self.each_reader():
-            self.newest(reader, 1)
-            samples = reader.samples("axis_state", axis=1)
-            most = (time.monotonic() - begun) / 0.2
-            self.assertLess(len(samples), most + 5, "of one axis")
-            numbers = [sample["sequence_number"] for sample in samples]
-            self.assertEqual(len(numbers), len(set(numbers)), "the same state came twice")
-            self.assertGreater(numbers[-1] - numbers[0], 2 * len(numbers), "the states between were left out")
-
-    def test_a_late_joiner_gets_the_last_state_of_every_axis(self):
-        master = Axis(self.peer(), 1)
-        master.set(target_velocity=1000)  # owned: a change that comes once
-        for reader in self.each_reader():
-            self.newest(reader, 1)
+            self.assertTrue(reader.sample("axis_event", axis=1, kind=FAULT, code=code)["text"])
         for vendor in self.each_vendor():
-            late = self.peer_of(vendor).read("axis_state")
+            late = self.peer_of(vendor).read("axis_event").read("axis_state")
+            late.sample("axis_event", axis=1, kind=FAULT, code=code)
             for number in self.numbers:
                 self.assertEqual(late.sample("axis_state", axis=number)["name"], self.motors[number][0])
                 self.assert_same(*self.newest(late, number))
-
-
-class Often(Watched):
-    dds = {"min_period_ms": 10, "max_period_ms": 100}
-    lines_of = ("serial",)
-
-    def test_an_axis_that_does_not_change_is_told_again_and_again(self):
-        for reader in self.each_reader():
-            def five_of_one_number(reader=reader):
-                numbers = [sample["sequence_number"] for sample in reader.samples("axis_state", axis=1)]
-                return any(numbers.count(number) >= 5 for number in set(numbers[-20:]))
-
-            until("the same state five times", five_of_one_number)
-
-
-class Unplugged(Watched):
-    def test_a_drive_that_is_gone_keeps_its_instance_and_its_last_values(self):
-        places = [reader.now() for reader in self.readers]
-        for line, number in (("serial", 1), ("leadshine", 2)):
-            _, before = self.newest(self.readers[0], number, link_state=ONLINE)
-            self.sim.ask(f"unplug {line}")
-            until("it is seen to be gone", lambda number=number: self.registers(number)["link_state"] > 3)
-            for reader in self.each_reader():
-                sample, block = self.newest(reader, number)
-                self.assert_same(sample, block)
-                self.assertEqual(sample["valid"] & 0b100, 0)
-                self.assertEqual(sample["statusword"], 0)
-                self.assertAlmostEqual(sample["position"], si("position", before["position_actual"]), delta=0.1)
-            self.sim.ask(f"plug {line}")
-            self.watched(number).until(link_state=ONLINE)
-            for reader in self.each_reader():
-                reader.sample("axis_state", lambda data: data["valid"] & 0b100, since=places[0], axis=number, link_state=ONLINE)
-        for reader, place in zip(self.readers, places):
-            self.assertEqual(reader.all("instance", "axis_state", since=place), [], "disposed, or without a writer")
-            self.assertEqual({told["state"] for told in reader.all("sample", "axis_state", since=place)}, {"alive"})
-
-
-class Gateway(Watched):
-    topic = "gateway_state"
-
-    def test_it_comes_each_second_with_the_counters_of_each_bus(self):
-        for reader in self.each_reader():
-            first = reader.sample("gateway_state")
-            later = reader.sample("gateway_state", lambda data: data["uptime_s"] >= first["uptime_s"] + 2)
-            between = [data for data in reader.samples("gateway_state") if first["uptime_s"] < data["uptime_s"] <= later["uptime_s"]]
-            self.assertLess(len(between), 5)
-            self.assertEqual((later["id"], later["axis_count"], later["axes_online"], later["state"]), (0, 2, 2, 1))
-            self.assertEqual([bus["name"] for bus in later["buses"]], list(self.lines_of))
-            for index, bus in enumerate(later["buses"]):
-                now = self.client.bus(index)
-                self.assertEqual(bus["link"], now["link"])
-                self.assertTrue(0 <= bus["load"] <= 1, bus["load"])
-                self.assertGreater(bus["requests"], first["buses"][index]["requests"])
-                for name in [name for name, (_, kind) in BUS.items() if kind == "u32" and name != "echoes"]:  # no member of it
-                    self.assertTrue(first["buses"][index][name] <= bus[name] <= now[name], name)
-
-    def test_it_tells_of_a_bus_that_is_lost(self):
-        self.sim.ask("unplug serial")
-        for reader in self.each_reader():
-            lost = reader.sample("gateway_state", lambda data: data["alarms"] & 0b10 and data["axes_online"] == 1)
-            self.assertEqual([bus["link"] for bus in lost["buses"]], [0, 1])
-            self.assertEqual(lost["state"], 2)
 
 
 if __name__ == "__main__":

@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which command of which writer is carried out, by which gateway: two gateways in a domain, and commands that come too late."""
-import os
-import signal
-import time
+"""Two gateways in a domain: each does what is for it, and those of one name start nothing."""
 
-from dds_stage import CYCLONE, DONE, FAST, NEVER_STARTED, NOT_NOW, RPM, STATE_UNSUITABLE, VENDORS, DdsStory, main
+from dds_stage import DONE, RPM, VENDORS, DdsStory, main
 from lease_stage import MACHINES
-from modbus import DISABLED, Axis
+from modbus import Axis
 from processes import until
 
 NAME_TAKEN = 22
@@ -96,94 +93,6 @@ class OfOneName(TwoGateways):
     def all_answers(self, master, request):
         master.answer(request)
         return master.answers(request)
-
-
-class WithoutName(OfOneName):
-    name = ""
-
-    def test_they_see_each_other_and_start_nothing(self):
-        super().test_they_see_each_other_and_start_nothing()
-
-
-class TooLate(DdsStory):
-    """axisgate-dds stands still while commands come to it: what the network or the socket holds back is as old."""
-
-    lines_of = ("serial",)
-    max_age_ms = 1500
-
-    def setUp(self):
-        super().setUp()
-        self.begin()
-
-    def held_back(self, ask):
-        """What `ask` sends arrives when it is too old. Its result."""
-        process = self.dds_process()
-        self.addCleanup(os.kill, process, signal.SIGCONT)
-        os.kill(process, signal.SIGSTOP)
-        request = ask()
-        self.let_pass(1.2 * self.max_age_ms / 1000)
-        os.kill(process, signal.SIGCONT)
-        return request
-
-    def do_now(self, peer, *what, **members):
-        """A busy machine may make any command late."""
-        until(f"{what} is in time", lambda: peer.answer(peer.ask(1, *what, **members))[0] == DONE)
-
-    def test_an_enable_is_not_carried_out(self):
-        for vendor in self.each_vendor():
-            peer = self.commander(vendor)
-            request = self.held_back(lambda peer=peer: peer.ask(1, "enable"))
-            self.assert_one_answer(peer, request, NEVER_STARTED)
-            self.assertEqual(self.watched(1).get("axis_state"), DISABLED)
-            self.do_now(peer, "enable")
-            self.do_now(peer, "disable")
-            self.do_now(peer, "release")
-
-    def test_a_stop_is(self):
-        for vendor in self.each_vendor():
-            peer = self.commander(vendor)
-            self.do_now(peer, profile_acceleration=1000 * RPM, profile_deceleration=1000 * RPM)
-            self.do_now(peer, "enable")
-            self.do_now(peer, "run_velocity", target_velocity=200 * RPM)
-            self.until_it_turns(1)
-            request = self.held_back(lambda peer=peer: peer.ask(1, "quick_stop"))
-            self.assert_one_answer(peer, request, DONE)
-            self.until_it_stands(1)
-            request = self.held_back(lambda peer=peer: peer.ask(1, "release"))
-            self.assert_one_answer(peer, request, DONE)
-            self.watched(1).until(owner=0)
-
-
-class Strangers(DdsStory):
-    """A stop of one that owns nothing, beside an owner that commands without pause."""
-
-    lines_of = ("serial",)
-    commands = 20  # more than the eight that may wait at an axis: the rest is refused as busy
-
-    def test_is_in_effect_before_all_that_a_live_and_stronger_owner_asks_after_it(self):
-        self.begin()
-        process = self.dds_process()
-        self.addCleanup(os.kill, process, signal.SIGCONT)
-        for vendor, other in ((FAST, CYCLONE), (CYCLONE, FAST)):
-            self.at = vendor
-            owner = self.commander(vendor, "strength", 9)
-            stranger = self.commander(other, "shared")
-            self.run_by_dds(owner, 1)
-            before = [owner.ask(1, target_velocity=(200 + i) * RPM) for i in range(self.commands)]
-            # What two programs send at the same time comes in any order. Held back, it waits in the order in which it was sent.
-            os.kill(process, signal.SIGSTOP)
-            stop = stranger.ask(1, "quick_stop")
-            stranger.until_written()
-            after = [owner.ask(1, "run_velocity", target_velocity=(200 + i) * RPM) for i in range(self.commands)]
-            owner.until_written()
-            os.kill(process, signal.SIGCONT)
-            self.assertEqual(stranger.answer(stop)[0], DONE)
-            self.assertLessEqual({owner.answer(request)[0] for request in after}, {STATE_UNSUITABLE, NOT_NOW})
-            self.until_it_stands(1)
-            for request in before:
-                owner.answer(request)
-            self.let_go(owner, 1)
-        self.at = None
 
 
 if __name__ == "__main__":
