@@ -123,39 +123,15 @@ class Idle(CanStory):
                 self.assertNotIn("fault", axis.inputs())
 
 
-class Prepared(CanStory):
-    def setUp(self):
-        super().setUp()
-        self.begin()
-        for axis in self.axes:
-            self.prepare(axis)
-
-
-class DriveFallsSilent(Prepared):
-    def test_its_heartbeat_stays_away(self):
-        self.let_heartbeats_pass()  # one that was never heard is not missed
-        for axis in self.axes:
-            with self.subTest(axis=axis.number):
-                others = [other for other in self.axes if other is not axis]
-                self.ask("connect DRIVE off", axis.number)
-                self.gateway.wait_for(f"axis {axis.number}: no sign of life from the node")
-                axis.until(link_state=OFFLINE)
-                with self.refused(NO_PATH):
-                    axis.command("enable")
-                self.assert_goes_on(*others)
-                self.ask("connect DRIVE on", axis.number)
-                axis.until(link_state=ONLINE)
-                self.reset(axis)
-                for other in others:
-                    other.command("disable")
-
-
-class DriveAnswersNothing(Prepared):
+class DriveAnswersNothing(CanStory):
     """Though it lives: its heartbeat goes on."""
 
     timings = {"timeout_ms": 300}
 
     def test_it_is_offline_and_comes_back(self):
+        self.begin()
+        for axis in self.axes:
+            self.prepare(axis)
         for axis in self.axes:
             with self.subTest(axis=axis.number):
                 others = [other for other in self.axes if other is not axis]

@@ -67,42 +67,6 @@ class OneQuestionForEachFinding(Typist, Story):
             self.answers("yes")
         self.ends(0)
 
-    def test_each_question_names_what_a_yes_writes_and_what_it_means(self):
-        self.sit_down()
-        self.is_asked(1, "din1_local_control")
-        self.answers("no", "no", "no")
-        self.ends(1)
-        for words in (r"inputs outrank the bus", r"din1_function \(2010.03\) = 0 .*DIN1.*now 0x1",
-                      r"din5_function \(2010.07\) = 0 .*positive limit.*now 0x10"):
-            self.assertTrue(self.desk.found(words), words + self.desk.text())
-
-    def test_a_yes_to_one_finding_changes_that_one_alone(self):
-        for number, changed in ((1, {"2010.03": 0}), (2, {"2010.05": 0}), (3, {"2010.07": 0, "2010.08": 0})):
-            with self.subTest(number):
-                self.sit_down()
-                self.is_asked(1, "")
-                self.answers(*("yes" if number == it else "no" for it in (1, 2, 3)))
-                self.ends(1)
-                self.assertEqual(self.settings(), self.FACTORY | changed)
-                for address in changed:
-                    self.assertTrue(self.desk.found(address + r"\) reads 0x0"), self.desk.text())
-                    self.sim.ask(f"set lift/1 {address} {self.FACTORY[address]}")
-
-    def test_a_value_that_changed_behind_the_prompt_is_not_overwritten(self):
-        self.sit_down()
-        self.is_asked(1, "din1_local_control")
-        self.sim.ask("set lift/1 2010.03 4")
-        before = self.sim.writes("lift/1", *SETTINGS)
-        self.answers("yes", "no")
-        self.is_asked(3, "limit_inputs_open")
-        self.sim.ask("set lift/1 2010.08 0x40")
-        self.answers("yes")
-        self.ends(1)
-        self.assertTrue(self.desk.found(r"not written: din1_function \(2010.03\) is 0x4 now and was 0x1"), self.desk.text())
-        self.assertTrue(self.desk.found(r"not written: (input_functions|din6_function) .* when you were asked"), self.desk.text())
-        self.assertEqual(self.settings(), self.FACTORY | {"2010.03": 4, "2010.08": 0x40})
-        self.assertEqual(self.sim.writes("lift/1", *SETTINGS), before)
-
     def test_a_drive_that_was_enabled_behind_the_prompt_is_not_written(self):
         self.sit_down()
         self.is_asked(1, "din1_local_control")
@@ -114,15 +78,6 @@ class OneQuestionForEachFinding(Typist, Story):
         self.assertTrue(self.desk.found("not written: axis 1 is enabled"), self.desk.text())
         self.assertEqual(self.settings(), self.FACTORY)
         self.assertEqual(self.sim.writes("lift/1", *SETTINGS), before)
-
-    def test_a_drive_that_is_gone_when_the_yes_comes_is_not_written(self):
-        self.sit_down()
-        self.is_asked(1, "din1_local_control")
-        self.sim.ask("unplug lift")
-        self.answers("yes", "no", "no")
-        self.ends(1)
-        self.assertTrue(self.desk.found("not written: axis 1 is not online"), self.desk.text())
-        self.assertEqual(self.settings(), self.FACTORY)
 
     def test_the_end_of_the_input_is_a_no_to_all_that_is_left(self):
         self.sit_down()
@@ -141,14 +96,6 @@ class OneQuestionForEachFinding(Typist, Story):
         self.sit_down(stdin=None, preexec_fn=lambda: os.close(0))
         self.ends(1)
         self.assertEqual(self.settings(), self.FACTORY)
-
-    def test_answers_may_stand_in_a_file(self):
-        with open(self.path("answers"), "w", encoding="utf-8") as file:
-            file.write("no\nyes\nno\n")
-        with open(self.path("answers"), encoding="utf-8") as file:
-            self.sit_down(stdin=file)
-            self.ends(1)
-        self.assertEqual(self.settings(), self.FACTORY | {"2010.05": 0})
 
     def test_on_a_terminal_a_yes_typed_before_the_question_is_none(self):
         keyboard, terminal = os.openpty()
@@ -194,27 +141,6 @@ class AHeartbeatAtThePrompt(Typist, CanStory):
             self.desk.process.stdin.close()
             self.desk.ended()
             self.assertTrue(self.desk.found(f"{about}: reads as it should"), self.desk.text())
-
-
-class AStepperAsDelivered(Typist, Story):
-    """It follows pulses, and no command of the bus."""
-
-    lines = {"lift": "rtu:id286pro@1+fresh"}
-    RUN_MODE = "296"
-
-    def buses(self):
-        return [bus(self.path("lift"), drive("id286pro", 1, 1), adapter="modbus-rtu")]
-
-    def test_it_is_asked_about_and_written_after_the_yes(self):
-        self.simulate()
-        self.configure()
-        for answer, code, value in (("no", 1, 0), ("yes", 0, 1)):
-            self.sit_down()
-            self.is_asked(1, "run_mode")
-            self.until_the_bus_went_on()
-            self.answers(answer)
-            self.ends(code)
-            self.assertEqual(self.sim.object("lift/1", self.RUN_MODE), value)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import time
 
-from modbus import ALARM_ADOPTED, COMPLETED, CONTINUOUS, DISABLED, NO_MOTION, STANDSTILL, Closed
+from modbus import ALARM_ADOPTED, CONTINUOUS, NO_MOTION, Closed
 from processes import NEVER, Program, until
 from stage import AXISGATE, Story, main
 
@@ -55,14 +55,14 @@ class End(Story):
 
 
 class Told(End):
-    def ends_orderly(self, number):
+    def test_sigterm(self):
         for axis in (self.axis(1), self.axis(2)):
             self.run_velocity(axis)
         writes = {drive: self.sim.writes(drive) for drive in DRIVES.values()}
         waiting = self.connect()
         waiting.gateway()  # accepted, and not only queued by the system
-        self.assertEqual(self.end(number), 0)
-        self.assertRegex(self.gateway.text(), f"signal {int(number)}: ending; the drives keep what they do")
+        self.assertEqual(self.end(signal.SIGTERM), 0)
+        self.assertRegex(self.gateway.text(), "signal 15: ending; the drives keep what they do")
         with self.assertRaises(Closed, msg="clients are told by their connection"):
             waiting.gateway()
         with self.assertRaises(Closed):
@@ -72,35 +72,6 @@ class Told(End):
         for drive in DRIVES.values():
             self.assertTrue(self.runs(drive))
             self.assertEqual(self.sim.writes(drive), writes[drive])
-
-    def test_sigterm(self):
-        self.ends_orderly(signal.SIGTERM)
-
-    def test_sigint(self):
-        self.ends_orderly(signal.SIGINT)
-
-    def test_sigterm_while_a_write_waits_for_its_answer(self):
-        writer = self.connect().axis(1)
-        self.sim.ask("lose lift/1 on")
-        write = self.later(lambda: writer.set(profile_acceleration=12345))
-        until("it is at the drive", lambda: self.sim.writes("lift/1", "6083.00") > 0)
-        self.assertEqual(self.end(signal.SIGTERM), 0)
-        self.assertIsNotNone(write.exception(timeout=NEVER))
-
-    def test_what_waits_ends_and_a_stop_is_done(self):
-        """The drive is silent, so that the end takes its time: a stop still goes to the wire, everything else is refused."""
-        self.run_velocity(self.axis(1))
-        stopper, starter = self.connect().axis(1), self.connect().axis(1)
-        self.sim.ask("lose lift/1 on")
-        waiting = self.later(lambda: starter.set(profile_acceleration=12345))
-        until("it is at the drive", lambda: self.sim.writes("lift/1", "6083.00") > 0)
-        self.gateway.send(signal.SIGTERM)
-        self.gateway.wait_for("signal 15: ending")
-        stop = self.later(lambda: stopper.command("quick_stop"))
-        self.assertEqual(self.gateway.ended(), 0)
-        self.assertIsNotNone(waiting.exception(timeout=NEVER))
-        stop.exception(timeout=NEVER)  # nobody has acknowledged it
-        self.until_it_stands("lift/1")
 
     def test_a_second_signal_ends_it_at_once(self):
         self.sim.ask("lose lift/1 on")
@@ -146,11 +117,6 @@ class Told(End):
         self.gateway.wait_for("signal 1: ending; the drives keep what they do")
         self.assertEqual(self.gateway.ended(), 0)
 
-    def test_the_port_is_free_at_once(self):
-        for _ in range(3):
-            self.assertEqual(self.end(signal.SIGTERM), 0)
-            self.again()
-
 
 class FileOnDisk(End):
     CHANGED = 1 << 8  # gateway alarm
@@ -190,51 +156,6 @@ class Killed(End):
         self.assertEqual(axis.get("motion_state"), NO_MOTION)
         self.assertTrue(self.runs("lift/1"))
         self.assertEqual(self.sim.writes("lift/1"), writes, "nothing is written until it is disabled")
-
-    def test_an_adopted_axis_is_stopped_and_works_again(self):
-        for stop in ("quick_stop", "disable", "halt"):
-            with self.subTest(stop):
-                self.run_velocity(self.axis(1))
-                self.end(signal.SIGKILL)
-                self.again()
-                axis = self.axis(1)
-                axis.command(stop)
-                self.until_it_stands("lift/1")
-                axis.command("disable")
-                axis.until_input("enabled", False)
-                until("no longer adopted", lambda: not axis.get("axis_alarms") & ALARM_ADOPTED)
-                axis.command("enable")
-                axis.until(axis_state=STANDSTILL)
-                self.until_it_stands("lift/1")  # the old velocity is gone
-                self.assertIn("operation", self.sim.state("lift/1"))
-                axis.command("disable")
-
-    def test_an_adopted_move_arrives(self):
-        for number, drive in DRIVES.items():
-            axis = self.axis(number)
-            axis.set(profile_velocity=60 * RPM, target_position=3 * TURN)
-            axis.command("enable")
-            axis.command("move_absolute")
-        self.end(signal.SIGKILL)
-        self.again()
-        for number, drive in DRIVES.items():
-            axis = self.axis(number)
-            self.assertTrue(axis.get("axis_alarms") & ALARM_ADOPTED)
-            until("the move begun by the old gateway arrives", lambda axis=axis: abs(axis.get("position_actual") - 3 * TURN) <= 20)
-            axis.command("disable")
-            axis.until(axis_state=DISABLED)
-            axis.set(profile_velocity=600 * RPM, target_position=0)
-            axis.command("enable")
-            axis.command("move_absolute")
-            axis.until(motion_state=COMPLETED)
-
-    def test_an_axis_that_was_disabled_is_not_adopted(self):
-        self.end(signal.SIGKILL)
-        self.again()
-        for number, drive in DRIVES.items():
-            self.assertFalse(self.axis(number).get("axis_alarms") & ALARM_ADOPTED)
-            self.assertNotIn("operation", self.sim.state(drive))
-            self.assertEqual(self.sim.writes(drive, "6040.00"), 0)
 
 
 class LoopThatStands(End):

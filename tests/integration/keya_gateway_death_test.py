@@ -1,181 +1,169 @@
 # SPDX-License-Identifier: Apache-2.0
 """The gateway is killed or hangs while both motors of a Keya run. By RS232, CAN and CANopen the drive stops by itself; by RS485 it goes
-on, as far as its manual says, and the axes had an alarm that told so."""
+on, as far as its manual says, and the axes had an alarm that told so. A Keya on each of its interfaces at once."""
 import signal
+import time
 
-from keya_stage import (ALARM_NO_COMM_WATCHDOG, CANOPEN, KEYA_CAN, MANY_KEEP_ALIVES, RS232, RS485, SPEED, TURN, KeyaStory,
-                        main, on)
+from lease_stage import KEYAS, NOBODY, Axis, Machine, main
 from modbus import CONTINUOUS, DISABLED, FAILED, ONLINE
 from processes import until
 
 COMMUNICATION = 0x8130
-LEASE_MS = 1500
+ALARM_NO_COMM_WATCHDOG = 1
+SPEED = 100  # rpm: 0.2 s of the drive's ramp as delivered
+LONGER_THAN_A_WATCHDOG_MS = 1500
+MANY_KEEP_ALIVES = 1.0  # seconds; they are 300 ms apart
+UNWATCHED = "keya485"
+WATCHED = tuple(line for line in KEYAS if line != UNWATCHED)
 ROUNDS = 6
 
 
-class GatewayDies(KeyaStory):
-    def run_in(self, interface):
-        self.begin(interface)
-        self.run_both()
-        watched = 0 if interface.loss else ALARM_NO_COMM_WATCHDOG
-        for axis in self.seen:
-            self.assertEqual(axis.get("axis_alarms") & ALARM_NO_COMM_WATCHDOG, watched)
-        until("both are at their speed", lambda: self.speeds() == [SPEED, SPEED])
-        self.assertEqual(self.trips(), 0)
+class GatewayDies(Machine):
+    lines_of = KEYAS
+    lease = {"timeout_ms": 60000}
+
+    def set_out(self):
+        self.begin()
+        self.owner = self.peer()
+        self.run_all()
+        for number, (line, _) in self.motors.items():
+            alarms = self.watched(number).get("axis_alarms")
+            self.assertEqual(alarms & ALARM_NO_COMM_WATCHDOG, ALARM_NO_COMM_WATCHDOG if line == UNWATCHED else 0)
+        self.assertEqual(self.trips(), dict.fromkeys(KEYAS, 0))
+
+    def run_all(self):
+        """One motor after the other, while the owner asks."""
+        for number in self.numbers:
+            self.set_running(Axis(self.owner, number), SPEED)
+        until("all are at their speed", lambda: self.owner.gateway() and all(self.speed(number) == SPEED for number in self.numbers))
+
+    # What the drives know.
+
+    def ask(self, word, lines=WATCHED):
+        return {line: self.sim.ask(f"{word} {line}/1") for line in lines}
+
+    def trips(self):
+        return {line: int(trips) for line, trips in self.ask("trips", KEYAS).items() if line in self.lines_of}
+
+    def stopped(self):
+        """Of every drive that watches its master: both motors stand and are disabled."""
+        return all(state == "disabled disabled" for state in self.ask("state").values()) and \
+            all(speed == "0 0" for speed in self.ask("speed").values())
+
+    def until_stopped_by_their_watchdogs(self):
+        until("each drive notices", lambda: all(self.trips()[line] for line in WATCHED))
+        until("they stand", self.stopped)
+
+    def assert_the_unwatched_runs_on(self):
+        """No command for longer than any watchdog of this drive, and yet both motors turn."""
+        until("silence", lambda: int(self.sim.ask(f"last-command {UNWATCHED}/1").split()[0]) > LONGER_THAN_A_WATCHDOG_MS)
+        self.assertEqual(self.sim.ask(f"speed {UNWATCHED}/1"), f"{SPEED} {SPEED}")
+
+    def assert_never_enabled(self):
+        """While many a keep-alive would be due. Looks without a pause: an enable for a moment is one too."""
+        where = self.ask("position")
+        over = time.monotonic() + MANY_KEEP_ALIVES
+        while self.watcher.gateway() and time.monotonic() <= over:
+            self.assertTrue(self.stopped())
+            self.assertEqual(self.ask("position"), where)
+
+    def assert_nothing_starts(self):
+        """What has stopped stays so until somebody enables it, and then is kept alive again."""
+        stopped = [number for number, (line, _) in self.motors.items() if line in WATCHED]
+        for number in stopped:
+            self.watched(number).until(link_state=ONLINE)
+            self.assertNotIn("enabled", self.watched(number).inputs())
+        self.assert_never_enabled()
+        trips = self.trips()
+        for number in stopped:
+            self.set_running(Axis(self.owner, number), SPEED)
+        self.keep_running(self.owner, stopped, LONGER_THAN_A_WATCHDOG_MS / 1000)
+        self.assertEqual(self.trips(), trips)
 
     def stand_still(self):
-        if self.interface.loss:
-            # Right behind a keep-alive: none is on its way out that would be sent when the gateway goes on.
-            sent = self.commands()
-            until("a keep-alive", lambda: self.commands() > sent)
         self.gateway.send(signal.SIGSTOP)
         self.addCleanup(self.gateway.send, signal.SIGCONT)
 
 
 class Killed(GatewayDies):
-    @on(RS232, KEYA_CAN, CANOPEN)
-    def test_the_drive_stops_by_itself_and_nothing_starts_it_again(self, interface):
-        self.run_in(interface)
-        self.kill_the_gateway()
-        self.assert_stopped_by_its_watchdog()
-        where, commands = self.positions(), self.commands()
-        self.start_another_gateway()
-        for axis in self.seen:
-            axis.until(link_state=ONLINE, axis_state=DISABLED, error_code=COMMUNICATION)
-        self.assert_nothing_is_enabled_by_itself(where)
-        self.assertEqual(self.commands(), commands)
-        self.assert_fresh_enable_works()
-
-    def test_on_rs485_the_motors_run_on(self):
-        self.run_in(RS485)
-        self.kill_the_gateway()
-        self.assert_runs_on()
-
-
-class EndedInGoodOrder(GatewayDies):
-    @on(RS232, KEYA_CAN, CANOPEN)
-    def test_the_drive_stops_by_itself(self, interface):
-        self.run_in(interface)
-        self.assertEqual(self.gateway.terminate(), 0)
-        self.assert_stopped_by_its_watchdog()
-
-    def test_on_rs485_the_motors_run_on(self):
-        self.run_in(RS485)
-        self.assertEqual(self.gateway.terminate(), 0)
-        self.assert_runs_on()
+    def test_the_drive_stops_by_itself_and_nothing_starts_it_again(self):
+        self.set_out()
+        self.gateway.send(signal.SIGKILL)
+        self.gateway.ended()
+        self.until_stopped_by_their_watchdogs()
+        self.assert_the_unwatched_runs_on()
+        commands = self.ask("commands", KEYAS)
+        self.run_gateway()
+        self.client = self.watcher = self.peer("127.0.0.9")
+        self.until_online()
+        self.owner = self.peer()
+        for number, (line, _) in self.motors.items():
+            if line in WATCHED:
+                self.watched(number).until(axis_state=DISABLED, error_code=COMMUNICATION)
+        self.assert_never_enabled()
+        self.assertEqual(self.ask("commands", KEYAS), commands)
+        self.assert_nothing_starts()
 
 
 class Hangs(GatewayDies):
     """Stopped until the drive has noticed, and then let go on: it must not carry on where it was."""
 
-    @on(RS232, KEYA_CAN, CANOPEN)
-    def test_nothing_is_carried_on(self, interface):
-        self.run_in(interface)
+    def test_nothing_is_carried_on(self):
+        self.set_out()
         self.stand_still()
-        self.assert_stopped_by_its_watchdog()
-        where = self.positions()
+        self.until_stopped_by_their_watchdogs()
+        self.assert_the_unwatched_runs_on()
         self.gateway.send(signal.SIGCONT)
-        self.assert_never_enabled(where)
-        for axis in self.seen:
-            axis.until(link_state=ONLINE, axis_state=DISABLED, motion_state=FAILED, error_code=COMMUNICATION)
-        self.assert_nothing_is_enabled_by_itself(where)
-        self.assertEqual(self.trips(), 1, "it was not enabled for a moment either")
-        self.assert_fresh_enable_works()
-
-    def test_on_rs485_the_motors_run_on(self):
-        self.run_in(RS485)
-        self.stand_still()
-        self.assert_runs_on()
-        self.gateway.send(signal.SIGCONT)
-        for axis in self.axes:
-            axis.until(link_state=ONLINE, axis_state=CONTINUOUS)
-            axis.command("quick_stop")
-        self.until_it_stands()
-        self.assert_nothing_is_enabled_by_itself()
-        self.assert_fresh_enable_works()
+        self.assert_never_enabled()
+        for number, (line, _) in self.motors.items():
+            if line in WATCHED:
+                self.watched(number).until(axis_state=DISABLED, motion_state=FAILED, error_code=COMMUNICATION)
+            else:
+                self.watched(number).until(axis_state=CONTINUOUS)
+        self.assertEqual({trips for line, trips in self.trips().items() if line in WATCHED}, {1}, "not enabled for a moment either")
+        self.assert_nothing_starts()
 
 
 class HangsAgainAndAgain(GatewayDies):
     """Whatever is due first when it goes on, a question or the keep-alive: on RS232 that one carries the enable of both motors. The
     drive answers slowly here, so that what the gateway finds first is an answer from before the drive has tripped."""
 
+    lines_of = ("keya232",)
+
+    def ask(self, word, lines=WATCHED):
+        return super().ask(word, self.lines_of)
+
     def test_on_rs232(self):
-        self.begin(RS232)
-        self.sim.ask("reply-delay cart 40")
+        self.begin()
+        self.owner = self.peer()
+        self.sim.ask("reply-delay keya232 40")
         for count in range(1, ROUNDS + 1):
-            self.run_both()
-            self.gateway.send(signal.SIGSTOP)
-            self.addCleanup(self.gateway.send, signal.SIGCONT)
-            until("the drive notices", lambda: self.trips() == count)
-            self.until_it_stands()
-            where = self.positions()
+            self.run_all()
+            self.stand_still()
+            until("the drive notices", lambda count=count: self.trips() == {"keya232": count})
+            until("it stands", self.stopped)
             self.gateway.send(signal.SIGCONT)
-            self.assert_never_enabled(where)
+            self.assert_never_enabled()
 
 
-class HangsForLong(GatewayDies):
-    def hang(self, interface, *leases):
-        self.begin(interface, lease=[{"timeout_ms": timeout} for timeout in leases])
-        self.run_both()
-        self.stand_still()
-        until("it is silent", lambda: int(self.ask("last-command").split()[0]) > LEASE_MS + 300)
-        if interface.loss:
-            self.assert_stopped_by_its_watchdog()
-        where = self.positions()
-        self.gateway.send(signal.SIGCONT)
-        if interface.loss:
-            self.assert_never_enabled(where)
-        self.seen[0].until(owner=0)
-
-
-class HangsLongerThanALease(HangsForLong):
+class HangsLongerThanALease(GatewayDies):
     """By RS485 nothing but the leases stops the motors, and at once."""
 
-    @on(RS232, RS485, KEYA_CAN, CANOPEN)
-    def test_both_are_stopped_for_good(self, interface):
-        self.hang(interface, LEASE_MS, LEASE_MS)
-        self.until_it_stands()
-        self.assert_nothing_is_enabled_by_itself()
-        self.assert_fresh_enable_works()
+    lease = {"timeout_ms": 3000}
 
-
-class HangsLongerThanOneOfTwoLeases(HangsForLong):
-    """The stop of motor A is no reason to set motor B going."""
-
-    @on(RS232, RS485, KEYA_CAN, CANOPEN)
-    def test_one_is_stopped_and_the_other_is_not_set_going(self, interface):
-        self.hang(interface, LEASE_MS, 60000)
-        if interface.loss:
-            self.seen[1].until(axis_state=DISABLED, motion_state=FAILED)
-            self.assert_nothing_is_enabled_by_itself()
-        else:
-            until("motor A stands without torque", lambda: self.enabled() == [False, True] and self.speeds() == [0, SPEED])
-            self.assertEqual(self.seen[1].get("axis_state"), CONTINUOUS)
-
-
-class HangsInAMove(GatewayDies):
-    """Motor A is on its way to a far position, motor B runs at speed. Neither goes on, and an enable moves nothing."""
-
-    @on(RS232, KEYA_CAN, CANOPEN)
-    def test_an_enable_moves_nothing(self, interface):
-        self.begin(interface, drive="+0020=3", constants={"control_mode_a": 3})
-        left, right = self.axes
-        self.enable(left)
-        self.enable(right)
-        self.run_axis(right)
-        left.set(target_position=20000 * TURN)
-        number = left.command("move_absolute")
-        until("it moves", lambda: self.positions()[0] > TURN)
+    def test_both_are_stopped_for_good(self):
+        self.set_out()
         self.stand_still()
-        self.assert_stopped_by_its_watchdog()
-        where = self.positions()
+        until("silence", lambda: int(self.sim.ask(f"last-command {UNWATCHED}/1").split()[0]) > self.lease["timeout_ms"] + 300)
+        self.until_stopped_by_their_watchdogs()
         self.gateway.send(signal.SIGCONT)
-        self.assert_never_enabled(where)
-        self.seen[0].until(axis_state=DISABLED, motion_state=FAILED, motion_id=number)
-        for axis in self.axes:
-            self.enable(axis)
-        self.let_pass(MANY_KEEP_ALIVES)
-        self.assertEqual((self.enabled(), self.positions()), ([True, True], where), "an enable moves nothing")
+        self.assert_never_enabled()
+        for number, (line, _) in self.motors.items():
+            self.watched(number).until(owner=NOBODY)
+            if line == UNWATCHED:
+                self.assert_stopped_for_good(number)
+        self.owner = self.peer()
+        self.assert_nothing_starts()
 
 
 if __name__ == "__main__":

@@ -32,7 +32,10 @@ MACHINES = {
     "leadshine": ("lawicel:ld2@1", "canopen", "ld2", "606C.00"),
     "keya232": ("keya-rs232", "keya-rs232", "keya", None),
     "keyacan": ("lawicel:keya-can@1", "keya-can", "keya", None),
+    "keya485": ("keya-rs485@1", "keya-rs485", "keya", None),
+    "keyacanopen": ("lawicel:keya-kydas4860-2e@1", "canopen", "keya", None),
 }
+KEYAS = tuple(line for line in MACHINES if line.startswith("keya"))
 
 
 class Peer(Client):
@@ -56,7 +59,7 @@ class Peer(Client):
 class Machine(Story):
     """Axis n is motor n of these lines; a Keya has two. Nobody but those whom a story connects says anything."""
 
-    lines_of = tuple(MACHINES)
+    lines_of = tuple(line for line in MACHINES if line not in ("keya485", "keyacanopen"))  # two of its interfaces are enough
     lease = {"timeout_ms": 2000}
     axis_options = {}
     listener_options = {}

@@ -21,8 +21,6 @@ from st_machine import Machine as StMachine  # noqa: E402
 
 MACHINES["mdserial"] = ("md@1", "kinco-serial", "md", "606C.00")
 MACHINES["mdcan"] = ("lawicel:md@1", "canopen", "md", "606C.00")
-MACHINES["keya485"] = ("keya-rs485@1", "keya-rs485", "keya", None)
-MACHINES["keyacanopen"] = ("lawicel:keya-kydas4860-2e@1", "canopen", "keya", None)
 MACHINES["keyaplaces"] = ("lawicel:keya-can@1+0020=3+0050=3", "keya-can", "keyaplaces", None)
 DRIVES["keyaplaces"] = ("keya-kydas4860-2e", {"control_mode_a": 3, "control_mode_b": 3})
 EVERY_KIND = ("serial", "modbus", "stepper", "kincocan", "leadshine", "keya232", "mdserial", "mdcan", "keyacan", "keya485", "keyacanopen",

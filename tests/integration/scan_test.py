@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`axisgate scan` on a serial port and on a serial CAN adapter: who is there is found, nothing is written, and what cannot be used is
+named. What is asked of whom, and what a scan makes of it, is told by Scan and SerialScan of tests/unit/commands."""
+import os
+import pwd
+import re
+import shutil
+import subprocess
+import tempfile
+
+from processes import NEVER, Program
+from stage import AXISGATE, SOURCE, Story, main
+
+NOBODY_KNOWS = 65534  # a user without rights, of every system
+CONSTANTS = {"kinco-jd": '"constants": {"peak_current_a": 27.5}', "kinco-md": '"constants": {"peak_current_a": 36}'}
+# Patience for a busy machine: who does not answer within that is not there.
+SERIAL, CAN = ("--timeout-ms", "2500"), ("--timeout-ms", "1000")
+# Line: who hangs on it, and what of it a scan is asked to look at.
+LINES = {"kinco": ("jd@3,md@4", ("--baud", "38400", "--stations", "3-4", *SERIAL)),
+         "rtu": ("rtu:md@2,id286pro@3", ("--baud", "19200", "--stations", "2-3", "--protocol", "modbus-rtu", *SERIAL)),
+         "can": ("lawicel:ld2@3,md@4,jd@5", ("--nodes", "1-6", *CAN))}
+FOUND = {"kinco": {3: "kinco-jd", 4: "kinco-md"}, "rtu": {2: "kinco-md", 3: "id286pro"},
+         "can": {3: "leadshine-ld2-can", 4: "kinco-md", 5: "kinco-jd"}}
+PROPOSED = {"rtu": ("a bus of a configuration", "%s"),
+            "can": ('"drives" of a configuration', '{"name": "can", "adapter": "canopen", "device": "slcan:can", "bitrate": 500000, "drives": [%s]}')}
+
+
+class ScanStory(Story):
+    lines = {line: drives for line, (drives, _) in LINES.items()}
+
+    def device(self, line):
+        return f"slcan:{self.path(line)}" if line == "can" else self.path(line)
+
+    def scan(self, line, *options):
+        return self.command_line("scan", self.device(line), *options)
+
+    def profiles(self, line, text):
+        """Of each line of the table: the node and the profile that fits."""
+        table = text.partition("\n\n")[0].splitlines()[1:]
+        cells = [re.split(r" {2,}", row.strip()) for row in table]
+        column, profile = (0, -1) if line == "can" else (2, 3)
+        return {int(row[column]): row[profile].split()[0] for row in cells}
+
+
+class WhoIsThere(ScanStory):
+    def setUp(self):
+        super().setUp()
+        self.simulate()
+
+    def test_each_drive_is_found_with_the_profile_that_fits_it_and_nothing_is_written(self):
+        drives = [f"{line}/{node}" for line, nodes in FOUND.items() for node in nodes]
+        before = [self.sim.state(name) for name in drives]
+        for line, (_, options) in LINES.items():
+            ended = self.scan(line, *options)
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+            self.assertEqual(self.profiles(line, ended.stdout), FOUND[line])
+        self.assertEqual([self.sim.state(name) for name in drives], before)
+        for name in drives:
+            if name != "rtu/3":  # whose registers have other names
+                self.assertEqual(self.sim.writes(name), 0)
+
+    def test_what_it_proposes_is_a_configuration(self):
+        for line, (words, bus) in PROPOSED.items():
+            proposed = self.scan(line, *LINES[line][1]).stdout.partition(words)[2].partition("\n")[2]
+            for profile, constants in CONSTANTS.items():
+                proposed = proposed.replace(f'"profile": "{profile}"', f'"profile": "{profile}", {constants}')
+            config = self.path("proposed.json")
+            with open(config, "w", encoding="utf-8") as file:
+                file.write('{"modbus_tcp": [{"listen": "127.0.0.1:1502"}], "buses": [' + bus % proposed + "]}")
+            checked = self.command_line("check", config)
+            self.assertNotIn("unknown key", checked.stderr)
+            self.assertEqual(checked.stdout.count("\nAxis "), len(FOUND[line]), checked.stdout + checked.stderr)
+
+
+class WhatCannotBeUsed(ScanStory):
+    def test_a_port_that_a_gateway_has_is_refused_and_left_alone(self):
+        self.lines = {"lift": "jd@1", "feeder": "md@1"}
+        self.start()
+        ended = self.scan("lift", "--stations", "1-3")
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn(f"{self.path('lift')}: another process is using it", ended.stderr)
+        self.assert_online(self.axis(1))
+
+    def test_a_port_that_is_pulled_out_meanwhile_and_one_that_is_not_there(self):
+        self.simulate()
+        scans = {line: self.keep(Program("axisgate scan", [AXISGATE, "scan", self.device(line), "--timeout-ms", "5000"]))
+                 for line in ("kinco", "can")}
+        for program in scans.values():
+            program.wait_for("% asked|nodes asked|at most where nobody answers")
+        self.sim.terminate()
+        for line, program in scans.items():
+            self.assertEqual(program.ended(), 1)
+            self.assertIn(self.path(line), program.text())
+        ended = self.scan("no-such-port")
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn("No such file or directory", ended.stderr)
+
+    def test_ctrl_c_shows_what_was_found_so_far(self):
+        self.simulate()
+        for line, options in (("kinco", ("--stations", "3-120", "--baud", "38400", "--protocol", "kinco-serial", *SERIAL)),
+                              ("can", ("--nodes", "3-127", *CAN))):
+            command = [AXISGATE, "scan", self.device(line), *options]
+            with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                for text in process.stderr:
+                    if f" {len(FOUND[line])} found" in text:
+                        break
+                process.send_signal(2)
+                out, err = process.communicate(timeout=NEVER)
+            self.assertEqual(process.returncode, 1)
+            self.assertEqual(self.profiles(line, out), FOUND[line])
+            self.assertRegex(err, "ended before all (stations|nodes) were asked")
+
+    def test_without_the_right_to_open_it_the_group_is_named(self):
+        self.simulate()
+        # A copy that this user can reach, wherever the build is, and a device that belongs to a group.
+        with tempfile.TemporaryDirectory(prefix="axisgate-rights-") as folder:
+            os.chmod(folder, 0o755)
+            program, device = f"{folder}/axisgate", os.path.realpath(self.path("kinco"))
+            shutil.copy(AXISGATE, program)
+            shutil.copytree(f"{SOURCE}/schemas/drives", f"{folder}/drives")
+            os.chown(device, 0, 20)
+            os.chmod(device, 0o660)
+            ended = subprocess.run([program, "scan", device, "--profiles", f"{folder}/drives"], user=NOBODY_KNOWS, group=NOBODY_KNOWS, extra_groups=[],
+                                   capture_output=True, text=True, timeout=NEVER, check=False)
+        name = pwd.getpwuid(NOBODY_KNOWS).pw_name
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn(f"{device}: Permission denied: it belongs to group dialout, and user {name} is not in it: "
+                      f"usermod -aG dialout {name}", ended.stderr)
+
+
+if __name__ == "__main__":
+    main()
