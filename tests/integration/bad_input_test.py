@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bad input: what is no Modbus, what is Modbus and wrong, a wrong configuration, a device that somebody else has."""
+"""Bad input: what is no Modbus, a wrong configuration, a device that somebody else has. Each mistake is told by tests/config, any bytes are
+by tests/fuzz and tests/unit/modbus_tcp."""
 import json
-import random
 import socket
 import struct
 
 from pymodbus.diag_message import ReturnBusCommunicationErrorCountRequest
 
-from modbus import BUSY, NO_ANSWER, ONLINE, Closed, Refused
+from modbus import BUSY, NO_ANSWER, ONLINE, Refused
 from processes import NEVER, until
-from stage import Gateway, Story, drive, main
+from stage import Gateway, Story, main
 
 
 class WrongBytes(Story):
@@ -31,18 +31,6 @@ class WrongBytes(Story):
     def malformed(self):
         return self.client.execute(ReturnBusCommunicationErrorCountRequest(0, unit=1)).message[0]
 
-    def answer(self, pdu, unit=1):
-        """The answer's PDU; a connection that was closed is none."""
-        if not hasattr(self, "raw"):
-            self.raw = self.open()
-        self.raw.sendall(struct.pack(">HHHB", 7, 0, len(pdu) + 1, unit) + pdu)
-        head = self.raw.recv(7, socket.MSG_WAITALL)
-        if len(head) < 7:
-            raise Closed("by the gateway")
-        number, protocol, length, answered = struct.unpack(">HHHB", head)
-        self.assertEqual((number, protocol, answered), (7, 0, unit))
-        return self.raw.recv(length - 1, socket.MSG_WAITALL)
-
     def test_what_is_no_frame_closes_its_connection_and_is_counted(self):
         wrong = {"protocol 1": struct.pack(">HHHBBHH", 1, 1, 6, 1, 3, 0, 1), "length 0": struct.pack(">HHHB", 1, 0, 0, 1),
                  "length 1": struct.pack(">HHHB", 1, 0, 1, 1), "length 255": struct.pack(">HHHB", 1, 0, 255, 1) + bytes(254),
@@ -54,37 +42,6 @@ class WrongBytes(Story):
                 self.assertTrue(self.is_closed(connection))
                 self.assertEqual(self.malformed(), count)
                 self.assertEqual(self.client.gateway()["map_version"], 1)
-
-    def test_a_good_request_before_the_wrong_one_is_answered(self):
-        connection = self.open()
-        connection.sendall(struct.pack(">HHHBBHH", 1, 0, 6, 1, 3, 0, 1) + struct.pack(">HHHBBHH", 2, 9, 6, 1, 3, 0, 1))
-        self.assertEqual(connection.recv(11, socket.MSG_WAITALL), struct.pack(">HHHBBBH", 1, 0, 5, 1, 3, 2, 1))
-        self.assertTrue(self.is_closed(connection))
-
-    def test_random_bytes_stop_nobody(self):
-        chance = random.Random(20)
-        for _ in range(200):
-            connection = self.open()
-            try:
-                connection.sendall(chance.randbytes(chance.randrange(1, 300)))
-                connection.shutdown(socket.SHUT_WR)
-                while connection.recv(4096):
-                    pass
-            except OSError:
-                pass  # closed while we talked
-            connection.close()
-        for number in (1, 2):
-            self.assertEqual(self.axis(number).get("link_state"), ONLINE)
-            self.assertNotIn("enabled", self.axis(number).inputs())
-
-    def test_random_requests_are_all_answered(self):
-        chance = random.Random(21)
-        reading = [1, 2, 3, 4, 7, 8, 20, 24, 43, 90]
-        for _ in range(500):
-            pdu = bytes([chance.choice(reading)]) + chance.randbytes(chance.randrange(0, 40))
-            answer = self.answer(pdu)
-            self.assertIn(answer[0] & 0x7F, reading)
-        self.assert_online(self.axis(1))
 
 
 class WrongConfiguration(Story):
@@ -115,36 +72,11 @@ class WrongConfiguration(Story):
                 self.assertRegex(done.stderr, rf"(?m)^{path}: {pointer}\b.*")
             self.assert_nothing_opened(listener)
 
-    def test_mistakes_between_places_are_named_all_at_once(self):
-        self.simulate()
-        listener = self.listener()
-        buses = self.buses()
-        buses[1]["drives"] = [drive("md", 1, 1), drive("md", 1, 7)]  # axis 1 again, node 1 twice
-        buses[1]["name"] = buses[0]["name"]
-        done = self.command_line("run", self.write({"modbus_tcp": [listener], "buses": buses}))
-        self.assertEqual(done.returncode, 1)
-        for pointer in ("/buses/1/name", "/buses/1/drives/0/axes/0/axis", "/buses/1/drives/1/node"):
-            self.assertIn(f"{self.path('gateway.json')}: {pointer}: ", done.stderr)
-        self.assert_nothing_opened(listener)
-
     def test_what_is_no_json_is_named_with_its_line(self):
         done = self.command_line("run", self.write('{\n  "buses": [\n    {"name": }\n  ]\n}'))
         self.assertEqual(done.returncode, 1)
         self.assertIn("gateway.json", done.stderr)
         self.assertRegex(done.stderr, r"\b3\b")
-
-    def test_a_file_that_is_not_there(self):
-        done = self.command_line("run", self.path("none.json"))
-        self.assertEqual(done.returncode, 1)
-        self.assertIn(self.path("none.json"), done.stderr)
-
-    def test_an_unknown_profile_is_named(self):
-        buses = self.buses()
-        buses[0]["drives"][0]["profile"] = "kinco-jdd"
-        done = self.command_line("run", self.write({"modbus_tcp": [self.listener()], "buses": buses}))
-        self.assertEqual(done.returncode, 1)
-        self.assertIn("/buses/0/drives/0/profile: ", done.stderr)
-        self.assertIn("kinco-jdd", done.stderr)
 
 
 class TakenDevice(Story):

@@ -21,8 +21,8 @@ LINES = {"kinco": ("jd@3,md@4", ("--baud", "38400", "--stations", "3-4", *SERIAL
          "can": ("lawicel:ld2@3,md@4,jd@5", ("--nodes", "1-6", *CAN))}
 FOUND = {"kinco": {3: "kinco-jd", 4: "kinco-md"}, "rtu": {2: "kinco-md", 3: "id286pro"},
          "can": {3: "leadshine-ld2-can", 4: "kinco-md", 5: "kinco-jd"}}
-PROPOSED = {"rtu": ("a bus of a configuration", "%s"),
-            "can": ('"drives" of a configuration', '{"name": "can", "adapter": "canopen", "device": "slcan:can", "bitrate": 500000, "drives": [%s]}')}
+BUS_ON_CAN = '{"name": "can", "adapter": "canopen", "device": "slcan:can", "bitrate": 500000, "drives": [%s]}'
+PROPOSED = {"rtu": ("a bus of a configuration", "%s"), "can": ('"drives" of a configuration', BUS_ON_CAN)}
 
 
 class ScanStory(Story):
@@ -120,8 +120,8 @@ class WhatCannotBeUsed(ScanStory):
             shutil.copytree(f"{SOURCE}/schemas/drives", f"{folder}/drives")
             os.chown(device, 0, 20)
             os.chmod(device, 0o660)
-            ended = subprocess.run([program, "scan", device, "--profiles", f"{folder}/drives"], user=NOBODY_KNOWS, group=NOBODY_KNOWS, extra_groups=[],
-                                   capture_output=True, text=True, timeout=NEVER, check=False)
+            ended = subprocess.run([program, "scan", device, "--profiles", f"{folder}/drives"], user=NOBODY_KNOWS, group=NOBODY_KNOWS,
+                                   extra_groups=[], capture_output=True, text=True, timeout=NEVER, check=False)
         name = pwd.getpwuid(NOBODY_KNOWS).pw_name
         self.assertEqual(ended.returncode, 1)
         self.assertIn(f"{device}: Permission denied: it belongs to group dialout, and user {name} is not in it: "
