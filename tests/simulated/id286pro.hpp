@@ -49,7 +49,6 @@ class Id286pro final : public RtuSlave {
   void set_input(int input, bool on);
   void jam(bool jammed) { axis_.jam(jammed); }               // the rotor stands; an open-loop drive does not see it
   RtuException poke(std::uint16_t row, std::int64_t value);  // as the maker's tool would write it: not counted
-  void set_voltage(std::int64_t hundredths) { voltage_ = hundredths; }
 
   // What a world looks at.
   const Id286proOptions& options() const { return options_; }

@@ -7,11 +7,7 @@
 namespace axisgate::simulated {
 
 KeyaLine::KeyaLine(const KeyaLineOptions& options, Random random, ToHostSink sink)
-    : options_(options),
-      random_(random),
-      sink_(std::move(sink)),
-      journal_(options.journal_capacity),
-      outgoing_(options.baud) {}
+    : ByteLine(options.baud, random, std::move(sink)), options_(options), journal_(options.journal_capacity) {}
 
 KeyaDrive& KeyaLine::add(const KeyaOptions& options) {
   if (options_.wiring == KeyaWiring::rs232 && !slots_.empty()) {
@@ -23,6 +19,7 @@ KeyaDrive& KeyaLine::add(const KeyaOptions& options) {
   slot.heartbeat = options_.wiring == KeyaWiring::rs232 ? options.heartbeat : Time{};
   slot.next_heartbeat = now_ + slot.heartbeat;
   slots_.push_back(std::move(slot));
+  count_one_more();
   return *slots_.back().drive;
 }
 
@@ -47,62 +44,17 @@ void KeyaLine::set_heartbeat(std::size_t position, Time period) {
   slots_[position].next_heartbeat = now_ + period;
 }
 
-void KeyaLine::from_host(std::span<const std::uint8_t> bytes, Time now) {
-  advance(now);
-  if (adapter_echo_ != AdapterEcho::off) {
-    outgoing_.send(std::max(host_free_, now), {0, ByteOrigin::echo, slots_.size(), {bytes.begin(), bytes.end()}});
-  }
-  if (adapter_echo_ == AdapterEcho::only) return advance(now);
-  for (const std::uint8_t byte : bytes) {
-    host_free_ = std::max(host_free_, now) + byte_time(options_.baud);
-    incoming_.push_back({host_free_, byte});
-  }
-  advance(now);
-}
-
 void KeyaLine::cut() {
-  incoming_.clear();
-  outgoing_.cut();
+  ByteLine::cut();
   for (Slot& slot : slots_) slot.receiver.forget();
 }
 
 std::optional<Time> KeyaLine::next_event() const {
-  std::optional<Time> next;
-  const auto consider = [&next](Time at) { next = next ? std::min(*next, at) : at; };
-  if (!incoming_.empty()) consider(incoming_.front().at);
-  if (const auto event = outgoing_.next_event()) consider(*event);
+  std::optional<Time> next = ByteLine::next_event();
   for (const Slot& slot : slots_) {
-    if (slot.faults.armed(DriveFault::babble)) consider(slot.next_babble);
-    if (slot.heartbeat > Time{}) consider(slot.next_heartbeat);
+    if (slot.heartbeat > Time{}) next = next ? std::min(*next, slot.next_heartbeat) : slot.next_heartbeat;
   }
   return next;
-}
-
-void KeyaLine::advance(Time now) {
-  // Of one time: bytes at the host first, then drives that begin to send, then bytes at the drives, then what the
-  // drives say by themselves.
-  for (;;) {
-    const auto next = next_event();
-    if (!next || *next > now) break;
-    now_ = std::max(now_, *next);
-    if (outgoing_.arrives_at(*next)) {
-      const Chunk chunk = outgoing_.take_arrived();
-      sink_({*next, chunk.tag, chunk.origin, chunk.bytes});
-    } else if (outgoing_.begins_at(*next)) {
-      outgoing_.begin();
-    } else if (!incoming_.empty() && incoming_.front().at == *next) {
-      const IncomingByte arrived = incoming_.front();
-      incoming_.pop_front();
-      byte_arrives(arrived.byte, arrived.at);
-    } else {
-      own_accord(*next);
-    }
-  }
-  now_ = std::max(now_, now);
-  for (Slot& slot : slots_) {
-    slot.drive->advance(now_);
-    if (!slot.faults.armed(DriveFault::babble)) slot.next_babble = now_ + slot.faults.babble_period;
-  }
 }
 
 void KeyaLine::byte_arrives(std::uint8_t byte, Time at) {
@@ -116,13 +68,14 @@ void KeyaLine::byte_arrives(std::uint8_t byte, Time at) {
 
 void KeyaLine::request_arrives(std::size_t position, const KeyaFrame& request, Time at) {
   Slot& slot = slots_[position];
+  DriveFaults& with = faults(position);
   KeyaExchange exchange{++tags_, at, slot.drive->options().node, {request.begin(), request.end()}, {}, {}};
-  if (slot.faults.strikes(DriveFault::unresponsive, random_)) {
+  if (with.strikes(DriveFault::unresponsive, random_)) {
     journal_.record(std::move(exchange));
     return;
   }
-  if (slot.faults.strikes(DriveFault::restart, random_)) {
-    const bool acts = slot.faults.restart_acts ? *slot.faults.restart_acts : random_.chance(0.5);
+  if (with.strikes(DriveFault::restart, random_)) {
+    const bool acts = with.restart_acts ? *with.restart_acts : random_.chance(0.5);
     if (acts) (void)keya_answer(*slot.drive, options_.wiring, request, at);
     restart(position, at);
     journal_.record(std::move(exchange));
@@ -130,51 +83,42 @@ void KeyaLine::request_arrives(std::size_t position, const KeyaFrame& request, T
   }
   const auto answer = keya_answer(*slot.drive, options_.wiring, request, at);
   const auto query = keya_query(options_.wiring, request);  // the sheet knows no refusal here: silence it is
-  const bool mute = query && slot.faults.spoilt({*query, 0}, false);
-  if (answer && !mute && !slot.faults.strikes(DriveFault::lose, random_)) reply(position, *answer, at, exchange);
+  const bool mute = query && with.spoilt({*query, 0}, false);
+  if (answer && !mute && !with.strikes(DriveFault::lose, random_)) reply(position, *answer, at, exchange);
   journal_.record(std::move(exchange));
 }
 
 void KeyaLine::reply(std::size_t position, const KeyaFrame& frame, Time at, KeyaExchange& exchange) {
   Slot& slot = slots_[position];
-  const bool late = slot.faults.strikes(DriveFault::late, random_);
-  slot.free_at = std::max(slot.free_at, at + options_.reply_delay + (late ? slot.faults.late_by : Time{}));
+  DriveFaults& with = faults(position);
+  const bool late = with.strikes(DriveFault::late, random_);
+  slot.free_at = std::max(slot.free_at, at + options_.reply_delay + (late ? with.late_by : Time{}));
   exchange.reply_ready = slot.free_at;
-  exchange.sent = distort(slot, frame);
-  const bool twice = slot.faults.strikes(DriveFault::duplicate, random_);
+  exchange.sent = distort(position, frame);
+  const bool twice = with.strikes(DriveFault::duplicate, random_);
   send_reply(position, exchange.tag, exchange.sent);
   if (twice) send_reply(position, exchange.tag, exchange.sent);
 }
 
-std::vector<std::uint8_t> KeyaLine::distort(Slot& slot, KeyaFrame reply) {
-  if (options_.wiring == KeyaWiring::rs485 && slot.faults.strikes(DriveFault::wrong_station, random_)) {
+std::vector<std::uint8_t> KeyaLine::distort(std::size_t position, KeyaFrame reply) {
+  if (options_.wiring == KeyaWiring::rs485 && faults(position).strikes(DriveFault::wrong_station, random_)) {
     reply[1] = static_cast<std::uint8_t>(reply[1] % 127 + 1);
     reply = seal_keya(reply);
   }
   std::vector<std::uint8_t> bytes(reply.begin(), reply.end());
-  if (slot.faults.strikes(DriveFault::corrupt, random_)) {
-    const std::uint64_t bit = random_.below(8 * bytes.size());
-    bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ (1U << (bit % 8)));
-  }
-  if (slot.faults.strikes(DriveFault::half, random_)) bytes.resize(1 + random_.below(bytes.size() - 1));
-  if (slot.faults.strikes(DriveFault::noise_before, random_)) {
-    const auto before = slot.faults.noise(random_);
-    bytes.insert(bytes.begin(), before.begin(), before.end());
-  }
-  if (slot.faults.strikes(DriveFault::noise_after, random_)) {
-    const auto after = slot.faults.noise(random_);
-    bytes.insert(bytes.end(), after.begin(), after.end());
-  }
+  spoil(position, bytes);
+  put_noise_around(position, bytes);
   return bytes;
 }
 
 void KeyaLine::send_reply(std::size_t position, std::uint64_t tag, const std::vector<std::uint8_t>& bytes) {
   Slot& slot = slots_[position];
-  if (bytes.size() < 2 || !slot.faults.strikes(DriveFault::split, random_)) {
+  DriveFaults& with = faults(position);
+  if (bytes.size() < 2 || !with.strikes(DriveFault::split, random_)) {
     Chunk chunk{tag, ByteOrigin::reply, position, bytes};
-    if (slot.faults.strikes(DriveFault::glitch, random_)) {
+    if (with.strikes(DriveFault::glitch, random_)) {
       slot.split_from = slot.free_at;  // no heartbeat comes between the two
-      slot.free_at = outgoing_.send_behind_glitch(slot.free_at, std::move(chunk), slot.faults);
+      slot.free_at = outgoing_.send_behind_glitch(slot.free_at, std::move(chunk), with);
       slot.split_until = slot.free_at;
     } else {
       outgoing_.send(slot.free_at, std::move(chunk));
@@ -184,7 +128,7 @@ void KeyaLine::send_reply(std::size_t position, std::uint64_t tag, const std::ve
   const auto cut_at = static_cast<std::ptrdiff_t>(1 + random_.below(bytes.size() - 1));
   outgoing_.send(slot.free_at, {tag, ByteOrigin::reply, position, {bytes.begin(), bytes.begin() + cut_at}});
   if (slot.free_at > slot.split_until) slot.split_from = slot.free_at;
-  slot.free_at += byte_time(options_.baud, static_cast<std::size_t>(cut_at)) + slot.faults.split_gap;
+  slot.free_at += byte_time(options_.baud, static_cast<std::size_t>(cut_at)) + with.split_gap;
   outgoing_.send(slot.free_at, {tag, ByteOrigin::reply, position, {bytes.begin() + cut_at, bytes.end()}});
   slot.split_until = slot.free_at;
 }
@@ -198,22 +142,15 @@ void KeyaLine::own_accord(Time now) {
       slot.next_heartbeat = now + slot.heartbeat;
       if (slot.drive->booting()) continue;
       const KeyaFrame frame = keya_heartbeat(*slot.drive);
-      const int times = slot.faults.strikes(DriveFault::heartbeat_twice, random_) ? 2 : 1;
+      const int times = faults(position).strikes(DriveFault::heartbeat_twice, random_) ? 2 : 1;
       // What it has begun to say it says to the end; a reply that is only late does not hold the heartbeat back.
       const bool inside = slot.split_from <= now && now < slot.split_until;
       for (int i = 0; i < times; ++i) {
         outgoing_.send(inside ? slot.split_until : now, {0, ByteOrigin::noise, position, {frame.begin(), frame.end()}});
       }
     }
-    if (slot.faults.armed(DriveFault::babble) && slot.next_babble <= now) babble(position, now);
+    babble(position, now);
   }
-}
-
-void KeyaLine::babble(std::size_t position, Time now) {
-  Slot& slot = slots_[position];
-  slot.next_babble = now + std::max(slot.faults.babble_period, one_millisecond);
-  if (!slot.faults.strikes(DriveFault::babble, random_)) return;
-  outgoing_.send(now, {0, ByteOrigin::noise, position, slot.faults.noise(random_)});
 }
 
 void KeyaLine::restart(std::size_t position, Time now) {

@@ -5,13 +5,12 @@
 // advance().
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <vector>
 
+#include "tests/simulated/byte_line.hpp"
 #include "tests/simulated/journal.hpp"
 #include "tests/simulated/keya_serial.hpp"
-#include "tests/simulated/outgoing_wire.hpp"
 
 namespace axisgate::simulated {
 
@@ -26,23 +25,19 @@ struct KeyaLineOptions {
 using KeyaExchange = ExchangeOf<std::vector<std::uint8_t>>;
 using KeyaJournal = JournalOf<std::vector<std::uint8_t>>;
 
-class KeyaLine final : public DriveLine {
+class KeyaLine final : public ByteLine {
  public:
   KeyaLine(const KeyaLineOptions& options, Random random, ToHostSink sink);
 
   // Throws std::invalid_argument for a second drive on RS232, or one with parameters that do not exist.
   KeyaDrive& add(const KeyaOptions& options);
-  std::size_t size() const override { return slots_.size(); }
   KeyaDrive& drive(std::size_t position) { return *slots_.at(position).drive; }
-  DriveFaults& faults(std::size_t position) override { return slots_.at(position).faults; }
   bool has(DriveFault fault) const override;
   void set_reply_delay(Time delay) override { options_.reply_delay = delay; }
   void set_heartbeat(std::size_t position, Time period);  // 0: none
   void restart(std::size_t position, Time now) override;
   KeyaWiring wiring() const { return options_.wiring; }
 
-  void from_host(std::span<const std::uint8_t> bytes, Time now) override;
-  void advance(Time now) override;
   std::optional<Time> next_event() const override;
   void cut() override;
   std::uint64_t requests_heard() const override { return journal_.recorded(); }
@@ -52,37 +47,24 @@ class KeyaLine final : public DriveLine {
  private:
   struct Slot {
     std::unique_ptr<KeyaDrive> drive;
-    DriveFaults faults;
     KeyaReceiver receiver;
     Time heartbeat{};
     Time next_heartbeat{};
     Time free_at{};     // its newest answer has left it: it answers in order
     Time split_from{};  // a reply in two pieces, which no heartbeat parts
     Time split_until{};
-    Time next_babble{};
   };
-  struct IncomingByte {
-    Time at;
-    std::uint8_t byte;
-  };
-  void byte_arrives(std::uint8_t byte, Time at);
+  void drive_advances(std::size_t position, Time now) override { slots_[position].drive->advance(now); }
+  void byte_arrives(std::uint8_t byte, Time at) override;
   void request_arrives(std::size_t position, const KeyaFrame& request, Time at);
   void reply(std::size_t position, const KeyaFrame& frame, Time at, KeyaExchange& exchange);
-  std::vector<std::uint8_t> distort(Slot& slot, KeyaFrame reply);
+  std::vector<std::uint8_t> distort(std::size_t position, KeyaFrame reply);
   void send_reply(std::size_t position, std::uint64_t tag, const std::vector<std::uint8_t>& bytes);
-  void own_accord(Time now);
-  void babble(std::size_t position, Time now);
+  void own_accord(Time now) override;
 
   KeyaLineOptions options_;
-  Random random_;
-  ToHostSink sink_;
   KeyaJournal journal_;
   std::vector<Slot> slots_;
-  std::deque<IncomingByte> incoming_;
-  OutgoingWire outgoing_;
-  Time host_free_{};
-  Time now_{};
-  std::uint64_t tags_ = 0;
 };
 
 }  // namespace axisgate::simulated

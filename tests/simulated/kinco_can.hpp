@@ -39,7 +39,6 @@ class KincoCan final : public CanDevice {
   explicit KincoCan(const KincoCanDrive& options);
 
   KincoDrive& drive() { return drive_; }
-  bool waits_for_first_word() const { return waits_for_first_word_; }
 
   ObjectReply read(ObjectKey key, Time now) override;
   std::uint32_t write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) override;

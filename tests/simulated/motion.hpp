@@ -31,7 +31,6 @@ class Motion {
  public:
   Task task() const { return task_; }
   FinePosition target() const { return target_; }
-  Dec target_speed() const { return target_speed_; }
   const std::optional<HomingRun>& homing() const { return homing_; }
 
   void coast() { begin(Task::coast); }

@@ -31,12 +31,10 @@ std::uint8_t unit_of(const RtuDriveOptions& options) {
 }
 
 RtuLine::RtuLine(const RtuLineOptions& options, Random random, ToHostSink sink)
-    : options_(options),
+    : ByteLine(options.baud, random, std::move(sink)),
+      options_(options),
       gap_(options.frame_gap > Time{} ? options.frame_gap : byte_time(options.baud, gap_in_tenths) / 10),
-      random_(random),
-      sink_(std::move(sink)),
-      journal_(options.journal_capacity),
-      outgoing_(options.baud) {}
+      journal_(options.journal_capacity) {}
 
 RtuSlave& RtuLine::add(const RtuDriveOptions& options) {
   const bool kinco = std::holds_alternative<KincoRtuDrive>(options);
@@ -49,6 +47,7 @@ RtuSlave& RtuLine::add(const RtuDriveOptions& options) {
   slot.slave = make_slave(options);
   slot.slave->advance(now_);
   slots_.push_back(std::move(slot));
+  count_one_more();
   return *slots_.back().slave;
 }
 
@@ -59,67 +58,24 @@ KincoDrive* RtuLine::kinco(std::size_t position) {
 
 Id286pro* RtuLine::id286pro(std::size_t position) { return dynamic_cast<Id286pro*>(&slave(position)); }
 
-void RtuLine::from_host(std::span<const std::uint8_t> bytes, Time now) {
-  advance(now);
-  if (adapter_echo_ != AdapterEcho::off) {
-    outgoing_.send(std::max(host_free_, now), {0, ByteOrigin::echo, slots_.size(), {bytes.begin(), bytes.end()}});
-  }
-  if (adapter_echo_ == AdapterEcho::only) return advance(now);
-  for (const std::uint8_t byte : bytes) {
-    host_free_ = std::max(host_free_, now) + on_wire(1);
-    incoming_.push_back({host_free_, byte});
-  }
-  advance(now);
-}
-
 void RtuLine::cut() {
-  incoming_.clear();
-  outgoing_.cut();
+  ByteLine::cut();
   frame_end_.reset();
   for (Slot& slot : slots_) slot.receiver.forget();
 }
 
 std::optional<Time> RtuLine::next_event() const {
-  std::optional<Time> next;
-  const auto consider = [&next](Time at) { next = next ? std::min(*next, at) : at; };
-  if (!incoming_.empty()) consider(incoming_.front().at);
+  std::optional<Time> next = ByteLine::next_event();
   // A byte that has begun before the silence was long enough is no silence.
   const bool begun = frame_end_ && !incoming_.empty() && incoming_.front().at - on_wire(1) < *frame_end_;
-  if (frame_end_ && !begun) consider(*frame_end_);
-  if (const auto event = outgoing_.next_event()) consider(*event);
-  for (const Slot& slot : slots_) {
-    if (slot.faults.armed(DriveFault::babble)) consider(slot.next_babble);
-  }
+  if (frame_end_ && !begun) next = next ? std::min(*next, *frame_end_) : *frame_end_;
   return next;
 }
 
-void RtuLine::advance(Time now) {
-  // Of one time: bytes at the host first, then drives that begin to send, then bytes at the drives, then silence.
-  for (;;) {
-    const auto next = next_event();
-    if (!next || *next > now) break;
-    now_ = std::max(now_, *next);
-    if (outgoing_.arrives_at(*next)) {
-      const Chunk chunk = outgoing_.take_arrived();
-      sink_({*next, chunk.tag, chunk.origin, chunk.bytes});
-    } else if (outgoing_.begins_at(*next)) {
-      outgoing_.begin();
-    } else if (!incoming_.empty() && incoming_.front().at == *next) {
-      const IncomingByte arrived = incoming_.front();
-      incoming_.pop_front();
-      byte_arrives(arrived.byte, arrived.at);
-    } else if (frame_end_ && *frame_end_ == *next) {
-      frame_end_.reset();
-      frame_ends(*next);
-    } else {
-      babble(*next);
-    }
-  }
-  now_ = std::max(now_, now);
-  for (Slot& slot : slots_) {
-    slot.slave->advance(now_);
-    if (!slot.faults.armed(DriveFault::babble)) slot.next_babble = now_ + slot.faults.babble_period;
-  }
+void RtuLine::own_accord(Time at) {
+  if (frame_end_ != at) return ByteLine::own_accord(at);
+  frame_end_.reset();
+  frame_ends(at);
 }
 
 void RtuLine::byte_arrives(std::uint8_t byte, Time at) {
@@ -162,46 +118,48 @@ std::optional<DriveFaults::Spoilt> spoilt_by(const DriveFaults& faults, const Rt
 
 void RtuLine::request_arrives(std::size_t position, const RtuFrame& request, Time at) {
   Slot& slot = slots_[position];
+  DriveFaults& with = faults(position);
   RtuExchange exchange{++tags_, at, slot.slave->unit(), seal_rtu(request.unit, request.pdu), {}, {}};
   const bool broadcast = request.unit != slot.slave->unit();
-  if (slot.faults.strikes(DriveFault::unresponsive, random_)) {
+  if (with.strikes(DriveFault::unresponsive, random_)) {
     journal_.record(std::move(exchange));
     return;
   }
-  if (slot.faults.strikes(DriveFault::restart, random_)) {
-    const bool acts = slot.faults.restart_acts ? *slot.faults.restart_acts : random_.chance(0.5);
+  if (with.strikes(DriveFault::restart, random_)) {
+    const bool acts = with.restart_acts ? *with.restart_acts : random_.chance(0.5);
     if (acts) (void)slot.slave->answer(request.pdu, exchange.tag, at);
     restart(position, at);
     journal_.record(std::move(exchange));
     return;
   }
   std::optional<std::uint32_t> refusal;
-  if (slot.faults.strikes(DriveFault::exception, random_)) refusal = slot.faults.exception_code;
-  const auto spoilt = spoilt_by(slot.faults, request.pdu);
+  if (with.strikes(DriveFault::exception, random_)) refusal = with.exception_code;
+  const auto spoilt = spoilt_by(with, request.pdu);
   if (spoilt && spoilt->refused_with) refusal = spoilt->refused_with;
   RtuBytes pdu = refusal ? slot.slave->refusal(request.pdu, static_cast<RtuException>(*refusal))
                          : slot.slave->answer(request.pdu, exchange.tag, at);
   const bool mute = spoilt && !spoilt->refused_with;
-  if (!broadcast && !mute && !slot.faults.strikes(DriveFault::lose, random_))
-    reply(position, std::move(pdu), at, exchange);
+  if (!broadcast && !mute && !with.strikes(DriveFault::lose, random_)) reply(position, std::move(pdu), at, exchange);
   journal_.record(std::move(exchange));
 }
 
 void RtuLine::reply(std::size_t position, RtuBytes pdu, Time at, RtuExchange& exchange) {
   Slot& slot = slots_[position];
+  DriveFaults& with = faults(position);
   const Time delay = options_.reply_delay.value_or(slot.slave->answer_delay());
-  const Time late = slot.faults.strikes(DriveFault::late, random_) ? slot.faults.late_by : Time{};
+  const Time late = with.strikes(DriveFault::late, random_) ? with.late_by : Time{};
   exchange.reply_ready = std::max({slot.free_at, at, last_byte_ + delay}) + late;
   const RtuBytes whole = seal_rtu(exchange.station, pdu);
-  exchange.sent = distort_bytes(slot, distort_frame(slot, exchange.station, std::move(pdu)));
+  exchange.sent = distort_bytes(position, distort_frame(position, exchange.station, std::move(pdu)));
   slot.last_reply = whole;
   send(position, exchange.tag, exchange.reply_ready, exchange.sent);
-  if (slot.faults.strikes(DriveFault::duplicate, random_)) send(position, exchange.tag, slot.free_at, exchange.sent);
+  if (with.strikes(DriveFault::duplicate, random_)) send(position, exchange.tag, slot.free_at, exchange.sent);
 }
 
-RtuBytes RtuLine::distort_frame(Slot& slot, std::uint8_t unit, RtuBytes pdu) {
-  if (slot.faults.strikes(DriveFault::wrong_station, random_)) unit = static_cast<std::uint8_t>(unit % 247 + 1);
-  if (slot.faults.strikes(DriveFault::wrong_length, random_)) {
+RtuBytes RtuLine::distort_frame(std::size_t position, std::uint8_t unit, RtuBytes pdu) {
+  DriveFaults& with = faults(position);
+  if (with.strikes(DriveFault::wrong_station, random_)) unit = static_cast<std::uint8_t>(unit % 247 + 1);
+  if (with.strikes(DriveFault::wrong_length, random_)) {
     const bool read = pdu[0] == function::read;
     if (read && pdu[1] > 2) {
       pdu.resize(pdu.size() - 2);
@@ -213,61 +171,44 @@ RtuBytes RtuLine::distort_frame(Slot& slot, std::uint8_t unit, RtuBytes pdu) {
   return seal_rtu(unit, pdu);
 }
 
-RtuBytes RtuLine::distort_bytes(Slot& slot, RtuBytes bytes) {
-  if (slot.faults.strikes(DriveFault::corrupt, random_)) {
-    const std::uint64_t bit = random_.below(8 * bytes.size());
-    bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ (1U << (bit % 8)));
-  }
-  if (slot.faults.strikes(DriveFault::half, random_)) bytes.resize(1 + random_.below(bytes.size() - 1));
-  if (slot.faults.strikes(DriveFault::glued, random_)) {
-    const RtuBytes before = slot.last_reply.empty() ? bytes : slot.last_reply;
+RtuBytes RtuLine::distort_bytes(std::size_t position, RtuBytes bytes) {
+  spoil(position, bytes);
+  if (faults(position).strikes(DriveFault::glued, random_)) {
+    const RtuBytes& last = slots_[position].last_reply;
+    const RtuBytes before = last.empty() ? bytes : last;
     bytes.insert(bytes.end(), before.begin(), before.end());
   }
-  if (slot.faults.strikes(DriveFault::noise_before, random_)) {
-    const auto before = slot.faults.noise(random_);
-    bytes.insert(bytes.begin(), before.begin(), before.end());
-  }
-  if (slot.faults.strikes(DriveFault::noise_after, random_)) {
-    const auto after = slot.faults.noise(random_);
-    bytes.insert(bytes.end(), after.begin(), after.end());
-  }
+  put_noise_around(position, bytes);
   return bytes;
 }
 
 void RtuLine::send(std::size_t position, std::uint64_t tag, Time ready, const RtuBytes& bytes) {
   Slot& slot = slots_[position];
+  DriveFaults& with = faults(position);
   slot.free_at = ready + on_wire(bytes.size()) + gap_;
-  if (bytes.size() < 2 || !slot.faults.strikes(DriveFault::split, random_)) {
+  if (bytes.size() < 2 || !with.strikes(DriveFault::split, random_)) {
     Chunk chunk{tag, ByteOrigin::reply, position, bytes};
-    if (slot.faults.strikes(DriveFault::glitch, random_)) {
-      const Time begins = outgoing_.send_behind_glitch(ready, std::move(chunk), slot.faults);
-      slot.free_at += begins - ready + on_wire(slot.faults.glitch_bytes);
+    if (with.strikes(DriveFault::glitch, random_)) {
+      const Time begins = outgoing_.send_behind_glitch(ready, std::move(chunk), with);
+      slot.free_at += begins - ready + on_wire(with.glitch_bytes);
     } else {
       outgoing_.send(ready, std::move(chunk));
     }
     return;
   }
   const auto cut_at = static_cast<std::ptrdiff_t>(1 + random_.below(bytes.size() - 1));
-  const Time second = ready + on_wire(static_cast<std::size_t>(cut_at)) + slot.faults.split_gap;
+  const Time second = ready + on_wire(static_cast<std::size_t>(cut_at)) + with.split_gap;
   outgoing_.send(ready, {tag, ByteOrigin::reply, position, {bytes.begin(), bytes.begin() + cut_at}});
   outgoing_.send(second, {tag, ByteOrigin::reply, position, {bytes.begin() + cut_at, bytes.end()}});
-  slot.free_at += slot.faults.split_gap;
+  slot.free_at += with.split_gap;
 }
 
-void RtuLine::babble(Time now) {
-  for (std::size_t position = 0; position < slots_.size(); ++position) {
-    Slot& slot = slots_[position];
-    if (!slot.faults.armed(DriveFault::babble) || slot.next_babble > now) continue;
-    slot.next_babble = now + std::max(slot.faults.babble_period, one_millisecond);
-    if (!slot.faults.strikes(DriveFault::babble, random_)) continue;
-    // Noise, or a whole frame: the acknowledgement of a write that nobody sent.
-    RtuBytes bytes = slot.faults.noise(random_);
-    if (random_.chance(0.5)) {
-      const auto at = static_cast<std::uint16_t>(random_.below(0x10000));
-      bytes = seal_rtu(slot.slave->unit(), write_pdu(at, static_cast<std::uint16_t>(random_.below(0x10000))));
-    }
-    outgoing_.send(now, {0, ByteOrigin::noise, position, std::move(bytes)});
-  }
+// Noise, or a whole frame: the acknowledgement of a write that nobody sent.
+std::vector<std::uint8_t> RtuLine::babbled(std::size_t position) {
+  RtuBytes bytes = ByteLine::babbled(position);
+  if (!random_.chance(0.5)) return bytes;
+  const auto at = static_cast<std::uint16_t>(random_.below(0x10000));
+  return seal_rtu(slots_[position].slave->unit(), write_pdu(at, static_cast<std::uint16_t>(random_.below(0x10000))));
 }
 
 void RtuLine::restart(std::size_t position, Time now) {

@@ -5,15 +5,14 @@
 // never delivers a byte outside from_host() and advance().
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <variant>
 #include <vector>
 
+#include "tests/simulated/byte_line.hpp"
 #include "tests/simulated/id286pro.hpp"
 #include "tests/simulated/journal.hpp"
 #include "tests/simulated/kinco_rtu.hpp"
-#include "tests/simulated/outgoing_wire.hpp"
 #include "tests/simulated/rtu_receiver.hpp"
 
 namespace axisgate::simulated {
@@ -30,69 +29,53 @@ using RtuDriveOptions = std::variant<KincoRtuDrive, Id286proOptions>;
 std::string describe(const RtuDriveOptions& options);  // "jd@1", "id286pro@3"
 std::uint8_t unit_of(const RtuDriveOptions& options);
 
-class RtuLine final : public DriveLine {
+class RtuLine final : public ByteLine {
  public:
   RtuLine(const RtuLineOptions& options, Random random, ToHostSink sink);
 
   // Throws std::invalid_argument for a drive that cannot have this address.
   RtuSlave& add(const RtuDriveOptions& options);
-  std::size_t size() const override { return slots_.size(); }
   RtuSlave& slave(std::size_t position) { return *slots_.at(position).slave; }
   // Nothing where another kind of drive stands there.
   KincoDrive* kinco(std::size_t position);
   Id286pro* id286pro(std::size_t position);
-  DriveFaults& faults(std::size_t position) override { return slots_.at(position).faults; }
   bool has(DriveFault fault) const override {
     return fault != DriveFault::emergencies && fault != DriveFault::heartbeat_twice;
   }
   void set_reply_delay(Time delay) override { options_.reply_delay = delay; }
   void restart(std::size_t position, Time now) override;
 
-  void from_host(std::span<const std::uint8_t> bytes, Time now) override;
-  void advance(Time now) override;
   std::optional<Time> next_event() const override;
   void cut() override;
   std::uint64_t requests_heard() const override { return journal_.recorded(); }
 
   Time frame_gap() const { return gap_; }
-  Time on_wire(std::size_t bytes) const { return byte_time(options_.baud, bytes); }
   const RtuJournal& journal() const { return journal_; }
 
  private:
   struct Slot {
     std::unique_ptr<RtuSlave> slave;
-    DriveFaults faults;
     RtuReceiver receiver;
     RtuBytes last_reply;  // as it should have been
     Time free_at{};       // its newest answer and the gap behind it are over
-    Time next_babble{};
   };
-  struct IncomingByte {
-    Time at;
-    std::uint8_t byte;
-  };
-  void byte_arrives(std::uint8_t byte, Time at);
+  void drive_advances(std::size_t position, Time now) override { slots_[position].slave->advance(now); }
+  void byte_arrives(std::uint8_t byte, Time at) override;
+  void own_accord(Time at) override;
+  std::vector<std::uint8_t> babbled(std::size_t position) override;
   void frame_ends(Time at);
   void request_arrives(std::size_t position, const RtuFrame& request, Time at);
   void reply(std::size_t position, RtuBytes pdu, Time at, RtuExchange& exchange);
-  RtuBytes distort_frame(Slot& slot, std::uint8_t unit, RtuBytes pdu);
-  RtuBytes distort_bytes(Slot& slot, RtuBytes bytes);
+  RtuBytes distort_frame(std::size_t position, std::uint8_t unit, RtuBytes pdu);
+  RtuBytes distort_bytes(std::size_t position, RtuBytes bytes);
   void send(std::size_t position, std::uint64_t tag, Time ready, const RtuBytes& bytes);
-  void babble(Time now);
 
   RtuLineOptions options_;
   Time gap_;
-  Random random_;
-  ToHostSink sink_;
   RtuJournal journal_;
   std::vector<Slot> slots_;
-  std::deque<IncomingByte> incoming_;
-  OutgoingWire outgoing_;
   std::optional<Time> frame_end_;  // if nothing more comes
   Time last_byte_{};
-  Time host_free_{};
-  Time now_{};
-  std::uint64_t tags_ = 0;
 };
 
 }  // namespace axisgate::simulated

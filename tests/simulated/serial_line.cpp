@@ -9,11 +9,7 @@
 namespace axisgate::simulated {
 
 SerialLine::SerialLine(const LineOptions& options, Random random, Sink sink)
-    : options_(options),
-      random_(random),
-      sink_(std::move(sink)),
-      journal_(options.journal_capacity),
-      outgoing_(options.baud) {}
+    : ByteLine(options.baud, random, std::move(sink)), options_(options), journal_(options.journal_capacity) {}
 
 KincoDrive& SerialLine::add(const DriveOptions& options) {
   const KincoModel& model = model_of(options.type);
@@ -27,6 +23,7 @@ KincoDrive& SerialLine::add(const DriveOptions& options) {
   slot.drive = std::make_unique<KincoDrive>(options);
   slot.drive->advance(now_);
   slots_.push_back(std::move(slot));
+  count_one_more();
   return *slots_.back().drive;
 }
 
@@ -53,58 +50,6 @@ bool SerialLine::reaches_host(std::size_t position) const {
                      [this](const Slot& after) { return passes_on(after); });
 }
 
-void SerialLine::from_host(std::span<const std::uint8_t> bytes, Time now) {
-  advance(now);
-  if (adapter_echo_ != AdapterEcho::off) {
-    outgoing_.send(std::max(host_line_free_, now), {0, ByteOrigin::echo, slots_.size(), {bytes.begin(), bytes.end()}});
-  }
-  if (adapter_echo_ == AdapterEcho::only) return advance(now);
-  for (const std::uint8_t byte : bytes) {
-    host_line_free_ = std::max(host_line_free_, now) + byte_time(options_.baud);
-    incoming_.push_back({host_line_free_, byte});
-  }
-  advance(now);
-}
-
-std::optional<Time> SerialLine::next_event() const {
-  std::optional<Time> next;
-  const auto consider = [&next](Time at) { next = next ? std::min(*next, at) : at; };
-  if (!incoming_.empty()) consider(incoming_.front().at);
-  if (const auto event = outgoing_.next_event()) consider(*event);
-  for (const Slot& slot : slots_) {
-    if (slot.faults.armed(DriveFault::babble)) consider(slot.next_babble);
-  }
-  return next;
-}
-
-void SerialLine::advance(Time now) {
-  // Events in the order of their times; of one time: bytes at the host first, then drives that begin to send, then
-  // bytes at the drives, so that nothing overtakes.
-  for (;;) {
-    const auto next = next_event();
-    if (!next || *next > now) break;
-    now_ = std::max(now_, *next);
-    if (outgoing_.arrives_at(*next)) {
-      const Chunk chunk = outgoing_.take_arrived();
-      sink_({*next, chunk.tag, chunk.origin, chunk.bytes});
-    } else if (outgoing_.begins_at(*next)) {
-      outgoing_.begin();
-    } else if (!incoming_.empty() && incoming_.front().at == *next) {
-      const IncomingByte arrived = incoming_.front();
-      incoming_.pop_front();
-      byte_arrives(arrived.byte, arrived.at);
-      if (incoming_.empty() || incoming_.front().at != arrived.at) flush_echo(arrived.at);
-    } else {
-      babble(*next);
-    }
-  }
-  now_ = std::max(now_, now);
-  for (Slot& slot : slots_) {
-    slot.drive->advance(now_);
-    if (!slot.faults.armed(DriveFault::babble)) slot.next_babble = now_ + slot.faults.babble_period;
-  }
-}
-
 void SerialLine::byte_arrives(std::uint8_t byte, Time at) {
   for (Slot& slot : slots_) slot.drive->advance(at);
   if (options_.wiring == Wiring::rs232 && !slots_.empty() &&
@@ -122,6 +67,7 @@ void SerialLine::byte_arrives(std::uint8_t byte, Time at) {
     flush_echo(at);
     request_arrives(position, *request, at);
   }
+  if (incoming_.empty() || incoming_.front().at != at) flush_echo(at);
 }
 
 void SerialLine::flush_echo(Time at) {
@@ -131,85 +77,66 @@ void SerialLine::flush_echo(Time at) {
 
 void SerialLine::request_arrives(std::size_t position, const TenByteFrame& request, Time at) {
   Slot& slot = slots_[position];
+  DriveFaults& with = faults(position);
   Exchange exchange{++tags_, at, slot.drive->station(), request, {}, {}};
-  if (slot.faults.strikes(DriveFault::unresponsive, random_)) {
+  if (with.strikes(DriveFault::unresponsive, random_)) {
     journal_.record(std::move(exchange));
     return;
   }
-  if (slot.faults.strikes(DriveFault::restart, random_)) {
+  if (with.strikes(DriveFault::restart, random_)) {
     if (random_.chance(0.5)) (void)slot.drive->answer(request, exchange.tag, at);
     restart(position, at);
     journal_.record(std::move(exchange));
     return;
   }
   const bool write = command_of(request) != FrameCommand::read;
-  const auto spoilt = slot.faults.spoilt({index_of(request), sub_of(request)}, write);
+  const auto spoilt = with.spoilt({index_of(request), sub_of(request)}, write);
   auto reply = slot.drive->answer(request, exchange.tag, at);
   if (spoilt && spoilt->refused_with) {
     reply = seal(slot.drive->station(), FrameCommand::error, index_of(request), sub_of(request), *spoilt->refused_with);
   } else if (spoilt) {
     reply.reset();
   }
-  const bool lost = slot.faults.strikes(DriveFault::lose, random_);
+  const bool lost = with.strikes(DriveFault::lose, random_);
   if (reply && !lost) {
-    const bool late = slot.faults.strikes(DriveFault::late, random_);
-    slot.reply_ready = std::max(slot.reply_ready, at + options_.reply_delay + (late ? slot.faults.late_by : Time{}));
+    const bool late = with.strikes(DriveFault::late, random_);
+    slot.reply_ready = std::max(slot.reply_ready, at + options_.reply_delay + (late ? with.late_by : Time{}));
     exchange.reply_ready = slot.reply_ready;
-    exchange.sent = distort(slot, *reply);
-    const bool twice = slot.faults.strikes(DriveFault::duplicate, random_);
+    exchange.sent = distort(position, *reply);
+    const bool twice = with.strikes(DriveFault::duplicate, random_);
     send_reply(position, exchange.tag, slot.reply_ready, exchange.sent);
     if (twice) send_reply(position, exchange.tag, slot.reply_ready, exchange.sent);
   }
   journal_.record(std::move(exchange));
 }
 
-std::vector<std::uint8_t> SerialLine::distort(Slot& slot, TenByteFrame reply) {
-  if (slot.faults.strikes(DriveFault::wrong_station, random_)) {
+std::vector<std::uint8_t> SerialLine::distort(std::size_t position, TenByteFrame reply) {
+  if (faults(position).strikes(DriveFault::wrong_station, random_)) {
     const auto other = static_cast<std::uint8_t>(station_of(reply) % 127 + 1);
     reply = seal(other, command_of(reply), index_of(reply), sub_of(reply), data_of(reply));
   }
   std::vector<std::uint8_t> bytes(reply.begin(), reply.end());
-  if (slot.faults.strikes(DriveFault::corrupt, random_)) {
-    const std::uint64_t bit = random_.below(8 * frame_length);
-    bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ (1U << (bit % 8)));
-  }
-  if (slot.faults.strikes(DriveFault::noise_before, random_)) {
-    const auto before = slot.faults.noise(random_);
-    bytes.insert(bytes.begin(), before.begin(), before.end());
-  }
-  if (slot.faults.strikes(DriveFault::noise_after, random_)) {
-    const auto after = slot.faults.noise(random_);
-    bytes.insert(bytes.end(), after.begin(), after.end());
-  }
+  spoil(position, bytes);
+  put_noise_around(position, bytes);
   return bytes;
 }
 
 void SerialLine::send_reply(std::size_t position, std::uint64_t tag, Time ready, std::vector<std::uint8_t> bytes) {
   Slot& slot = slots_[position];
+  DriveFaults& with = faults(position);
   if (!reaches_host(position)) return;  // a drive further down the chain does not pass it on
-  if (slot.faults.strikes(DriveFault::split, random_)) {
+  if (with.strikes(DriveFault::split, random_)) {
     const auto cut_at = static_cast<std::ptrdiff_t>(1 + random_.below(bytes.size() - 1));
     outgoing_.send(ready, {tag, ByteOrigin::reply, position, {bytes.begin(), bytes.begin() + cut_at}});
-    slot.reply_ready = ready + slot.faults.split_gap;
+    slot.reply_ready = ready + with.split_gap;
     outgoing_.send(slot.reply_ready, {tag, ByteOrigin::reply, position, {bytes.begin() + cut_at, bytes.end()}});
     return;
   }
   Chunk chunk{tag, ByteOrigin::reply, position, std::move(bytes)};
-  if (slot.faults.strikes(DriveFault::glitch, random_)) {
-    slot.reply_ready = outgoing_.send_behind_glitch(ready, std::move(chunk), slot.faults);
+  if (with.strikes(DriveFault::glitch, random_)) {
+    slot.reply_ready = outgoing_.send_behind_glitch(ready, std::move(chunk), with);
   } else {
     outgoing_.send(ready, std::move(chunk));
-  }
-}
-
-void SerialLine::babble(Time now) {
-  for (std::size_t position = 0; position < slots_.size(); ++position) {
-    Slot& slot = slots_[position];
-    if (!slot.faults.armed(DriveFault::babble) || slot.next_babble > now) continue;
-    slot.next_babble = now + std::max(slot.faults.babble_period, one_millisecond);
-    if (slot.faults.strikes(DriveFault::babble, random_)) {
-      outgoing_.send(now, {0, ByteOrigin::noise, position, slot.faults.noise(random_)});
-    }
   }
 }
 

@@ -4,14 +4,13 @@
 // answers in order. Never reads a clock and never delivers a byte outside from_host() and advance().
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <vector>
 
+#include "tests/simulated/byte_line.hpp"
 #include "tests/simulated/frame_receiver.hpp"
 #include "tests/simulated/journal.hpp"
 #include "tests/simulated/kinco_drive.hpp"
-#include "tests/simulated/outgoing_wire.hpp"
 
 namespace axisgate::simulated {
 
@@ -26,7 +25,7 @@ struct LineOptions {
   std::size_t journal_capacity = 1000;
 };
 
-class SerialLine final : public DriveLine {
+class SerialLine final : public ByteLine {
  public:
   using Sink = ToHostSink;
 
@@ -34,21 +33,12 @@ class SerialLine final : public DriveLine {
 
   // Drives in the order of the chain. Throws std::invalid_argument for one that cannot be on this line.
   KincoDrive& add(const DriveOptions& options);
-  std::size_t size() const override { return slots_.size(); }
   KincoDrive& drive(std::size_t position) { return *slots_.at(position).drive; }
   const KincoDrive& drive(std::size_t position) const { return *slots_.at(position).drive; }
-  DriveFaults& faults(std::size_t position) override { return slots_.at(position).faults; }
   bool has(DriveFault fault) const override;
   void set_reply_delay(Time delay) override { options_.reply_delay = delay; }
   void restart(std::size_t position, Time now) override;
 
-  void from_host(std::span<const std::uint8_t> bytes, Time now) override;
-  void advance(Time now) override;
-  std::optional<Time> next_event() const override;
-  void cut() override {
-    incoming_.clear();
-    outgoing_.cut();
-  }
   std::uint64_t requests_heard() const override { return journal_.recorded(); }
 
   const Journal& journal() const { return journal_; }
@@ -56,36 +46,23 @@ class SerialLine final : public DriveLine {
  private:
   struct Slot {
     std::unique_ptr<KincoDrive> drive;
-    DriveFaults faults;
     FrameReceiver receiver;
     Time reply_ready{};  // of its newest reply: it answers in order
-    Time next_babble{};
-  };
-  struct IncomingByte {
-    Time at;
-    std::uint8_t byte;
   };
   bool passes_on(const Slot& slot) const;
   bool hears(std::size_t position) const;
   bool reaches_host(std::size_t position) const;
-  void byte_arrives(std::uint8_t byte, Time at);
+  void drive_advances(std::size_t position, Time now) override { slots_[position].drive->advance(now); }
+  void byte_arrives(std::uint8_t byte, Time at) override;
   void flush_echo(Time at);
   void request_arrives(std::size_t position, const TenByteFrame& request, Time at);
-  std::vector<std::uint8_t> distort(Slot& slot, TenByteFrame reply);
+  std::vector<std::uint8_t> distort(std::size_t position, TenByteFrame reply);
   void send_reply(std::size_t position, std::uint64_t tag, Time ready, std::vector<std::uint8_t> bytes);
-  void babble(Time now);
 
   LineOptions options_;
-  Random random_;
-  Sink sink_;
   Journal journal_;
   std::vector<Slot> slots_;
-  std::deque<IncomingByte> incoming_;
-  OutgoingWire outgoing_;
   std::vector<std::uint8_t> echo_;
-  Time host_line_free_{};
-  Time now_{};
-  std::uint64_t tags_ = 0;
 };
 
 }  // namespace axisgate::simulated
