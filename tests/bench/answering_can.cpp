@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/answering_line.hpp"
 
-#include "tests/bench/lawicel_text.hpp"
+#include "tests/bench/lawicel_lines.hpp"
 #include "tests/simulated/can_line.hpp"
+#include "tests/simulated/lawicel_text.hpp"
 #include "tests/simulated/socket_can_line.hpp"
 
 namespace axisgate::bench {
@@ -89,7 +90,7 @@ class AnsweringCan final : public AnsweringLine {
   std::optional<BusFrame> heard_by_adapter(std::uint8_t byte) {
     const auto line = lines_.take(byte);
     if (!line) return std::nullopt;
-    const auto frame = lawicel_frame(*line);
+    const auto frame = simulated::lawicel_frame(*line);
     if (*line == "O" || *line == "C") open_ = *line == "O";
     const std::string_view acknowledgement = frame                    ? "z\r"
                                              : line->starts_with('V') ? "V1013\r"
@@ -111,7 +112,7 @@ class AnsweringCan final : public AnsweringLine {
       const auto bytes = simulated::socket_frame_of(frame);
       to.insert(to.end(), bytes.begin(), bytes.end());
     } else if (open_) {
-      const std::string text = lawicel_text(frame);
+      const std::string text = simulated::lawicel_text(frame) + '\r';
       to.insert(to.end(), text.begin(), text.end());
     }
   }

@@ -6,9 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/bench/lawicel_text.hpp"
+#include "tests/bench/lawicel_lines.hpp"
 #include "tests/simulated/frame_receiver.hpp"
 #include "tests/simulated/keya_frame.hpp"
+#include "tests/simulated/lawicel_text.hpp"
 #include "tests/simulated/rtu_frame.hpp"
 
 namespace axisgate::bench {
@@ -115,7 +116,7 @@ class CanopenCommands final : public LawicelCommands {
   std::optional<HostCommand> of_line(std::string_view line) const override {
     constexpr std::uint32_t kRequest = simulated::cob::sdo_request + 1;
     constexpr std::uint8_t kDownload = 1;
-    const auto frame = lawicel_frame(line);
+    const auto frame = simulated::lawicel_frame(line);
     if (!frame || frame->id != kRequest || frame->data[0] >> 5 != kDownload) return std::nullopt;
     const auto index = static_cast<std::uint16_t>(frame->data[1] | frame->data[2] << 8);
     const std::uint32_t value = simulated::little_endian(OctetView(frame->data).subspan(4));

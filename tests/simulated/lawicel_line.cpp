@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "tests/simulated/lawicel_text.hpp"
+
 namespace axisgate::simulated {
 namespace {
 
@@ -13,31 +15,6 @@ constexpr unsigned flag_passive = 0x20;
 constexpr unsigned flag_bus_error = 0x80;
 constexpr std::int64_t milliseconds_in_a_minute = 60000;
 constexpr std::array<std::uint32_t, 9> bit_rates{10000, 20000, 50000, 100000, 125000, 250000, 500000, 800000, 1000000};
-
-std::optional<std::uint32_t> hex_in(const std::string& text, std::size_t at, std::size_t digits) {
-  if (text.size() < at + digits) return std::nullopt;
-  std::uint32_t value = 0;
-  for (std::size_t i = at; i < at + digits; ++i) {
-    const std::size_t digit = std::string_view("0123456789ABCDEF0123456789abcdef").find(text[i]);
-    if (digit == std::string_view::npos) return std::nullopt;
-    value = value << 4 | static_cast<std::uint32_t>(digit & 0xF);
-  }
-  return value;
-}
-
-std::string text_of(const BusFrame& frame) {
-  const bool extended = frame.extended;
-  std::array<char, 16> head{};
-  const char kind = frame.remote ? (extended ? 'R' : 'r') : (extended ? 'T' : 't');
-  (void)std::snprintf(head.data(), head.size(), extended ? "%c%08X%u" : "%c%03X%u", kind, frame.id,
-                      static_cast<unsigned>(frame.size));
-  std::string text = head.data();
-  for (const std::uint8_t byte : bytes_of(frame)) {
-    (void)std::snprintf(head.data(), head.size(), "%02X", static_cast<unsigned>(byte));
-    text += head.data();
-  }
-  return text;
-}
 
 }  // namespace
 
@@ -51,7 +28,7 @@ void LawicelLine::answer(bool was_done, Time now) {
 
 void LawicelLine::to_host(const CanToHost& frame) {
   if (!open_) return;
-  std::string text = text_of(frame.frame);
+  std::string text = lawicel_text(frame.frame);
   if (timestamps_) {
     std::array<char, 8> stamp{};
     const std::int64_t milliseconds = frame.at / one_millisecond % milliseconds_in_a_minute;
@@ -144,25 +121,9 @@ void LawicelLine::take_channel(const std::string& line, Time now) {
 }
 
 bool LawicelLine::transmit(const std::string& line, Time now) {
-  const bool extended = line[0] == 'T' || line[0] == 'R';
-  const bool remote = line[0] == 'r' || line[0] == 'R';
-  const std::size_t digits = extended ? 8 : 3;
-  const auto id = hex_in(line, 1, digits);
-  const auto size = hex_in(line, 1 + digits, 1);
-  if (!open_ || listen_only_ || !id || !size || *size > longest_can_frame) return false;
-  const std::size_t data_at = 2 + digits;
-  if (line.size() != data_at + (remote ? 0 : 2 * *size)) return false;
-  CanBytes data;
-  for (std::size_t i = 0; !remote && i < *size; ++i) {
-    const auto byte = hex_in(line, data_at + 2 * i, 2);
-    if (!byte) return false;
-    data.push_back(static_cast<std::uint8_t>(*byte));
-  }
-  BusFrame frame = bus_frame(*id, data);
-  frame.extended = extended;
-  frame.remote = remote;
-  frame.size = static_cast<std::uint8_t>(*size);
-  bus().from_host(frame, now);
+  const auto frame = lawicel_frame(line);
+  if (!open_ || listen_only_ || !frame) return false;
+  bus().from_host(*frame, now);
   return true;
 }
 
