@@ -78,6 +78,19 @@ class WrongConfiguration(Story):
         self.assertIn("gateway.json", done.stderr)
         self.assertRegex(done.stderr, r"\b3\b")
 
+    def test_a_file_that_is_not_there(self):
+        done = self.command_line("run", self.path("none.json"))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(self.path("none.json"), done.stderr)
+
+    def test_an_unknown_profile_is_named(self):
+        buses = self.buses()
+        buses[0]["drives"][0]["profile"] = "kinco-jdd"
+        done = self.command_line("run", self.write({"modbus_tcp": [self.listener()], "buses": buses}))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("/buses/0/drives/0/profile: ", done.stderr)
+        self.assertIn("kinco-jdd", done.stderr)
+
 
 class TakenDevice(Story):
     def was_done(self, axis, command):

@@ -5,10 +5,11 @@ import re
 import time
 
 from can_stage import FAR, CanStory, main
-from modbus import DISABLED, FAILED, NO_ANSWER, ONLINE, REFUSED, STANDSTILL
+from modbus import BUSY, DISABLED, FAILED, NO_ANSWER, ONLINE, REFUSED, STANDSTILL
 from processes import until
 
-DUPLICATE_NODE = 1 << 8
+DUPLICATE_NODE, IDENTITY_MISMATCH = 1 << 8, 1 << 2
+LEADSHINE, KINCO = 0x4321, 0x300
 REFUSED_BY_DRIVE = 3
 OUT_OF_RANGE = 0x06090030
 
@@ -109,6 +110,41 @@ class DuplicateNodes(OneOfThree):
                 for other in self.axes:
                     if other is not axis:
                         self.assertEqual(other.get("axis_alarms") & DUPLICATE_NODE, 0 if other.number > number else DUPLICATE_NODE)
+
+
+class AnotherDevice(CanStory):
+    def buses(self):
+        buses = super().buses()
+        buses[0]["drives"][0]["identity"] = {"vendor": LEADSHINE, "product": 7}
+        buses[0]["drives"][1]["identity"] = {"vendor": KINCO, "product": 1, "revision": 1, "serial": 1}
+        return buses
+
+    def test_it_is_shown_and_not_commanded(self):
+        self.simulate()
+        self.configure()
+        self.run_gateway()
+        self.client = self.connect()
+        self.until_online()
+        self.look_around()
+        wrong, right = self.axes[0], self.axes[1:]
+        until("the alarm", lambda: wrong.get("axis_alarms") & IDENTITY_MISMATCH)
+        self.assertEqual(self.client.gateway()["alarms"] >> 3 & 1, 1)
+        self.gateway.wait_for("axis 1: not the configured drive: product is 0x1, configured 0x7")
+        block = wrong.until(axis_state=DISABLED)
+        self.assertTrue(block["valid"] >> 2 & 1, "its position is shown")
+        self.assertNotIn("ready", wrong.inputs())
+        self.assertEqual(self.ask("nmt DRIVE", 1), "pre_operational", "it is not started")
+        self.assertEqual([self.ask(f"get DRIVE {name}", 1).split()[0] for name in ("1016.01", "1017.00")], ["0", "0"], "nor set up")
+        before = [self.ask(f"writes DRIVE {name}", 1) for name in ("6040.00", "6060.00", "607A.00", "6083.00")]
+        for refused in (lambda: wrong.command("enable"), lambda: wrong.set(profile_acceleration=12345), lambda: wrong.set(mode=3),
+                        lambda: wrong.command("move_absolute")):
+            with self.refused(BUSY):
+                refused()
+        self.assertEqual([self.ask(f"writes DRIVE {name}", 1) for name in ("6040.00", "6060.00", "607A.00", "6083.00")], before)
+        for axis in right:
+            self.assertEqual(axis.get("axis_alarms") & IDENTITY_MISMATCH, 0)
+            self.prepare(axis)
+            self.move(axis)
 
 
 class Refusals(CanStory):

@@ -163,6 +163,7 @@ class EverythingFallsSilent(CanStory):
         self.sim.send(signal.SIGSTOP)
         self.addCleanup(self.sim.send, signal.SIGCONT)
         for axis in self.axes:
+            self.gateway.wait_for(f"axis {axis.number}: no sign of life from the node")
             until("it is gone", lambda: axis.get("link_state") in (OFFLINE, LINK_DOWN))
             self.assertEqual(axis.get("valid"), 0)
             with self.refused(NO_PATH):

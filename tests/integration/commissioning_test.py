@@ -61,6 +61,7 @@ class FactoryFresh(Story):
         self.assertEqual(self.sim.object("lift/1", "2010.03"), 0)
         self.assertNotIn("operation", self.sim.state("lift/1"))
         until("stored", lambda: self.stores() >= 1)
+        self.assertIn("nothing to remedy", self.commission().stdout)
         self.run_gateway()
         self.client = self.connect()
         self.until_online()
@@ -81,6 +82,12 @@ class FactoryFresh(Story):
         self.assertIn("the gateway stopped", done.stderr)
         self.assertEqual(self.stores(), 0)
         self.axis(1).until(link_state=ONLINE)
+
+    def test_an_axis_that_is_not_configured(self):
+        self.configure()
+        done = self.command_line("commission", self.config, "9")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no axis 9", done.stderr)
 
     def test_an_enabled_drive_is_not_touched(self):
         self.simulate()

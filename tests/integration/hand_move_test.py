@@ -8,7 +8,7 @@ import subprocess
 from hand_stage import CTRL_C, Hand
 from lease_stage import ME, NOBODY, PANEL_1
 from modbus import Axis
-from processes import NEVER
+from processes import NEVER, until
 from stage import AXISGATE, main
 
 FAR = 1000  # turns: minutes away
@@ -115,6 +115,17 @@ class ItEnds(Hand):
             self.assertEqual(self.speed(number), 0)
             self.assert_disabled(number)
 
+    def test_a_motor_that_takes_its_time_is_waited_for_and_twice_ctrl_c_is_not(self):
+        program = self.moving(1)
+        self.sim.ask("reply-delay serial 900")  # each answer of the drive
+        program.press(CTRL_C)
+        program.wait_for("quick stop")
+        program.press(CTRL_C)
+        self.assertEqual(program.ended(), 1)
+        self.assertIn("ended at once, without waiting", program.text())
+        self.sim.ask("reply-delay serial 0")
+        self.until_it_stands(1)
+
 
 class ItDies(Hand):
     lease = {"timeout_ms": 1500}
@@ -152,6 +163,47 @@ class ItDies(Hand):
         self.assertEqual(program.ended(), 1)
         self.assertIn("if the gateway has died: axis 1 GOES ON: use its wired stop", program.text())
         self.assertNotEqual(self.speed(1), 0, "and so it does")
+
+
+class WhatCannotBe(Hand):
+    lines_of = ("serial",)
+
+    def test_an_axis_that_is_not_there_and_a_gateway_that_is_not_there(self):
+        for arguments in (("stop", 77), ("enable", 77), ("move", 77, 1)):
+            ended = self.hand(*arguments)
+            self.assertEqual(ended.returncode, 1)
+            self.assertIn("no axis 77" if arguments[0] != "stop" else "illegal data address", ended.stderr)
+        ended = self.command_line("stop", "127.0.0.1:1", "1")
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn("Connection refused", ended.stderr)
+
+    def test_a_drive_that_is_out_of_reach(self):
+        self.sim.ask("unresponsive serial/1 on")
+        until("it is offline", lambda: self.watched(1).get("link_state") > 3)
+        ended = self.hand("move", 1, 1, "--enable")
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn("axis 1 is out of reach (link offline): nothing was sent", ended.stderr)
+        ended = self.hand("stop", 1)
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn("it is owed, and carried out as soon as the drive is back", ended.stderr)
+
+    def test_a_fault_is_named(self):
+        self.sim.ask("fault serial/1 2601 0x0008")
+        self.watched(1).until_input("fault")
+        ended = self.hand("enable", 1)
+        self.assertEqual(ended.returncode, 1)
+        self.assertRegex(ended.stderr, r"axis 1 has a fault, error_code (0x[0-9A-F]{4}): axisgate explain \1; command 5 resets it")
+
+
+class Viewers(Hand):
+    lines_of = ("serial",)
+    allow = [{"from": "127.0.0.1", "role": "viewer"}, {"from": "127.0.0.9", "role": "viewer"}]
+
+    def test_a_viewer_is_told_who_gives_him_the_right(self):
+        for arguments in (("stop", 1), ("enable", 1)):
+            ended = self.hand(*arguments)
+            self.assertEqual(ended.returncode, 1)
+            self.assertIn("this computer is a viewer here: the gateway's key \"allow\"", ended.stderr)
 
 
 if __name__ == "__main__":

@@ -83,6 +83,12 @@ class ComesBack(Machine):
             self.assertFalse(self.leases_told(number, "has run out"))
             self.until_told(number, "its connection had ended")
         self.keep_running(again, self.numbers, 1.2 * self.lease["timeout_ms"] / 1000)
+        third = Axis(self.peer(), 1)  # the connection before it lives
+        with self.refused(BUSY):
+            third.set(target_velocity=0)
+        third.command("take_over")
+        self.until_it_stands(1)
+        self.until_told(1, "has taken the axis over from another connection of its address")
 
 
 class OneShot(Machine):

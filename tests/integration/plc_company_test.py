@@ -62,6 +62,7 @@ class TwoPlcs(Company):
             self.until("the first is told", lambda number=number: not self.first[number].MoveVelocity.Busy)
             self.assertEqual(self.first.end(number, "MoveVelocity"), "CommandAborted")
             self.assertEqual(self.second[number].Axis.Owner, 1)
+            self.until_told(number, "has taken the axis over from a lower rank")
             self.assert_fails(self.first, number, "MoveVelocity", NOT_OWNER, Velocity=SPEED)
             self.second[number].Power.Enable = True
             self.until("the second has it", lambda number=number: self.second[number].Power.Status)

@@ -2,12 +2,13 @@
 """A configuration is changed while motors turn: what goes on, what is restarted, and what is refused."""
 import json
 import os
+import shutil
 import signal
 import subprocess
 
 from modbus import Client, Closed, ONLINE
 from processes import NEVER, Program, until
-from stage import AXISGATE, Story, bus, drive, main
+from stage import AXISGATE, SOURCE, Story, bus, drive, main
 
 DISABLED, CONTINUOUS = 0, 3
 CHANGED_ON_DISK = 1 << 8  # gateway alarms
@@ -97,6 +98,28 @@ class Reload(ReloadStory):
         self.refused("/dds: ")
         self.assertEqual(self.axis(1).get("axis_state"), CONTINUOUS)
 
+    def test_what_a_profile_extends_counts_as_the_profile(self):
+        for name in ("cia402", "kinco", "kinco-jd"):
+            shutil.copy(f"{SOURCE}/schemas/drives/{name}.json", self.folder)
+        with open(self.path("mine.json"), "w", encoding="utf-8") as file:
+            json.dump({"profile": 1, "name": "mine", "extends": "kinco-jd"}, file)
+        buses = self.buses()
+        buses[0]["drives"][0]["profile"] = self.path("mine.json")
+        self.start(buses=buses)
+        until("no alarm", lambda: not self.client.gateway()["alarms"] & CHANGED_ON_DISK)
+        with open(self.path("kinco.json"), encoding="utf-8") as file:
+            base = json.load(file)
+        base["protocols"]["kinco-serial"]["worst_reply_ms"] = 600
+        with open(self.path("kinco.json"), "w", encoding="utf-8") as file:
+            json.dump(base, file)
+        until("the alarm", lambda: self.client.gateway()["alarms"] & CHANGED_ON_DISK)
+        self.taken("bus lift: changed")
+        until("no alarm", lambda: not self.client.gateway()["alarms"] & CHANGED_ON_DISK)
+        base["protocols"]["kinco-serial"]["worst_reply_ms"] = "long"
+        with open(self.path("kinco.json"), "w", encoding="utf-8") as file:
+            json.dump(base, file)
+        self.refused(f"{self.path('kinco.json')}: /protocols/kinco-serial/worst_reply_ms: must be integer, is string")
+
     def test_a_service_reloads_on_sighup(self):
         self.simulate()
         self.configure()
@@ -151,6 +174,10 @@ except OSError:
             self.assertIn(done.stdout.strip(), answers)
         self.assertEqual(len(self.gateway.found("read anew")), 1)
 
+    def test_without_a_gateway_that_is_said(self):
+        self.configure()
+        self.refused("no gateway runs here with " + self.config)
+
     def test_a_hundred_reloads_leave_nothing_behind(self):
         self.start()
         self.turn(self.axis(1))
@@ -190,6 +217,19 @@ class Listeners(TwoListeners):
         again = Client(self.ports[1])
         self.addCleanup(again.close)
         self.assertEqual(again.gateway()["axis_count"], 2)
+
+    def test_one_is_added_and_one_removed(self):
+        first, second = self.listeners()
+        third = self.listener()
+        self.rewrite(listeners=[first, third])
+        self.taken(f"listener {third['listen']}: added", f"listener {second['listen']}: removed")
+        with self.assertRaises(Closed):
+            self.other.gateway()
+        with self.assertRaises(Closed):
+            Client(self.ports[1])
+        added = Client(int(third["listen"].rpartition(":")[2]))
+        self.addCleanup(added.close)
+        self.assertEqual(added.gateway()["axis_count"], 2)
 
 
 class OwnedThroughAListener(TwoListeners):

@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 
-from processes import NEVER, Program
+from processes import NEVER, Program, until
 from stage import AXISGATE, SOURCE, Story, main
 
 NOBODY_KNOWS = 65534  # a user without rights, of every system
@@ -70,6 +70,35 @@ class WhoIsThere(ScanStory):
             checked = self.command_line("check", config)
             self.assertNotIn("unknown key", checked.stderr)
             self.assertEqual(checked.stdout.count("\nAxis "), len(FOUND[line]), checked.stdout + checked.stderr)
+
+
+class NobodyAnswers(ScanStory):
+    def test_the_user_is_told_where_to_look(self):
+        self.simulate()
+        for line, options, words in (
+                ("kinco", ("--stations", "50-52", "--baud", "38400,19200"), ("nothing answered", "RX to TX", "--baud", "--parity", "slcan:")),
+                ("can", ("--nodes", "50-52"), ("3 nodes asked", "cable", "bit rate", "500000", "120 ohm"))):
+            ended = self.scan(line, *options, "--timeout-ms", "20")
+            self.assertEqual((ended.returncode, ended.stdout), (1, ""))
+            for word in ("each waited for 20 ms", "powered", *words):
+                self.assertIn(word, ended.stderr)
+
+    def test_drives_slower_than_the_time_given_are_told_apart_from_none(self):
+        self.simulate(None, "--reply-delay-ms", "60")
+        ended = self.scan("can", "--nodes", "3-60", "--timeout-ms", "20")
+        self.assertEqual(ended.returncode, 1)
+        self.assertRegex(ended.stderr, r"[1-9] answers came that nobody waited for .* --timeout-ms")
+
+    def test_one_that_falls_silent_is_told_and_left(self):
+        self.simulate()
+        for line, words in (("kinco", "station 3"), ("can", "node 3")):
+            self.sim.ask(f"reply-delay {line} 20")
+            program = self.keep(Program("axisgate scan", [AXISGATE, "scan", self.device(line), *LINES[line][1]]))
+            until("the first is read", lambda line=line: int(self.sim.ask(f"exchanges {line}")) > 10)
+            self.sim.ask(f"unresponsive {line}/3 on")
+            self.assertEqual(program.ended(), 0)
+            self.assertRegex(program.text(), f"{words}: it fell silent while it was asked")
+            self.assertRegex(program.text(), r"\n.* 4  .*kinco-md")
 
 
 class WhatCannotBeUsed(ScanStory):
