@@ -38,16 +38,6 @@ TEST_F(Program, OpensNothingWhereTheConfigurationIsWrong) {
   close(watch);
 }
 
-TEST_F(Program, EndsWithOneOnEachWrongFile) {
-  for (const test::Mistake& mistake : test::mistakes_of(fs::path(test::source_path("tests/config")))) {
-    const std::string file = write("wrong.json", mistake.file);
-    const Ended ended = run("run " + file);
-    EXPECT_EQ(ended.code, 1) << mistake.name;
-    EXPECT_THAT(ended.err, HasSubstr(file + ": ")) << mistake.name;
-    EXPECT_EQ(ended.out, "") << mistake.name;
-  }
-}
-
 TEST_F(Program, CheckEndsWithOneWhereABusIsOverloaded) {
   std::string config = one_drive("/dev/ttyUSB0", 1, "");
   EXPECT_EQ(run("check " + write("right.json", config)).code, 0);
@@ -149,20 +139,6 @@ TEST_F(Program, AProfilesPathCountsFromItsConfigurationWhereverTheProgramIsStart
   EXPECT_THAT(ended.err,
               HasSubstr("there is no file site/drives/kinco-jd.json: a path that does not begin with / counts "
                         "from this file"));
-}
-
-TEST_F(Program, AWrongKeyOrValueOfAConfigurationOrAProfileIsNamedWithTheNearestRightOne) {
-  std::string config = one_drive("/dev/ttyUSB0", 1, "");
-  config.replace(config.find("\"device\""), 8, "\"devcie\"");
-  EXPECT_THAT(run("check " + write("key.json", config)).err,
-              HasSubstr("/buses/0/devcie: unknown key \"devcie\"; did you mean \"device\"?"));
-  config = one_drive("/dev/ttyUSB0", 1, "");
-  config.replace(config.find("kinco-serial"), 12, "kinco-seral");
-  EXPECT_THAT(run("check " + write("value.json", config)).err, HasSubstr("did you mean \"kinco-serial\"?"));
-  std::string profile = test::content(test::source_path("schemas/drives/kinco-jd.json"));
-  profile.replace(profile.find("\"quantities\""), 12, "\"quantites\"");
-  EXPECT_THAT(run("profile check " + write("profile.json", profile)).err,
-              HasSubstr("/quantites: unknown key \"quantites\"; did you mean \"quantities\"?"));
 }
 
 TEST_F(Program, CheckReadsAPipeAndRunDoesNot) {

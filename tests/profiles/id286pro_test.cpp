@@ -180,12 +180,6 @@ TEST(Id286pro, StopsWaitUntilTheDriveStands) {
   }
 }
 
-TEST(Id286pro, ASpeedThatChangesWhileItRunsIsStartedAnew) {
-  const DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
-  EXPECT_TRUE(model.axes[0].command(Command::run_velocity)->repeat_on_change);
-  EXPECT_TRUE(model.object(model.find({323, 0})).trigger);
-}
-
 TEST(Id286pro, HomingMethodsAreTheDrivesOwnFourAndNeedTheirInput) {
   const DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
   // Modes 2 and 3 look for a limit (functions 9 and 10), 0 and 1 for the origin (11).

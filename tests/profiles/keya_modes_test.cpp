@@ -208,11 +208,5 @@ TEST(KeyaModes, OneQueryAnswersForBothMotorsInOnePollClass) {
   }
 }
 
-TEST(KeyaModes, AnIdentityIsKeptForTheBringUpToJudge) {
-  ResolveInput input = keya::drive("canopen");
-  input.identity[0] = 0x1234;
-  EXPECT_TRUE(keya::model(input).canopen.identity_given());
-}
-
 }  // namespace
 }  // namespace axisgate::drive

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tests/profiles/keya.hpp"
+#include "tests/profiles/mistakes.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -244,6 +245,14 @@ TEST(Keya, WhatComesUnaskedIsNeverAskedFor) {
   for (const ObjectId object : model.unsolicited.objects) EXPECT_FALSE(model.object(object).readable);
   for (const std::string protocol : {"canopen", "keya-rs232", "keya-rs485"})
     EXPECT_THAT(keya::model(keya::drive(protocol)).unsolicited.objects, IsEmpty());
+}
+
+TEST(Keya, WhatComesUnaskedAloneIsNoQuantity) {
+  json profile = json::parse(test::content(shipped("keya-kydas4860-2e")));
+  profile["quantities"]["digital_inputs"] = {{"object", "interface"}};
+  const test::OwnFolder folder;
+  const std::string file = folder.write("keya-kydas4860-2e.json", profile.dump()).string();
+  EXPECT_EQ(resolved(load_profile(file), keya::drive("keya-can")).axes[0].binding(Quantity::digital_inputs), nullptr);
 }
 
 TEST(Keya, ItsFaultsHaveTheManualsRemediesAndDisabledIsNone) {

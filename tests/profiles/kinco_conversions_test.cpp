@@ -95,22 +95,5 @@ TEST(KincoConversions, CurrentsOfBothManualsComeOut) {
   EXPECT_GE(checked, 10);
 }
 
-TEST(KincoConversions, SixtyFourRpmOnA65536CountEncoderDoesNotOverflow) {
-  // 64 * 512 * 65536 is 2^31: a 32-bit product would be negative from here on.
-  const DriveModel model = with("kinco-md", 65536, "36");
-  EXPECT_EQ(sent(model, Quantity::target_velocity, 64000), 1145325);
-  EXPECT_EQ(sent(model, Quantity::target_velocity, -64000), -1145325);
-  EXPECT_EQ(binding(model, Quantity::velocity_actual).to_register(1145325), 64000);
-}
-
-TEST(KincoConversions, EightTurnsAreTheMdsDefaultFollowingErrorWindow) {
-  EXPECT_EQ(sent(with("kinco-md", 65536, "36"), Quantity::target_position, 8 * 10000), 524288);
-}
-
-TEST(KincoConversions, TheJdReportsWholeRpm) {
-  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
-  EXPECT_EQ(binding(model, Quantity::velocity_actual).to_register(-474), -474000);
-}
-
 }  // namespace
 }  // namespace axisgate::drive

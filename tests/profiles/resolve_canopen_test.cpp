@@ -68,6 +68,7 @@ TEST(KincoMdOnCanopen, IsGuardedAndMadeToMindIt) {
   EXPECT_EQ(model.canopen.heartbeat, Duration{}) << "heartbeat or guarding, not both";
   EXPECT_EQ(model.canopen.own_heartbeat, Duration{});
   EXPECT_TRUE(model.stops_by_itself);
+  EXPECT_THAT(resolved(shipped("kinco-md"), kinco_axis()).setup, IsEmpty()) << "on its own protocol";
 }
 
 TEST(KincoOnCanopen, StateAndPositionComeTogether) {
@@ -89,16 +90,6 @@ TEST(KincoOnCanopen, InhibitTimesAreInTheUnitsOfTheDrive) {
   EXPECT_EQ(md.event_ms, 20);
   EXPECT_EQ(jd.inhibit_time, milliseconds(5));
   EXPECT_EQ(md.inhibit_time, milliseconds(5));
-}
-
-TEST(KincoOnCanopen, OtherProtocolsAreAsTheyWere) {
-  for (const std::string drive : {"kinco-jd", "kinco-md"}) {
-    const DriveModel model = resolved(shipped(drive), kinco_axis());
-    EXPECT_FALSE(model.stops_by_itself);
-    EXPECT_THAT(model.loss_objects, IsEmpty());
-    EXPECT_THAT(model.setup, IsEmpty());
-    EXPECT_THAT(model.canopen.tpdos, IsEmpty());
-  }
 }
 
 TEST(CanopenIdentity, IsWhatTheConfigurationAsksFor) {
@@ -145,13 +136,6 @@ TEST_F(CanopenProfile, GuardingWithoutALossReactionWritesNothing) {
   const DriveModel guarded = model();
   EXPECT_THAT(guarded.setup, IsEmpty());
   EXPECT_FALSE(guarded.stops_by_itself) << "the gateway notices, the drive does not";
-}
-
-TEST_F(CanopenProfile, WhatIsMappedIsPlannedSo) {
-  int mapped = 0;
-  const DriveModel resolved = model();
-  for (const ObjectId id : resolved.canopen.tpdos.at(0).map) mapped += id != kNoObject ? 1 : 0;
-  EXPECT_EQ(mapped, 2);
 }
 
 TEST_F(CanopenProfile, ANumberInThePlaceOfFactoryNumbersNeedsNoUnit) {

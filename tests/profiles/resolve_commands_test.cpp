@@ -2,6 +2,7 @@
 // Commands, modes, homing, checks and facts of the resolved Kinco models.
 #include <algorithm>
 
+#include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::drive {
@@ -108,18 +109,6 @@ TEST(KincoModel, RolesAreTheObjectsOfTheirQuantities) {
   EXPECT_FALSE(md.axes[0].cia402.mode_display);
 }
 
-TEST(KincoModel, FactsOfTheLineAreThere) {
-  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
-  EXPECT_EQ(model.profile, "kinco-jd");
-  EXPECT_EQ(model.title, "Kinco JD");
-  EXPECT_FALSE(model.stops_by_itself);
-  EXPECT_EQ(model.resync.candidates.size(), 4U);
-  EXPECT_EQ(model.resync.worst_reply, std::chrono::milliseconds(500));
-  EXPECT_TRUE(model.setup.empty()) << "the serial protocol needs none";
-  EXPECT_EQ(model.axes[0].number, 7);
-  EXPECT_EQ(model.axes[0].name, "lift");
-}
-
 TEST(KincoModel, ChecksNameTheInputsThatKeepTheBusFromControl) {
   const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
   const auto blocking = [&](const std::string& name) {
@@ -134,6 +123,19 @@ TEST(KincoModel, ChecksNameTheInputsThatKeepTheBusFromControl) {
   EXPECT_EQ(model.object(din1.remedy[1].object).address, (bus::ObjectAddress{0x2FF0, 1}));
   EXPECT_EQ(model.object(blocking("din8_local_control").bad.object).address, (bus::ObjectAddress{0x2010, 0x1D}));
   EXPECT_EQ(blocking("limit_inputs_open").alarm, AxisAlarm::limit_inputs_open);
+}
+
+TEST(Checks, HalfARemedyIsNone) {
+  nlohmann::json profile = nlohmann::json::parse(test::content(valid_file("minimal")));
+  profile["checks"][0].update({{"object", "statusword"}, {"remedy", nlohmann::json::array()}});
+  profile["objects"]["din2"] = profile["objects"]["din1"];
+  profile["objects"]["din2"]["at"] = {{"kinco-serial", "2010.04"}, {"modbus-rtu", "0x3900"}};
+  for (const char* object : {"din2", "din1"})
+    profile["checks"][0]["remedy"].push_back({{"write", object}, {"value", 0}});
+  const test::OwnFolder folder;
+  const LoadedProfile loaded = load_profile(folder.write("minimal.json", profile.dump()).string());
+  EXPECT_EQ(resolved(loaded, one_axis()).checks.at(0).remedy.size(), 2U);
+  EXPECT_EQ(resolved(loaded, one_axis("modbus-rtu")).checks.at(0).remedy.size(), 0U) << "din1 has no register";
 }
 
 TEST(KincoModel, HomingMethodsAndTheirEnd) {

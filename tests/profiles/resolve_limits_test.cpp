@@ -77,6 +77,15 @@ TEST(ResolvedLimits, TheProfilesLimitFollowsItsConstant) {
             (Range{-2500000, 2500000}));
 }
 
+TEST(ResolvedLimits, TheProfilesLimitOfAnInvertedAxisIsTurnedRound) {
+  ResolveInput input = one_axis();
+  EXPECT_EQ(binding(resolved(valid_file("derived"), input), Quantity::target_velocity).limits,
+            (Range{-1000000, 2000000}));
+  input.axes[0].inverted = true;
+  EXPECT_EQ(binding(resolved(valid_file("derived"), input), Quantity::target_velocity).limits,
+            (Range{-2000000, 1000000}));
+}
+
 TEST(RatedSpeed, IsTheConstantOfTheMotorOrNotKnown) {
   ResolveInput input = kinco_axis();
   EXPECT_EQ(resolved(shipped("kinco-md"), input).axes[0].rated_speed, 3'000'000U);

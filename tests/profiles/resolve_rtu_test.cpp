@@ -41,14 +41,6 @@ TEST(KincoRtu, GivesWhatItsManualListsARegisterFor) {
   }
 }
 
-TEST(KincoRtu, ReadsTheModeBackWhereNoDisplayHasARegister) {
-  for (const std::string drive : {"kinco-jd", "kinco-md"}) {
-    const AxisModel axis = on_rtu(drive).axes[0];
-    EXPECT_EQ(axis.mode_display, axis.mode) << drive;
-    EXPECT_FALSE(axis.cia402.mode_display) << drive;
-  }
-}
-
 TEST(KincoRtu, TheSecondFaultWordHasNoRegister) {
   for (const std::string drive : {"kinco-jd", "kinco-md"}) {
     const DriveModel model = on_rtu(drive);
@@ -85,11 +77,6 @@ TEST(Rtu, ResynchronisationReadsDifferInLengthOnly) {
             "fault_code/1 fault_code/2 microstep_in_effect/3 fault_code/4");
   EXPECT_EQ(resyncs(resolved(valid_file("virtual"), one_axis("modbus-rtu"))), "fault_code/1 fault_code/3 position/2");
   EXPECT_TRUE(on_rtu("kinco-jd").resync.by_length);
-}
-
-TEST(Rtu, ElsewhereAResynchronisationReadIsAnObjectAsItIs) {
-  EXPECT_EQ(resyncs(on_serial("kinco-jd")), "controlword/0 mode/0 fault_word_1/0 output_levels/0");
-  EXPECT_FALSE(on_serial("kinco-jd").resync.by_length);
 }
 
 TEST(Rtu, FactsOfTheLineAreTheProfiles) {

@@ -49,12 +49,6 @@ TEST(VirtualDrive, SupportsWhatTheGatewayMakes) {
   EXPECT_EQ(binding(model, Quantity::mode).limits, (Range{-128, 127}));
 }
 
-TEST(VirtualDrive, ItsModesAreTheRegistersOwnNumbers) {
-  // The drive calls them otherwise, but is never sent one; torque has no set-point here.
-  EXPECT_THAT(virtual_drive().axes[0].modes, ElementsAre(Pair(1, 1), Pair(3, 3), Pair(6, 6)));
-  EXPECT_EQ(virtual_drive().axes[0].supported_modes, 0x0025);
-}
-
 TEST(VirtualDrive, ItsStateIsEmulatedFromTheFaultFirst) {
   const DriveModel model = virtual_drive();
   EXPECT_THAT(names(model, model.axes[0].state_sources), ElementsAre("fault_code", "run_state"));
@@ -105,15 +99,6 @@ TEST(VirtualDrive, HomingMethodsAreTranslatedBothWays) {
   EXPECT_TRUE(binding(resolved(shipped("kinco-md"), kinco_axis()), Quantity::homing_method).codes.empty());
 }
 
-TEST(VirtualDrive, AMethodMayNeedAnInput) {
-  const DriveModel model = virtual_drive();
-  ASSERT_EQ(model.axes[0].homing_needs.size(), 1U);
-  const HomingNeed& need = model.axes[0].homing_needs[0];
-  EXPECT_EQ(need.method, 17);
-  EXPECT_EQ(need.equals, 10);
-  EXPECT_THAT(names(model, need.any_of), ElementsAre("input_function"));
-}
-
 TEST(VirtualDrive, TakesAPositionByValueAndNeedsNoModeForIt) {
   const DriveModel model = virtual_drive();
   const auto& command = model.axes[0].command(Command::set_position);
@@ -143,11 +128,6 @@ TEST(VirtualDrive, AlarmsByValueKeepTheirOrder) {
   EXPECT_EQ(model.alarms[0].code, 0x3210);
   EXPECT_EQ(model.alarms[1].value, 10U);
   for (const AlarmRow& row : resolved(shipped("kinco-jd"), kinco_axis()).alarms) EXPECT_FALSE(row.value) << row.text;
-}
-
-TEST(VirtualDrive, RegistersThatAreNotListedWearAsTheProfileSays) {
-  EXPECT_EQ(virtual_drive().nvm, Nvm::unknown);
-  EXPECT_EQ(resolved(shipped("kinco-jd"), kinco_axis()).nvm, Nvm::no);
 }
 
 }  // namespace

@@ -69,29 +69,6 @@ TEST_F(BusTest, noise_in_place_of_the_answers_of_one_drive_is_told_with_its_numb
                                                     testing::HasSubstr("two drives with this number"))));
 }
 
-TEST_F(BusTest, a_drive_with_nothing_to_send_gives_its_turn_to_the_next) {
-  link_up();
-  drives[0].grant_hook = [this](JobId id, Priority) -> std::optional<Exchange> {
-    bus->finish(id);
-    return std::nullopt;
-  };
-  submit(0);
-  submit(1);
-  turn();
-  EXPECT_THAT(diary, ElementsAre("drive 1: grant 1", "drive 2: grant 2"));
-  EXPECT_THAT(wire->sent, ElementsAre(drives[1].exchange()));
-}
-
-TEST_F(BusTest, a_poll_is_granted_when_it_is_due) {
-  link_up();
-  drives[0].result_hook = [this](const ExchangeResult&) { bus->set_poll_due(0, bus->now() + 20ms); };
-  bus->set_poll_due(0, runtime.now() + 5ms);
-  runtime.advance_by(5ms);
-  EXPECT_THAT(diary, ElementsAre("drive 1: grant poll"));
-  wire->reply();
-  EXPECT_EQ(runtime.next_deadline(), runtime.now() + 20ms);
-}
-
 TEST_F(BusTest, a_drive_may_submit_finish_wait_and_poll_from_inside_any_callback) {
   link_up();
   JobId second = 0;
@@ -114,19 +91,6 @@ TEST_F(BusTest, a_drive_may_submit_finish_wait_and_poll_from_inside_any_callback
   wire->reply();
   EXPECT_THAT(diary, ElementsAre("drive 1: grant 1", "drive 1: ok", "drive 1: grant 2", "drive 1: ok",
                                  "drive 2: grant poll", "drive 2: ok", "drive 1: job 2 link lost"));
-}
-
-TEST_F(BusTest, a_bus_job_submitted_from_inside_a_grant_is_served_too) {
-  link_up();
-  drives[0].grant_hook = [this](JobId id, Priority) -> std::optional<Exchange> {
-    if (id == 1) submit(1, Priority::stop);
-    return drives[0].exchange();
-  };
-  submit(0);
-  turn();
-  wire->reply();
-  pass_gap();
-  EXPECT_THAT(diary, ElementsAre("drive 1: grant 1", "drive 1: ok", "drive 2: grant 2"));
 }
 
 TEST_F(BusTest, a_turn_of_the_loop_does_bounded_work) {
@@ -180,20 +144,6 @@ TEST_F(BusTest, a_stop_waits_for_the_exchange_on_the_wire_and_the_gap_alone) {
   EXPECT_THAT(diary, ElementsAre("drive 2: ok", "drive 1: grant 65"));
 }
 
-TEST_F(BusTest, a_superseded_setpoint_is_told_in_the_next_turn) {
-  link_up();
-  BusJob setpoint;
-  setpoint.axis = 0;
-  setpoint.setpoints_only = true;
-  setpoint.writes.push_back({0x607A, 0});
-  drives[0].grant_hook = [](JobId, Priority) { return std::nullopt; };
-  ASSERT_EQ(bus->submit(setpoint).id, 1u);
-  ASSERT_EQ(bus->submit(setpoint).id, 2u);
-  EXPECT_THAT(diary, IsEmpty());
-  turn();
-  EXPECT_THAT(diary, ElementsAre("drive 1: job 1 superseded", "drive 1: grant 2"));
-}
-
 TEST_F(BusTest, counts_its_own_the_arbiters_and_the_wires) {
   link_up();
   wire->counted.late_replies = 3;
@@ -211,17 +161,6 @@ TEST_F(BusTest, counts_its_own_the_arbiters_and_the_wires) {
   expected.late_replies = 3;
   expected.dropped_bytes = 7;
   EXPECT_EQ(bus->statistics(), expected);
-}
-
-TEST_F(BusTest, knows_its_load) {
-  link_up();
-  submit(0);
-  turn();
-  runtime.advance_by(50ms);
-  bus->finish(1);
-  wire->reply();
-  runtime.advance_by(1s);
-  EXPECT_EQ(bus->load_permille(), 50);
 }
 
 }  // namespace

@@ -254,32 +254,12 @@ TEST_P(ByteLineRules, a_line_that_babbles_is_opened_anew_three_times_and_then_gi
   EXPECT_THAT(replies, IsEmpty());
 }
 
-TEST_P(ByteLineRules, an_answer_starts_the_count_of_openings_anew) {
-  for (int i = 0; i < 5; ++i) {
-    babble(150ms);
-    runtime.advance_by(1s);
-    expect_service();
-  }
-  EXPECT_THAT(*far.reopened, SizeIs(5));
-}
-
 TEST_P(ByteLineRules, a_line_given_up_is_opened_anew_each_second_and_taken_back_within_a_second_of_silence) {
   give_up();
   const std::size_t before = far.reopened->size();
   babble(5s);
   EXPECT_EQ(far.reopened->size(), before + 5);
   EXPECT_THAT(told, IsEmpty()) << "the bus hears of it once";
-  runtime.advance_by(1s);
-  EXPECT_THAT(told, ElementsAre("up"));
-  expect_service();
-}
-
-TEST_P(ByteLineRules, a_line_given_up_and_then_pulled_comes_back_when_it_is_plugged_in) {
-  give_up();
-  far.down("/dev/ttyUSB0: hung up");
-  runtime.advance_by(10s);
-  EXPECT_THAT(told, IsEmpty()) << "down was told already";
-  far.up();
   runtime.advance_by(1s);
   EXPECT_THAT(told, ElementsAre("up"));
   expect_service();

@@ -298,13 +298,5 @@ TEST_F(LawicelSessionTest, a_lost_port_is_silent_and_waits_for_nothing) {
   EXPECT_EQ(said(), "") << "what waited before the loss is not sent after it";
 }
 
-TEST_F(LawicelSessionTest, each_rate_has_its_command) {
-  LawicelSession slow(CanDevice{.lawicel = true, .path = "x"}, 125000);
-  slow.on_port_up(now);
-  (void)slow.take_output();
-  slow.on_deadline(now + 300ms);
-  EXPECT_EQ(slow.take_output(), "S4\r");
-}
-
 }  // namespace
 }  // namespace axisgate::can

@@ -126,16 +126,6 @@ TEST_F(SlcanLinkTest, more_bytes_than_the_backlog_holds_are_counted_as_lost) {
   EXPECT_TRUE(diary.up());
 }
 
-TEST_F(SlcanLinkTest, sends_frames) {
-  start();
-  link->send(frame_of(0x603, 0x40), false);
-  EXPECT_EQ(port->take_sent(), "t603140\r");
-  link->send(frame_of(0x001), false);
-  EXPECT_EQ(port->take_sent(), "") << "the line is not free yet";
-  runtime.advance_by(10ms);
-  EXPECT_EQ(port->take_sent(), "t001100\r");
-}
-
 TEST_F(SlcanLinkTest, send_calls_nobody_back_when_the_queue_is_full) {
   start();
   for (std::size_t i = 0; i < can::kMaxUnsentFrames + 10; ++i) link->send(frame_of(1), false);

@@ -96,17 +96,6 @@ TEST_F(CanopenWireTest, sync_is_sent_in_its_period_and_carries_nothing_and_witho
 
 // --- What nodes say -------------------------------------------------------------------------------------------------
 
-TEST_F(CanopenWireTest, presence_restart_and_absence_are_told) {
-  begin({.name = "can0", .nodes = {{.node = 1, .heartbeat = 100ms}}});
-  bring(0x701, "05");
-  runtime.advance_by(249ms);
-  EXPECT_THAT(kinds(), ElementsAre(Kind::present));
-  runtime.advance_by(1ms);
-  EXPECT_THAT(kinds(), ElementsAre(Kind::present, Kind::gone));
-  bring(0x701, "00");
-  EXPECT_EQ(unsolicited_events.back().kind, Kind::started);
-}
-
 TEST_F(CanopenWireTest, a_guarded_node_is_asked_and_its_silence_told) {
   begin({.name = "can0", .nodes = {{.node = 1, .guard_time = 100ms, .life_factor = 2}}});
   bring(0x701, "05");
@@ -159,14 +148,6 @@ TEST_F(CanopenWireTest, process_data_without_a_map_or_too_short_give_no_values) 
   wire->map_process_data(1, 1, {});
   bring(0x181, "37 06");
   EXPECT_THAT(unsolicited_events, IsEmpty());
-}
-
-TEST_F(CanopenWireTest, an_emergency_storm_is_told_in_few_unsolicited_events) {
-  flood(0x081, "10 32 04 00 00 00 00 00", 40);
-  EXPECT_EQ(unsolicited_events.size(), 4u);
-  runtime.advance_by(1s);
-  ASSERT_EQ(unsolicited_events.size(), 5u);
-  EXPECT_EQ(unsolicited_events.back().repeats, 35u);
 }
 
 TEST_F(CanopenWireTest, two_devices_with_contradicting_heartbeats_are_told_and_a_new_period_is_none) {

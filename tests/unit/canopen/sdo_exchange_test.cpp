@@ -48,25 +48,6 @@ TEST_F(SdoExchange, a_read_is_sent_to_its_node_and_its_value_reported_as_it_came
   EXPECT_EQ(*replies.back().bytes, from_hex("01 02 03"));
 }
 
-TEST_F(SdoExchange, a_write_is_ok_with_or_without_an_echo_of_its_data) {
-  for (const char* ack : {"60 40 60 00 00 00 00 00", "60 40 60 00 0F 00 00 00", "60 40 60 00 0F 00"}) {
-    wire->send(write_of(0x6040, 0x0F, 2));
-    bring(0x581, ack);
-  }
-  EXPECT_THAT(link->sent, testing::Each(frame_of(0x601, "2B 40 60 00 0F 00 00 00")));
-  EXPECT_THAT(replies, ElementsAre(bus::ExchangeResult{}, bus::ExchangeResult{}, bus::ExchangeResult{}));
-}
-
-TEST_F(SdoExchange, an_abort_is_a_refusal_with_the_drives_own_number) {
-  wire->send(read_of(0x9999));
-  bring(0x581, "80 99 99 00 00 00 02 06");
-  wire->send(write_of(0x6060, 9, 1));
-  bring(0x581, "80 60 60 00 10 00 06 06");
-  wire->send(write_of(0x6060, 9, 1));
-  bring(0x581, "80 60 60 00 22 00 00 08");
-  EXPECT_THAT(replies, ElementsAre(refusal_of(0x06020000), refusal_of(0x06060010, true), refusal_of(0x08000022, true)));
-}
-
 TEST_F(SdoExchange, only_the_reply_that_fits_in_everything_ends_the_exchange) {
   wire->send(read_of(0x6041, 0, 2));
   bring(0x582, "4B 41 60 00 01 00 00 00");  // another node

@@ -83,14 +83,6 @@ TEST_F(SmallStack, an_abort_that_names_no_object_is_that_of_the_one_open_request
   EXPECT_EQ(wire->statistics().late_replies, 0u);
 }
 
-TEST_F(SmallStack, of_a_long_object_as_well) {
-  wire->send(long_read_of(0x1008));
-  bring(0x581, "41 08 10 00 0B 00 00 00");
-  wire->send(next_of(long_read_of(0x1008)));
-  bring(0x581, "80 00 00 00 00 00 04 05");
-  EXPECT_EQ(replies.back(), refusal_of(0x05040000, true));
-}
-
 TEST_F(SmallStack, where_a_late_answer_is_awaited_it_may_be_that_one) {
   wire->send(read_of(0x6079));
   wire->abandon();

@@ -81,22 +81,6 @@ TEST_P(SdoStepFailure, a_lost_reply_ends_by_the_timeout_and_an_abort) {
   expect_silence_at_each_reply([](ByteRow&) { return false; });
 }
 
-TEST_P(SdoStepFailure, another_nodes_reply_is_not_taken) {
-  expect_silence_at_each_reply([&](ByteRow& row) {
-    bring(can::data_frame(0x582, row));
-    return false;
-  });
-}
-
-TEST_P(SdoStepFailure, an_abort_of_another_object_is_not_for_us) {
-  with_each_reply(
-      [](ByteRow& row) {
-        row = from_hex("80 00 20 01 21 00 00 08");
-        return true;
-      },
-      [&](const Result& result) { EXPECT_TRUE(!result || GetParam().blocks); });
-}
-
 TEST_P(SdoStepFailure, a_wrong_toggle_or_sub_index_is_not_taken) {
   if (GetParam().blocks) return;  // no toggles there: sequences have their own tests
   expect_silence_at_each_reply([](ByteRow& row) {
@@ -135,15 +119,6 @@ TEST_P(SdoStepFailure, a_reply_that_comes_after_the_timeout_ends_nothing) {
         bring(can::data_frame(0x581, *late));
         EXPECT_EQ(replies.size(), before);
       });
-}
-
-TEST_P(SdoStepFailure, a_reply_that_comes_twice_spoils_nothing) {
-  with_each_reply(
-      [&](ByteRow& row) {
-        bring(can::data_frame(0x581, row));
-        return true;
-      },
-      [&](const Result& result) { expect_whole(result); });
 }
 
 TEST_P(SdoStepFailure, a_restart_in_its_midst_is_told_and_the_transfer_forgotten) {

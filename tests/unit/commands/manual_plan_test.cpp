@@ -338,6 +338,20 @@ TEST_F(ByHand, EnableHoldsWithSignsOfLifeAndGivesBackWithoutAStop) {
   EXPECT_EQ(plan_->words(), "Ctrl-C: axis 4 is disabled");
 }
 
+TEST_F(ByHand, ASignOfLifeThatIsNotAnsweredIsFollowedByNoOther) {
+  begin(ManualTask::enable);
+  enabled();
+  for (int i = 0; i < 3; ++i) plan_->on_time(now_ += ManualPlan::kHeartbeat);
+  EXPECT_THAT(plan_->take(), ::testing::SizeIs(1));
+}
+
+TEST_F(ByHand, TheIdBehindTheLastOneIsNotTheOneThatIsNone) {
+  begin(ManualTask::enable);
+  view_.command_id_seen = 65535;
+  look();
+  EXPECT_THAT(written(), ElementsAre(command(Command::none, 1)));
+}
+
 TEST_F(ByHand, ASecondEndDoesNotWait) {
   moving();
   plan_->end("Ctrl-C", now_);

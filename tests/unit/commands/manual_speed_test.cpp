@@ -67,6 +67,14 @@ TEST_F(Speed, BeyondALimitNamesTheLimitAndMovesNothing) {
   EXPECT_THAT(written(), ElementsAre(command(Command::release, 42)));
 }
 
+TEST_F(Speed, ThatIsUsualIsNeverRaisedToALimitAboveIt) {
+  asks(speed(60));
+  answer(Exception::illegal_data_value);
+  view_.detail = 100'000;
+  look();
+  EXPECT_THAT(written(), ElementsAre(command(Command::release, 42)));
+}
+
 TEST_F(Speed, AboveTheRatedSpeedOfTheMotorIsNotEvenSent) {
   arguments_.rpm = Rational(99999);
   begin(ManualTask::move);

@@ -137,16 +137,6 @@ TEST_F(Scan, EachShippedProfileFitsItsOwnDriveBest) {
   }
 }
 
-TEST_F(Scan, AnObjectOfAnotherWidthSpeaksAgainstAProfile) {
-  Node& node = nodes_[1];
-  node.add(profile("kinco-jd"));
-  node.add({0x6041, 0}, 4);
-  ScanPlan plan(shipped_);
-  run(plan);
-  const ScanFit fit = plan.found().at(0).fits.at(0);
-  EXPECT_EQ(fit.has, fit.of - 1);
-}
-
 TEST_F(Scan, AWidthThatNobodyPrintedMayBeAny) {
   Node& node = nodes_[1];
   node.add(profile("leadshine-ld2-can"));

@@ -101,23 +101,6 @@ TEST(TopCommand, ShowsOneTableOfAllAxes) {
   EXPECT_THAT(shown.out, AllOf(HasSubstr("standstill"), HasSubstr("not_homed"), Not(HasSubstr("\x1b"))));
 }
 
-TEST(TopCommand, ShowsSoManyTablesAsAskedFor) {
-  const RunningServer server;
-  TopOptions options = once(server.endpoint());
-  options.count = 3;
-  options.interval_ms = 1;
-  const Shown shown = shown_by(options);
-  EXPECT_EQ(shown.status, 0);
-  EXPECT_EQ(times(shown.out, "running"), 3U);
-}
-
-TEST(TopCommand, FindsTheWordOrderByItself) {
-  modbus_tcp::ListenerSettings settings;
-  settings.low_word_first = true;
-  const RunningServer server(settings);
-  EXPECT_THAT(shown_by(once(server.endpoint())).out, HasSubstr("  100000  "));
-}
-
 TEST(TopCommand, SeesAllAxesWhereAListenerShowsOnePerUnitId) {
   modbus_tcp::ListenerSettings settings;
   settings.per_axis_units = true;

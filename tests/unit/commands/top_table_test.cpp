@@ -18,7 +18,6 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
-using ::testing::StartsWith;
 
 void put32(AxisReading& axis, std::size_t offset, std::uint32_t value) {
   axis.registers[offset] = static_cast<std::uint16_t>(value >> 16);
@@ -186,13 +185,6 @@ TEST(TopTable, ReadsBothWordOrders) {
   EXPECT_EQ(text_of(table_lines(reading)), high_first);
   reading.gateway[10] = 0;
   EXPECT_EQ(word_order(reading.gateway), WordOrder::unknown);
-}
-
-TEST(TopTable, AnAxisOutOfReachIsShownOfflineWithItsLastValuesMarked) {
-  AxisReading axis = good_axis(1);
-  mark_out_of_reach(axis);
-  EXPECT_THAT(axis_line(axis), HasSubstr("offline"));
-  EXPECT_THAT(axis_line(axis), HasSubstr("123456?"));
 }
 
 TEST(TopTable, FitsIntoEightyColumnsWithEveryNumberWhole) {

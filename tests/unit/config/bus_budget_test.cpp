@@ -3,13 +3,16 @@
 
 #include <gmock/gmock.h>
 
+#include "gateway/config/config_sections.hpp"
+
 namespace axisgate::app {
 namespace {
 
 using drive::PollClass;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
-using ::testing::Each;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 /// A drive of one axis with as many objects in each class.
 drive::DriveModel model_with(int fast, int normal, int slow, int once = 0) {
@@ -101,6 +104,44 @@ TEST(BusBudget, AnOverloadedBusStretchesItsCycleAndNamesPeriodsThatFit) {
 TEST(BusBudget, PeriodsThatFitAreLeftAsTheyAre) {
   const BusBudget budget = plan_bus(kinco_timing(), {model_with(1, 1, 1)});
   EXPECT_EQ(comfortable_periods(budget), kinco_timing().poll);
+}
+
+TEST(BusBudget, PeriodsThatFitLeaveThePollsSomethingWhereConfirmingTakesTheLine) {
+  BusBudget budget = plan_bus(kinco_timing(), {model_with(1, 0, 0)});
+  budget.confirmed.period = milliseconds(1000);
+  budget.confirmed.answered = milliseconds(900);
+  budget.load_answered = 1500;
+  EXPECT_EQ(comfortable_periods(budget)[0], milliseconds(1200)) << "twelve times as long";
+}
+
+TEST(BusBudget, OfTwoKeepAlivesTheOneThatIsDueMoreOftenIsPlannedWith) {
+  const auto kept = [](Duration every) {
+    drive::DriveModel model = model_with(1, 0, 0);
+    model.keep_alive = every;
+    model.axes[0].keep_alive.emplace_back(3, 0);
+    return model;
+  };
+  for (const auto& [one, other] : {std::pair(200, 300), std::pair(300, 200)})
+    EXPECT_EQ(plan_bus(kinco_timing(), {kept(milliseconds(one)), kept(milliseconds(other))}).kept_alive.period,
+              milliseconds(200));
+}
+
+TEST(Timeout, IsTheSlowestDrivesBehindTheWiresTimeAndNoneIsAsShortAsThat) {
+  BusConfig bus;
+  bus.timeout = {};
+  std::vector<drive::DriveModel> drives(2);
+  drives[0].timeout = milliseconds(40);
+  drives[1].timeout = milliseconds(20);
+  ConfigFaults faults("gateway.json");
+  const auto settle = [&] { settle_timeout(bus, drives, milliseconds(5), "an exchange", faults); };
+  settle();
+  EXPECT_EQ(bus.timeout, milliseconds(45));
+  bus.timeout = milliseconds(6);
+  settle();
+  EXPECT_THAT(faults.faults(), IsEmpty());
+  bus.timeout = milliseconds(5);
+  settle();
+  EXPECT_THAT(faults.faults(), SizeIs(1));
 }
 
 TEST(BusBudget, ExactlyFullIsNotOverloaded) {

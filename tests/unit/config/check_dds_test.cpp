@@ -131,21 +131,6 @@ TEST_F(CheckDds, SaysNothingOfDdsClientsWhereTheyOwnNothing) {
   EXPECT_EQ(of_the_axis(), "");
 }
 
-TEST_F(CheckDds, PutsThemUnderTheLeaseOfTheAxis) {
-  settings->commands = true;
-  drive::AxisModel model;
-  model.binding_of.fill(-1);
-  const drive::DriveModel drive;
-  const auto lines = [&] {
-    std::string out;
-    add_lines(out, master_lines({axis, model, drive, budget, settings}));
-    return out;
-  };
-  EXPECT_THAT(lines(), HasSubstr("DDS client      kept by"));
-  settings.reset();
-  EXPECT_THAT(lines(), Not(HasSubstr("DDS")));
-}
-
 TEST_F(CheckDds, IsPartOfTheReportWhereItIsConfigured) {
   LoadedConfig loaded;
   loaded.config.file = "a.json";

@@ -245,12 +245,5 @@ TEST_F(Masters, SaysThatTwoProgramsOfOneAddressAreOneClientWhateverRenews) {
   EXPECT_THAT(warned(), Not(HasSubstr("two programs of one computer"))) << "nobody owns anything";
 }
 
-TEST_F(Masters, AreInTheReportOfEachAxisAndBelowIt) {
-  config(1).lease.on = false;
-  const std::string report = check(loaded).text;
-  EXPECT_THAT(report,
-              AllOf(HasSubstr("  program dies    quick stop at most"), HasSubstr("warning: axis 2: \"lease\": null")));
-}
-
 }  // namespace
 }  // namespace axisgate::app

@@ -64,13 +64,6 @@ TEST(Check, SaysHowFarFloatsTellUnitsApart) {
   EXPECT_THAT(check(loaded).text, HasSubstr("up to ±256 turns\n"));
 }
 
-TEST(Check, SaysWhatADriveDoesWhenTheGatewayDies) {
-  LoadedConfig loaded = one_axis();
-  EXPECT_THAT(check(loaded).text, HasSubstr("THE DRIVE DOES NOT STOP BY ITSELF on kinco-serial"));
-  loaded.models[0][0].stops_by_itself = true;
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("DOES NOT STOP")));
-}
-
 TEST(Check, NamesWhatAnAxisDoesNotHave) {
   const std::string text = check(one_axis()).text;
   EXPECT_THAT(text, HasSubstr("quantities: mode_display, velocity_actual, torque_actual"));
@@ -89,6 +82,8 @@ TEST(Check, GivesUnitsAndRangeInTurns) {
 
 TEST(Check, AnOverloadedBusIsNamedWithPeriodsThatFit) {
   LoadedConfig loaded = one_axis();
+  loaded.config.buses.push_back(loaded.config.buses[0]);
+  loaded.models.push_back(loaded.models[0]);
   loaded.config.buses[0].poll[0] = milliseconds(5);
   const CheckReport report = check(loaded);
   EXPECT_TRUE(report.overloaded);

@@ -53,12 +53,6 @@ class ConfigDds : public ::testing::Test {
   const std::string folder_ = std::filesystem::temp_directory_path() / ("axisgate-dds-" + std::to_string(getpid()));
 };
 
-TEST_F(ConfigDds, IsOffWithoutItsKey) {
-  const LoadedConfig loaded = load("");
-  EXPECT_FALSE(loaded.config.dds);
-  EXPECT_THAT(loaded.warnings, IsEmpty());
-}
-
 TEST_F(ConfigDds, IsWhereRos2NodesOfThisMachineLookForIt) {
   EXPECT_TRUE(settings(R"({"ros2": true})").shared_memory);
   EXPECT_FALSE(settings(R"({"ros2": true, "shared_memory": false})").shared_memory);

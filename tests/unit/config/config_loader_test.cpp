@@ -182,19 +182,6 @@ TEST_F(ConfigLoader, KeepsConstantsExactly) {
   EXPECT_EQ(constants.at("encoder_counts_per_rev"), Rational(65536));
 }
 
-TEST_F(ConfigLoader, GivesEachDriveItsModel) {
-  const LoadedConfig loaded = load_good(one_drive("", R"(, "poll": {"fast": 40})"));
-  ASSERT_THAT(loaded.models, SizeIs(1));
-  ASSERT_THAT(loaded.models[0], SizeIs(1));
-  const drive::DriveModel& model = loaded.models[0][0];
-  EXPECT_EQ(model.profile, "kinco-jd");
-  EXPECT_EQ(model.protocol, "kinco-serial");
-  EXPECT_EQ(model.node, 1);
-  EXPECT_EQ(model.poll_period[0], milliseconds(40));
-  ASSERT_THAT(model.axes, SizeIs(1));
-  EXPECT_EQ(model.axes[0].number, 1);
-}
-
 TEST_F(ConfigLoader, KeepsWhatItHasReadAndWhereItLookedInVain) {
   const auto text_of = [](const std::string& file) {
     std::ifstream stream(file);

@@ -124,17 +124,6 @@ TEST(KeyaBus, PeriodsThatAreGivenAreKept) {
   EXPECT_TRUE(check(loaded).overloaded);
 }
 
-TEST(KeyaBus, OnCanAStopWaitsForAFrameThatHasJustBegunAsWell) {
-  const BusBudget budget = plan_of(load_keya("keya-can", keya(1)));
-  EXPECT_EQ(budget.stop_wait, budget.exchange + microseconds(640));
-}
-
-TEST(KeyaBus, ItsKeepAlivesCountOnCanopenToo) {
-  const BusBudget budget = plan_of(load_keya("canopen", keya(1), R"(, "bitrate": 500000)"));
-  EXPECT_EQ(budget.kept_alive.reads, 2);
-  EXPECT_LE(budget.load_answered, kComfortablePermille);
-}
-
 TEST(KeyaBus, CheckTellsHowToBringTheInterfaceUpAndWhatGoesOverTheLineUnasked) {
   EXPECT_THAT(
       check(load_keya("keya-can", keya(1))).text,

@@ -11,7 +11,6 @@ namespace {
 
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -102,18 +101,6 @@ TEST(RtuLine, TheDefaultPeriodsLeaveCommandsAFifthOfTheLine) {
     EXPECT_GT(budget.load_answered, 600) << drives << ": the line could give fresher values";
     for (const drive::DriveModel& model : loaded.models.at(0)) EXPECT_EQ(model.poll_period, bus_of(loaded).poll);
   }
-}
-
-TEST(RtuLine, AFasterLineIsPolledMoreOften) {
-  const auto slow = bus_of(load_line(kJd, R"(, "baud": 9600)")).poll;
-  const auto fast = bus_of(load_line(kJd, R"(, "baud": 115200)")).poll;
-  for (std::size_t i = 0; i < fast.size(); ++i) EXPECT_LT(fast[i], slow[i]);
-}
-
-TEST(RtuLine, GivenPeriodsAreKept) {
-  const LoadedConfig loaded = load_line(both(), R"(, "poll": {"fast": 300, "normal": 900})");
-  EXPECT_THAT(bus_of(loaded).poll, ElementsAre(milliseconds(300), milliseconds(900), milliseconds(1000)));
-  EXPECT_EQ(loaded.models.at(0).at(1).poll_period[0], milliseconds(300));
 }
 
 TEST(RtuLine, CheckNamesTheAnswerTimesItCountsWith) {

@@ -76,13 +76,6 @@ TEST_F(Writers, HaveTheRoleOfTheirCertificateOrThatOfAllOthers) {
   EXPECT_EQ(there(other_program)->role, Role::engineer);
 }
 
-TEST_F(Writers, AreHeardByTheirBeatsWhichAreHeartbeats) {
-  const auto life = there(guid(1));
-  clients.on_beats(beat(guid(1)), kStart + 1s);
-  EXPECT_EQ(life->last_request, kStart + 1s);
-  EXPECT_EQ(life->heartbeat, kStart + 1s);
-}
-
 TEST_F(Writers, AreHeardAsOfThenWhereTheirBeatsLayInTheSocket) {
   const auto life = there(guid(1));
   const auto said = [](Instant then) { return beat(guid(1), then.time_since_epoch().count()); };
@@ -136,6 +129,12 @@ TEST_F(Writers, AHeartbeatCountsForItsOwnParticipantAlone) {
   clients.on_heartbeat(heartbeat(guid(3), 1, kStart + 1s), kStart + 1s);
   EXPECT_EQ(life->heartbeat, kLongAgo);
   EXPECT_EQ(clients.size(), 1U) << "it makes no client";
+}
+
+TEST_F(Writers, AnOldSampleRenewsNothing) {
+  const auto life = there(guid(1));
+  static_cast<void>(clients.on_sample(guid(1), {}, false, kStart + 5s));
+  EXPECT_EQ(life->last_request, kStart);
 }
 
 TEST_F(Writers, AnOldHeartbeatRenewsNothing) {

@@ -80,16 +80,6 @@ TEST_P(Jogged, EndsWhenItsCommandComesNoMoreThoughItsWriterLives) {
   EXPECT_TRUE(rig.turns(axis));
 }
 
-TEST_P(Jogged, AnothersStopEndsItForGood) {
-  enable();
-  EXPECT_EQ(jog(kForward), kDone);
-  hold(kForward, 1s);
-  const auto other = rig.writer(2);
-  EXPECT_EQ(rig.ask(other, 4, axis).result, kDone);
-  EXPECT_EQ(hold(kForward, 2s), kNotNew);
-  EXPECT_FALSE(rig.turns(axis));
-}
-
 TEST_P(Jogged, ARefusedPressMayBePressedAgain) {
   EXPECT_EQ(jog(kForward), kUnsuitable) << "not enabled";
   enable();
@@ -124,22 +114,6 @@ TEST_P(Jogged, AtTheVelocityThatIsInEffectTakesNoAxisFromItsOwner) {
   EXPECT_EQ(rig.run_at(owner, 1, axis).result, kDone);
 }
 
-TEST_P(Jogged, ABurstOfSamplesIsOneJog) {
-  enable();
-  std::vector<std::uint64_t> ids;
-  for (int i = 0; i < 5; ++i) {
-    dds::CommandRecord record = command(writer, kForward, 0, axis);
-    record.mask = dds::kHasJogVelocity;
-    record.jog_velocity = 2 * kTurn;
-    ids.push_back(rig.send(record));
-  }
-  ASSERT_TRUE(rig.run_until([&] { return std::ranges::all_of(ids, [&](auto id) { return rig.replies(id) == 1; }); }));
-  rig.run(200ms);
-  EXPECT_TRUE(rig.turns(axis));
-}
-
-TEST_P(Jogged, AWriterThatDiesHoldsNoButton) { die_with_the_button_held(); }
-
 // Its process stood still, say, with the button held.
 TEST_P(Jogged, AWriterThatComesBackHasNotPressedItsButtonAnew) {
   die_with_the_button_held();
@@ -151,15 +125,6 @@ TEST_P(Jogged, AWriterThatComesBackHasNotPressedItsButtonAnew) {
   EXPECT_EQ(jog(kForward), kDone);
   hold(kForward, 500ms);
   EXPECT_TRUE(rig.turns(axis));
-}
-
-TEST_P(Jogged, EndsWithoutAPressAreNoHarm) {
-  enable();
-  EXPECT_EQ(rig.ask(writer, kEnd, axis).result, kDone);
-  ASSERT_EQ(rig.run_at(writer, 2, axis).result, kDone);
-  EXPECT_EQ(rig.ask(writer, kEnd, axis).result, kDone);
-  rig.run(500ms);
-  EXPECT_TRUE(rig.turns(axis)) << "it ends a jog and nothing else";
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, Jogged, testing::Values(kServo, kStepper),

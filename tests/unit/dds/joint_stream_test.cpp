@@ -153,6 +153,14 @@ TEST_F(Stream, DoesNotRepeatWhatTheAxisCannotDo) {
   EXPECT_TRUE(at(6));
 }
 
+TEST_F(Stream, MustBeSeenAtTheAxisAgainWhereAnotherOwnsIt) {
+  in_step();
+  EXPECT_TRUE(at(6));
+  EXPECT_FALSE(ends(Errc::not_owner));
+  EXPECT_FALSE(at(7));
+  EXPECT_TRUE(at(5));
+}
+
 TEST_F(Stream, AsksAgainForWhatHadNoRoom) {
   in_step();
   EXPECT_TRUE(at(6));

@@ -51,6 +51,15 @@ TEST_F(Objects, AReadClaimsNothingAndAWriteClaims) {
   EXPECT_EQ(write.object->data, 0xFFFFU);
 }
 
+TEST_F(Objects, AWriterThatMakesWayForACommandOfItsParticipantIsStillThere) {
+  plain.port.at_once = BatchResult{};
+  EXPECT_EQ(ask(request(true, 2, 1)), 2);
+  const auto life = plain.port.submitted.at(0).batch.life;
+  plain.image.find(1)->lease.owner = life;
+  EXPECT_EQ(plain.ask(test::command(guid(1, 2), 1, 1)), 2);
+  EXPECT_TRUE(life->connected);
+}
+
 TEST_F(Objects, MoreBytesThanADriveTakesAreRefused) {
   plain.port.at_once = BatchResult{};
   EXPECT_EQ(ask(request(true, 0, 0, std::vector<Byte>(kMaxObjectBytes))), 2);

@@ -3,41 +3,14 @@
 #include <gmock/gmock.h>
 
 #include "tests/unit/dds/dds_rig.hpp"
-#include "tests/unit/drive/clients.hpp"
 
 namespace axisgate::test {
 namespace {
 
 using namespace std::chrono_literals;
 
-dds::ObjectRequestRecord read(const dds::Guid& writer, std::uint16_t index, std::uint8_t size,
-                              AxisNumber axis = kServo) {
-  return {writer, 0, {}, axis, 0, false, index, 0, size, 0, {}};
-}
 dds::ObjectRequestRecord write(const dds::Guid& writer, std::uint16_t index, std::uint8_t size, std::uint32_t value) {
   return {writer, 0, {}, kServo, 0, true, index, 0, size, value, {}};
-}
-
-TEST(DdsObjects, AreReadAndWrittenAsTheDriveHoldsThem) {
-  DdsRig rig;
-  const auto objects = rig.writer(1, 2);
-  const auto status = rig.ask(read(objects, 0x6041, 2));
-  EXPECT_EQ(status.result, kDone);
-  EXPECT_EQ(status.value, static_cast<std::uint32_t>(*rig.stage.drive(0).peek({0x6041, 0})));
-  EXPECT_EQ(status.data.size(), 2U);
-  EXPECT_FALSE(rig.axis().lease.owner) << "a read claims nothing";
-  EXPECT_EQ(rig.ask(write(objects, 0x6083, 4, 12'345)).result, kDone);
-  EXPECT_EQ(*rig.stage.drive(0).peek({0x6083, 0}), 12'345);
-  EXPECT_TRUE(rig.axis().lease.owner) << "a write does";
-  EXPECT_EQ(rig.ask(read(objects, 307, 2, kStepper)).result, kDone) << "on Modbus RTU it is the register";
-}
-
-TEST(DdsObjects, WhatTheDriveRefusesCarriesItsAbortCode) {
-  DdsRig rig;
-  const auto objects = rig.writer(1, 2);
-  const auto refused = rig.ask(read(objects, 0x5FFF, 4));
-  EXPECT_EQ(refused.result, kRefused);
-  EXPECT_NE(refused.detail, 0U);
 }
 
 TEST(DdsObjects, OfAnAxisThatTheSameParticipantCommandsAreItsOwn) {
@@ -65,29 +38,6 @@ TEST(DdsObjects, WrittenBeforeAnyCommandLeaveTheAxisToTheirParticipantsCommandsA
   EXPECT_EQ(rig.run_at(second, 2).result, kNotOwner) << "two that command are two clients";
   rig.run(5s);
   EXPECT_TRUE(rig.turns());
-}
-
-TEST(DdsObjects, KeepNoDeadWritersLeaseAlive) {
-  DdsRig rig;
-  const auto commands = rig.writer(1, 1);
-  const auto objects = rig.writer(1, 2);
-  ASSERT_EQ(rig.ask(commands, 1).result, kDone);
-  const auto dead = rig.axis().lease.owner;
-  rig.die(commands);
-  ASSERT_EQ(rig.ask(write(objects, 0x6083, 4, 12'345)).result, kDone) << "its participant takes the orphan over";
-  EXPECT_NE(rig.axis().lease.owner, dead);
-}
-
-TEST(DdsObjects, OfAModbusClientsAxisAreReadAlone) {
-  DdsRig rig;
-  const auto plc = client(1, "10.0.0.1");
-  WriteBatch enable;
-  enable.command = Command::enable;
-  ASSERT_EQ(rig.modbus(plc, enable), Errc::ok);
-  const auto objects = rig.writer(1, 2, 100);
-  plc->last_request = rig.now();
-  EXPECT_EQ(rig.ask(write(objects, 0x6083, 4, 1)).result, kNotOwner);
-  EXPECT_EQ(rig.ask(read(objects, 0x6083, 4)).result, kDone);
 }
 
 TEST(DdsObjects, AreNoBackDoorPastTheLimits) {

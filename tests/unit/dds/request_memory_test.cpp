@@ -30,6 +30,12 @@ TEST_F(Remembered, ARequestThatComesAgainIsKnownForTenSeconds) {
   EXPECT_EQ(memory.size(), 1U);
 }
 
+TEST_F(Remembered, TheNewestOfAnAxisStaysItWhenAnOlderOneIsForgotten) {
+  static_cast<void>(see({guid(1), 1, 7}, kStart));
+  static_cast<void>(see({guid(1), 1, 8}, kStart + 5s));
+  EXPECT_TRUE(memory.see({guid(1), 1, 8}, 3, kStart + 10s).newest) << "a stop that is repeated";
+}
+
 TEST_F(Remembered, WriterAxisAndIdTogetherAreARequest) {
   EXPECT_EQ(see({guid(1), 1, 7}, kStart), Known::first);
   EXPECT_EQ(see({guid(1), 1, 8}, kStart), Known::first);

@@ -55,9 +55,10 @@ TEST_F(RosRunning, AnEnableThatChangesNothingLeavesTheStreamInStep) {
   EXPECT_TRUE(stream_until(velocities(-3), [&] { return std::fabs(rig.state().velocity + 3) < 0.1; }));
 }
 
-TEST_F(RosRunning, AHomeThatIsRefusedKeepsNoRunAlive) {
+TEST_F(RosRunning, AnActionThatChangesNothingOrIsRefusedKeepsNoRunAlive) {
   const Instant silent = rig.now();
-  for (; !stopped() && rig.now() < silent + 5s; rig.run(100ms)) act(RosAction::home);
+  for (; !stopped() && rig.now() < silent + 5s; rig.run(100ms))
+    for (const RosAction action : {RosAction::enable, RosAction::fault_reset, RosAction::home}) act(action);
   EXPECT_LE(rig.now() - silent, 2200ms);
 }
 

@@ -14,7 +14,6 @@ using namespace std::chrono_literals;
 using test::command;
 using test::guid;
 using test::PlainSession;
-using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
@@ -61,25 +60,6 @@ TEST(Reader, IsWokenByAChangeOnceAndFindsTheNewestState) {
   EXPECT_EQ(states[0].sequence, 5U) << "the gap says that there were others";
   plain.change(1, 10'000);
   EXPECT_EQ(plain.woken, 2);
-}
-
-TEST(Reader, ThatIsSlowMissesStatesButNeverTheNewestOfAnyAxis) {
-  PlainSession plain(64);
-  static_cast<void>(plain.read());
-  std::map<int, int> count;
-  for (int i = 1; i <= 1000; ++i) {
-    plain.now += 10ms;
-    for (AxisNumber axis = 1; axis <= 64; ++axis) plain.change(axis, i);
-    for (int room = 0; room < 16; ++room) {  // a quarter of what would be due
-      const auto record = plain.session->next(plain.now);
-      ASSERT_TRUE(record);
-      const auto* const state = std::get_if<StateRecord>(&*record);
-      if (state == nullptr) continue;
-      EXPECT_EQ(state->sequence, static_cast<std::uint32_t>(i)) << "what is sent is the state of now";
-      ++count[state->axis];
-    }
-  }
-  for (int axis = 1; axis <= 64; ++axis) EXPECT_NEAR(count[axis], 250, 3) << axis;
 }
 
 TEST(Reader, ThatIsAlwaysBehindHearsOfTheGatewayAllTheSame) {

@@ -31,14 +31,6 @@ TEST_F(Hosted, GivesASlowReaderTheNewestState) {
   EXPECT_THAT(lines, Not(Contains("499 is at 3"))) << "states that were no longer true were kept for it";
 }
 
-TEST_F(Hosted, AnswersEveryRequestOnceHoweverManyCome) {
-  image.add_axis(1, "axis", 0);
-  settings.commands = true;
-  start("asks much");
-  EXPECT_TRUE(run_until_said("1000 replies, one each"));
-  EXPECT_FALSE(down);
-}
-
 TEST_F(Hosted, TakesNoMoreThanItsShareOfTheLoop) {
   image.add_axis(1, "axis", 0);
   settings.commands = true;

@@ -149,7 +149,10 @@ TEST(MapListing, CsvHasTheColumnsOfTheContractAndQuotesWhatNeedsIt) {
 }
 
 TEST(MapListing, MarkdownAndTableCarryTheSameRows) {
-  const std::string markdown = map_text(two_axes(), MapFormat::markdown);
+  ListedMap piped = two_axes();
+  piped.buses[1] = "a|b";
+  const std::string markdown = map_text(piped, MapFormat::markdown);
+  EXPECT_NE(markdown.find("| a\\|b |"), std::string::npos) << "a bar in a cell ends no cell";
   EXPECT_NE(markdown.find("| holding | 102 | 2 | 1 |  | position_actual | i32 | 1/10000 rev | r | true |"),
             std::string::npos);
   const std::string table = map_text(two_axes(), MapFormat::table);

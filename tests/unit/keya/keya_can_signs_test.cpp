@@ -53,14 +53,6 @@ TEST_F(KeyaCanSigns, after_a_silence_or_a_loss_of_the_link_the_drive_is_there_ag
   EXPECT_THAT(heard_of(), ElementsAre(Kind::present, Kind::values));
 }
 
-TEST_F(KeyaCanSigns, a_heartbeat_neither_answers_nor_disturbs_an_exchange) {
-  wire->send(read_of(0x2103, 1));
-  EXPECT_EQ(heard_of().size(), 2u);
-  EXPECT_THAT(replies, IsEmpty());
-  bring(kReply1, kSpeed);
-  EXPECT_EQ(replies.size(), 1u);
-}
-
 TEST_F(KeyaCanSigns, a_heartbeat_of_another_length_is_counted_and_says_nothing) {
   bring(keya::kHeartbeatId + 1, "01 F4 02 58 00 01 11");
   EXPECT_THAT(unsolicited_events, IsEmpty());
@@ -107,12 +99,6 @@ TEST_F(KeyaCanSigns, replies_that_nobody_asked_for_are_named_and_the_true_one_is
   EXPECT_EQ(wire->statistics().late_replies, 500u);
   bring(kReply1, kSpeed);
   EXPECT_EQ(replies.size(), 1u);
-}
-
-TEST_F(KeyaCanSigns, replies_that_were_asked_for_come_as_fast_as_we_ask) {
-  for (int i = 0; i < 2000; ++i) ask_and_hear();
-  EXPECT_EQ(replies.size(), 2000u);
-  EXPECT_THAT(unsolicited_events, IsEmpty());
 }
 
 }  // namespace

@@ -61,21 +61,6 @@ TEST_F(KeyaCanWireTest, an_acknowledgement_may_leave_out_the_motor_but_not_name_
   EXPECT_THAT(replies, ElementsAre(bus::ExchangeResult{}, bus::ExchangeResult{}));
 }
 
-TEST_F(KeyaCanWireTest, an_acknowledgement_does_not_answer_a_read_nor_a_value_a_write) {
-  constexpr std::string_view kCurrents = "60 00 21 01 00 03 00 04";
-  constexpr std::string_view kAcknowledged = "60 00 20 01 00 00 00 00";  // only the index's high byte differs
-  wire->send(read_of(0x2100, 1));
-  bring(kReply1, kAcknowledged);
-  EXPECT_THAT(replies, IsEmpty());
-  bring(kReply1, kCurrents);
-  EXPECT_EQ(replies.size(), 1u);
-  wire->send(write_of(0x2000, 1, 5));
-  bring(kReply1, kCurrents);
-  EXPECT_EQ(replies.size(), 1u);
-  bring(kReply1, kAcknowledged);
-  EXPECT_EQ(replies.size(), 2u);
-}
-
 TEST_F(KeyaCanWireTest, replies_of_another_sub_index_or_node_are_counted_as_late_and_frames_of_another_form_as_bad) {
   wire->send(read_of(0x2104, 2));
   bring(kReply1, "60 04 21 03 00 00 27 10");

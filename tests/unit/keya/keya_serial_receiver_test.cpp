@@ -131,10 +131,5 @@ TEST_F(KeyaReceiver, a_frame_that_began_before_the_request_is_late_though_noise_
   EXPECT_THAT(take(kStandingB), ElementsAre(Heard::answer));
 }
 
-TEST_F(KeyaReceiver, the_second_answer_to_one_query_is_late) {
-  ask(0x2102);
-  EXPECT_THAT(take(from_hex(test::kSpeed232) + from_hex(test::kSpeed232)), ElementsAre(Heard::answer, Heard::late));
-}
-
 }  // namespace
 }  // namespace axisgate::keya

@@ -209,18 +209,6 @@ TEST_F(KeyaSerialWireTest, a_heartbeat_of_another_sum_is_accepted_and_counted_an
   EXPECT_EQ(wire->statistics().dropped_bytes, 12u);
 }
 
-TEST_F(KeyaSerialWireTest, a_line_that_echoes_and_has_no_drive_answers_nothing_whatever_is_asked) {
-  for (const KeyaLine line : {KeyaLine::rs232, KeyaLine::rs485}) {
-    begin(line);
-    for (int asked = 1; asked <= 3 * keya::kQueries; ++asked) {
-      wire->send(read_of(static_cast<std::uint16_t>(keya::kQueryIndex + asked % keya::kQueries)));
-      bring(link->sent.back());
-      wire->abandon();
-    }
-    EXPECT_THAT(replies, IsEmpty()) << "a looped cable is no drive that stands still";
-  }
-}
-
 TEST_F(KeyaSerialWireTest, behind_its_echo_an_answer_of_zeros_is_heard) {
   for (const std::uint16_t index : std::vector<std::uint16_t>{0x2105, 0x2102, 0x2107, 0x2102}) {
     wire->send(read_of(index));

@@ -4,7 +4,6 @@
 #include <set>
 
 #include "adapters/keya/keya_serial_receiver.hpp"
-#include "gateway/core/random.hpp"
 #include "tests/unit/bus/sheet_vectors.hpp"
 #include "tests/unit/keya/keya_frames.hpp"
 
@@ -209,27 +208,6 @@ TEST_P(KeyaSerialAnswer, is_heard_among_heartbeats_wherever_the_stream_is_cut_an
         EXPECT_EQ(unsolicited_events.size(), 1u);
       }
     }
-  }
-}
-
-TEST_P(KeyaSerialAnswer, is_heard_behind_and_before_noise_in_random_pieces) {
-  Random random(11);
-  const auto noise = [&] {
-    ByteRow bytes(random.below(40));
-    for (Byte& byte : bytes) byte = static_cast<Byte>(random.below(0xE0));  // no start byte among them
-    return bytes;
-  };
-  for (int i = 0; i < 100; ++i) {
-    ask();
-    const ByteRow before = noise(), stream = before + answer() + noise();
-    SCOPED_TRACE(hex_text(stream));
-    for (std::size_t at = 0; at < stream.size();) {
-      const std::size_t size = std::min<std::size_t>(1 + random.below(15), stream.size() - at);
-      link->bring(Bytes(stream).subspan(at, size));
-      at += size;
-    }
-    expect_the_answer_once();
-    EXPECT_EQ(wire->statistics().dropped_bytes, stream.size() - answer().size());
   }
 }
 

@@ -20,10 +20,6 @@ Frame reply(Command command, std::uint32_t data = 0) {
   return {.node = 1, .command = command, .object = {0x6041, 0}, .data = data};
 }
 
-TEST(KincoCodec, takes_ten_bytes_and_leaves_the_rest) {
-  EXPECT_EQ(decode(from_hex(test::kStatusReply) + from_hex("FF FF")), Decoded(reply(Command::value_2, 0xC037)));
-}
-
 TEST(KincoCodec, skips_one_byte_where_any_bit_makes_the_sum_wrong) {
   for (int bit = 0; bit < 80; ++bit) {
     auto bytes = from_hex(test::kStatusReply);

@@ -30,23 +30,6 @@ TEST_F(KincoWireTest, reports_an_answer_as_it_came_also_byte_by_byte_behind_its_
   EXPECT_THAT(replies, ElementsAre(value_of(0x6041, 2, 0xC037))) << "the profile's type decides what that means";
 }
 
-TEST_F(KincoWireTest, an_acknowledged_write_is_ok_with_or_without_echo_of_the_data_and_an_error_has_the_drives_code) {
-  for (const char* reply :
-       {"01 60 40 60 00 0F 00 00 00 F0", "01 60 40 60 00 00 00 00 00 FF", "01 80 40 60 00 00 00 02 06 D7"}) {
-    wire->send(write_of(0x6040, 0x0F, 2));
-    link->bring(reply);
-  }
-  EXPECT_THAT(replies, ElementsAre(bus::ExchangeResult{}, bus::ExchangeResult{}, refusal_of(0x06020000)));
-}
-
-TEST_F(KincoWireTest, bytes_left_over_from_before_are_dropped_and_counted) {
-  link->bring("01 02 03");
-  wire->send(read_of(0x6041));
-  link->bring(kStatusReply);
-  EXPECT_EQ(replies.size(), 1u);
-  EXPECT_EQ(wire->statistics().dropped_bytes, 3u);
-}
-
 TEST_F(KincoWireTest, decodes_every_frame_into_the_log_when_asked) {
   wire->send(read_of(0x6041));
   link->bring(kStatusReply);

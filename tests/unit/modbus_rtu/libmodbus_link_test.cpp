@@ -8,7 +8,6 @@ namespace {
 
 using testing::Each;
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
@@ -62,11 +61,6 @@ class LibmodbusLinkLoss : public LibmodbusLinkStage {
   std::unique_ptr<Pty> pty = std::make_unique<Pty>();
 };
 
-TEST_F(LibmodbusLinkLoss, while_idle) {
-  pull();
-  expect_down_and_back();
-}
-
 TEST_F(LibmodbusLinkLoss, while_an_answer_is_awaited_or_in_its_middle) {
   // The worker's patience is 20 s here: only the hang-up itself can end its wait.
   ask(*pty);
@@ -75,13 +69,6 @@ TEST_F(LibmodbusLinkLoss, while_an_answer_is_awaited_or_in_its_middle) {
   pull();
   expect_down_and_back();
   EXPECT_EQ(diary.noise, 0u) << "the half frame went with the line";
-}
-
-TEST_F(LibmodbusLinkLoss, in_the_middle_of_noise) {
-  answer(*pty, from_hex("01 83 02 00 00 55 55 55"));
-  ASSERT_TRUE(await([this] { return diary.noise > 0; }));
-  pull();
-  expect_down_and_back();
 }
 
 TEST_F(LibmodbusLinkLoss, with_a_frame_just_sent) {
@@ -124,16 +111,6 @@ TEST_F(LibmodbusLinkTest, a_device_missing_at_the_start_is_logged_once_and_picke
   }));
 }
 
-TEST_F(LibmodbusLinkTest, a_path_that_appears_unnoticed_is_found_within_a_second) {
-  Pty pty;
-  start_at(folder / "by-id/device");
-  ASSERT_TRUE(await([this] { return !log_lines.empty(); }));
-  std::filesystem::create_directory(folder / "by-id");
-  point(folder / "by-id/device", pty.device());
-  pass(1s);
-  EXPECT_TRUE(await([this] { return diary.up(); }));
-}
-
 TEST_F(LibmodbusLinkTest, a_port_in_use_is_told_and_taken_when_it_is_free) {
   Pty pty;
   RtuLinkDiary of_other;
@@ -158,18 +135,6 @@ TEST_F(LibmodbusLinkTest, opens_and_says_so_and_opens_anew_when_asked_but_never_
   ASSERT_TRUE(await([this] { return diary.told.size() == 3; }));
   EXPECT_THAT(diary.told, ElementsAre("up", "down: " + pty.device() + ": noise", "up"));
   ask(pty);
-}
-
-TEST_F(LibmodbusLinkTest, asked_to_open_anew_while_down_it_tries_at_once) {
-  start_at(folder / "device");
-  ASSERT_TRUE(await([this] { return !log_lines.empty(); }));
-  Pty pty;
-  std::filesystem::create_symlink(pty.device(), folder / "device");
-  const Instant before = runtime.now();
-  runtime.advance_by(20ms);
-  link->reopen("somebody asks");
-  ASSERT_TRUE(await([this] { return diary.up(); }));
-  EXPECT_LT(runtime.now() - before, 1s);
 }
 
 TEST_F(LibmodbusLinkTest, asked_to_open_anew_while_it_is_being_lost_it_tells_one_end) {

@@ -78,11 +78,6 @@ TEST(RtuReply, gives_the_longest_list_that_an_answer_carries) {
   EXPECT_EQ(judged(reply, block_of(100, 2, more)), shown(values(fields)));
 }
 
-TEST(RtuReply, acknowledges_a_write_by_its_echo) {
-  EXPECT_EQ(judged(from_hex("01 06 35 00 00 FD"), write_of(0x3500, 0xFFFFFFFD, 1)), shown({}));
-  EXPECT_EQ(judged(from_hex("01 10 6F 00 00 02"), write_of(0x6F00, 0x85555, 4)), shown({}));
-}
-
 TEST(RtuText, says_what_is_asked_and_answered) {
   const auto asked = [](const char* hex) { return describe_request(from_hex(hex)); };
   const auto answered = [](const char* hex) { return describe_reply(from_hex(hex)); };

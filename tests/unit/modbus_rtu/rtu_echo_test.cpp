@@ -8,9 +8,7 @@ namespace axisgate::test {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::SizeIs;
 
 constexpr const char* kRead = "01 03 32 00 00 01";
 constexpr const char* kValue = "01 03 02 C0 37";
@@ -45,13 +43,6 @@ class RtuEcho : public WireStage {
   ScriptedRtuLink* link = nullptr;
 };
 
-TEST_F(RtuEcho, reads_are_answered_from_the_first_on_and_their_copies_counted) {
-  for (int i = 0; i < 5; ++i) read(true);
-  EXPECT_THAT(replies, SizeIs(5));
-  EXPECT_EQ(echoes(), 5u);
-  EXPECT_EQ(wire->statistics().bad_frames + wire->statistics().late_replies, 0u);
-}
-
 TEST_F(RtuEcho, never_acknowledges_a_stop_and_the_drives_own_answer_does) {
   for (int i = 0; i < 3; ++i) read(true);
   forget();
@@ -64,20 +55,6 @@ TEST_F(RtuEcho, never_acknowledges_a_stop_and_the_drives_own_answer_does) {
   EXPECT_EQ(echoes(), 4u);
 }
 
-TEST_F(RtuEcho, while_it_is_not_known_the_copy_of_a_write_acknowledges_nothing_and_the_next_read_decides) {
-  stop();
-  link->bring(kStopped);
-  EXPECT_THAT(replies, IsEmpty());
-  EXPECT_EQ(echoes(), 0u);
-  wire->abandon();
-  runtime.advance_by(10s);
-  read(false);
-  forget();
-  stop();
-  link->bring(kStopped);
-  EXPECT_THAT(replies, ElementsAre(bus::ExchangeResult{})) << "the line has no echo";
-}
-
 TEST_F(RtuEcho, of_a_line_that_is_opened_anew_nothing_is_known) {
   read(false);
   link->events->on_link_down("pulled");
@@ -86,30 +63,6 @@ TEST_F(RtuEcho, of_a_line_that_is_opened_anew_nothing_is_known) {
   stop();
   link->bring(kStopped);
   EXPECT_THAT(replies, IsEmpty()) << "it may be another adapter";
-}
-
-TEST_F(RtuEcho, of_a_long_write_is_no_answer_whatever_is_known) {
-  read(false);
-  forget();
-  wire->send(write_of(0x6F00, 0x00085555, 4));
-  link->bring(link->sent.back());
-  EXPECT_THAT(replies, IsEmpty());
-  link->bring("01 10 6F 00 00 02");
-  EXPECT_THAT(replies, ElementsAre(bus::ExchangeResult{}));
-}
-
-TEST_F(RtuEcho, a_glitch_is_counted_in_bytes_and_is_no_bad_frame) {
-  link->events->on_glitch(3);
-  EXPECT_EQ(wire->statistics().dropped_bytes, 3u);
-  EXPECT_EQ(wire->statistics().bad_frames, 0u);
-}
-
-TEST_F(RtuEcho, a_whole_frame_that_does_not_fit_is_told_with_what_was_asked_and_what_came_once_a_minute) {
-  wire->send(read_of(0x3200));
-  for (int i = 0; i < 10; ++i) link->bring("01 03 04 00 01 00 02");
-  EXPECT_THAT(log_lines,
-              ElementsAre("bus lift: a valid frame that does not fit: asked was \"unit 1: read 1 register at 12800 "
-                          "(0x3200)\", what came is \"unit 1: 2 registers = 0x0001 0x0002\" (another length)"));
 }
 
 }  // namespace

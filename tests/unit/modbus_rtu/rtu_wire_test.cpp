@@ -173,14 +173,6 @@ TEST_F(RtuWireTest, a_line_without_a_rate_of_its_own_is_believed_at_once_after_a
   EXPECT_THAT(replies, ElementsAre(kStatusValue, kStatusValue, kStatusValue));
 }
 
-TEST_F(RtuWireTest, a_line_without_a_rate_of_its_own_is_believed_at_once) {
-  for (int i = 0; i < 3; ++i) {
-    wire->send(read_of(0x3200));
-    link->bring(kStatus);
-  }
-  EXPECT_THAT(replies, ElementsAre(kStatusValue, kStatusValue, kStatusValue));
-}
-
 TEST_F(RtuWireTest, a_frame_that_does_not_fit_is_counted_and_the_answer_still_awaited) {
   wire->send(read_of(0x3200));
   link->bring("02 03 02 00 01");        // another drive
@@ -195,30 +187,6 @@ TEST_F(RtuWireTest, a_frame_that_does_not_fit_is_counted_and_the_answer_still_aw
   EXPECT_THAT(replies, IsEmpty());
   link->bring(kStatus);
   EXPECT_THAT(replies, ElementsAre(kStatusValue));
-}
-
-TEST_F(RtuWireTest, spoilt_answers_with_pauses_between_them_are_a_bad_frame_each_and_no_babble) {
-  for (int i = 0; i < 10; ++i) {
-    wire->send(read_of(0x3200));
-    link->events->on_bad_frame(link->newest, 7);
-    runtime.advance_by(50ms);
-    wire->abandon();
-  }
-  EXPECT_EQ(wire->statistics().bad_frames, 10u);
-  EXPECT_EQ(wire->statistics().dropped_bytes, 70u);
-  EXPECT_THAT(link->reopened, IsEmpty());
-  EXPECT_THAT(replies, IsEmpty());
-}
-
-TEST_F(RtuWireTest, a_link_that_babbles_and_cannot_be_opened_anew_is_given_up_all_the_same) {
-  link->opens_again = false;
-  for (int i = 0; i < 3000; ++i, runtime.advance_by(1ms)) link->events->on_bad_frame(link->newest, 2);
-  ASSERT_THAT(told, SizeIs(1));
-  link->events->on_link_up();
-  runtime.advance_by(2s);
-  wire->send(read_of(0x3200));
-  link->bring(kStatus);
-  EXPECT_EQ(replies.size(), 1u);
 }
 
 TEST_F(RtuWireTest, a_call_to_all_ends_when_it_has_left_and_no_drive_that_answers_it_is_believed) {

@@ -35,6 +35,7 @@ TEST(Access, WithoutAllowLoopbackIsEngineerAndEverybodyElseViewer) {
   EXPECT_EQ(role_of(settings, v4(192, 168, 1, 7)), Role::viewer);
   EXPECT_EQ(role_of(settings, kLocal6), Role::viewer);
   EXPECT_EQ(role_of(settings, Address{}), Role::viewer) << "an address of zeros is no loopback";
+  EXPECT_EQ(rank_of(settings, v4(127, 0, 0, 1)), 0);
 }
 
 TEST(Access, WithAllowAnAddressItDoesNotNameHasNoRoleLoopbackIncluded) {
@@ -64,14 +65,17 @@ TEST(Access, AnIpv4NetworkOfAllAddressesHoldsNoIpv6Address) {
 
 TEST(Access, TheMostSpecificEntryDecidesWhateverTheOrder) {
   const AllowEntry wide = entry(v4(192, 168, 0, 0), 112, Role::viewer);
-  const AllowEntry narrow = entry(v4(192, 168, 1, 0), 120, Role::operator_);
-  const AllowEntry host = entry(v4(192, 168, 1, 7), 128, Role::engineer);
+  const AllowEntry narrow{v4(192, 168, 1, 0), 120, Role::operator_, 9};
+  const AllowEntry host{v4(192, 168, 1, 7), 128, Role::engineer, 2};
   for (const auto& order :
        {std::vector{wide, narrow, host}, std::vector{host, narrow, wide}, std::vector{narrow, host, wide}}) {
     const auto settings = with_allow(order);
     EXPECT_EQ(role_of(settings, v4(192, 168, 9, 9)), Role::viewer);
     EXPECT_EQ(role_of(settings, v4(192, 168, 1, 9)), Role::operator_);
     EXPECT_EQ(role_of(settings, v4(192, 168, 1, 7)), Role::engineer);
+    EXPECT_EQ(rank_of(settings, v4(192, 168, 1, 7)), 2);
+    EXPECT_EQ(rank_of(settings, v4(192, 168, 1, 8)), 9);
+    EXPECT_EQ(rank_of(settings, v4(10, 0, 0, 1)), 0) << "nobody";
   }
 }
 
@@ -87,17 +91,6 @@ TEST(ClientCounts, ReleasedRoomIsRoomAgain) {
   counts.release(v4(1, 1, 1, 1));
   EXPECT_EQ(counts.admit(settings, v4(1, 1, 1, 3), Role::viewer, kManyDescriptors), ConnectionVerdict::admitted);
   EXPECT_EQ(counts.total(), 2U);
-}
-
-TEST(Ranks, AreThoseOfTheMostSpecificEntry) {
-  const AllowEntry wide{v4(192, 168, 0, 0), 112, Role::operator_, 9};
-  const AllowEntry host{v4(192, 168, 1, 7), 128, Role::operator_, 2};
-  for (const auto& settings : {with_allow({wide, host}), with_allow({host, wide})}) {
-    EXPECT_EQ(rank_of(settings, v4(192, 168, 1, 7)), 2);
-    EXPECT_EQ(rank_of(settings, v4(192, 168, 1, 8)), 9);
-    EXPECT_EQ(rank_of(settings, v4(10, 0, 0, 1)), 0) << "nobody";
-  }
-  EXPECT_EQ(rank_of(ListenerSettings{}, v4(127, 0, 0, 1)), 0) << "without allow";
 }
 
 TEST(ClientCounts, OneAddressCannotTakeAllRoom) {

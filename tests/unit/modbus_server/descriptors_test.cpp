@@ -79,13 +79,6 @@ TEST_F(Descriptors, TheSoftLimitIsRaisedToWhatClientsNeedAndNotFurther) {
   EXPECT_EQ(plan.max_clients, 10U);
 }
 
-TEST_F(Descriptors, AHigherSoftLimitStays) {
-  const rlim_t high = hard_limit();
-  const FewDescriptors as_it_was(high);
-  EXPECT_EQ(modbus_tcp::take_descriptors({.clients = 10}).soft_limit, high);
-  EXPECT_EQ(modbus_tcp::descriptor_limits().soft, high);
-}
-
 TEST_F(Descriptors, AMovedOneIsThere1024AndAboveAndItsOldNumberIsFree) {
   ASSERT_EQ(modbus_tcp::take_descriptors({.clients = 1}).move_up, hard_limit() > kSelectLimit);
   if (hard_limit() <= kSelectLimit) return;  // this system forbids it
@@ -117,22 +110,6 @@ TEST_F(Descriptors, ClientsTakeNoneBelow1024HoweverManyTheyAre) {
   connect(served, clients, all / 2);
   EXPECT_THAT(accepted_sockets(served), SizeIs(all)) << "what left has given its number back";
   EXPECT_THAT(accepted_sockets(served), Each(Ge(static_cast<int>(kSelectLimit))));
-}
-
-TEST_F(Descriptors, MovedClientsAreHeldToTheListenersLimitsAsBefore) {
-  Served served;
-  served.listeners[0].max_clients = 3;
-  served.listeners[0].max_clients_per_address = 2;
-  served.start();
-  Clients clients;
-  connect(served, clients, 2);
-  EXPECT_TRUE(TestClient(served).closed_by_server());
-  EXPECT_THAT(served.lines.back(), HasSubstr("max_clients_per_address (2) is reached"));
-  for (auto& client : clients) EXPECT_TRUE(is_served(*client));
-  clients.pop_back();
-  ASSERT_TRUE(served.await([&] { return served.server->counters().open == 1; }));
-  TestClient again(served);
-  EXPECT_TRUE(is_served(again));
 }
 
 TEST_F(Descriptors, WhereTheLimitForbidsNumbersAbove1023OnlyAsManyClientsAsLeaveRoomForPortsAreServed) {

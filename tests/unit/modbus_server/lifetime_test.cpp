@@ -122,20 +122,6 @@ TEST(ModbusServerStart, APortIsFreeForTheNextStartAtOnce) {
   EXPECT_EQ(failure_of_start(next), "started");
 }
 
-TEST(ModbusServerStop, ClosesAllConnectionsAndCanBeRepeated) {
-  Served served;
-  served.start();
-  TestClient first(served);
-  TestClient second(served);
-  served.settle();
-  ASSERT_EQ(served.server->counters().open, 2U);
-  served.server->stop();
-  served.server->stop();
-  EXPECT_EQ(served.server->counters().open, 0U);
-  EXPECT_TRUE(first.closed_by_server());
-  EXPECT_TRUE(second.closed_by_server());
-}
-
 TEST(ModbusServerStop, NothingOfItRunsOnceItIsGone) {
   Served served;
   served.port.answers_at_once = false;

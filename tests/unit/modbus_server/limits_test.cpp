@@ -99,16 +99,6 @@ TEST(ModbusServerLimits, AnIdleClientIsClosedAndABusyOneIsNot) {
   EXPECT_TRUE(busy.closed_by_server()) << "once it is idle as well";
 }
 
-TEST(ModbusServerLimits, IdleTimeoutZeroIsNone) {
-  Served served;
-  served.listeners[0].idle_timeout = Duration::zero();
-  served.start();
-  TestClient idle(served);
-  expect_served(idle);
-  served.pass(std::chrono::hours(1000));
-  expect_served(idle);
-}
-
 TEST(ModbusServerLimits, AClientThatVanishesLeavesRoom) {
   Served served;
   served.listeners[0].max_clients = 1;
@@ -160,25 +150,6 @@ TEST(ModbusServerLimits, AHostThatVanishesIsAskedForByTheSystemAndGivenUp) {
   EXPECT_LE(option(IPPROTO_TCP, TCP_USER_TIMEOUT), 30'000) << "one that owes an acknowledgement";
 }
 
-TEST(ModbusServerLimits, ClientsLeaveInAnyOrder) {
-  Served served;
-  served.start();
-  std::vector<std::unique_ptr<TestClient>> clients;
-  for (int i = 0; i < 6; ++i) {
-    clients.push_back(std::make_unique<TestClient>(served));
-    expect_served(*clients.back());
-  }
-  std::uint32_t open = 6;
-  for (const std::size_t leaving : {0U, 5U, 2U, 4U, 1U}) {
-    clients[leaving].reset();
-    --open;
-    ASSERT_TRUE(served.await([&] { return served.server->counters().open == open; }));
-    for (auto& client : clients) {
-      if (client) expect_served(*client);
-    }
-  }
-}
-
 TEST(ModbusServerLimits, OverMaxClientsNewOnesAreClosedAtOnceAndTheOthersStay) {
   Served served;
   served.listeners[0].max_clients = 2;
@@ -225,16 +196,6 @@ TEST(ModbusServerLimits, AnAddressThatAllowDoesNotNameIsClosedAtAccept) {
   EXPECT_EQ(lines_with(served, "`allow` does not name").size(), 1U);
 }
 
-TEST(ModbusServerLimits, AllowGivesTheRoleThatTheRegisterShows) {
-  Served served;
-  served.listeners[0].has_allow = true;
-  served.listeners[0].allow = {{{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 127, 0, 0, 0}, 104, Role::operator_, 0}};
-  served.start();
-  TestClient client(served);
-  client.send(read_request(1, 7, 1));
-  EXPECT_EQ(client.receive(11).back(), 2);
-}
-
 class NoFrame : public ::testing::TestWithParam<std::vector<Byte>> {};
 
 TEST_P(NoFrame, ClosesTheConnectionAndNoOther) {
@@ -256,17 +217,6 @@ INSTANTIATE_TEST_SUITE_P(Mbap, NoFrame,
                                            std::vector<Byte>{0, 1, 0, 0, 0x01, 0, 0xFF, 3, 0, 100, 0, 2},  // over 254
                                            std::vector<Byte>{'G', 'E', 'T', ' ', '/', ' ', 'H', 'T', 'T', 'P', '/',
                                                              '1'}));
-
-TEST(ModbusServerLimits, WhatWasAskedBeforeBytesThatAreNoFrameIsAnsweredFirst) {
-  Served served;
-  served.start();
-  TestClient client(served);
-  std::vector<Byte> bytes = read_request(1, kPositionOfAxis1, 2);
-  for (int i = 0; i < 12; ++i) bytes.push_back(0xAA);
-  client.send(bytes);
-  EXPECT_EQ(client.receive(13).size(), 13U);
-  EXPECT_TRUE(client.closed_by_server());
-}
 
 }  // namespace
 }  // namespace axisgate::test

@@ -15,16 +15,6 @@ std::vector<Byte> position_reply(std::uint16_t transaction) {
   return adu;
 }
 
-TEST(ModbusServer, AnswersARead) {
-  Served served;
-  served.start();
-  TestClient client(served);
-  client.send(read_request(7, kPositionOfAxis1, 2));
-  EXPECT_EQ(client.receive(13), position_reply(7));
-  EXPECT_EQ(served.server->counters().accepted, 1U);
-  EXPECT_EQ(served.server->counters().open, 1U);
-}
-
 TEST(ModbusServer, ServesIpv6AndIpv4OnOneListenerOfAllAddresses) {
   Served served;
   served.listeners[0].host = "::";
@@ -54,51 +44,6 @@ TEST(ModbusServer, ServesEachListenerByItsOwnSettings) {
   EXPECT_EQ(low.receive(13), (std::vector<Byte>{0, 1, 0, 0, 0, 7, 0xFF, 3, 4, 3, 4, 1, 2}));
 }
 
-TEST(ModbusServer, AnswersPipelinedRequestsInOrderHoweverManyComeAtOnce) {
-  Served served;
-  served.start();
-  TestClient client(served);
-  std::vector<Byte> requests;
-  std::vector<Byte> expected;
-  for (std::uint16_t i = 0; i < 500; ++i) {
-    for (const Byte b : read_request(i, kPositionOfAxis1, 2)) requests.push_back(b);
-    for (const Byte b : position_reply(i)) expected.push_back(b);
-  }
-  client.send(requests);
-  EXPECT_EQ(client.receive(expected.size()), expected);
-}
-
-TEST(ModbusServer, AnswersARequestThatComesByteByByteInItsTime) {
-  Served served;
-  served.start();
-  TestClient client(served);
-  for (const Byte b : read_request(9, kPositionOfAxis1, 2)) {
-    client.send({b});
-    served.pass(std::chrono::milliseconds(100));
-  }
-  EXPECT_EQ(client.receive(13), position_reply(9));
-}
-
-class ManyClients : public ::testing::TestWithParam<int> {};
-
-TEST_P(ManyClients, AreAllServedAtOnce) {
-  Served served;
-  served.listeners[0].max_clients_per_address = 0;
-  served.start();
-  std::vector<std::unique_ptr<TestClient>> clients;
-  for (int i = 0; i < GetParam(); ++i) {
-    clients.push_back(std::make_unique<TestClient>(served));
-    served.settle();
-  }
-  for (std::uint16_t round = 0; round < 5; ++round) {
-    for (auto& client : clients) client->send(read_request(round, kPositionOfAxis1, 2));
-    for (auto& client : clients) ASSERT_EQ(client->receive(13), position_reply(round));
-  }
-  EXPECT_EQ(served.server->counters().open, static_cast<std::uint32_t>(GetParam()));
-}
-
-INSTANTIATE_TEST_SUITE_P(Loopback, ManyClients, ::testing::Values(32, 200));
-
 TEST(ModbusServer, AReadOfAnotherClientDoesNotWaitForAWriteThatWaitsForTheBus) {
   Served served;
   served.port.answers_at_once = false;
@@ -113,60 +58,6 @@ TEST(ModbusServer, AReadOfAnotherClientDoesNotWaitForAWriteThatWaitsForTheBus) {
 
   served.port.submitted[0].on_result(BatchResult{});
   EXPECT_EQ(writer.receive(12), write_request(1, kTargetTorqueOfAxis1, 100));
-}
-
-TEST(ModbusServer, RequestsBehindASlowWriteAreStartedOnArrivalUpToTheBound) {
-  Served served;
-  served.port.answers_at_once = false;
-  served.start();
-  TestClient client(served);
-  for (std::uint16_t i = 0; i < 6; ++i) client.send(write_request(i, kTargetTorqueOfAxis1, i));
-  ASSERT_TRUE(served.await([&] { return served.port.submitted.size() == modbus_tcp::kMaxPipelined; }));
-  served.settle();
-  EXPECT_EQ(served.port.submitted.size(), modbus_tcp::kMaxPipelined);
-
-  for (std::size_t i = 0; i < 6; ++i) {
-    ASSERT_TRUE(served.await([&] { return served.port.submitted.size() > i; }));
-    const BatchCallback on_result = served.port.submitted[i].on_result;
-    on_result(BatchResult{});
-  }
-  for (std::uint16_t i = 0; i < 6; ++i) EXPECT_EQ(client.receive(12), write_request(i, kTargetTorqueOfAxis1, i));
-}
-
-TEST(ModbusServer, ServesAnObjectInPartsWhenItsDriveHasSentIt) {
-  Served served;
-  served.port.answers_at_once = false;
-  served.start();
-  TestClient client(served);
-  // 1008h:0 of axis 1, from its begin and from behind what one reply holds.
-  client.send({0, 1, 0, 0, 0, 13, 0xFF, 0x2B, 0x0D, 0, 0, 1, 0x10, 0x08, 0, 0, 0, 0, 0});
-  client.send({0, 2, 0, 0, 0, 13, 0xFF, 0x2B, 0x0D, 0, 0, 1, 0x10, 0x08, 0, 0, 0xF1, 0, 0});
-  ASSERT_TRUE(served.await([&] { return served.port.submitted.size() == 1; }));
-  served.settle();
-  EXPECT_EQ(client.received_so_far(), 0U);
-
-  BatchResult result;
-  result.object_bytes = std::make_shared<const std::vector<Byte>>(243, Byte{'x'});
-  served.port.submitted[0].on_result(result);
-  std::vector<Byte> first{0, 1, 0, 0, 0, 254, 0xFF, 0x2B, 0x0D, 0x80, 0, 1, 0x10, 0x08, 0, 0, 0, 0, 0xF1};
-  first.resize(first.size() + 241, 'x');
-  EXPECT_EQ(client.receive(first.size()), first);
-  EXPECT_EQ(client.receive(21),
-            (std::vector<Byte>{0, 2, 0, 0, 0, 15, 0xFF, 0x2B, 0x0D, 0, 0, 1, 0x10, 0x08, 0, 0, 0xF1, 0, 2, 'x', 'x'}));
-}
-
-TEST(ModbusServer, AResultThatComesAfterItsClientLeftReachesNobody) {
-  Served served;
-  served.port.answers_at_once = false;
-  served.start();
-  auto client = std::make_unique<TestClient>(served);
-  client->send(write_request(1, kTargetTorqueOfAxis1, 100));
-  ASSERT_TRUE(served.await([&] { return served.port.submitted.size() == 1; }));
-  client.reset();
-  ASSERT_TRUE(served.await([&] { return served.server->counters().open == 0; }));
-  served.port.submitted[0].on_result(BatchResult{});
-  served.settle();
-  EXPECT_EQ(served.server->counters().closed_by_peer, 1U);
 }
 
 TEST(ModbusServer, AFloodOfRequestsDoesNotStarveAnotherClient) {

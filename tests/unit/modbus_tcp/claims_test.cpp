@@ -123,23 +123,7 @@ TEST(Claims, nothing_by_a_scanner_whose_block_has_its_release_but_with_what_is_n
   EXPECT_EQ(desk.asked(), "take_over");
 }
 
-TEST(Claims, nothing_by_a_request_that_is_refused_before) {
-  Desk desk;
-  Line viewer(desk, Role::viewer, kPanel);
-  EXPECT_EQ(viewer.write(146, 1), "86 01");
-  EXPECT_EQ(viewer.write_coil(100, true), "85 01");
-  Line plc(desk);
-  for (const char* pdu : {"06 00 8F 00 01", "06 00 9A 00 63", "05 00 6E FF 00", "06 00 B4 00 03",
-                          "2B 0D 01 00 63 60 64 00 00 00 00 02 01 02"}) {
-    EXPECT_FALSE(is_done(plc.ask(pdu))) << pdu;
-  }
-  EXPECT_EQ(desk.asked(), "-");
-  desk.port.cached = {{1, Quantity::target_torque, 7}, {1, Quantity::max_torque, 8}};
-  EXPECT_TRUE(is_done(viewer.write_block(146, "00 07 00 08")));
-  EXPECT_FALSE(desk.port.submitted.back().batch.claims) << "nor by a viewer whose block the drive has already";
-}
-
-TEST(Claims, every_batch_names_the_life_of_its_client) {
+TEST(Claims, every_batch_names_the_life_of_its_client_and_until_when) {
   for (const char* pdu : {"06 00 92 00 01", "06 00 9C 00 01", "06 00 9A 00 00", "05 00 64 FF 00", "05 00 66 FF 00",
                           "10 00 B4 00 04 08 00 01 60 64 00 00 00 04", "2B 0D 00 00 01 60 64 00 00 00 00 00"}) {
     SCOPED_TRACE(pdu);
@@ -154,6 +138,9 @@ TEST(Claims, every_batch_names_the_life_of_its_client) {
     EXPECT_EQ(batch.life->origin, kPlc);
     EXPECT_EQ(batch.life->name, "192.168.1.7:50000");
     EXPECT_TRUE(batch.life->connected);
+    EXPECT_EQ(batch.role, Role::engineer);
+    EXPECT_EQ(batch.start_by, desk.runtime.now() + 500ms);
+    EXPECT_EQ(batch.answer_by, desk.runtime.now() + 900ms);
     EXPECT_TRUE(batch.reclaims || batch.object) << "a sign of life, and what an orphan lease waits for";
   }
 }

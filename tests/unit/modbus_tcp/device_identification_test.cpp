@@ -28,27 +28,15 @@ std::vector<std::string> objects_in(const std::string& reply) {
 
 using Identification = AtTheDesk;
 
-TEST_F(Identification, BasicNamesVendorProductAndRevision) {
-  const std::string reply = plc.ask("2B 0E 01 00");
-  EXPECT_EQ(reply.substr(0, 20), "2B 0E 01 83 00 00 03");
-  const auto objects = objects_in(reply);
-  ASSERT_EQ(objects.size(), 3U);
-  EXPECT_EQ(objects[0], "00 axisgate");
-  EXPECT_EQ(objects[1], "01 axisgate");
-  EXPECT_EQ(objects[2].substr(0, 3), "02 ");
-  EXPECT_GT(objects[2].size(), 5U) << "the version";
-}
-
-TEST_F(Identification, RegularAddsNamesAndLeavesOutWhatThereIsNot) {
-  const auto objects = objects_in(plc.ask("2B 0E 02 00"));
-  ASSERT_EQ(objects.size(), 6U);
-  EXPECT_EQ(objects[3].substr(0, 2), "04") << "no vendor URL";
-  EXPECT_EQ(objects[5].substr(0, 2), "06");
-}
-
-TEST_F(Identification, ExtendedAddsWhatIsOurs) {
+TEST_F(Identification, EachLevelAddsItsOwnToTheOneBefore) {
+  EXPECT_EQ(plc.ask("2B 0E 01 00").substr(0, 20), "2B 0E 01 83 00 00 03");
+  EXPECT_EQ(objects_in(plc.ask("2B 0E 02 00")).size(), 6U);
   const auto objects = objects_in(plc.ask("2B 0E 03 00"));
   ASSERT_EQ(objects.size(), 12U);
+  EXPECT_EQ(objects[0], "00 axisgate");
+  EXPECT_EQ(objects[1], "01 axisgate");
+  EXPECT_GT(objects[2].size(), 5U) << "the version";
+  EXPECT_EQ(objects[3].substr(0, 2), "04") << "no vendor URL";
   EXPECT_EQ(objects[6], "80 3");
   EXPECT_EQ(objects[7], "81 1");
   EXPECT_EQ(objects[8], "82 high-first");

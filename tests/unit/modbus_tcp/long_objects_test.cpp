@@ -64,17 +64,6 @@ TEST_F(LongObjects, AreReadInPartsWithOneFetch) {
   }
 }
 
-TEST_F(LongObjects, TellByTheExtendFlagThatMoreFollows) {
-  const auto whole = long_content(241);
-  EXPECT_EQ(fetch(whole).substr(0, 8), "2B 0D 00") << "just fits";
-  const auto longer = long_content(300);
-  EXPECT_EQ(fetch(longer), "2B 0D 80 00 01 10 08 00 00 00 00 F1 " + hex_text(Bytes(longer).first(241)));
-  EXPECT_EQ(plc.ask(read_at(241)), "2B 0D 00 00 01 10 08 00 00 F1 00 3B " + hex_text(Bytes(longer).subspan(241)));
-  EXPECT_EQ(plc.ask(read_at(299)), "2B 0D 00 00 01 10 08 00 01 2B 00 01 " + hex_text(Bytes(longer).subspan(299)))
-      << "any part, again";
-  EXPECT_EQ(plc.ask(read_at(10, 2)), "2B 0D 80 00 01 10 08 00 00 0A 00 02 " + hex_text(Bytes(longer).subspan(10, 2)));
-}
-
 TEST_F(LongObjects, OptionsInTheHeaderTakeTheirRoomFromTheData) {
   desk.port.at_once = {holds(long_content(300))};
   const auto pdu = bytes(plc.ask("2B 0D 26 00 07 00 50 01 10 08 00 00 00 00 00"));
@@ -100,22 +89,6 @@ TEST_F(LongObjects, MayBeAskedForInOneGo) {
       << "of the fetch before it, though a newer one has ended";
   EXPECT_EQ(plc.reply(), "2B 0D 80 00 01 10 08 00 00 00 00 F1 " + hex_text(Bytes(second).first(241)));
   EXPECT_EQ(plc.reply(), "2B 0D 00 00 01 10 08 00 00 F1 00 3B " + hex_text(Bytes(second).subspan(241)));
-}
-
-TEST_F(LongObjects, AreWrittenInPartsAndDownloadedAtTheLast) {
-  const auto content = long_content(500);
-  const auto part = [&](std::size_t from, std::size_t count) {
-    return std::vector<Byte>(content.begin() + static_cast<std::ptrdiff_t>(from),
-                             content.begin() + static_cast<std::ptrdiff_t>(from + count));
-  };
-  EXPECT_EQ(plc.ask(write_at("81", 0, part(0, 241))), "2B 0D 81 00 01 20 30 00 00 00 00 00");
-  EXPECT_EQ(plc.ask(write_at("81", 241, part(241, 241))), "2B 0D 81 00 01 20 30 00 00 F1 00 00");
-  EXPECT_TRUE(desk.port.submitted.empty());
-  EXPECT_EQ(plc.ask(write_at("01", 482, part(482, 18))), "2B 0D 01 00 01 20 30 00 01 E2 00 00");
-  ASSERT_EQ(desk.port.submitted.size(), 1U);
-  EXPECT_EQ(asked().size, 0);
-  ASSERT_NE(asked().bytes, nullptr);
-  EXPECT_EQ(*asked().bytes, content);
 }
 
 TEST_F(LongObjects, OfUpTo4KiBAreWritten) {

@@ -23,13 +23,6 @@ TEST_F(OwnerRegisters, TellEachClientWhetherItIsTheOwner) {
   EXPECT_EQ(plc.read(228), "00 00") << "another axis";
 }
 
-TEST_F(OwnerRegisters, TellAlsoOfAnAxisThatIsOffline) {
-  desk.axis(1).lease = {.owner = plc.life(), .running = true, .renewed = desk.runtime.now()};
-  desk.axis(1).link_state = LinkState::offline;
-  EXPECT_EQ(plc.read(128), "00 01");
-  EXPECT_EQ(plc.ask("02 00 6F 00 01"), "02 01 01");
-}
-
 TEST_F(OwnerRegisters, TellTheOwnersAddress) {
   EXPECT_EQ(plc.read(196, 2), "00 00 00 00") << "nobody";
   desk.axis(1).lease = {.owner = plc.life(), .running = true, .renewed = desk.runtime.now()};
@@ -66,21 +59,6 @@ TEST_F(OwnerRegisters, TellHowLongTheLeaseStillRuns) {
 }
 
 class Life : public OwnerRegisters {};
-
-TEST_F(Life, RemembersTheLastRequestWhateverItsKind) {
-  const auto life = plc.life();
-  for (const char* pdu : {"03 00 64 00 01", "01 00 64 00 01", "06 00 92 00 01", "08 00 00 12 34", "2B 0E 01 00",
-                          "2B 0D 00 00 01 60 64 00 00 00 00 00", "41", "03 FF FF 00 02"}) {
-    desk.runtime.advance_by(1s);
-    EXPECT_NE(life->last_request, desk.runtime.now());
-    static_cast<void>(plc.ask(pdu));
-    EXPECT_EQ(life->last_request, desk.runtime.now()) << pdu;
-  }
-  const auto others = panel.life();
-  desk.runtime.advance_by(1s);
-  static_cast<void>(plc.read(0));
-  EXPECT_NE(others->last_request, desk.runtime.now()) << "its own";
-}
 
 TEST_F(Life, BeatsWithAChangedGatewayHeartbeatTheFirstIncluded) {
   const auto life = plc.life();
@@ -133,35 +111,6 @@ TEST_F(Life, EndsWithTheConnectionBeforeThePortIsTold) {
   EXPECT_EQ(port.gone.size(), 1U);
 }
 
-TEST_F(Life, OfAHostIsOneForAllItsConnectionsAndNeverGone) {
-  desk.settings.client_is_address = true;
-  auto first = std::make_unique<Line>(desk, Role::operator_, kPanel);
-  auto second = std::make_unique<Line>(desk, Role::operator_, kPanel);
-  const auto life = first->life();
-  EXPECT_EQ(second->life(), life);
-  EXPECT_EQ(life->name, "192.168.1.8");
-  first.reset();
-  EXPECT_TRUE(life->connected) << "one connection is left";
-  second.reset();
-  EXPECT_FALSE(life->connected);
-  EXPECT_TRUE(desk.port.gone.empty());
-  Line again(desk, Role::operator_, kPanel);
-  EXPECT_TRUE(life->connected);
-  EXPECT_EQ(again.life(), life);
-}
-
-TEST_F(Life, ReadsOfAClientThatIsAnAddressAreNoSignOfLife) {
-  desk.settings.client_is_address = true;
-  Line monitor(desk, Role::operator_, kPanel);
-  EXPECT_TRUE(is_done(monitor.write(156, 1)));
-  const auto life = last().life;
-  desk.runtime.advance_by(1s);
-  static_cast<void>(monitor.read(100, 40));
-  EXPECT_NE(life->last_request, desk.runtime.now());
-  EXPECT_TRUE(is_done(monitor.write(156, 2)));
-  EXPECT_EQ(life->last_request, desk.runtime.now());
-}
-
 TEST_F(Life, OfAnAddressIsToldByWritesThatAreAcceptedFromWhoMayCommand) {
   desk.settings.client_is_address = true;
   Line pump(desk, Role::engineer, kPanel);
@@ -200,16 +149,6 @@ TEST_F(Life, AViewersGatewayHeartbeatIsNobodys) {
   EXPECT_EQ(viewer.read(8), word(7));
   EXPECT_TRUE(is_done(pump.write(8, 7)));
   EXPECT_EQ(life->heartbeat, desk.runtime.now()) << "whatever a viewer wrote before";
-}
-
-TEST_F(Life, AChangedGatewayHeartbeatAsksNothingOfWhatAnEndedConnectionHasLeft) {
-  EXPECT_TRUE(is_done(plc.write(156, 1)));
-  desk.axis(1).lease = {.owner = last().life, .running = true, .renewed = desk.runtime.now()};
-  plc.session().on_closed(desk.runtime.now());
-  desk.port.submitted.clear();
-  Line again(desk);
-  EXPECT_TRUE(is_done(again.write(8, 1)));
-  EXPECT_EQ(desk.asked(), "-") << "any program at that address beats it";
 }
 
 TEST_F(Life, AHeartbeatOfTheAxisThatStandsStillIsNoWrite) {

@@ -115,10 +115,5 @@ TEST(Pdu, RepliesToWritesRepeatTheirHead) {
   EXPECT_EQ(reply("16 00 8C F2 00 25 00"), "16 00 8C F2 00 25 00");
 }
 
-TEST(Pdu, ExceptionsCarryTheFunctionWithItsHighBitSet) {
-  const Pdu pdu = exception_pdu(0x03, ModbusException::illegal_data_address);
-  EXPECT_EQ(hex_text({pdu.data(), pdu.size()}), "83 02");
-}
-
 }  // namespace
 }  // namespace axisgate::modbus_tcp

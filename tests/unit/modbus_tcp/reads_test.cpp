@@ -62,13 +62,6 @@ TEST_F(Reads, TellThePositionUnitOfTheAxisAndTheMotorsSpeed) {
   EXPECT_EQ(plc.read(94, 2, 1), "C6 C0 00 2D") << "no value of the drive's";
 }
 
-TEST_F(Reads, TheRowsFrom90OnTakeNoWrite) {
-  for (std::uint16_t address = 190; address < 198; address += 2)
-    EXPECT_EQ(plc.write_block(address, words(1)), "90 02") << address;
-  EXPECT_EQ(plc.write(196, 1), "86 02");
-  EXPECT_EQ(desk.asked(), "-");
-}
-
 TEST_F(Reads, AgeIsOfTheOldestCyclicValueAndSaturates) {
   EXPECT_EQ(plc.read(119), "00 00");
   desk.runtime.advance_by(1234ms);
@@ -77,12 +70,6 @@ TEST_F(Reads, AgeIsOfTheOldestCyclicValueAndSaturates) {
   EXPECT_EQ(plc.read(119), "FF FF");
   desk.axis(1).oldest_cyclic = kLongAgo;
   EXPECT_EQ(plc.read(119), "FF FF") << "never";
-}
-
-TEST_F(Reads, ACyclicScannersBlockIsReadWhole) {
-  const std::string block = plc.read(100, 39);
-  EXPECT_EQ(bytes(block).size(), 78U);
-  EXPECT_EQ(plc.ask("03" + word(100) + word(100)).size(), 3U * 202 - 1) << "the whole block";
 }
 
 TEST_F(Reads, TheGatewayBlockShowsTheGatewayAndWhoAsks) {

@@ -60,14 +60,6 @@ TEST(Roles, each_row_is_written_by_those_of_the_contract) {
   }
 }
 
-TEST(Roles, role_is_checked_before_address_and_value) {
-  Desk desk;
-  Line panel(desk, Role::viewer, kPanel);
-  EXPECT_EQ(panel.write(143, 1), "86 01");
-  EXPECT_EQ(panel.write(154, 99), "86 01");
-  EXPECT_EQ(desk.asked(), "-");
-}
-
 TEST(Roles, a_block_skips_a_row_that_the_drive_has_without_asking_the_role) {
   Desk desk;
   Line panel(desk, Role::operator_, kPanel);

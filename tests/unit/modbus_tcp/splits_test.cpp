@@ -45,44 +45,5 @@ TEST(Splits, EveryFunctionIsAnsweredTheSameAtEverySplit) {
   }
 }
 
-TEST(Splits, EveryFunctionIsAnsweredByteByByte) {
-  Desk desk;
-  Line plc(desk);
-  std::uint16_t transaction = 0;
-  for (const Exchange& exchange : kExchanges) {
-    for (const Byte each : frame(++transaction, 1, bytes(exchange.request))) plc.feed({each});
-    EXPECT_EQ(plc.reply(), exchange.reply) << exchange.request;
-  }
-}
-
-TEST(Splits, EveryPairOfFunctionsGluedTogetherIsAnsweredInOrder) {
-  for (const Exchange& first : kExchanges) {
-    for (const Exchange& second : kExchanges) {
-      Desk desk;
-      Line plc(desk);
-      auto stream = frame(1, 1, bytes(first.request));
-      const auto more = frame(2, 1, bytes(second.request));
-      stream.insert(stream.end(), more.begin(), more.end());
-      plc.feed(stream);
-      EXPECT_EQ(plc.reply(), first.reply) << first.request;
-      EXPECT_EQ(plc.reply(), second.reply) << first.request << " then " << second.request;
-    }
-  }
-}
-
-TEST(Splits, AHundredRequestsInOneReadAreAllAnsweredInOrder) {
-  Desk desk;
-  Line plc(desk);
-  std::vector<Byte> stream;
-  for (std::uint16_t i = 1; i <= 100; ++i) {
-    const auto request = frame(i, 1, bytes("03 00 64 00 7D"));
-    stream.insert(stream.end(), request.begin(), request.end());
-  }
-  plc.feed(stream);
-  EXPECT_LE(plc.session().output().size(), kMaxPipelined * kMaxAdu) << "no more ahead of the client than four";
-  for (int i = 0; i < 100; ++i) EXPECT_EQ(plc.reply().substr(0, 5), "03 FA");
-  EXPECT_EQ(plc.reply(), "");
-}
-
 }  // namespace
 }  // namespace axisgate::modbus_tcp::test

@@ -44,20 +44,6 @@ TEST_F(Writes, that_reach_beyond_an_axis_stop_each_axis_that_they_ask_to_stop) {
   EXPECT_EQ(desk.asked(), "halt, axis 2: disable");
 }
 
-TEST_F(Writes, a_batch_carries_who_asks_and_until_when) {
-  Line panel(desk, Role::operator_, kPanel);
-  for (const char* pdu : {"06 00 92 00 01", "2B 0D 00 00 01 60 41 00 00 00 00 00"}) {
-    EXPECT_TRUE(is_done(panel.ask(pdu)));
-    EXPECT_EQ(last().role, Role::operator_);
-    EXPECT_EQ(last().start_by, desk.runtime.now() + 500ms);
-    EXPECT_EQ(last().answer_by, desk.runtime.now() + 900ms);
-    const ClientId panels = last().client;
-    EXPECT_TRUE(is_done(plc.ask(pdu)));
-    EXPECT_NE(last().client, panels);
-    EXPECT_NE(last().client, 0U);
-  }
-}
-
 TEST_F(Writes, what_waits_behind_a_mask_has_its_deadlines_from_its_arrival_and_ends_with_anybodys_stop) {
   desk.port.slow = true;
   plc.send("06 00 8C 00 0F");
@@ -149,6 +135,7 @@ TEST_F(Writes, the_log_says_once_that_what_is_not_new_needs_a_0_first) {
 }
 
 /// A row of the table of design 3.3 Outcomes: how a write ended, what the client is answered and what register 25 says.
+/// What an object's request (43/13) is answered is the same exception, but for a refusal by the drive.
 struct Row {
   Errc code;
   int exception;
@@ -190,31 +177,13 @@ TEST(Outcomes, are_answered_as_the_table_says_at_once_and_later) {
       }
       EXPECT_TRUE(row.exception == 0 ? reply == "06 00 92 00 01" : is_exception(reply, row.exception)) << reply;
       EXPECT_EQ(plc.read(125, 3), word(row.result) + " 08 00 00 22");
+      if (row.code == Errc::ok || row.code == Errc::refused_by_drive) continue;
+      if (!slow) desk.port.at_once = {result};
+      plc.send("2B 0D 00 00 01 10 08 00 00 00 00 00");
+      if (slow) desk.port.finish_with(result);
+      EXPECT_TRUE(is_exception(plc.reply(), row.exception)) << "of its object";
     }
   }
-}
-
-/// With a refusal by the drive as the one end that has a form of its own.
-TEST(Outcomes, of_function_43_13_are_plain_exceptions_at_once_and_later) {
-  Desk desk;
-  Line plc(desk);
-  for (int code = 1; code < kErrcCount; ++code) {
-    const auto errc = static_cast<Errc>(code);
-    if (errc == Errc::refused_by_drive) continue;
-    for (const char* pdu : {"2B 0D 00 00 01 10 08 00 00 00 00 00", "2B 0D 01 00 01 60 7A 00 00 00 00 04 10 27 00 00"}) {
-      SCOPED_TRACE(std::string(text(errc)) + ": " + pdu);
-      const std::string expected = "AB" + word(static_cast<int>(modbus_exception(errc))).substr(2);
-      desk.port.slow = false;
-      desk.port.at_once = {{{errc, 5}}};
-      EXPECT_EQ(plc.ask(pdu), expected);
-      desk.port.slow = true;
-      EXPECT_EQ(plc.ask(pdu), "");
-      desk.port.finish({errc, 5});
-      EXPECT_EQ(plc.reply(), expected);
-    }
-  }
-  EXPECT_EQ(modbus_exception(Errc::offline), ModbusException::gateway_path_unavailable);
-  EXPECT_EQ(modbus_exception(Errc::timed_out), ModbusException::gateway_target_failed);
 }
 
 }  // namespace

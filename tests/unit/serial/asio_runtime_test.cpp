@@ -51,14 +51,6 @@ TEST_F(AsioRuntimeTest, a_timer_fires_once_and_not_before_the_deadline_that_it_w
   }
 }
 
-TEST_F(AsioRuntimeTest, a_past_deadline_fires_with_the_next_turn_and_not_inside_the_call) {
-  make([this] { ++fired; });
-  timer->expires_at(kLongAgo);
-  EXPECT_EQ(fired, 0);
-  run();
-  EXPECT_EQ(fired, 1);
-}
-
 TEST_F(AsioRuntimeTest, neither_a_disarmed_timer_nor_a_destroyed_one_fires) {
   for (const Duration wait : {Duration(0), Duration(1ms)}) {
     make([this] { ++fired; });

@@ -6,7 +6,6 @@ namespace axisgate::test {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
@@ -94,18 +93,6 @@ TEST_F(SerialLinkTest, comes_back_at_once_when_its_path_appears_though_it_leads_
   EXPECT_EQ(diary.told[2], "up");
   link->send(bytes_of("hello"));
   EXPECT_EQ(second.read(), "hello");
-}
-
-TEST_F(SerialLinkTest, a_path_that_appears_unnoticed_is_found_within_a_second) {
-  // The folder itself is missing at first, so nothing can be watched.
-  Pty pty;
-  start_at(folder / "by-id/device");
-  std::filesystem::create_directory(folder / "by-id");
-  point(folder / "by-id/device", pty.device());
-  turn();
-  EXPECT_THAT(diary.told, IsEmpty());
-  pass(1s);
-  EXPECT_THAT(diary.told, ElementsAre("up"));
 }
 
 TEST_F(SerialLinkTest, a_device_missing_at_the_start_is_logged_once_and_picked_up_later) {
