@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tests/unit/drive/rtu_truth.hpp"
+#include "tests/stage_drive/rtu_truth.hpp"
 
 namespace axisgate::test::judged {
 namespace {

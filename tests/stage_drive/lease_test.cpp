@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// Design 3.5 on an axis that really moves: what its motor does when whoever commands it falls silent, goes, or comes
+// back.
+#include <gmock/gmock.h>
+
+#include "tests/stage_drive/leased_axis.hpp"
+
+namespace axisgate::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(Lease, AMotorWhoseMasterFallsSilentIsStoppedAndLatched) {
+  LeasedAxis axis;
+  axis.run(axis.plc);
+  axis.keep(axis.plc, 5s);
+  EXPECT_TRUE(axis.rig.turns()) << "as long as its owner asks for anything";
+  axis.rig.stage.run(4s);
+  EXPECT_FALSE(axis.rig.turns());
+  EXPECT_TRUE(axis.latched());
+  EXPECT_FALSE(axis.rig.axis().lease.owner);
+  EXPECT_TRUE(axis.event("the lease of 10.0.0.1 has run out: quick stop"));
+}
+
+TEST(Lease, TheStopGoesOutAtTheEndOfTheLeaseAndNotBefore) {
+  LeasedAxis axis;
+  axis.run(axis.plc);
+  axis.plc->last_request = axis.rig.stage.runtime().now();
+  axis.rig.mark();
+  axis.rig.stage.run(1999ms);
+  EXPECT_TRUE(axis.rig.writes().empty());
+  axis.rig.stage.run(50ms);
+  EXPECT_FALSE(axis.rig.writes_of(kControlword).empty());
+}
+
+TEST(Lease, HaltOnExpiryLatchesAsWellAndStaysEnabled) {
+  LeasedAxis axis(leased(LeaseAction::halt));
+  axis.run(axis.plc);
+  axis.rig.stage.run(8s);
+  EXPECT_FALSE(axis.rig.turns());
+  EXPECT_TRUE(axis.enabled());
+  EXPECT_TRUE(axis.latched());
+  EXPECT_EQ(axis.ask(axis.plc, with_command(Command::run_velocity, {{Quantity::target_velocity, 100'000}})),
+            Errc::state_unsuitable);
+}
+
+TEST(Lease, DisableOnExpiryTakesTheTorque) {
+  LeasedAxis axis(leased(LeaseAction::disable));
+  axis.run(axis.plc);
+  axis.rig.stage.run(8s);
+  EXPECT_FALSE(axis.rig.motor_enabled());
+  EXPECT_TRUE(axis.latched());
+}
+
+TEST(Lease, NothingOnExpiryLeavesTheMotorRunningAndSaysSo) {
+  LeasedAxis axis(leased(LeaseAction::none));
+  axis.run(axis.plc);
+  axis.rig.stage.run(8s);
+  EXPECT_TRUE(axis.rig.turns());
+  EXPECT_TRUE(axis.event("nothing is done"));
+  EXPECT_FALSE(axis.rig.axis().lease.owner);
+}
+
+TEST(Lease, ADisabledAxisOnlyLosesItsOwner) {
+  LeasedAxis axis;
+  EXPECT_EQ(axis.ask(axis.plc, setpoints({{Quantity::profile_velocity, 500'000}})), Errc::ok);
+  EXPECT_TRUE(axis.rig.axis().lease.owned_by(1));
+  axis.rig.mark();
+  axis.rig.stage.run(3s);
+  EXPECT_FALSE(axis.rig.axis().lease.owner);
+  EXPECT_FALSE(axis.latched());
+  EXPECT_TRUE(axis.rig.writes().empty());
+}
+
+TEST(Lease, AnEnableThatIsUnderWayWhenItRunsOutIsStopped) {
+  RigOptions options = leased();
+  options.lease->timeout = 20ms;
+  options.reply_delay = 15ms;
+  LeasedAxis axis(options);
+  const auto enable = axis.rig.stage.begin(1, axis.from(axis.plc, with_command(Command::enable)));
+  axis.rig.stage.run(2s);
+  EXPECT_TRUE(enable->has_value());
+  EXPECT_FALSE(axis.rig.motor_enabled()) << "nobody owns it";
+  EXPECT_TRUE(axis.latched());
+}
+
+TEST(Lease, AnotherClientIsRefusedButMayAlwaysStop) {
+  LeasedAxis axis;
+  axis.run(axis.plc);
+  axis.rig.mark();
+  EXPECT_EQ(axis.ask(axis.panel, setpoints({{Quantity::target_velocity, 5'000}})), Errc::not_owner);
+  EXPECT_EQ(axis.command(axis.panel, Command::enable), Errc::not_owner);
+  EXPECT_EQ(axis.command(axis.panel, Command::fault_reset), Errc::not_owner);
+  EXPECT_TRUE(axis.rig.writes().empty());
+  EXPECT_EQ(axis.command(axis.panel, Command::quick_stop), Errc::ok);
+  EXPECT_TRUE(axis.rig.axis().lease.owned_by(1)) << "a stop does not move the lease";
+  EXPECT_FALSE(axis.rig.turns());
+}
+
+TEST(Lease, WhatAStopHasDroppedUnsentItsOwnerAsksForAnew) {
+  LeasedAxis axis;
+  const auto enable = axis.rig.stage.begin(1, axis.from(axis.plc, with_command(Command::enable)));
+  ASSERT_TRUE(axis.rig.stage.run_until([&] { return !axis.rig.writes().empty(); }));
+  const auto target = axis.rig.stage.begin(1, axis.from(axis.plc, setpoints({{Quantity::target_position, 77}})));
+  EXPECT_FALSE(axis.rig.stage.gateway().owner_asks(1, 1, Quantity::target_position, 77)) << "it waits";
+  EXPECT_EQ(axis.command(axis.panel, Command::disable), Errc::ok);
+  EXPECT_EQ((*target)->outcome.code, Errc::dropped_by_stop);
+  EXPECT_TRUE(axis.rig.stage.gateway().owner_asks(1, 1, Quantity::target_position, 77));
+}
+
+TEST(Lease, AStopOfAnotherClientIsCarriedOutAndWhatStandsBesideItRefused) {
+  LeasedAxis axis;
+  axis.run(axis.plc);
+  EXPECT_EQ(axis.ask(axis.panel, with_command(Command::quick_stop, {{Quantity::target_velocity, 5'000}})),
+            Errc::not_owner);
+  EXPECT_TRUE(axis.latched());
+  EXPECT_TRUE(axis.rig.axis().lease.owned_by(1));
+}
+
+TEST(Lease, APlcThatComesBackAfterItsConnectionEndedGoesOnWithoutAStop) {
+  LeasedAxis axis;
+  axis.run(axis.plc);
+  axis.plc->connected = false;
+  axis.rig.stage.gateway().client_gone(1);
+  axis.rig.stage.run(1500ms);
+  const auto back = client(9, "10.0.0.1");
+  EXPECT_EQ(axis.ask(axis.panel, setpoints({{Quantity::target_velocity, 5'000}})), Errc::not_owner);
+  EXPECT_EQ(axis.ask(back, setpoints({{Quantity::target_velocity, 120'000}})), Errc::ok);
+  axis.keep(back, 3s);
+  EXPECT_TRUE(axis.rig.turns());
+  EXPECT_FALSE(axis.latched());
+  EXPECT_TRUE(axis.event("its connection had ended"));
+}
+
+TEST(Lease, APlcThatComesBackTooLateFindsTheMotorStoppedAndMustEnableAnew) {
+  LeasedAxis axis;
+  axis.run(axis.plc);
+  axis.plc->connected = false;
+  axis.rig.stage.run(5s);
+  const auto back = client(9, "10.0.0.1");
+  EXPECT_EQ(axis.ask(back, setpoints({{Quantity::target_velocity, 120'000}})), Errc::ok) << "kept, not sent";
+  axis.keep(back, 1s);
+  EXPECT_FALSE(axis.rig.turns());
+  EXPECT_EQ(axis.command(back, Command::run_velocity), Errc::state_unsuitable);
+}
+
+TEST(Lease, APlcInStopWhoseScannerGoesOnIsDeadWhereHeartbeatsRenew) {
+  LeasedAxis axis(leased(LeaseAction::quick_stop, LeaseRenewal::heartbeat));
+  WriteBatch beat;
+  beat.beats = true;
+  EXPECT_EQ(axis.command(axis.plc, Command::enable), Errc::ok);
+  EXPECT_EQ(axis.ask(axis.plc, with_command(Command::run_velocity, {{Quantity::target_velocity, 100'000}})), Errc::ok);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(axis.ask(axis.plc, beat), Errc::ok);
+    axis.rig.stage.run(200ms);
+  }
+  EXPECT_TRUE(axis.rig.turns());
+  for (int i = 0; i < 40; ++i) {
+    static_cast<void>(axis.ask(axis.plc, WriteBatch{}));
+    axis.rig.stage.run(200ms);
+  }
+  EXPECT_FALSE(axis.rig.turns());
+}
+
+TEST(Lease, AReleasedRunningAxisIsStoppedUnlessSomebodyTakesIt) {
+  LeasedAxis axis;
+  axis.run(axis.plc);
+  EXPECT_EQ(axis.command(axis.plc, Command::release), Errc::ok);
+  EXPECT_FALSE(axis.rig.axis().lease.owner);
+  axis.rig.stage.run(1s);
+  EXPECT_TRUE(axis.rig.turns());
+  axis.rig.stage.run(4s);
+  EXPECT_FALSE(axis.rig.turns());
+}
+
+TEST(Lease, ReleaseHandsARunningAxisOverWithoutAStop) {
+  LeasedAxis axis;
+  axis.run(axis.plc);
+  EXPECT_EQ(axis.command(axis.panel, Command::release), Errc::not_owner);
+  EXPECT_EQ(axis.command(axis.plc, Command::release), Errc::ok);
+  EXPECT_EQ(axis.ask(axis.panel, setpoints({{Quantity::target_velocity, 50'000}})), Errc::ok);
+  axis.keep(axis.panel, 4s);
+  EXPECT_TRUE(axis.rig.turns());
+  EXPECT_EQ(axis.command(axis.plc, Command::enable), Errc::not_owner);
+}
+
+TEST(Lease, TakeOverFromALowerRankHaltsFirst) {
+  LeasedAxis axis;
+  axis.run(axis.plc);
+  EXPECT_EQ(axis.command(axis.panel, Command::take_over), Errc::not_owner) << "equal ranks";
+  EXPECT_TRUE(axis.rig.turns());
+  axis.panel->rank = 3;
+  EXPECT_EQ(axis.command(axis.panel, Command::take_over), Errc::ok);
+  EXPECT_TRUE(axis.rig.axis().lease.owned_by(2));
+  axis.keep(axis.panel, 2s);
+  EXPECT_FALSE(axis.rig.turns());
+  EXPECT_FALSE(axis.latched()) << "a halt, no quick stop";
+  EXPECT_EQ(axis.ask(axis.plc, setpoints({{Quantity::target_velocity, 5'000}})), Errc::not_owner);
+  EXPECT_TRUE(axis.event("taken the axis over"));
+}
+
+TEST(Lease, AnAxisFoundEnabledIsStoppedUnlessAClientWritesToIt) {
+  for (const bool taken : {false, true}) {
+    LeasedAxis axis(leased(), [](Rig& rig) { rig.motor().poke({0x6040, 0}, 0x0F); });
+    ASSERT_TRUE(axis.enabled());
+    EXPECT_TRUE(axis.event("found enabled, and nobody owns it"));
+    axis.rig.mark();
+    if (taken) {
+      WriteBatch heartbeat;
+      heartbeat.reclaims = true;
+      EXPECT_EQ(axis.ask(axis.panel, heartbeat), Errc::ok);
+      axis.keep(axis.panel, 4s);
+      EXPECT_TRUE(axis.rig.writes().empty());
+      EXPECT_TRUE(axis.enabled());
+    } else {
+      axis.rig.stage.run(4s);
+      EXPECT_TRUE(axis.latched());
+      EXPECT_TRUE(axis.event("nobody has taken over the enabled axis: quick stop"));
+    }
+  }
+}
+
+TEST(Lease, AnOwnersSixInABlockIsAStop) {
+  LeasedAxis axis;
+  axis.run(axis.plc);
+  WriteBatch block = setpoints({{Quantity::target_velocity, 100'000}});
+  block.controlword = 0x0006;
+  EXPECT_EQ(axis.ask(axis.panel, block), Errc::not_owner);
+  EXPECT_TRUE(axis.rig.turns());
+  EXPECT_EQ(axis.ask(axis.plc, block), Errc::ok);
+  axis.keep(axis.plc, 2s);
+  EXPECT_FALSE(axis.rig.turns());
+}
+
+// 3.5: on_expiry "acts only if the axis is enabled". The answer spoke of another client that nobody was.
+TEST(Lease, ThatRunsOutBesideAFaultResetStopsNothing) {
+  constexpr std::uint16_t kTooHigh = 0x0020;  // the supply
+  RigOptions options = leased();
+  options.lease->timeout = 500ms;
+  LeasedAxis axis(options);
+  axis.run(axis.plc);
+  axis.rig.motor().inject_fault(1, kTooHigh);
+  axis.keep(axis.plc, 2s);
+  EXPECT_EQ(axis.command(axis.plc, Command::fault_reset), Errc::not_reached);
+  EXPECT_FALSE(axis.rig.axis().has(AxisInput::stop_latched));
+  EXPECT_FALSE(axis.rig.has_event(EventKind::lease, "quick stop"));
+}
+
+}  // namespace
+}  // namespace axisgate::test
