@@ -11,7 +11,7 @@
 
 #include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
 #include "tests/obey/client.hpp"
-#include "tests/obey/subject.hpp"
+#include "tests/stage/subject.hpp"
 
 namespace axisgate::test::obey {
 
@@ -117,6 +117,8 @@ class Plant {
   [[nodiscard]] Truth motor() { return truth(stage, subject); }
   [[nodiscard]] std::int64_t position() { return motor().position; }
   [[nodiscard]] std::int64_t velocity() { return motor().velocity; }
+  /// Of an iD286pro, whose bus cannot disable it, the gateway's gate.
+  [[nodiscard]] bool enabled();
   [[nodiscard]] bool stands();  ///< and has for 100 ms
   /// Waits until it stands, then tells where. `limit`: of the wait.
   std::int64_t comes_to_rest_at(Duration limit = std::chrono::seconds(30));
@@ -132,6 +134,8 @@ class Plant {
   [[nodiscard]] std::int64_t endless_command() const { return has_speeds(subject) ? 8 : 6; }
   [[nodiscard]] Rows endless_target() const;
   Answer set_endless(Client& client);
+  /// Its target, its command, and it turns.
+  bool start_endless(Client& client);
   /// The rows 48 to 52 that the drive has and ready() set: for blocks that cover them.
   [[nodiscard]] Rows profile_rows();
 

@@ -55,9 +55,7 @@ class Reload : public testing::TestWithParam<Subject> {
  protected:
   void start_endless() {
     plant_.ready();
-    ASSERT_EQ(plant_.set_endless(plant_.a), kOk);
-    ASSERT_EQ(plant_.a.command(plant_.endless_command()), kOk);
-    ASSERT_TRUE(plant_.turns_within(1s));
+    ASSERT_TRUE(plant_.start_endless(plant_.a));
   }
   /// Some have torque at all times: nobody can tell that they are disabled.
   [[nodiscard]] bool can_be_disabled() {

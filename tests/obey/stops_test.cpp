@@ -56,9 +56,7 @@ TEST_P(Stops, OfTheSameQuickStopWithAnotherId) {
   ASSERT_EQ(a_.command(kQuickStop, 3), kOk);
   ASSERT_TRUE(plant_.comes_to_stand());
   ASSERT_EQ(b_.command(kEnable), kOk);
-  ASSERT_EQ(plant_.set_endless(b_), kOk);
-  ASSERT_EQ(b_.command(plant_.endless_command()), kOk);
-  ASSERT_TRUE(plant_.keeps_turning());
+  ASSERT_TRUE(plant_.start_endless(b_));
   EXPECT_EQ(a_.command(kQuickStop, 4), kOk);
   stopped_and_latched();
 }
@@ -68,9 +66,7 @@ TEST_P(Stops, ThatAScannerRepeatsDoNotStopWhatComesLater) {
   ASSERT_EQ(a_.command(kQuickStop, 3), kOk);
   ASSERT_TRUE(plant_.comes_to_stand());
   ASSERT_EQ(b_.command(kEnable), kOk);
-  ASSERT_EQ(plant_.set_endless(b_), kOk);
-  ASSERT_EQ(b_.command(plant_.endless_command()), kOk);
-  ASSERT_TRUE(plant_.turns_within(1s));
+  ASSERT_TRUE(plant_.start_endless(b_));
   plant_.scan(a_, block(row::command, row::command_id, {{row::command, kQuickStop}, {row::command_id, 3}}), 500ms);
   EXPECT_TRUE(plant_.keeps_turning());
 }
@@ -92,9 +88,7 @@ TEST_P(Stops, OfAClientThatHasWrittenNothingBefore) {
     SCOPED_TRACE(way);
     ASSERT_EQ(a_.command(0), kOk);
     ASSERT_EQ(a_.command(kEnable), kOk);
-    ASSERT_EQ(plant_.set_endless(a_), kOk);
-    ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
-    ASSERT_TRUE(plant_.turns_within(1s));
+    ASSERT_TRUE(plant_.start_endless(a_));
     plant_.run(200ms);
     const auto stranger = plant_.connection_from(host++);
     EXPECT_EQ(stranger->write(write), kOk);
@@ -135,9 +129,7 @@ TEST_P(Stops, AlwaysInASingleWrite) {
       ASSERT_EQ(a_.command(0), kOk);
       ASSERT_EQ(a_.command(kEnable), kOk);
       ASSERT_EQ(a_.coil(coil::halt, false), kOk);
-      ASSERT_EQ(plant_.set_endless(a_), kOk);
-      ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
-      ASSERT_TRUE(plant_.turns_within(1s));
+      ASSERT_TRUE(plant_.start_endless(a_));
       EXPECT_EQ(b_.write(way), kOk);
       EXPECT_TRUE(plant_.comes_to_stand()) << "time " << time << ": " << plant_.velocity();
     }

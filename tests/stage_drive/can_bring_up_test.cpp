@@ -15,9 +15,8 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Not;
 
-class CanDrive : public testing::TestWithParam<CanType> {};
-INSTANTIATE_TEST_SUITE_P(Types, CanDrive, testing::ValuesIn(kCanTypes),
-                         [](const auto& type) { return name(type.param); });
+class CanDrive : public testing::TestWithParam<Subject> {};
+INSTANTIATE_TEST_SUITE_P(Types, CanDrive, testing::ValuesIn(kCanopenServos), named);
 
 bool is_enabled(const AxisImage& axis) { return axis.has(AxisInput::enabled); }
 
@@ -26,7 +25,7 @@ TEST_P(CanDrive, ComesOnlineWithGoodValuesAndIsNotEnabled) {
   rig.online();
   EXPECT_FALSE(is_enabled(rig.axis()));
   EXPECT_EQ(rig.axis().alarms & (bit(AxisAlarm::no_comm_watchdog) | bit(AxisAlarm::identity_mismatch)), 0U);
-  EXPECT_EQ(rig.axis().loss_stop_ms, GetParam() == CanType::jd ? kLossNotKnown : 1500) << "as its manual says";
+  EXPECT_EQ(rig.axis().loss_stop_ms, GetParam() == Subject::jd_can ? kLossNotKnown : 1500) << "as its manual says";
   EXPECT_TRUE(rig.axis()[Quantity::statusword].valid);
   EXPECT_TRUE(rig.axis()[Quantity::position_actual].valid);
   EXPECT_TRUE(rig.becomes_operational());
@@ -44,45 +43,10 @@ TEST_P(CanDrive, OnlineAndIdleItIsHardlyAskedAndItsValuesStayGood) {
     ASSERT_TRUE(rig.axis()[Quantity::position_actual].valid);
   }
   std::map<std::pair<std::uint16_t, int>, int> asked;
-  for (const SdoRequest& request : rig.requests()) ++asked[{request.index, int{request.sub}}];
+  for (const WireRequest& request : rig.requests()) ++asked[{request.index, int{request.sub}}];
   for (const auto& [object, times] : asked)
     EXPECT_LE(times, 11) << std::hex << object.first << ":" << object.second << ": once in confirm_ms at most";
   EXPECT_THAT(rig.writes(), IsEmpty());
-}
-
-TEST_P(CanDrive, AChangeArrivesByTpdoAtOnce) {
-  CanRig rig({GetParam()});
-  rig.online();
-  rig.enable();
-  ASSERT_EQ(rig.stage.write(1, Quantity::profile_velocity, 600'000).outcome.code, Errc::ok);
-  ASSERT_EQ(rig.stage.write(1, Quantity::target_position, 100'000).outcome.code, Errc::ok);
-  ASSERT_EQ(rig.stage.command(1, Command::move_absolute).outcome.code, Errc::ok);
-  EXPECT_FALSE(rig.axis().has(AxisInput::target_reached));
-  ASSERT_TRUE(rig.settles([&] { return rig.axis().motion_state == MotionState::completed; }));
-  EXPECT_NEAR(static_cast<double>(rig.axis()[Quantity::position_actual].value), 100'000, 20);
-}
-
-TEST_P(CanDrive, ARestartWhileItRunsIsToldEndsTheMotionAndNothingIsEnabledAgain) {
-  CanRig rig({GetParam()});
-  rig.online();
-  rig.enable();
-  ASSERT_EQ(rig.stage.write(1, Quantity::target_velocity, 300'000).outcome.code, Errc::ok);
-  ASSERT_EQ(rig.stage.command(1, Command::run_velocity).outcome.code, Errc::ok);
-  rig.stage.run(500ms);
-  rig.mark();
-  rig.line().restart(0, rig.stage.can_link(0).time_of(rig.stage.runtime().now()));
-  ASSERT_TRUE(rig.settles([&] { return rig.axis().link_state == LinkState::setup; })) << "by its boot-up";
-  EXPECT_TRUE(rig.told("restarted"));
-  ASSERT_TRUE(rig.stage.come_online());
-  rig.stage.run(5s);
-  EXPECT_FALSE(is_enabled(rig.axis()));
-  EXPECT_EQ(rig.axis().motion_state, MotionState::failed);
-  EXPECT_TRUE(rig.becomes_operational());
-  for (const SdoRequest& write : rig.writes()) {
-    if (write.index != 0x6040) continue;
-    EXPECT_EQ(write.data & 0x9, 0U) << "no controlword enables";
-  }
-  EXPECT_TRUE(rig.axis()[Quantity::position_actual].valid);
 }
 
 TEST_P(CanDrive, ARestartAtAnyRequestOfTheBringUpOnlyBeginsItAnew) {
@@ -122,7 +86,7 @@ TEST_P(CanDrive, FoundEnabledItIsAdoptedAndNothingIsWrittenUntilItIsDisabled) {
   ASSERT_EQ(first.stage.command(1, Command::disable).outcome.code, Errc::ok);
   ASSERT_TRUE(first.stage.come_online());
   EXPECT_EQ(first.axis().alarms & bit(AxisAlarm::adopted_running), 0U);
-  EXPECT_EQ(first.axis().loss_stop_ms, GetParam() == CanType::jd ? kLossNotKnown : 1500) << "set up by now";
+  EXPECT_EQ(first.axis().loss_stop_ms, GetParam() == Subject::jd_can ? kLossNotKnown : 1500) << "set up by now";
   EXPECT_THAT(first.nmt(), ElementsAre("80 01", "01 01"));
 }
 
@@ -148,7 +112,7 @@ TEST_P(CanDrive, AdoptedAndQuickStoppedItStaysOnlineWhereverTheStopEnds) {
 }
 
 TEST_P(CanDrive, UnpluggedItIsSeenByItsSilenceAndComesBackByItself) {
-  CanRig rig({GetParam(), CanType::leadshine});
+  CanRig rig({GetParam(), Subject::leadshine});
   rig.online();
   rig.line().connect(0, false);
   ASSERT_TRUE(rig.settles([&] { return rig.axis(1).link_state == LinkState::offline; }));
@@ -162,7 +126,7 @@ TEST_P(CanDrive, UnpluggedItIsSeenByItsSilenceAndComesBackByItself) {
 }
 
 TEST(CanIdentity, AnotherDriveThanTheConfiguredOneIsReadOnly) {
-  GatewayStage::Line line = can_line_of({options_of(CanType::leadshine, 1)}, 1);
+  GatewayStage::Line line = can_line_of({options_of(Subject::leadshine, 1)}, 1);
   line.can_drives[0].identity = {0x4321, 77, std::nullopt, std::nullopt};
   CanRig rig(std::move(line));
   rig.online();
@@ -195,7 +159,7 @@ TEST(CanMapping, WhatTheDriveDoesNotMapIsPolledAndToldAndAsGood) {
 }
 
 TEST(CanEmergency, AFaultIsShownAndToldWithItsCode) {
-  CanRig rig({CanType::leadshine});
+  CanRig rig({Subject::leadshine});
   rig.online();
   rig.stage.leadshine(0).inject_fault(0x3150);
   ASSERT_TRUE(rig.settles([&] { return rig.axis().has(AxisInput::fault); }));
@@ -204,7 +168,7 @@ TEST(CanEmergency, AFaultIsShownAndToldWithItsCode) {
 }
 
 TEST(CanDuplicateNode, IsToldAndForgottenAMinuteAfterItIsGone) {
-  CanRig rig({CanType::leadshine});
+  CanRig rig({Subject::leadshine});
   rig.online();
   const std::size_t duplicate = rig.line().add_duplicate(0);
   const auto alarmed = [&] { return (rig.axis().alarms & bit(AxisAlarm::duplicate_node)) != 0; };
@@ -212,35 +176,6 @@ TEST(CanDuplicateNode, IsToldAndForgottenAMinuteAfterItIsGone) {
   EXPECT_TRUE(rig.told("two devices answer as node 1"));
   rig.line().connect(duplicate, false);
   EXPECT_TRUE(rig.stage.run_until([&] { return !alarmed(); }, 90s));
-}
-
-TEST(CanNmt, ANodeThatSomebodyElseTakesOutOfOperationalIsPolledAndSetUpAnew) {
-  CanRig rig({CanType::leadshine});
-  rig.online();
-  rig.mark();
-  simulated::BusFrame nmt;
-  nmt.size = 2;
-  nmt.data = {0x80, 0x01};
-  rig.line().from_host(nmt, rig.stage.can_link(0).time_of(rig.stage.runtime().now()));
-  ASSERT_TRUE(rig.settles([&] { return !rig.nmt().empty(); }));
-  ASSERT_TRUE(rig.stage.come_online());
-  EXPECT_TRUE(rig.becomes_operational());
-  EXPECT_TRUE(rig.told("by no command of ours"));
-}
-
-TEST(CanNmt, AStoppedNodeIsBroughtBack) {
-  CanRig rig({CanType::leadshine});
-  rig.online();
-  simulated::BusFrame nmt;
-  nmt.size = 2;
-  nmt.data = {0x02, 0x01};
-  rig.line().from_host(nmt, rig.stage.can_link(0).time_of(rig.stage.runtime().now()));
-  rig.stage.run(1500ms);
-  ASSERT_TRUE(rig.stage.run_until(
-      [&] {
-        return rig.axis().link_state == LinkState::online && rig.node().state() == simulated::NmtState::operational;
-      },
-      60s));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 using simulated::DriveFault;
 using testing::IsEmpty;
 
-class CanMotion : public testing::TestWithParam<CanType> {
+class CanMotion : public testing::TestWithParam<Subject> {
  protected:
   CanMotion() : rig({GetParam()}) {
     rig.online();
@@ -37,20 +37,7 @@ class CanMotion : public testing::TestWithParam<CanType> {
   }
   CanRig rig;
 };
-INSTANTIATE_TEST_SUITE_P(Types, CanMotion, testing::ValuesIn(kCanTypes),
-                         [](const auto& type) { return name(type.param); });
-
-TEST_P(CanMotion, AbsoluteMovesEndWhereTheyWereSent) {
-  fast();
-  for (const std::int64_t target : {20'000, -20'000, 5'000}) {
-    write(Quantity::target_position, target);
-    ASSERT_EQ(command(Command::move_absolute), Errc::ok);
-    EXPECT_FALSE(rig.axis().has(AxisInput::target_reached)) << "of the move before, it must not be seen any more";
-    ASSERT_TRUE(completes());
-    EXPECT_TRUE(rig.axis().has(AxisInput::target_reached));
-    EXPECT_NEAR(static_cast<double>(value(Quantity::position_actual)), static_cast<double>(target), 20);
-  }
-}
+INSTANTIATE_TEST_SUITE_P(Types, CanMotion, testing::ValuesIn(kCanopenServos), named);
 
 // It was told up to a second late, where nothing else was asked of the node meanwhile (ANS-2).
 TEST_P(CanMotion, TheEndOfAMoveIsToldAsSoonAsTheDriveShowsIt) {
@@ -92,7 +79,7 @@ TEST_P(CanMotion, AMovingAxisIsAskedWhereItIsAfterAQuarterOfASecondWithoutATpdo)
   write(Quantity::target_velocity, 300'000);
   ASSERT_EQ(command(Command::run_velocity), Errc::ok);
   rig.stage.run(2s);
-  if (GetParam() == CanType::leadshine)
+  if (GetParam() == Subject::leadshine)
     rig.stage.leadshine(0).jam(true);
   else
     rig.stage.drive(0).jam(true);
@@ -104,7 +91,7 @@ TEST_P(CanMotion, AMovingAxisIsAskedWhereItIsAfterAQuarterOfASecondWithoutATpdo)
   const auto came =  // of the TPDO that carries the position
       std::count_if(heard.begin() + first, heard.end(), [](const auto& one) { return one.frame.id == 0x181; });
   const auto asked = rig.requests();
-  const auto of_position = std::count_if(asked.begin(), asked.end(), [](const SdoRequest& request) {
+  const auto of_position = std::count_if(asked.begin(), asked.end(), [](const WireRequest& request) {
     return !request.write && (request.index == 0x6063 || request.index == 0x6064);
   });
   ASSERT_FALSE(rig.axis().has(AxisInput::fault));
@@ -177,77 +164,6 @@ TEST_P(CanMotion, IsEnabledWithoutATargetVelocityOnlyWhereTheDriveSaysThatItHasN
   }
 }
 
-TEST_P(CanMotion, AMoveToWhereItStandsIsDoneToo) {
-  fast();
-  write(Quantity::target_position, 3'000);
-  ASSERT_EQ(command(Command::move_absolute), Errc::ok);
-  ASSERT_TRUE(completes());
-  ASSERT_EQ(command(Command::move_absolute), Errc::ok);
-  EXPECT_TRUE(completes());
-}
-
-TEST_P(CanMotion, AMoveUnderWayIsReplacedAtOnce) {
-  write(Quantity::profile_velocity, 300'000);
-  write(Quantity::target_position, 500'000);
-  ASSERT_EQ(command(Command::move_absolute), Errc::ok);
-  rig.stage.run(1s);
-  ASSERT_TRUE(rig.axis().has(AxisInput::moving));
-  write(Quantity::target_position, 0);
-  ASSERT_EQ(command(Command::move_absolute), Errc::ok);
-  ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().motion_state == MotionState::completed; }, 60s));
-  EXPECT_NEAR(static_cast<double>(value(Quantity::position_actual)), 0, 20);
-}
-
-TEST_P(CanMotion, ARelativeMoveAddsOnceToWhereItStands) {
-  fast();
-  write(Quantity::target_position, 7'000);
-  ASSERT_EQ(command(Command::move_relative), Errc::ok);
-  ASSERT_TRUE(completes());
-  ASSERT_EQ(command(Command::move_relative), Errc::ok);
-  ASSERT_TRUE(completes());
-  EXPECT_NEAR(static_cast<double>(value(Quantity::position_actual)), 14'000, 40);
-}
-
-TEST_P(CanMotion, VelocityRunsFollowsAndHalts) {
-  write(Quantity::profile_acceleration, 50'000);
-  write(Quantity::profile_deceleration, 50'000);
-  write(Quantity::target_velocity, 600'000);
-  ASSERT_EQ(command(Command::run_velocity), Errc::ok);
-  ASSERT_TRUE(rig.settles([&] { return value(Quantity::velocity_actual) > 550'000; }));
-  write(Quantity::target_velocity, -300'000);
-  ASSERT_TRUE(rig.settles([&] { return value(Quantity::velocity_actual) < -250'000; })) << "acts at once";
-  ASSERT_EQ(command(Command::halt), Errc::ok);
-  EXPECT_TRUE(stands());
-  EXPECT_TRUE(rig.axis().has(AxisInput::enabled));
-  rig.stage.run(2s);
-  EXPECT_FALSE(rig.axis().has(AxisInput::moving)) << "nothing resumes";
-}
-
-TEST_P(CanMotion, AHaltedRunDoesNotResumeWhenTheHaltEnds) {
-  write(Quantity::target_velocity, 300'000);
-  ASSERT_EQ(command(Command::run_velocity), Errc::ok);
-  rig.stage.run(1s);
-  ASSERT_EQ(command(Command::halt), Errc::ok);
-  ASSERT_TRUE(stands());
-  ASSERT_EQ(command(Command::end_halt), Errc::ok);
-  rig.stage.run(2s);
-  EXPECT_FALSE(rig.axis().has(AxisInput::moving));
-}
-
-TEST_P(CanMotion, AQuickStopStopsLatchesAndOnlyAnEnableLetsItStartAgain) {
-  write(Quantity::target_velocity, 300'000);
-  ASSERT_EQ(command(Command::run_velocity), Errc::ok);
-  rig.stage.run(1s);
-  ASSERT_EQ(command(Command::quick_stop), Errc::ok);
-  EXPECT_TRUE(stands());
-  EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched));
-  EXPECT_EQ(command(Command::run_velocity), Errc::state_unsuitable);
-  ASSERT_EQ(command(Command::enable), Errc::ok);
-  EXPECT_FALSE(rig.axis().has(AxisInput::stop_latched));
-  rig.stage.run(1s);
-  EXPECT_FALSE(rig.axis().has(AxisInput::moving)) << "an enable never moves it";
-}
-
 TEST_P(CanMotion, AnEnableRightAfterAQuickStopIsDoneAsSoonAsTheMotorStands) {
   // Whether the drive stays in quick stop active or leaves it by itself, and although its speed is told later.
   for (int i = 0; i < 5; ++i) {
@@ -260,18 +176,6 @@ TEST_P(CanMotion, AnEnableRightAfterAQuickStopIsDoneAsSoonAsTheMotorStands) {
     EXPECT_LE(rig.stage.runtime().now() - asked, 500ms) << "it stands after a few of these";
     ASSERT_TRUE(stands());
   }
-}
-
-TEST_P(CanMotion, ADisableTakesTheTorqueAwayAndNothingStartsWithTheNextEnable) {
-  write(Quantity::target_velocity, 300'000);
-  ASSERT_EQ(command(Command::run_velocity), Errc::ok);
-  rig.stage.run(500ms);
-  ASSERT_EQ(command(Command::disable), Errc::ok);
-  EXPECT_FALSE(rig.axis().has(AxisInput::enabled));
-  ASSERT_TRUE(stands());
-  ASSERT_EQ(command(Command::enable), Errc::ok);
-  rig.stage.run(1s);
-  EXPECT_FALSE(rig.axis().has(AxisInput::moving));
 }
 
 TEST_P(CanMotion, HomingByMethod35MakesThePresentPositionZeroAndIsToldAsHomed) {
@@ -338,38 +242,6 @@ TEST_P(CanMotion, ARunThatIsAskedForWhileADisableRampsDownEnablesNothing) {
   rig.stage.run(3s);
   EXPECT_FALSE(rig.axis().has(AxisInput::enabled));
   EXPECT_FALSE(rig.axis().has(AxisInput::moving));
-}
-
-TEST(CanFault, ItIsResetByARisingEdgeAloneAndEndsDisabled) {
-  CanRig rig({CanType::leadshine});
-  rig.online();
-  rig.enable();
-  rig.stage.leadshine(0).inject_fault(0x2211);
-  ASSERT_TRUE(rig.settles([&] { return rig.axis().has(AxisInput::fault); }));
-  EXPECT_FALSE(rig.axis().has(AxisInput::enabled));
-  rig.stage.leadshine(0).clear_fault_cause();
-  rig.stage.run(2s);
-  EXPECT_TRUE(rig.axis().has(AxisInput::fault)) << "never by itself";
-  rig.mark();
-  EXPECT_EQ(rig.stage.command(1, Command::fault_reset).outcome.code, Errc::ok);
-  EXPECT_FALSE(rig.axis().has(AxisInput::fault));
-  EXPECT_FALSE(rig.axis().has(AxisInput::enabled));
-  ASSERT_TRUE(rig.settles([&] { return rig.axis()[Quantity::error_code].value == 0; }));
-  EXPECT_EQ(rig.stage.command(1, Command::fault_reset).outcome.code, Errc::ok);
-  EXPECT_LE(std::ranges::count(rig.writes(), 0x80U, &SdoRequest::data), 1) << "not faulted: nothing is sent";
-}
-
-TEST(CanTorque, RunsWithAKnownSpeedLimitAlone) {
-  CanRig rig({CanType::leadshine});
-  rig.online();
-  rig.enable();
-  ASSERT_EQ(rig.stage.write(1, Quantity::max_velocity, 500'000).outcome.code, Errc::ok);
-  ASSERT_EQ(rig.stage.write(1, Quantity::target_torque, 100).outcome.code, Errc::ok);
-  ASSERT_EQ(rig.stage.command(1, Command::run_torque).outcome.code, Errc::ok);
-  ASSERT_TRUE(rig.settles([&] { return rig.axis().has(AxisInput::moving); }));
-  EXPECT_EQ(rig.axis()[Quantity::mode_display].value, 4);
-  ASSERT_EQ(rig.stage.command(1, Command::halt).outcome.code, Errc::ok);
-  EXPECT_TRUE(rig.settles([&] { return !rig.axis().has(AxisInput::moving); }));
 }
 
 TEST(CanSetPoint, ADriveThatAcknowledgesAndOneThatDoesNotBothEndTheirMove) {

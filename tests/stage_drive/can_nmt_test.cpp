@@ -15,36 +15,14 @@ using simulated::NmtState;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-enum class Node : std::uint8_t { leadshine, jd, md, keya };
-constexpr std::array kNodes{Node::leadshine, Node::jd, Node::md, Node::keya};
-
-std::string node_name(Node node) {
-  static const std::array<const char*, 4> kNames{"Leadshine", "KincoJd", "KincoMd", "Keya"};
-  return kNames.at(static_cast<std::size_t>(node));
-}
-
-GatewayStage::Line line_with(Node node) {
-  switch (node) {
-    case Node::leadshine:
-      return can_line_of({options_of(CanType::leadshine, 1)}, 1);
-    case Node::jd:
-      return can_line_of({options_of(CanType::jd, 1)}, 1);
-    case Node::md:
-      return can_line_of({options_of(CanType::md, 1)}, 1);
-    case Node::keya:
-      break;
-  }
-  return can_line_of({simulated::KeyaCanopenDrive{}}, 1);
-}
+constexpr std::array kNodes{Subject::leadshine, Subject::jd_can, Subject::md_can, Subject::keya_canopen_speed};
 
 constexpr std::uint8_t kStart = 0x01, kStop = 0x02, kEnterPreOperational = 0x80;
 
 bool starts_a_node(const can::CanFrame& frame) { return frame.id == 0 && frame.data[0] == kStart; }
 
-class CanNodeState : public testing::TestWithParam<Node> {
+class CanNodeState : public testing::TestWithParam<Subject> {
  protected:
-  CanNodeState() : rig(line_with(GetParam())) {}
-
   /// The next so many starts that we send reach nobody.
   void lose_starts(int count) {
     // Off the bus for as long as that frame takes.
@@ -85,14 +63,13 @@ class CanNodeState : public testing::TestWithParam<Node> {
   }
   [[nodiscard]] std::int64_t position() { return rig.axis()[Quantity::position_actual].value; }
 
-  CanRig rig;
+  CanRig rig{std::vector{GetParam()}};
 
  private:
   std::unique_ptr<Timer> back_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Drives, CanNodeState, testing::ValuesIn(kNodes),
-                         [](const auto& i) { return node_name(i.param); });
+INSTANTIATE_TEST_SUITE_P(Drives, CanNodeState, testing::ValuesIn(kNodes), named);
 
 TEST_P(CanNodeState, OneLostStartIsNoticedByTheSignsOfLifeAndMadeGood) {
   lose_starts(1);

@@ -59,7 +59,7 @@ TEST_F(CanObjects, ANameLongerThanFourBytesIsReadWhole) {
 
 // It counts its speeds in another width, and otherwise: it moved 6.6 times too fast and too far, and was told done.
 TEST(CanProfile, ADriveOfTheOtherTypeInItsPlaceIsNotMoved) {
-  GatewayStage::Line line = can_line_of({options_of(CanType::jd, 1)}, 1);
+  GatewayStage::Line line = can_line_of({options_of(Subject::jd_can, 1)}, 1);
   line.can_drives[0].profile = "kinco-md";
   CanRig rig(std::move(line));
   ASSERT_TRUE(rig.settles([&] { return (rig.axis().alarms & bit(AxisAlarm::profile_mismatch)) != 0; }));
@@ -71,7 +71,7 @@ TEST(CanProfile, ADriveOfTheOtherTypeInItsPlaceIsNotMoved) {
 // An engineer has given the disabled drive another gear: its numbers for what was accepted are others now.
 TEST(CanScale, AStartGoesByTheAcceptedSpeedAlsoWhereTheDriveCountsOtherwiseSince) {
   constexpr std::uint16_t kFeed = 0x6092;
-  CanRig rig({CanType::leadshine});
+  CanRig rig({Subject::leadshine});
   rig.online();
   ASSERT_EQ(rig.stage.ask(1, setpoints({{Quantity::profile_velocity, 600'000}})).outcome.code, Errc::ok);
   WriteBatch feed = reading(kFeed, 1, 4);
@@ -163,7 +163,7 @@ TEST_F(CanObjects, ALongReadThatIsLostHalfwayEndsUnknownAndTheDriveIsToldSo) {
 }
 
 TEST(CanObjectsBetween, ALongReadOfOneDriveLeavesTheWireToTheOther) {
-  CanRig rig({CanType::leadshine, CanType::md});
+  CanRig rig({Subject::leadshine, Subject::md_can});
   rig.node(0).facts().texts[kText] = std::string(4000, 'z');
   rig.online();
   const auto read = rig.stage.begin(1, reading(kText.index));

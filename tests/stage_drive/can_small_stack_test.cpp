@@ -41,9 +41,9 @@ INSTANTIATE_TEST_SUITE_P(Answers, CanSmallStack,
                          });
 
 TEST_P(CanSmallStack, ADriveThatAnswersSoComesOnlineIsEnabledAndMoved) {
-  for (const CanType type : {CanType::leadshine, CanType::jd}) {
+  for (const Subject type : {Subject::leadshine, Subject::jd_can}) {
     // Its velocity has two bytes: see WhatCountsItsSpeedsInAnotherWidth.
-    if (GetParam() == SdoFault::wide && type == CanType::jd) continue;
+    if (GetParam() == SdoFault::wide && type == Subject::jd_can) continue;
     CanRig rig({type});
     rig.line().faults(0).sdo.set_rate(GetParam(), 1);
     rig.node().facts().lacks.insert(kVoltageObject);  // an abort in any case
@@ -55,7 +55,7 @@ TEST_P(CanSmallStack, ADriveThatAnswersSoComesOnlineIsEnabledAndMoved) {
 }
 
 TEST_P(CanSmallStack, ItsTpdosAreMappedAsTheDriveReadsThemBack) {
-  CanRig rig({CanType::leadshine});
+  CanRig rig({Subject::leadshine});
   rig.line().faults(0).sdo.set_rate(GetParam(), 1);
   ASSERT_TRUE(rig.stage.come_online());
   ASSERT_TRUE(rig.becomes_operational());
@@ -67,7 +67,7 @@ TEST_P(CanSmallStack, ItsTpdosAreMappedAsTheDriveReadsThemBack) {
 }
 
 TEST(SmallStackWide, ThatIsToldOnceInABringUp) {
-  CanRig rig({CanType::leadshine});
+  CanRig rig({Subject::leadshine});
   rig.line().faults(0).sdo.set_rate(SdoFault::wide, 1);
   ASSERT_TRUE(rig.stage.come_online());
   EXPECT_EQ(times_told(rig, kEmptyAbove), 1U);
@@ -81,7 +81,7 @@ TEST(SmallStackWide, ThatIsToldOnceInABringUp) {
 
 TEST(SmallStackWide, ASignedNumberBelowZeroIsTheSameWithZerosOrWithItsSignAboveIt) {
   for (const SdoFault fault : {SdoFault::wide, SdoFault::wide_sign}) {
-    CanRig rig({CanType::leadshine});
+    CanRig rig({Subject::leadshine});
     rig.line().faults(0).sdo.set_rate(fault, 1, kTemperature);
     ASSERT_TRUE(rig.stage.come_online());
     ASSERT_EQ(rig.node().poke(kTemperature, -12, rig.stage.can_link(0).time_of(rig.stage.runtime().now())), 0U);
@@ -93,7 +93,7 @@ TEST(SmallStackWide, ASignedNumberBelowZeroIsTheSameWithZerosOrWithItsSignAboveI
 // Its bytes above are the number's own, or nobody's.
 TEST(SmallStackWide, ANumberWithSomethingElseAboveItIsToldInWidthsAndNotShown) {
   constexpr ObjectKey kErrorObject{0x603F, 0};
-  CanRig rig({CanType::leadshine});
+  CanRig rig({Subject::leadshine});
   rig.line().faults(0).sdo.set_rate(SdoFault::wide_sign, 1, kErrorObject);
   ASSERT_TRUE(rig.stage.come_online());
   EXPECT_EQ(times_told(rig, "not used"), 0U);
@@ -106,11 +106,11 @@ TEST(SmallStackWide, ANumberWithSomethingElseAboveItIsToldInWidthsAndNotShown) {
 // A Kinco MD where the configuration has a JD, or a JD that answers all in four bytes: at standstill its velocity is
 // zero, and so are the bytes above it. The numbers of the other's speeds are other numbers.
 TEST(SmallStackWide, WhatCountsItsSpeedsInAnotherWidthIsNotMovedThoughTheBytesAboveAreZero) {
-  for (const CanType there : {CanType::md, CanType::jd}) {
+  for (const Subject there : {Subject::md_can, Subject::jd_can}) {
     GatewayStage::Line line = can_line_of({options_of(there, 1)}, 1);
     line.can_drives[0].profile = "kinco-jd";
     CanRig rig(std::move(line));
-    if (there == CanType::jd) rig.line().faults(0).sdo.set_rate(SdoFault::wide, 1);
+    if (there == Subject::jd_can) rig.line().faults(0).sdo.set_rate(SdoFault::wide, 1);
     ASSERT_TRUE(rig.settles([&] { return (rig.axis().alarms & bit(AxisAlarm::profile_mismatch)) != 0; }));
     EXPECT_TRUE(rig.told("velocity_actual: the drive answers 4 bytes, the profile says 2: not used"));
     EXPECT_NE(rig.stage.command(1, Command::enable).outcome.code, Errc::ok);
@@ -118,7 +118,7 @@ TEST(SmallStackWide, WhatCountsItsSpeedsInAnotherWidthIsNotMovedThoughTheBytesAb
 }
 
 TEST(SmallStackWide, TheControlwordIsWrittenInTheWidthThatTheProfileHasAndTheDriveTakes) {
-  CanRig rig({CanType::leadshine});
+  CanRig rig({Subject::leadshine});
   rig.line().faults(0).sdo.set_rate(SdoFault::wide, 1);
   ASSERT_TRUE(rig.stage.come_online());
   rig.mark();
@@ -131,7 +131,7 @@ TEST(SmallStackWide, TheControlwordIsWrittenInTheWidthThatTheProfileHasAndTheDri
 }
 
 TEST(SmallStackUnsized, TheMailboxAndFortyThreeThirteenTellTheProfilesWidth) {
-  CanRig rig({CanType::leadshine});
+  CanRig rig({Subject::leadshine});
   rig.line().faults(0).sdo.set_rate(SdoFault::unsized, 1);
   ASSERT_TRUE(rig.stage.come_online());
   const auto read = [&](std::uint16_t index, std::uint8_t sub, std::uint8_t size) {
@@ -151,7 +151,7 @@ TEST(SmallStackUnsized, TheMailboxAndFortyThreeThirteenTellTheProfilesWidth) {
 }
 
 TEST(SmallStackOther, AnswersOfAnotherObjectAreToldByBothAndNeverTaken) {
-  CanRig rig({CanType::leadshine});
+  CanRig rig({Subject::leadshine});
   rig.online();
   rig.line().faults(0).sdo.set_rate(SdoFault::other_object, 1, kVoltageObject);
   rig.stage.run(10s);
@@ -159,9 +159,9 @@ TEST(SmallStackOther, AnswersOfAnotherObjectAreToldByBothAndNeverTaken) {
 }
 
 TEST(SmallStackBus, ADriveWithAnotherNumberThanTheConfigurationsIsNamed) {
-  GatewayStage::Line line = can_line_of({options_of(CanType::leadshine, 1)}, 1);
+  GatewayStage::Line line = can_line_of({options_of(Subject::leadshine, 1)}, 1);
   CanRig rig(std::move(line));
-  static_cast<void>(rig.line().add(options_of(CanType::leadshine, 5)));
+  static_cast<void>(rig.line().add(options_of(Subject::leadshine, 5)));
   rig.online();
   rig.line().restart(1, rig.stage.can_link(0).time_of(rig.stage.runtime().now()));
   rig.stage.run(5s);

@@ -3,8 +3,7 @@
 // wants a command each second gets it as long as its owner lives, and no longer.
 #include <gmock/gmock.h>
 
-#include "tests/stage_drive/drive_table_rig.hpp"
-#include "tests/unit/drive/clients.hpp"
+#include "tests/stage_drive/owned_rig.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -13,48 +12,14 @@ using namespace std::chrono_literals;
 
 constexpr Duration kLease = 2000ms, kWatchdog = simulated::KeyaDrive::watchdog_time;
 
-/// One drive and its owner.
-struct OwnedDrive {
-  OwnedDrive(Subject subject, LeaseAction on_expiry)
-      : rig(subject, LeaseRules{.timeout = kLease, .on_expiry = on_expiry}) {
-    rig.online();
-  }
-
-  Errc ask(WriteBatch batch) {
-    owner->last_request = rig.stage.runtime().now();
-    batch.client = owner->id;
-    batch.role = owner->role;
-    batch.life = owner;
-    batch.claims = true;
-    return rig.ask(batch).outcome.code;
-  }
-  Errc command(Command command) { return ask(with_command(command)); }
-  /// The owner goes on asking for so long.
-  void keep(Duration time) {
-    for (Duration done{}; done < time; done += 100ms) {
-      owner->last_request = rig.stage.runtime().now();
-      rig.stage.run(100ms);
-    }
-  }
-  void set_moving() {
-    ASSERT_EQ(command(Command::enable), Errc::ok);
-    ASSERT_EQ(ask(rig.motion()), Errc::ok);
-    keep(3s);
-    ASSERT_TRUE(rig.turns()) << "as long as its owner lives";
-    owner->last_request = rig.stage.runtime().now();
-  }
-  bool latched() { return rig.axis().has(AxisInput::stop_latched); }
-
-  TableRig rig;
-  std::shared_ptr<ClientLife> owner = client(1, "10.0.0.1");
-};
+LeaseRules lease(LeaseAction on_expiry) { return {.timeout = kLease, .on_expiry = on_expiry}; }
 
 class OwnerDies : public testing::TestWithParam<std::tuple<Subject, LeaseAction>> {};
 
 TEST_P(OwnerDies, TheMotorIsStoppedAndLatchedUntilAFreshEnable) {
   const auto& [subject, action] = GetParam();
-  OwnedDrive drive(subject, action);
-  drive.set_moving();
+  OwnedRig drive(subject, lease(action));
+  drive.set_moving(3s);
   drive.rig.stage.run(kLease - 10ms);
   EXPECT_TRUE(drive.rig.turns()) << "not before its lease has run out";
   ASSERT_TRUE(drive.rig.stage.run_until([&] { return !drive.rig.turns(); }, 15s));
@@ -66,15 +31,15 @@ TEST_P(OwnerDies, TheMotorIsStoppedAndLatchedUntilAFreshEnable) {
                                                   : action == LeaseAction::halt && !has_command_watchdog(subject);
   EXPECT_EQ(drive.rig.powered(), stays);
   EXPECT_EQ(drive.ask(drive.rig.motion()), Errc::state_unsuitable);
-  drive.keep(1s);
+  drive.run(1s);
   EXPECT_FALSE(drive.rig.turns()) << "its owner's return alone starts nothing";
   EXPECT_EQ(drive.command(Command::enable), Errc::ok);
   EXPECT_FALSE(drive.latched());
   EXPECT_TRUE(drive.rig.powered());
-  drive.keep(500ms);
+  drive.run(500ms);
   EXPECT_FALSE(drive.rig.turns()) << "velocity and start are needed anew";
   EXPECT_EQ(drive.ask(drive.rig.motion()), Errc::ok);
-  drive.keep(500ms);
+  drive.run(500ms);
   EXPECT_TRUE(drive.rig.turns());
   EXPECT_FALSE(drive.rig.neighbour_powered());
 }
@@ -91,9 +56,9 @@ class KeepAliveOnAKeya : public testing::TestWithParam<Subject> {
 };
 
 TEST_P(KeepAliveOnAKeya, NeverTripsWhileTheOwnerLivesAndTheMotorIsOffSoonAfterItsDeath) {
-  OwnedDrive drive(GetParam(), LeaseAction::none);
-  drive.set_moving();
-  drive.keep(10s);
+  OwnedRig drive(GetParam(), lease(LeaseAction::none));
+  drive.set_moving(3s);
+  drive.run(10s);
   EXPECT_TRUE(drive.rig.turns());
   EXPECT_TRUE(drive.rig.powered());
   EXPECT_EQ(drive.rig.trips(), 0U);
@@ -108,22 +73,17 @@ TEST_P(KeepAliveOnAKeya, NeverTripsWhileTheOwnerLivesAndTheMotorIsOffSoonAfterIt
 }
 
 TEST_P(KeepAliveOnAKeya, ADisabledMotorIsToldNothing) {
-  OwnedDrive drive(GetParam(), LeaseAction::quick_stop);
+  OwnedRig drive(GetParam(), lease(LeaseAction::quick_stop));
   ASSERT_EQ(drive.command(Command::enable), Errc::ok);
-  drive.keep(2s);
+  drive.run(2s);
   ASSERT_EQ(drive.command(Command::disable), Errc::ok);
   const std::uint64_t controls = drive.rig.stage.keya(0).controls();
-  drive.keep(3s);
+  drive.run(3s);
   EXPECT_EQ(drive.rig.stage.keya(0).controls(), controls);
   EXPECT_FALSE(drive.rig.powered());
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, KeepAliveOnAKeya,
-                         testing::Values(Subject::keya_can_speed, Subject::keya_rs232_speed, Subject::keya_rs485_speed,
-                                         Subject::keya_canopen_speed, Subject::keya_can_position,
-                                         Subject::keya_rs232_position, Subject::keya_rs485_position,
-                                         Subject::keya_canopen_position),
-                         [](const auto& case_of) { return name(case_of.param); });
+INSTANTIATE_TEST_SUITE_P(Table, KeepAliveOnAKeya, testing::ValuesIn(subjects(is_keya)), named);
 
 }  // namespace
 }  // namespace axisgate::test

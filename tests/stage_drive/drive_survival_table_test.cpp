@@ -3,7 +3,7 @@
 // motion for good, and an enable after them is an enable and nothing else.
 #include <gmock/gmock.h>
 
-#include "tests/stage_drive/drive_table_rig.hpp"
+#include "tests/stage_drive/drive_rig.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -49,13 +49,15 @@ class MotionEnded : public testing::TestWithParam<std::tuple<Subject, Ended>> {
         break;
       case Ended::by_halt:
         EXPECT_EQ(code(Command::halt), Errc::ok);
+        ASSERT_TRUE(rests());
+        EXPECT_EQ(code(Command::end_halt), Errc::ok);
         break;
     }
   }
   bool rests() {
     return rig.stage.run_until([&] { return !rig.turns(); }, 15s);
   }
-  TableRig rig;
+  DriveRig rig;
 };
 
 TEST_P(MotionEnded, DoesNotComeBackWithTheNextEnable) {

@@ -199,18 +199,5 @@ TEST(Alarms, TellOfEachThingThatWasFound) {
   EXPECT_EQ(md.axis().alarms & bit(AxisAlarm::stop_options), 0U) << "judged anew";
 }
 
-TEST(Faults, AreShownWithTheirCodeAndTold) {
-  Rig rig(KincoType::jd);
-  rig.bring_to(running);
-  rig.motor().inject_fault(1, 0x0020);
-  ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().has(AxisInput::fault); }));
-  rig.stage.run(150ms);
-  EXPECT_EQ(rig.axis()[Quantity::error_code].value, 0x3210);
-  EXPECT_EQ(rig.axis()[Quantity::vendor_error].value, 0x0020);
-  EXPECT_EQ(rig.axis().axis_state, AxisState::error_stop);
-  EXPECT_EQ(rig.axis().motion_state, MotionState::failed);
-  EXPECT_TRUE(rig.has_event(EventKind::fault, ""));
-}
-
 }  // namespace
 }  // namespace axisgate::test

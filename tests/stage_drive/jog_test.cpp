@@ -36,20 +36,6 @@ struct JoggedAxis : LeasedAxis {
   std::int64_t speed() { return rig.axis()[Quantity::velocity_actual].value; }
 };
 
-TEST(JogOnAnAxis, RunsWhileTheButtonIsHeldAndEndsWhenItIsLetGo) {
-  JoggedAxis axis;
-  EXPECT_EQ(axis.command(axis.plc, Command::jog_reverse), Errc::ok);
-  axis.hold(Command::jog_reverse, 2s);
-  EXPECT_NEAR(static_cast<double>(axis.speed()), -60'000, 2'000);
-  EXPECT_EQ(axis.rig.axis().level_coils >> 8 & 3U, 2U);
-  EXPECT_EQ(axis.ask(axis.plc, with_command(Command::jog_end), false), Errc::ok);
-  axis.keep(axis.plc, 2s);
-  EXPECT_FALSE(axis.rig.turns());
-  EXPECT_TRUE(axis.enabled());
-  EXPECT_FALSE(axis.latched());
-  EXPECT_EQ(axis.rig.axis().level_coils >> 8 & 3U, 0U);
-}
-
 TEST(JogOnAnAxis, EndsWhenTheReleaseIsLostThoughItsOwnerLives) {
   JoggedAxis axis;
   EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
@@ -79,15 +65,6 @@ TEST(JogOnAnAxis, AStopIsCarriedOutWhateverJogVelocityStandsBesideIt) {
   stop.jog_velocity = 5'000;
   EXPECT_EQ(axis.ask(axis.panel, stop), Errc::not_owner);
   EXPECT_EQ(axis.rig.axis().jog_velocity, 60'000U) << "what is refused is not kept";
-}
-
-TEST(JogOnAnAxis, AnotherClientsStopEndsItForGood) {
-  JoggedAxis axis;
-  EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);
-  axis.hold(Command::jog_forward, 1s);
-  EXPECT_EQ(axis.command(axis.panel, Command::halt), Errc::ok);
-  axis.hold(Command::jog_forward, 2s);
-  EXPECT_FALSE(axis.rig.turns());
 }
 
 // From 600 rpm it takes 30 turns to stop.

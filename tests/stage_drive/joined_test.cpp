@@ -3,7 +3,7 @@
 // On every drive and protocol.
 #include <gmock/gmock.h>
 
-#include "tests/stage_drive/drive_table_rig.hpp"
+#include "tests/stage_drive/drive_rig.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -49,32 +49,18 @@ class Joined : public testing::TestWithParam<Subject> {
   [[nodiscard]] static Errc code(const Answer& answer) { return (*answer)->outcome.code; }
 
   void reply_slowly() { reply_after(rig, kSlowReply); }
-  static void reply_after(TableRig& of, Duration delay) {
-    GatewayStage& stage = of.stage;
-    const auto kind = GetParam();
-    if (kind <= Subject::md_rtu) {
-      stage.rtu_link(0).line().set_reply_delay(delay);
-    } else if (is_keya(kind) && has_serial()) {
-      stage.keya_link(0).line().set_reply_delay(delay);
-    } else {
-      stage.can_link(0).line().set_reply_delay(delay);
-    }
+  static void reply_after(DriveRig& of, Duration delay) {
+    of.stage.at_link(0, [delay](auto& link) { link.line().set_reply_delay(delay); });
   }
   /// A request has just gone out, and its answer is far away.
   void wire_is_taken() { wire_is_taken(rig); }
-  static void wire_is_taken(TableRig& of) {
+  static void wire_is_taken(DriveRig& of) {
     const auto sent = [&] { return of.stage.gateway().bus(0).statistics().requests; };
     const auto before = sent();
     ASSERT_TRUE(of.stage.run_until([&] { return sent() > before; }));
   }
 
-  TableRig rig{GetParam()};
-
- private:
-  [[nodiscard]] static bool has_serial() {
-    return GetParam() == Subject::keya_rs232_speed || GetParam() == Subject::keya_rs485_speed ||
-           GetParam() == Subject::keya_rs232_position || GetParam() == Subject::keya_rs485_position;
-  }
+  DriveRig rig{GetParam()};
 };
 
 TEST_P(Joined, ReadsOfTwoWidthsEachGetTheAnswerToTheirOwn) {
@@ -148,8 +134,8 @@ TEST_P(Joined, AReadThatNobodyWaitsForAnyMoreIsNotSent) {
 
 TEST_P(Joined, AStopIsAnsweredToEachByItsOwnDeadlineAndCarriedOutAllTheSame) {
   for (const bool hasty_first : {true, false}) {
-    TableRig moving(GetParam());
-    moving.bring_to(positions_alone(GetParam()) ? Situation::moving : Situation::running);
+    DriveRig moving(GetParam());
+    moving.bring_to(Situation::running, 700ms);
     reply_after(moving, kSlowReply);
     wire_is_taken(moving);
     const auto until = [&](Duration time) { return moving.stage.runtime().now() + time; };
@@ -172,7 +158,7 @@ TEST_P(Joined, AStopIsAnsweredToEachByItsOwnDeadlineAndCarriedOutAllTheSame) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Drives, Joined, testing::ValuesIn(kSubjects), [](const auto& i) { return name(i.param); });
+INSTANTIATE_TEST_SUITE_P(Drives, Joined, testing::ValuesIn(kSubjects), named);
 
 }  // namespace
 }  // namespace axisgate::test

@@ -34,19 +34,6 @@ bool KeyaCommands::value_goes_before_torque(const KeyaRig& rig, std::int64_t val
   return false;
 }
 
-TEST_P(KeyaCommands, ADisabledMotorIsNoFaultAndOnlyAnEnableTurnsItOn) {
-  KeyaRig rig(in_mode(3));
-  rig.online();
-  EXPECT_EQ(rig.axis(0)[Quantity::statusword].value, 0x40);
-  EXPECT_FALSE(rig.axis(0).has(AxisInput::fault));
-  rig.run(1s);
-  EXPECT_EQ(rig.motor(0).enables + rig.motor(1).enables, 0);
-  rig.enable(0);
-  EXPECT_EQ(rig.axis(0)[Quantity::statusword].value & 0x6F, 0x27);
-  EXPECT_FALSE(rig.motor(1).enabled);
-  EXPECT_FALSE(rig.enabled(1));
-}
-
 TEST_P(KeyaCommands, BeforeTorqueTheSpeedIsZeroWhateverWasLeftInTheDrive) {
   KeyaRig rig(in_mode(3));
   rig.online();
@@ -66,20 +53,6 @@ TEST_P(KeyaCommands, BeforeTorqueThePositionIsWhereTheMotorStands) {
   EXPECT_TRUE(value_goes_before_torque(rig, 123'456, GetParam() == Speech::single ? kPositionValue : kValue));
   rig.run(100ms);
   EXPECT_EQ(rig.motor(0).position, 123'456);
-}
-
-TEST_P(KeyaCommands, ATargetWrittenWhileDisabledIsKeptAndNotSent) {
-  KeyaRig rig(in_mode(3));
-  rig.online();
-  rig.mark();
-  EXPECT_EQ(KeyaRig::code(rig.write(0, Quantity::target_velocity, kRpm150)), Errc::ok);
-  EXPECT_THAT(rig.writes(), IsEmpty());
-  rig.enable(0);
-  EXPECT_EQ(KeyaRig::code(rig.write(0, Quantity::target_velocity, kRpm150)), Errc::ok);
-  rig.run(200ms);
-  EXPECT_THAT(rig.motor(0).moves, Each(0)) << "nor when it is enabled: nothing was started";
-  ASSERT_EQ(KeyaRig::code(rig.command(0, Command::run_velocity)), Errc::ok);
-  EXPECT_EQ(rig.motor(0).value, kRaw150) << "with the start";
 }
 
 TEST_P(KeyaCommands, AStartWritesItsSetPointOnce) {
@@ -113,100 +86,6 @@ TEST_P(KeyaCommands, WhileItRunsANewSpeedActsAtOnceAndTheSameIsNotSentAgain) {
   kept.mark();
   for (int i = 0; i < 10; ++i) EXPECT_EQ(KeyaRig::code(kept.write(0, Quantity::target_velocity, kRpm150)), Errc::ok);
   EXPECT_THAT(kept.writes(), IsEmpty()) << "a scanner writes the same block for ever";
-}
-
-TEST_P(KeyaCommands, AMoveRunsToItsTargetAndATargetAloneMovesNothing) {
-  KeyaRig rig(in_mode(1));
-  rig.online();
-  rig.enable(0);
-  ASSERT_EQ(KeyaRig::code(rig.write(0, Quantity::target_position, 90'000)), Errc::ok);
-  rig.run(200ms);
-  EXPECT_EQ(rig.motor(0).position, 0);
-  ASSERT_EQ(KeyaRig::code(rig.command(0, Command::move_absolute)), Errc::ok);
-  ASSERT_TRUE(rig.run_until([&] { return rig.axis(0).motion_state == MotionState::completed; }));
-  EXPECT_EQ(rig.motor(0).position, 90'000);
-}
-
-TEST_P(KeyaCommands, AMoveUnderWayIsNotCalledFailedBeforeItEnds) {
-  KeyaRig rig(in_mode(1));
-  rig.online();
-  rig.enable(0);
-  ASSERT_EQ(
-      KeyaRig::code(rig.ask(0, KeyaRig::batch_of(Command::move_absolute, {{Quantity::target_position, 1'500'000}}))),
-      Errc::ok);
-  ASSERT_TRUE(rig.run_until([&] {
-    EXPECT_NE(rig.axis(0).motion_state, MotionState::failed);
-    return rig.axis(0).motion_state != MotionState::active;
-  }));
-  EXPECT_EQ(rig.motor(0).position, 1'500'000);
-}
-
-TEST_P(KeyaCommands, HaltMakesTheSpeedZeroAndStaysEnabled) {
-  KeyaRig rig(in_mode(3));
-  rig.online();
-  rig.enable(0);
-  rig.run_at(0, kRpm150);
-  ASSERT_EQ(KeyaRig::code(rig.command(0, Command::halt)), Errc::ok);
-  EXPECT_EQ(rig.motor(0).value, 0);
-  EXPECT_TRUE(rig.motor(0).enabled);
-  ASSERT_EQ(KeyaRig::code(rig.command(0, Command::end_halt)), Errc::ok);
-  rig.run(500ms);
-  EXPECT_EQ(rig.motor(0).value, 0) << "nothing resumes";
-  ASSERT_EQ(KeyaRig::code(rig.command(0, Command::run_velocity)), Errc::ok);
-  EXPECT_EQ(rig.motor(0).value, 0) << "after a stop the speed is needed anew";
-}
-
-TEST_P(KeyaCommands, QuickStopLatchesAndEndsWithoutTorque) {
-  KeyaRig rig(in_mode(3));
-  rig.online();
-  rig.enable(0);
-  rig.run_at(0, kRpm150);
-  ASSERT_EQ(KeyaRig::code(rig.command(0, Command::quick_stop)), Errc::ok);
-  EXPECT_FALSE(rig.motor(0).enabled);
-  EXPECT_EQ(rig.motor(0).value, 0);
-  EXPECT_TRUE(rig.axis(0).has(AxisInput::stop_latched));
-  EXPECT_EQ(KeyaRig::code(rig.command(0, Command::run_velocity)), Errc::state_unsuitable);
-  rig.enable(0);
-  EXPECT_FALSE(rig.axis(0).has(AxisInput::stop_latched));
-  EXPECT_EQ(rig.motor(0).value, 0);
-}
-
-TEST_P(KeyaCommands, TheStepsOfTheControlwordShowAndOnlyTheLastTurnsItOn) {
-  KeyaRig rig(in_mode(3));
-  rig.online();
-  EXPECT_EQ(KeyaRig::code(rig.word(0, 15)), Errc::ok);
-  EXPECT_EQ(rig.axis(0)[Quantity::statusword].value, 0x40) << "as a servo: not without the steps before it";
-  rig.run(100ms);
-  EXPECT_EQ(rig.motor(0).enables, 0);
-  EXPECT_EQ(KeyaRig::code(rig.word(0, 6)), Errc::ok);
-  rig.run(100ms);
-  EXPECT_EQ(rig.axis(0)[Quantity::statusword].value, 0x21);
-  EXPECT_EQ(KeyaRig::code(rig.word(0, 7)), Errc::ok);
-  rig.run(100ms);
-  EXPECT_EQ(rig.axis(0)[Quantity::statusword].value, 0x23);
-  EXPECT_EQ(rig.motor(0).enables, 0);
-  rig.motor(0).value = 5'000;
-  EXPECT_EQ(KeyaRig::code(rig.word(0, 15)), Errc::ok);
-  EXPECT_EQ(rig.axis(0)[Quantity::statusword].value & 0x6F, 0x27);
-  EXPECT_EQ(rig.motor(0).value, 0) << "what was left in the drive does not run";
-  EXPECT_EQ(KeyaRig::code(rig.word(0, 6)), Errc::ok);
-  EXPECT_FALSE(rig.motor(0).enabled);
-}
-
-TEST_P(KeyaCommands, ARawEnableRunsAtWhatWasAskedForSinceTheLastStopAndFollowsItThen) {
-  KeyaRig rig(in_mode(3));
-  rig.online();
-  rig.word(0, 6);
-  ASSERT_EQ(KeyaRig::code(rig.write(0, Quantity::target_velocity, kRpm150)), Errc::ok);
-  ASSERT_EQ(KeyaRig::code(rig.word(0, 15)), Errc::ok);
-  EXPECT_THAT(rig.motor(0).moves, testing::Contains(kRaw150));
-  EXPECT_EQ(rig.motor(0).value, kRaw150);
-  ASSERT_EQ(KeyaRig::code(rig.write(0, Quantity::target_velocity, 2 * kRpm150)), Errc::ok);
-  EXPECT_EQ(rig.motor(0).value, 2 * kRaw150);
-  ASSERT_EQ(KeyaRig::code(rig.command(0, Command::quick_stop)), Errc::ok);
-  rig.word(0, 6);
-  ASSERT_EQ(KeyaRig::code(rig.word(0, 15)), Errc::ok);
-  EXPECT_EQ(rig.motor(0).value, 0);
 }
 
 TEST_P(KeyaCommands, InTorqueModeARawEnableGivesTheTorqueThatWasAskedFor) {
@@ -271,24 +150,6 @@ TEST_P(KeyaCommands, ASetPointForAMotorThatHasJustTrippedIsNotCalledDone) {
   EXPECT_EQ(result.outcome.detail, kDetailDeviceState);
   EXPECT_GE(rig.reads_of(kFaultQuery), 1U) << "the state decides";
   EXPECT_TRUE(rig.axis(0).has(AxisInput::fault));
-}
-
-TEST_P(KeyaCommands, AMotorWhoseWatchdogHasExpiredIsDisabledAndAFreshEnableRunsNothing) {
-  KeyaRig rig({.speech = GetParam()});
-  rig.wire->watchdog = 1s;
-  rig.online();
-  rig.enable(0);
-  rig.run_at(0, kRpm150);
-  rig.run(1500ms);
-  EXPECT_FALSE(rig.motor(0).enabled);
-  EXPECT_FALSE(rig.enabled(0));
-  EXPECT_EQ(rig.axis(0).motion_state, MotionState::failed);
-  EXPECT_FALSE(rig.axis(0).has(AxisInput::fault)) << "an enable is all that it needs";
-  const int before = rig.motor(0).enables;
-  rig.run(2s);
-  EXPECT_EQ(rig.motor(0).enables, before) << "and nobody but a client gives it";
-  rig.enable(0);
-  EXPECT_EQ(rig.motor(0).value, 0);
 }
 
 TEST_P(KeyaCommands, TwoClientsMoveBothMotorsAtOnceAndNeitherDisturbsTheOther) {

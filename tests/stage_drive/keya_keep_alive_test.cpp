@@ -39,28 +39,6 @@ TEST_P(KeyaKeepAlive, ARunningMotorGoesOnAtItsSpeedAsLongAsNobodyStopsIt) {
   EXPECT_EQ(rig.motor(1).enables, 0);
 }
 
-TEST_P(KeyaKeepAlive, AMotorThatStandsEnabledIsKeptSoWithZero) {
-  KeyaRig rig(options());
-  rig.online();
-  rig.enable(0);
-  rig.run(5s);
-  EXPECT_TRUE(rig.motor(0).enabled);
-  EXPECT_THAT(rig.motor(0).moves, Each(0));
-}
-
-TEST_P(KeyaKeepAlive, ADisabledDriveIsSentNothing) {
-  KeyaRig rig(options());
-  rig.online();
-  rig.mark();
-  rig.run(3s);
-  EXPECT_THAT(rig.writes(), IsEmpty());
-  rig.enable(0);
-  ASSERT_EQ(KeyaRig::code(rig.command(0, Command::disable)), Errc::ok);
-  rig.mark();
-  rig.run(3s);
-  EXPECT_THAT(rig.writes(), IsEmpty());
-}
-
 // Its run has ended for good (3.4): a speed that is repeated would start it again.
 TEST_P(KeyaKeepAlive, AMotorThatAnotherMasterEnablesIsNotGivenTheSpeedOfBefore) {
   for (const Duration apart : {20ms, 200ms, 3000ms}) {
@@ -140,33 +118,6 @@ TEST_P(KeyaKeepAlive, NoResultAndNoOtherTraceOfItIsShownToClients) {
   rig.mark();
   EXPECT_EQ(KeyaRig::code(rig.write(0, Quantity::target_velocity, kRpm150)), Errc::ok);
   EXPECT_THAT(rig.since_mark(), IsEmpty()) << "what the drive holds is answered without the wire";
-}
-
-TEST_P(KeyaKeepAlive, ItEndsWithTheLeaseAndTheDriveStopsByItself) {
-  KeyaOptions leased = options();
-  leased.lease = {.on = true, .timeout = 2s, .on_expiry = LeaseAction::none, .renew = LeaseRenewal::write};
-  KeyaRig rig(leased);
-  rig.online();
-  const auto panel = client(5, "panel");
-  const auto with_life = [&](WriteBatch batch) {
-    batch.client = 5;
-    batch.life = panel;
-    batch.claims = true;
-    return batch;
-  };
-  ASSERT_EQ(KeyaRig::code(rig.ask(0, with_life(KeyaRig::batch_of(Command::enable)))), Errc::ok);
-  ASSERT_EQ(KeyaRig::code(rig.ask(
-                0, with_life(KeyaRig::batch_of(Command::run_velocity, {{Quantity::target_velocity, kRpm150}})))),
-            Errc::ok);
-  const Instant last_word = rig.runtime.now();
-  rig.run(1900ms);
-  EXPECT_TRUE(rig.motor(0).enabled);
-  rig.run(3s);
-  EXPECT_FALSE(rig.motor(0).enabled);
-  EXPECT_LE(rig.motor(0).commanded, last_word + 2s);
-  rig.mark();
-  rig.run(3s);
-  EXPECT_THAT(rig.writes(), IsEmpty());
 }
 
 TEST_P(KeyaKeepAlive, AMotorThatHasTrippedIsSentNothingMore) {

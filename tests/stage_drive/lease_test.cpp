@@ -10,48 +10,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Lease, AMotorWhoseMasterFallsSilentIsStoppedAndLatched) {
-  LeasedAxis axis;
-  axis.run(axis.plc);
-  axis.keep(axis.plc, 5s);
-  EXPECT_TRUE(axis.rig.turns()) << "as long as its owner asks for anything";
-  axis.rig.stage.run(4s);
-  EXPECT_FALSE(axis.rig.turns());
-  EXPECT_TRUE(axis.latched());
-  EXPECT_FALSE(axis.rig.axis().lease.owner);
-  EXPECT_TRUE(axis.event("the lease of 10.0.0.1 has run out: quick stop"));
-}
-
-TEST(Lease, TheStopGoesOutAtTheEndOfTheLeaseAndNotBefore) {
-  LeasedAxis axis;
-  axis.run(axis.plc);
-  axis.plc->last_request = axis.rig.stage.runtime().now();
-  axis.rig.mark();
-  axis.rig.stage.run(1999ms);
-  EXPECT_TRUE(axis.rig.writes().empty());
-  axis.rig.stage.run(50ms);
-  EXPECT_FALSE(axis.rig.writes_of(kControlword).empty());
-}
-
-TEST(Lease, HaltOnExpiryLatchesAsWellAndStaysEnabled) {
-  LeasedAxis axis(leased(LeaseAction::halt));
-  axis.run(axis.plc);
-  axis.rig.stage.run(8s);
-  EXPECT_FALSE(axis.rig.turns());
-  EXPECT_TRUE(axis.enabled());
-  EXPECT_TRUE(axis.latched());
-  EXPECT_EQ(axis.ask(axis.plc, with_command(Command::run_velocity, {{Quantity::target_velocity, 100'000}})),
-            Errc::state_unsuitable);
-}
-
-TEST(Lease, DisableOnExpiryTakesTheTorque) {
-  LeasedAxis axis(leased(LeaseAction::disable));
-  axis.run(axis.plc);
-  axis.rig.stage.run(8s);
-  EXPECT_FALSE(axis.rig.motor_enabled());
-  EXPECT_TRUE(axis.latched());
-}
-
 TEST(Lease, NothingOnExpiryLeavesTheMotorRunningAndSaysSo) {
   LeasedAxis axis(leased(LeaseAction::none));
   axis.run(axis.plc);
@@ -59,17 +17,6 @@ TEST(Lease, NothingOnExpiryLeavesTheMotorRunningAndSaysSo) {
   EXPECT_TRUE(axis.rig.turns());
   EXPECT_TRUE(axis.event("nothing is done"));
   EXPECT_FALSE(axis.rig.axis().lease.owner);
-}
-
-TEST(Lease, ADisabledAxisOnlyLosesItsOwner) {
-  LeasedAxis axis;
-  EXPECT_EQ(axis.ask(axis.plc, setpoints({{Quantity::profile_velocity, 500'000}})), Errc::ok);
-  EXPECT_TRUE(axis.rig.axis().lease.owned_by(1));
-  axis.rig.mark();
-  axis.rig.stage.run(3s);
-  EXPECT_FALSE(axis.rig.axis().lease.owner);
-  EXPECT_FALSE(axis.latched());
-  EXPECT_TRUE(axis.rig.writes().empty());
 }
 
 TEST(Lease, AnEnableThatIsUnderWayWhenItRunsOutIsStopped) {
@@ -117,33 +64,6 @@ TEST(Lease, AStopOfAnotherClientIsCarriedOutAndWhatStandsBesideItRefused) {
   EXPECT_TRUE(axis.rig.axis().lease.owned_by(1));
 }
 
-TEST(Lease, APlcThatComesBackAfterItsConnectionEndedGoesOnWithoutAStop) {
-  LeasedAxis axis;
-  axis.run(axis.plc);
-  axis.plc->connected = false;
-  axis.rig.stage.gateway().client_gone(1);
-  axis.rig.stage.run(1500ms);
-  const auto back = client(9, "10.0.0.1");
-  EXPECT_EQ(axis.ask(axis.panel, setpoints({{Quantity::target_velocity, 5'000}})), Errc::not_owner);
-  EXPECT_EQ(axis.ask(back, setpoints({{Quantity::target_velocity, 120'000}})), Errc::ok);
-  axis.keep(back, 3s);
-  EXPECT_TRUE(axis.rig.turns());
-  EXPECT_FALSE(axis.latched());
-  EXPECT_TRUE(axis.event("its connection had ended"));
-}
-
-TEST(Lease, APlcThatComesBackTooLateFindsTheMotorStoppedAndMustEnableAnew) {
-  LeasedAxis axis;
-  axis.run(axis.plc);
-  axis.plc->connected = false;
-  axis.rig.stage.run(5s);
-  const auto back = client(9, "10.0.0.1");
-  EXPECT_EQ(axis.ask(back, setpoints({{Quantity::target_velocity, 120'000}})), Errc::ok) << "kept, not sent";
-  axis.keep(back, 1s);
-  EXPECT_FALSE(axis.rig.turns());
-  EXPECT_EQ(axis.command(back, Command::run_velocity), Errc::state_unsuitable);
-}
-
 TEST(Lease, APlcInStopWhoseScannerGoesOnIsDeadWhereHeartbeatsRenew) {
   LeasedAxis axis(leased(LeaseAction::quick_stop, LeaseRenewal::heartbeat));
   WriteBatch beat;
@@ -171,32 +91,6 @@ TEST(Lease, AReleasedRunningAxisIsStoppedUnlessSomebodyTakesIt) {
   EXPECT_TRUE(axis.rig.turns());
   axis.rig.stage.run(4s);
   EXPECT_FALSE(axis.rig.turns());
-}
-
-TEST(Lease, ReleaseHandsARunningAxisOverWithoutAStop) {
-  LeasedAxis axis;
-  axis.run(axis.plc);
-  EXPECT_EQ(axis.command(axis.panel, Command::release), Errc::not_owner);
-  EXPECT_EQ(axis.command(axis.plc, Command::release), Errc::ok);
-  EXPECT_EQ(axis.ask(axis.panel, setpoints({{Quantity::target_velocity, 50'000}})), Errc::ok);
-  axis.keep(axis.panel, 4s);
-  EXPECT_TRUE(axis.rig.turns());
-  EXPECT_EQ(axis.command(axis.plc, Command::enable), Errc::not_owner);
-}
-
-TEST(Lease, TakeOverFromALowerRankHaltsFirst) {
-  LeasedAxis axis;
-  axis.run(axis.plc);
-  EXPECT_EQ(axis.command(axis.panel, Command::take_over), Errc::not_owner) << "equal ranks";
-  EXPECT_TRUE(axis.rig.turns());
-  axis.panel->rank = 3;
-  EXPECT_EQ(axis.command(axis.panel, Command::take_over), Errc::ok);
-  EXPECT_TRUE(axis.rig.axis().lease.owned_by(2));
-  axis.keep(axis.panel, 2s);
-  EXPECT_FALSE(axis.rig.turns());
-  EXPECT_FALSE(axis.latched()) << "a halt, no quick stop";
-  EXPECT_EQ(axis.ask(axis.plc, setpoints({{Quantity::target_velocity, 5'000}})), Errc::not_owner);
-  EXPECT_TRUE(axis.event("taken the axis over"));
 }
 
 TEST(Lease, AnAxisFoundEnabledIsStoppedUnlessAClientWritesToIt) {

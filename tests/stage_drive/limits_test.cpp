@@ -378,16 +378,5 @@ TEST(SetPosition, ThatFailedHalfWayDoesNotSpoilTheNextHoming) {
   EXPECT_EQ(rig.object(0x607C), offset);
 }
 
-TEST(RunTorque, NeedsAMaxVelocityThatTheDriveHolds) {
-  Rig rig(KincoType::jd);
-  rig.bring_to(enabled);
-  ASSERT_EQ(rig.ask(with_command(Command::run_torque, {{Quantity::target_torque, 100}})).outcome.code, Errc::ok);
-  EXPECT_TRUE(rig.turns());
-  ASSERT_EQ(rig.write(Quantity::target_torque, 0).outcome.code, Errc::ok);
-  EXPECT_EQ(rig.object(0x60F6, 8), 0) << "acts at once while it runs";
-  ASSERT_EQ(rig.command(Command::halt).outcome.code, Errc::ok);
-  EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched)) << "no halt in torque mode";
-}
-
 }  // namespace
 }  // namespace axisgate::test

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "tests/stage/stage_lines.hpp"
-#include "tests/stage_drive/drive_table_rig.hpp"
+#include "tests/stage_drive/drive_rig.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -24,11 +24,7 @@ constexpr std::array kEach{Subject::id286pro,         Subject::jd_rtu,          
 
 bool asks_by_code(Subject s) { return s == Subject::keya_rs232_speed || s == Subject::keya_rs485_speed; }
 
-simulated::DriveFaults& faults(TableRig& rig) {
-  return *rig.stage.at_link(0, [](auto& link) { return &link.line().faults(0); });
-}
-
-const drive::DriveModel& model(TableRig& rig) { return rig.stage.gateway().drive_of(1)->model(); }
+const drive::DriveModel& model(DriveRig& rig) { return rig.stage.gateway().drive_of(1)->model(); }
 
 Place place_of(Subject subject, const bus::ObjectAddress& address) {
   if (asks_by_code(subject)) return {static_cast<std::uint16_t>(address.index & 0xFF), 0};
@@ -44,7 +40,7 @@ struct Readable {
 
 /// What the profile has of this drive, and on CANopen what the gateway reads beside it; each place once.
 std::vector<Readable> readable(Subject subject) {
-  TableRig rig(subject);
+  DriveRig rig(subject);
   std::vector<Readable> out;
   const drive::DriveModel& drive = model(rig);
   const auto add = [&](const std::string& object, Place place, bool tells_state, bool unsolicited) {
@@ -73,9 +69,9 @@ std::vector<Readable> readable(Subject subject) {
   return out;
 }
 
-bool online(TableRig& rig) { return rig.axis().link_state == LinkState::online; }
+bool online(DriveRig& rig) { return rig.axis().link_state == LinkState::online; }
 
-std::size_t lines_with(TableRig& rig, const std::string& part) {
+std::size_t lines_with(DriveRig& rig, const std::string& part) {
   const auto& log = rig.stage.log();
   return static_cast<std::size_t>(
       std::count_if(log.begin(), log.end(), [&](const std::string& line) { return line.find(part) != line.npos; }));
@@ -86,8 +82,8 @@ class MuteObject : public testing::TestWithParam<Subject> {};
 TEST_P(MuteObject, FromTheStartCostsItselfAloneOrIsNamed) {
   for (const Readable& object : readable(GetParam())) {
     SCOPED_TRACE(object.name);
-    TableRig rig(GetParam());
-    faults(rig).spoil(object.place, {});
+    DriveRig rig(GetParam());
+    rig.faults().spoil(object.place, {});
     const bool came = rig.stage.run_until([&] { return online(rig); }, 30s);
     if (!object.tells_state) {
       ASSERT_TRUE(came) << "one object keeps the whole axis away";
@@ -102,7 +98,7 @@ TEST_P(MuteObject, FromTheStartCostsItselfAloneOrIsNamed) {
     EXPECT_THAT(lines_with(rig, "was not answered three times in a row"), AllOf(Ge(1U), Le(2U)))
         << testing::PrintToString(rig.stage.log());
     EXPECT_TRUE(rig.axis().alarms & bit(AxisAlarm::profile_mismatch));
-    faults(rig).mend(object.place);
+    rig.faults().mend(object.place);
     EXPECT_TRUE(rig.stage.run_until([&] { return online(rig); }, 10s)) << "asked each 2 s, then brought up";
     EXPECT_FALSE(rig.axis().alarms & bit(AxisAlarm::profile_mismatch));
   }
@@ -111,12 +107,12 @@ TEST_P(MuteObject, FromTheStartCostsItselfAloneOrIsNamed) {
 TEST_P(MuteObject, WhileOnlineCostsItselfAlone) {
   for (const Readable& object : readable(GetParam())) {
     SCOPED_TRACE(object.name);
-    TableRig rig(GetParam());
+    DriveRig rig(GetParam());
     rig.online();
     rig.stage.run(2s);
     const std::uint32_t supported = rig.axis().supported;
     const std::uint32_t valid = rig.axis().valid_bits();
-    faults(rig).spoil(object.place, {});
+    rig.faults().spoil(object.place, {});
     rig.stage.run(60s);
     const bool by_itself = object.unsolicited || drive::is_canopen(model(rig));
     if (object.tells_state && !by_itself) {
@@ -130,7 +126,7 @@ TEST_P(MuteObject, WhileOnlineCostsItselfAlone) {
     EXPECT_LE(timeouts, object.tells_state ? 60U : 3U) << "asked ever more seldom";
     EXPECT_TRUE(object.tells_state || online(rig));
     EXPECT_EQ(rig.axis().supported & rig.axis().valid_bits() & ~valid, 0U);
-    faults(rig).mend(object.place);
+    rig.faults().mend(object.place);
     EXPECT_TRUE(rig.stage.run_until(
         [&] { return online(rig) && rig.axis().supported == supported && (valid & ~rig.axis().valid_bits()) == 0; },
         62s));
@@ -142,7 +138,7 @@ TEST_P(MuteObject, ThatAMotionNeedsStopsTheMotor) {
   for (const Readable& object : readable(GetParam())) {
     const bool position = object.name == "position_actual" || object.name == "A.position";
     if ((!object.tells_state && !position) || object.unsolicited) continue;
-    TableRig rig(GetParam());
+    DriveRig rig(GetParam());
     if (drive::is_canopen(model(rig))) continue;  // both come by TPDO, whoever reads them or not
     SCOPED_TRACE(object.name);
     rig.online();
@@ -150,18 +146,17 @@ TEST_P(MuteObject, ThatAMotionNeedsStopsTheMotor) {
     ASSERT_EQ(rig.ask(rig.motion()).outcome.code, Errc::ok);
     rig.stage.run(1s);
     ASSERT_TRUE(rig.turns());
-    faults(rig).spoil(object.place, {});
+    rig.faults().spoil(object.place, {});
     EXPECT_TRUE(rig.stage.run_until([&] { return !rig.turns(); }, 15s)) << "it turns on, and nobody sees it";
     EXPECT_GE(lines_with(rig, "is told no more, and the motion needs it"), 1U);
-    faults(rig).mend(object.place);
+    rig.faults().mend(object.place);
     EXPECT_TRUE(rig.stage.run_until([&] { return online(rig); }, 62s));
     rig.stage.run(2s);
     EXPECT_FALSE(rig.turns()) << "nothing resumes";
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(EachDrive, MuteObject, testing::ValuesIn(kEach),
-                         [](const auto& of) { return name(of.param); });
+INSTANTIATE_TEST_SUITE_P(EachDrive, MuteObject, testing::ValuesIn(kEach), named);
 
 // A drive that has just started, or is busy, refuses what it has.
 using Refused = std::tuple<Subject, std::uint32_t>;
@@ -171,13 +166,13 @@ TEST_P(RefusedForNow, IsBackWithoutARestart) {
   const auto [subject, code] = GetParam();
   for (const Readable& object : readable(subject)) {
     SCOPED_TRACE(object.name);
-    TableRig whole(subject);
+    DriveRig whole(subject);
     whole.online();
     whole.stage.run(2s);
-    TableRig rig(subject);
-    faults(rig).spoil(object.place, {.refused_with = code});
+    DriveRig rig(subject);
+    rig.faults().spoil(object.place, {.refused_with = code});
     rig.stage.run(4s);
-    faults(rig).mend(object.place);
+    rig.faults().mend(object.place);
     const auto as_it_should_be = [&] {
       return online(rig) && rig.axis().supported == whole.axis().supported &&
              (whole.axis().valid_bits() & ~rig.axis().valid_bits()) == 0;
@@ -204,11 +199,11 @@ TEST(RefusedSetup, IsWrittenWhenTheDriveTakesIt) {
   for (const auto& [subject, place] :
        {std::pair{Subject::leadshine, Place{0x1016, 1}}, {Subject::jd_can, Place{0x1017, 0}}}) {
     SCOPED_TRACE(name(subject));
-    TableRig rig(subject);
-    faults(rig).spoil(place, {.refused_with = 0x08000022, .writes_too = true});
+    DriveRig rig(subject);
+    rig.faults().spoil(place, {.refused_with = 0x08000022, .writes_too = true});
     ASSERT_TRUE(rig.stage.run_until([&] { return online(rig); }, 20s));
     rig.stage.run(5s);
-    faults(rig).mend(place);
+    rig.faults().mend(place);
     const auto held = [&] {
       const auto bytes = rig.stage.can_node(0).peek({place.first, place.second}, {});
       return bytes && simulated::little_endian(*bytes) != 0;
@@ -223,11 +218,11 @@ TEST(RefusedSetup, IsWrittenWhenTheDriveTakesIt) {
 
 TEST(RefusedSetup, IsNotWrittenOverWhatAClientHasWrittenSince) {
   constexpr std::int64_t kRamp = 12'345;
-  TableRig rig(Subject::leadshine);
+  DriveRig rig(Subject::leadshine);
   const Place deceleration{0x6084, 0};
-  faults(rig).spoil(deceleration, {.refused_with = 0x08000022, .writes_too = true, .reads = false});
+  rig.faults().spoil(deceleration, {.refused_with = 0x08000022, .writes_too = true, .reads = false});
   ASSERT_TRUE(rig.stage.run_until([&] { return online(rig); }, 20s));
-  faults(rig).mend(deceleration);
+  rig.faults().mend(deceleration);
   ASSERT_EQ(rig.stage.write(1, Quantity::profile_deceleration, kRamp).outcome.code, Errc::ok);
   rig.stage.run(62s);
   EXPECT_EQ(rig.axis()[Quantity::profile_deceleration].value, kRamp);
@@ -237,13 +232,13 @@ TEST(RefusedSetup, IsNotWrittenOverWhatAClientHasWrittenSince) {
 TEST(RefusedAtItsStart, ByADriveThatStillStartsIsNotForEver) {
   for (const Subject subject : {Subject::id286pro, Subject::jd_rtu, Subject::leadshine, Subject::jd_serial}) {
     SCOPED_TRACE(name(subject));
-    TableRig rig(subject);
+    DriveRig rig(subject);
     const bool by_code = subject == Subject::id286pro || subject == Subject::jd_rtu;
     const std::uint32_t not_there = by_code ? 2 : 0x06020000;
     const std::vector<Readable> all = readable(subject);
-    for (const Readable& object : all) faults(rig).spoil(object.place, {.refused_with = not_there});
+    for (const Readable& object : all) rig.faults().spoil(object.place, {.refused_with = not_there});
     rig.stage.run(3s);
-    for (const Readable& object : all) faults(rig).mend(object.place);
+    for (const Readable& object : all) rig.faults().mend(object.place);
     EXPECT_TRUE(rig.stage.run_until([&] { return online(rig); }, 10s));
     rig.stage.run(1s);
     EXPECT_NE(rig.axis().supported & bit(Quantity::position_actual), 0U);

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/stage_drive/gap_rig.hpp"
+#include "tests/stage_drive/owned_rig.hpp"
 
 namespace axisgate::test {
 namespace {
@@ -19,7 +19,7 @@ class StopInAGap : public testing::TestWithParam<std::tuple<Subject, Cut, Durati
 
 TEST_P(StopInAGap, StopsTheMotorAfterIt) {
   const auto& [subject, cut, gap, stop] = GetParam();
-  GapRig axis(subject);
+  OwnedRig axis(subject);
   axis.set_moving();
   axis.cut(cut);
   axis.run(20ms);
@@ -43,7 +43,7 @@ TEST_P(StopInAGap, StopsTheMotorAfterIt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, StopInAGap,
-                         testing::Combine(testing::ValuesIn(all_subjects()), testing::ValuesIn(kCuts),
+                         testing::Combine(testing::ValuesIn(kSubjects), testing::ValuesIn(kCuts),
                                           testing::Values(300ms, 950ms, 3s, 30s),
                                           testing::Values(Command::quick_stop, Command::halt, Command::disable)),
                          [](const auto& case_of) {
@@ -58,7 +58,7 @@ class Returning : public testing::TestWithParam<std::tuple<Subject, Cut>> {
     const LinkState link = axis.rig.axis().link_state;
     return link != LinkState::offline && link != LinkState::link_down;
   }
-  GapRig axis{std::get<Subject>(GetParam())};
+  OwnedRig axis{std::get<Subject>(GetParam())};
 };
 
 TEST_P(Returning, OwedAStopItTakesNothingElseUntilItWasSeenToStop) {
@@ -95,8 +95,7 @@ TEST_P(Returning, ADriveThatHasRestartedStaysWithoutTorqueAndLatched) {
   axis.expect_usable();
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, Returning,
-                         testing::Combine(testing::ValuesIn(all_subjects()), testing::ValuesIn(kCuts)),
+INSTANTIATE_TEST_SUITE_P(Table, Returning, testing::Combine(testing::ValuesIn(kSubjects), testing::ValuesIn(kCuts)),
                          [](const auto& case_of) {
                            return name(std::get<0>(case_of.param)) + "_" + name(std::get<1>(case_of.param));
                          });
@@ -114,7 +113,7 @@ class LeaseInAGap : public testing::TestWithParam<std::tuple<Subject, Cut, Lease
 };
 
 TEST_P(LeaseInAGap, ItsEndStopsTheMotorAfterTheGap) {
-  GapRig axis(subject(), lease(500ms));
+  OwnedRig axis(subject(), lease(500ms));
   axis.set_moving();
   axis.cut(cut());
   axis.run(kGap, false);
@@ -127,7 +126,7 @@ TEST_P(LeaseInAGap, ItsEndStopsTheMotorAfterTheGap) {
 }
 
 TEST_P(LeaseInAGap, WhileItRunsOnTheMotorGoesOnAndIsShownAsAdopted) {
-  GapRig axis(subject(), lease(2s));
+  OwnedRig axis(subject(), lease(2s));
   axis.set_moving();
   axis.cut(cut());
   const Duration gap = axis.short_gap(cut());
@@ -145,7 +144,7 @@ TEST_P(LeaseInAGap, WhileItRunsOnTheMotorGoesOnAndIsShownAsAdopted) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, LeaseInAGap,
-                         testing::Combine(testing::ValuesIn(all_subjects()), testing::ValuesIn(kCuts),
+                         testing::Combine(testing::ValuesIn(kSubjects), testing::ValuesIn(kCuts),
                                           testing::Values(LeaseAction::quick_stop, LeaseAction::halt)),
                          [](const auto& case_of) {
                            return name(std::get<0>(case_of.param)) + "_" + name(std::get<1>(case_of.param)) + "_" +
@@ -185,7 +184,7 @@ class JogInAGap : public testing::TestWithParam<std::tuple<Subject, Cut, bool>> 
     ASSERT_TRUE(axis.rig.stage.come_online());
     EXPECT_TRUE(axis.stays_at_rest());
   }
-  GapRig axis;
+  OwnedRig axis;
 };
 
 TEST_P(JogInAGap, APanelThatFellSilentHasLetGo) {
@@ -230,7 +229,7 @@ TEST_P(JogInAGap, AButtonHeldAllTheTimeAndAPanelThatFallsSilentAfterItStopTheMot
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, JogInAGap,
-                         testing::Combine(testing::ValuesIn(jogging_subjects()), testing::ValuesIn(kCuts),
+                         testing::Combine(testing::ValuesIn(subjects(has_speeds)), testing::ValuesIn(kCuts),
                                           testing::Bool()),
                          [](const auto& case_of) {
                            return name(std::get<0>(case_of.param)) + "_" + name(std::get<1>(case_of.param)) +

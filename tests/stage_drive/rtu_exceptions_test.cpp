@@ -19,9 +19,9 @@ bool for_ever(int code) { return code <= 2; }
 
 bool supports_position(RtuRig& rig) { return (rig.axis().supported & bit(Quantity::position_actual)) != 0; }
 
-class RtuException : public testing::TestWithParam<std::tuple<RtuKind, int>> {
+class RtuException : public testing::TestWithParam<std::tuple<Subject, int>> {
  protected:
-  RtuKind kind() const { return std::get<0>(GetParam()); }
+  Subject kind() const { return std::get<0>(GetParam()); }
   int code() const { return std::get<1>(GetParam()); }
   /// Every read that covers this register is refused with the code while `on`.
   void refuse_reads(RtuRig& rig, std::uint16_t number) const {
@@ -93,13 +93,13 @@ TEST_P(RtuException, OnAWriteIsTheAnswerWithItsCodeAndNothingIsTakenAsWritten) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EachCode, RtuException,
-                         testing::Combine(testing::ValuesIn(kRtuKinds), testing::Range(1, kLastCode + 1)),
+                         testing::Combine(testing::ValuesIn(kOnRtu), testing::Range(1, kLastCode + 1)),
                          [](const auto& of) {
                            return name(std::get<0>(of.param)) + "Code" + std::to_string(std::get<1>(of.param));
                          });
 
 TEST(RtuErrorFunction, OfAKincosReadIsUnderstoodAsPrintedAndAsTheStandardHasIt) {
-  for (const RtuKind kind : {RtuKind::jd, RtuKind::md}) {
+  for (const Subject kind : {Subject::jd_rtu, Subject::md_rtu}) {
     for (const std::uint8_t function : {std::uint8_t{0x81}, std::uint8_t{0x83}}) {
       RtuRig rig(kind, {.kinco = {.read_error_function = function}, .neighbours = false});
       rig.come_up_running();

@@ -64,7 +64,7 @@ bool comes_back(RtuRig& rig) {
   return rig.run_until([&] { return rig.online() && rig.axis()[Quantity::position_actual].valid; }, 45s);
 }
 
-using Case = std::tuple<RtuKind, Late, int>;
+using Case = std::tuple<Subject, Late, int>;
 
 std::string case_name(const testing::TestParamInfo<Case>& of) {
   const auto [kind, late, by] = of.param;
@@ -90,14 +90,14 @@ const auto kAllPatterns = testing::Values(Late::one, Late::three_in_a_row, Late:
                                           Late::of_the_position, Late::of_the_state);
 
 INSTANTIATE_TEST_SUITE_P(WithinWorstReply, RtuLateReply,
-                         testing::Combine(testing::ValuesIn(kRtuKinds), kAllPatterns,
+                         testing::Combine(testing::ValuesIn(kOnRtu), kAllPatterns,
                                           testing::Values(210, 260, 300, 400, 500)),
                          case_name);
 
 // Beyond the profile's worst_reply of 500 ms: a single late reply is met by the resynchronisation read, which is
 // answered in order, or by the silence, which counts from the last resynchronisation read given up.
 INSTANTIATE_TEST_SUITE_P(ASingleOneBeyond, RtuLateReply,
-                         testing::Combine(testing::ValuesIn(kRtuKinds), testing::Values(Late::one),
+                         testing::Combine(testing::ValuesIn(kOnRtu), testing::Values(Late::one),
                                           testing::Values(700, 900)),
                          case_name);
 
@@ -116,7 +116,7 @@ TEST_P(RtuLateReplySaidTwice, ShowsNoWrongValueAndComesBack) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, RtuLateReplySaidTwice,
-                         testing::Combine(testing::ValuesIn(kRtuKinds), kAllPatterns,
+                         testing::Combine(testing::ValuesIn(kOnRtu), kAllPatterns,
                                           testing::Values(210, 300, 500, 700, 900, 1000, 1100, 1300, 1500, 1750, 2000,
                                                           2550, 3500)),
                          case_name);
@@ -135,7 +135,7 @@ TEST_P(RtuVeryLateReply, ShowsNoWrongValueHoweverLongOneWasOwed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Beyond, RtuVeryLateReply,
-                         testing::Combine(testing::ValuesIn(kRtuKinds), kAllPatterns,
+                         testing::Combine(testing::ValuesIn(kOnRtu), kAllPatterns,
                                           testing::Values(700, 900, 1000, 1100, 1300, 1750, 2550)),
                          case_name);
 

@@ -16,7 +16,7 @@ bool position_valid(RtuRig& rig, AxisNumber axis) {
   return rig.online(axis) && rig.axis(axis)[Quantity::position_actual].valid;
 }
 
-class RtuLineFault : public testing::TestWithParam<std::tuple<RtuKind, DriveFault>> {};
+class RtuLineFault : public testing::TestWithParam<std::tuple<Subject, DriveFault>> {};
 
 TEST_P(RtuLineFault, ShowsNoWrongValueAndComesBack) {
   const auto [kind, fault] = GetParam();
@@ -45,14 +45,14 @@ std::string fault_name(DriveFault fault) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, RtuLineFault,
-    testing::Combine(testing::ValuesIn(kRtuKinds),
+    testing::Combine(testing::ValuesIn(kOnRtu),
                      testing::Values(DriveFault::lose, DriveFault::unresponsive, DriveFault::noise_before,
                                      DriveFault::noise_after, DriveFault::corrupt, DriveFault::split,
                                      DriveFault::wrong_station, DriveFault::half, DriveFault::wrong_length,
                                      DriveFault::glued, DriveFault::duplicate, DriveFault::restart)),
     [](const auto& of) { return name(std::get<0>(of.param)) + "_" + fault_name(std::get<1>(of.param)); });
 
-class RtuNeighbours : public testing::TestWithParam<RtuKind> {};
+class RtuNeighbours : public testing::TestWithParam<Subject> {};
 
 TEST_P(RtuNeighbours, OfAnUnresponsiveDriveKeepTheirCycleAfterTheFirstMinute) {
   RtuRig rig(GetParam());
@@ -85,8 +85,7 @@ TEST_P(RtuNeighbours, OfABabblingDriveNeverShowAWrongValueAndComeBack) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, RtuNeighbours, testing::ValuesIn(kRtuKinds),
-                         [](const auto& of) { return name(of.param); });
+INSTANTIATE_TEST_SUITE_P(Each, RtuNeighbours, testing::ValuesIn(kOnRtu), named);
 
 }  // namespace
 }  // namespace axisgate::test

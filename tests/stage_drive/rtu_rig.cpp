@@ -11,19 +11,19 @@ using namespace std::chrono_literals;
 
 constexpr std::uint8_t kUnderTest = 1;
 
-simulated::RtuDriveOptions drive_of(RtuKind kind, std::uint8_t unit, const RtuRigOptions& options) {
-  if (kind == RtuKind::stepper) return simulated::Id286proOptions{.unit = unit};
+simulated::RtuDriveOptions drive_of(Subject kind, std::uint8_t unit, const RtuRigOptions& options) {
+  if (kind == Subject::id286pro) return simulated::Id286proOptions{.unit = unit};
   simulated::KincoRtuDrive kinco;
-  kinco.drive.type = kind == RtuKind::jd ? KincoType::jd : KincoType::md;
+  kinco.drive.type = is_md(kind) ? simulated::KincoType::md : simulated::KincoType::jd;
   kinco.drive.station = unit;
   kinco.rtu = options.kinco;
   return kinco;
 }
 
-std::vector<GatewayStage::Line> lines(RtuKind kind, const RtuRigOptions& options) {
+std::vector<GatewayStage::Line> lines(Subject kind, const RtuRigOptions& options) {
   std::vector<simulated::RtuDriveOptions> drives{drive_of(kind, kUnderTest, options)};
   std::uint8_t unit = kUnderTest;
-  for (const RtuKind other : kRtuKinds)
+  for (const Subject other : kOnRtu)
     if (options.neighbours && other != kind) drives.push_back(drive_of(other, ++unit, {}));
   GatewayStage::Line line = rtu_line_of(std::move(drives), 1);
   line.rtu_options.baud = 38400;
@@ -34,11 +34,7 @@ std::vector<GatewayStage::Line> lines(RtuKind kind, const RtuRigOptions& options
 
 }  // namespace
 
-std::string name(RtuKind kind) {
-  return kind == RtuKind::jd ? "KincoJd" : kind == RtuKind::md ? "KincoMd" : "Id286pro";
-}
-
-RtuRig::RtuRig(RtuKind kind, const RtuRigOptions& options)
+RtuRig::RtuRig(Subject kind, const RtuRigOptions& options)
     : stage(lines(kind, options)), kind_(kind), neighbours_stay_(options.neighbours_stay) {
   RtuLinkSim& link = stage.rtu_link(0);
   for (std::size_t i = 0; i < link.line().size(); ++i)
@@ -61,7 +57,7 @@ RtuRig::RtuRig(RtuKind kind, const RtuRigOptions& options)
 bool RtuRig::is_stop(const RtuRequest& request) const {
   constexpr std::uint16_t kSteppersControl = 323, kServosControlword = 0x3100;
   const std::uint16_t value = request.values.front();
-  if (kind_ == RtuKind::stepper) return request.start == kSteppersControl && (value == 6 || value == 7);
+  if (kind_ == Subject::id286pro) return request.start == kSteppersControl && (value == 6 || value == 7);
   constexpr std::uint16_t kHalt = 0x100, kNoQuickStop = 0x2, kEnableVoltage = 0x4;
   const bool stops = (value & kNoQuickStop) == 0 || (value & kEnableVoltage) == 0 || (value & kHalt) != 0;
   return request.start == kServosControlword && (stops || (value & 0xF) == 6 || (value & 0xF) == 7);
@@ -110,7 +106,7 @@ bool RtuRig::run_until(const std::function<bool()>& done, Duration limit) {
 void RtuRig::ask_something() {
   static_cast<void>(stage.begin(1, setpoints({{Quantity::profile_velocity, next_value_ += 600}})));
   WriteBatch look;
-  look.object = ObjectRequest{false, static_cast<std::uint16_t>(kind_ == RtuKind::stepper ? 101 : 0x3200), 0, 2, 0};
+  look.object = ObjectRequest{false, static_cast<std::uint16_t>(kind_ == Subject::id286pro ? 101 : 0x3200), 0, 2, 0};
   static_cast<void>(stage.begin(1, look));
 }
 

@@ -6,14 +6,12 @@
 
 #include <map>
 
-#include "tests/stage_drive/rig.hpp"
+#include "tests/stage_drive/drive_rig.hpp"
 #include "tests/stage_drive/rtu_truth.hpp"
 
 namespace axisgate::test {
 
-enum class RtuKind : std::uint8_t { jd, md, stepper };
-inline constexpr std::array kRtuKinds{RtuKind::jd, RtuKind::md, RtuKind::stepper};
-[[nodiscard]] std::string name(RtuKind kind);
+inline constexpr std::array kOnRtu{Subject::jd_rtu, Subject::md_rtu, Subject::id286pro};
 
 struct RtuRigOptions {
   simulated::KincoRtuOptions kinco{};
@@ -27,13 +25,13 @@ class RtuRig {
   /// A step is the time between two looks; nothing goes faster than an exchange of a dozen bytes.
   static constexpr Duration kStep = std::chrono::milliseconds(2);
 
-  explicit RtuRig(RtuKind kind, const RtuRigOptions& options = {});
+  explicit RtuRig(Subject kind, const RtuRigOptions& options = {});
   RtuRig(const RtuRig&) = delete;
   RtuRig& operator=(const RtuRig&) = delete;
 
   GatewayStage stage;
 
-  [[nodiscard]] RtuKind kind() const { return kind_; }
+  [[nodiscard]] Subject kind() const { return kind_; }
   [[nodiscard]] const AxisImage& axis(AxisNumber number = 1) { return stage.axis(number); }
   [[nodiscard]] simulated::DriveFaults& faults(std::size_t position = 0) {
     return stage.rtu_link(0).line().faults(position);
@@ -58,15 +56,15 @@ class RtuRig {
   [[nodiscard]] std::uint64_t looked_at() const { return truths_.front()->looked_at(); }
 
   /// Registers of the drive under test: its position, and what tells its state.
-  [[nodiscard]] std::uint16_t position_register() const { return kind_ == RtuKind::stepper ? 117 : 0x3700; }
-  [[nodiscard]] std::uint16_t state_register() const { return kind_ == RtuKind::stepper ? 108 : 0x3200; }
+  [[nodiscard]] std::uint16_t position_register() const { return kind_ == Subject::id286pro ? 117 : 0x3700; }
+  [[nodiscard]] std::uint16_t state_register() const { return kind_ == Subject::id286pro ? 108 : 0x3200; }
 
  private:
   void watch();
   void wrong(const std::string& what);
   [[nodiscard]] bool is_stop(const RtuRequest& request) const;
 
-  RtuKind kind_;
+  Subject kind_;
   bool neighbours_stay_;
   std::vector<std::unique_ptr<RtuTruth>> truths_;
   std::vector<std::string> wrongs_;

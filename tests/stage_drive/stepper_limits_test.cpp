@@ -100,6 +100,8 @@ TEST(Stepper, TheMailboxReachesAnyRegister) {
 TEST(Stepper, TheDrivesOwnCommandsByTheMailboxKnowTheGateAndTheLatch) {
   StepperRig rig;
   rig.online();
+  EXPECT_EQ(rig.code(rig.mailbox_write(kControlRegister, 2, 1)), Errc::state_unsuitable);
+  EXPECT_TRUE(rig.motor().starts().empty());
   rig.enable();
   ASSERT_EQ(rig.code(rig.write(Quantity::target_position, 20'000)), Errc::ok);
   ASSERT_EQ(rig.code(rig.mailbox_write(kControlRegister, 2, 1)), Errc::ok);
@@ -166,9 +168,9 @@ TEST(Eeprom, AnHourWithACableThatFailsEachMinuteStillWritesNothingAnew) {
   rig.online();
   static_cast<void>(rig.ask(block(19)));
   for (int minute = 0; minute < 60; ++minute) {
-    rig.cut();
+    rig.unplug();
     rig.stage.run(2s);
-    rig.plug();
+    rig.mend();
     rig.online();
     for (int i = 0; i < 20; ++i) {
       static_cast<void>(rig.stage.begin(1, block(19)));
@@ -220,9 +222,9 @@ TEST(Runs, ADriveThatRefusesThemIsReadInSmallerPartsForGood) {
   rig.stage.run(2s);
   EXPECT_EQ(rig.reads_of(117, 3), 0U) << "not tried again";
   EXPECT_GT(rig.reads_of(117, 2), 3U);
-  rig.cut();
+  rig.unplug();
   rig.stage.run(1s);
-  rig.plug();
+  rig.mend();
   rig.mark();
   rig.online();
   EXPECT_EQ(rig.reads_of(117, 3), 0U) << "nor after the line's return";

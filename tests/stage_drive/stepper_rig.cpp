@@ -8,15 +8,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::vector<GatewayStage::Line> lines(const StepperOptions& options) {
-  GatewayStage::Line line = rtu_line_of({options.drive}, 1);
-  const drive::ResolveAxis standard = line.rtu_drives.front().axis;
-  line.rtu_drives.front().axis = options.axis;
-  line.rtu_drives.front().axis.number = standard.number;
-  line.rtu_drives.front().axis.name = standard.name;
-  line.rtu_options.journal_capacity = 100'000;
-  std::vector<GatewayStage::Line> out;
-  out.push_back(std::move(line));
+GatewayStage::Line line(const StepperOptions& options) {
+  GatewayStage::Line out = rtu_line_of({options.drive}, 1);
+  drive::ResolveAxis& axis = out.rtu_drives.front().axis;
+  const drive::ResolveAxis standard = std::exchange(axis, options.axis);
+  axis.number = standard.number;
+  axis.name = standard.name;
+  out.rtu_options.journal_capacity = 100'000;
   return out;
 }
 
@@ -28,15 +26,7 @@ BatchResult object(GatewayStage& stage, bool write, std::uint16_t address, std::
 
 }  // namespace
 
-StepperRig::StepperRig(StepperOptions options) : stage(lines(options)) {}
-
-simulated::Id286pro& StepperRig::motor() { return stage.id286pro(0); }
-
-simulated::DriveFaults& StepperRig::faults() { return stage.rtu_link(0).line().faults(0); }
-
-void StepperRig::online() { expect(stage.come_online(), "the axis never came online"); }
-
-void StepperRig::enable() { expect(code(command(Command::enable)) == Errc::ok, "not enabled"); }
+StepperRig::StepperRig(const StepperOptions& options) : DriveRig(Subject::id286pro, line(options)) {}
 
 void StepperRig::run_at(std::int64_t velocity) {
   const BatchResult result = ask(with_command(Command::run_velocity, {{Quantity::target_velocity, velocity}}));
@@ -71,30 +61,18 @@ bool StepperRig::stands() {
       5s);
 }
 
-void StepperRig::cut() { stage.rtu_link(0).unplug(); }
-
-void StepperRig::plug() { stage.rtu_link(0).plug(); }
-
-void StepperRig::mark() { marked_ = stage.rtu_link(0).sent.size(); }
-
 std::size_t StepperRig::writes() {
   const auto& sent = stage.rtu_link(0).sent;
-  return static_cast<std::size_t>(std::count_if(sent.begin() + static_cast<std::ptrdiff_t>(marked_), sent.end(),
+  return static_cast<std::size_t>(std::count_if(sent.begin() + static_cast<std::ptrdiff_t>(marked()), sent.end(),
                                                 [](const RtuLinkSim::Sent& s) { return s.bytes.at(1) != 3; }));
 }
 
 std::size_t StepperRig::reads_of(std::uint16_t address, std::uint16_t registers) {
   const auto& sent = stage.rtu_link(0).sent;
   return static_cast<std::size_t>(
-      std::count_if(sent.begin() + static_cast<std::ptrdiff_t>(marked_), sent.end(), [&](const RtuLinkSim::Sent& s) {
+      std::count_if(sent.begin() + static_cast<std::ptrdiff_t>(marked()), sent.end(), [&](const RtuLinkSim::Sent& s) {
         return s.bytes.at(1) == 3 && load_be16(s.bytes, 2) == address && load_be16(s.bytes, 4) == registers;
       }));
-}
-
-bool StepperRig::has_event(EventKind kind, const std::string& part) {
-  const auto& ring = stage.gateway().events().events();
-  return std::any_of(ring.begin(), ring.end(),
-                     [&](const Event& e) { return e.kind == kind && e.text.find(part) != std::string::npos; });
 }
 
 }  // namespace axisgate::test

@@ -148,33 +148,6 @@ TEST(Stepper, TakesTheControlwordsOfAServo) {
   EXPECT_EQ(rig.motor().position(), 39'000);
 }
 
-TEST(Stepper, Bit8HaltsAndItsFallStartsNothing) {
-  StepperRig rig;
-  rig.online();
-  rig.enable();
-  ASSERT_EQ(rig.code(rig.move_to(1'000'000)), Errc::ok);
-  rig.stage.run(300ms);
-  ASSERT_EQ(rig.code(rig.write(Quantity::controlword, 0x010F)), Errc::ok);
-  ASSERT_TRUE(rig.stands());
-  const std::int32_t place = rig.motor().position();
-  ASSERT_EQ(rig.code(rig.write(Quantity::controlword, 0x000F)), Errc::ok);
-  rig.stage.run(1s);
-  EXPECT_EQ(rig.motor().position(), place);
-}
-
-TEST(Stepper, AControlwordThatStopsStopsTheMotor) {
-  for (const std::int64_t word : {0x00, 0x02, 0x06, 0x07}) {
-    StepperRig rig;
-    rig.online();
-    rig.enable();
-    rig.run_at(300'000);
-    ASSERT_EQ(rig.code(rig.write(Quantity::controlword, word)), Errc::ok) << word;
-    EXPECT_TRUE(rig.stands()) << word;
-    EXPECT_FALSE(rig.axis().has(AxisInput::enabled));
-    EXPECT_EQ(rig.axis().has(AxisInput::stop_latched), word == 0x02);
-  }
-}
-
 TEST(Stepper, ARawModeWriteHaltsWhatRunsInTheModeBefore) {
   StepperRig rig;
   rig.online();
@@ -183,20 +156,6 @@ TEST(Stepper, ARawModeWriteHaltsWhatRunsInTheModeBefore) {
   ASSERT_EQ(rig.code(rig.write(Quantity::mode, 1)), Errc::ok);
   EXPECT_TRUE(reads(rig.axis(), Quantity::mode_display, 1));
   EXPECT_TRUE(rig.stands());
-}
-
-TEST(Stepper, RawVelocityModeFollowsItsTargetOnceEnabled) {
-  StepperRig rig;
-  rig.online();
-  ASSERT_EQ(rig.code(rig.write(Quantity::mode, 3)), Errc::ok);
-  ASSERT_EQ(rig.code(rig.write(Quantity::controlword, 0x06)), Errc::ok);
-  ASSERT_EQ(rig.code(rig.write(Quantity::controlword, 0x0F)), Errc::ok);
-  rig.stage.run(500ms);
-  EXPECT_TRUE(rig.motor().starts().empty());
-  ASSERT_EQ(rig.code(rig.write(Quantity::target_velocity, 120'000)), Errc::ok);
-  rig.stage.run(1s);
-  EXPECT_NEAR(static_cast<double>(rig.axis()[Quantity::velocity_actual].value), 120'000, 2'000);
-  EXPECT_EQ(rig.code(rig.write(Quantity::mode, 4)), Errc::bad_value) << "it has no torque mode";
 }
 
 }  // namespace

@@ -278,46 +278,6 @@ TEST(Stops, AHaltOfASuspectDriveThatCouldHaveRestartedIsAQuickStop) {
   EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched));
 }
 
-TEST(Stops, NothingResumesWhenAHaltEnds) {
-  for (const Situation from : {moving, running, homing}) {
-    Rig rig(KincoType::md);
-    rig.bring_to(from);
-    ASSERT_EQ(rig.command(Command::halt).outcome.code, Errc::ok);
-    ASSERT_TRUE(rig.stage.run_until([&] { return !rig.turns(); }));
-    EXPECT_EQ(rig.axis().motion_state, MotionState::aborted);
-    EXPECT_NE(rig.axis().level_coils & (1U << 3), 0);
-    EXPECT_EQ(rig.command(Command::end_halt).outcome.code, Errc::ok);
-    EXPECT_EQ(rig.object(kControlword) & 0x0100, 0);
-    EXPECT_TRUE(rig.motor_enabled());
-    EXPECT_FALSE(rig.turns()) << name(from);
-    EXPECT_EQ(rig.axis().level_coils & (1U << 3), 0);
-  }
-}
-
-TEST(Latch, IsSetEvenWhereNothingCanBeSent) {
-  for (const Situation from : {offline, link_down}) {
-    Rig rig(KincoType::jd);
-    rig.bring_to(from);
-    EXPECT_EQ(rig.command(Command::quick_stop).outcome.code, Errc::offline);
-    EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched));
-    EXPECT_NE(rig.axis().alarms & bit(AxisAlarm::stop_latched), 0U);
-  }
-}
-
-TEST(Latch, IsLeftByAnEnableOrByTheTwoRawSteps) {
-  Rig rig(KincoType::jd);
-  rig.bring_to(latched);
-  EXPECT_EQ(rig.ask(with_controlword(0x000F)).outcome.code, Errc::state_unsuitable);
-  EXPECT_EQ(rig.ask(with_controlword(0x0080)).outcome.code, Errc::ok) << "a stop passes";
-  EXPECT_EQ(rig.ask(with_controlword(0x000F)).outcome.code, Errc::state_unsuitable);
-  EXPECT_EQ(rig.ask(with_controlword(0x0006)).outcome.code, Errc::ok);
-  EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched));
-  EXPECT_EQ(rig.ask(with_controlword(0x000F)).outcome.code, Errc::ok);
-  EXPECT_FALSE(rig.axis().has(AxisInput::stop_latched));
-  EXPECT_TRUE(rig.stage.run_until([&] { return rig.motor_enabled(); }));
-  EXPECT_FALSE(rig.turns());
-}
-
 TEST(Latch, KeepsSetpointsUnsentAndParametersNot) {
   Rig rig(KincoType::jd);
   rig.bring_to(latched);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A drive of any kind whose wire is cut and mended while its motor runs: for tables of what is owed afterwards.
-// Promises that a cut is either silent (frames are lost, nobody is told) or reported (the adapter is pulled). Never
-// decides what is right: the tables do.
+// A drive of any kind, its owner, and a wire that is cut and mended while its motor runs. Promises that a cut is either
+// silent (frames are lost, nobody is told) or reported (the adapter is pulled). Never decides what is right: the tables
+// do.
 #pragma once
 
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "tests/stage_drive/drive_table_rig.hpp"
+#include "tests/stage_drive/drive_rig.hpp"
 #include "tests/unit/drive/clients.hpp"
 
 namespace axisgate::test {
@@ -17,28 +16,23 @@ enum class Cut : std::uint8_t { silent, reported };
 inline constexpr std::array kCuts{Cut::silent, Cut::reported};
 [[nodiscard]] std::string name(Cut cut);
 
-/// Every drive on every protocol.
-[[nodiscard]] std::vector<Subject> all_subjects();
-/// Those that can be jogged: they run at a velocity.
-[[nodiscard]] std::vector<Subject> jogging_subjects();
-
-class GapRig {
+class OwnedRig {
  public:
-  explicit GapRig(Subject subject, std::optional<LeaseRules> lease = {});
-  GapRig(const GapRig&) = delete;
-  GapRig& operator=(const GapRig&) = delete;
+  explicit OwnedRig(Subject subject, std::optional<LeaseRules> lease = {});
+  OwnedRig(const OwnedRig&) = delete;
+  OwnedRig& operator=(const OwnedRig&) = delete;
   /// Prints the gateway's log where the test has failed.
-  ~GapRig();
+  ~OwnedRig();
 
-  TableRig rig;
+  DriveRig rig;
   std::shared_ptr<ClientLife> owner = client(1, "10.0.0.1");
 
   /// Its owner gives signs of life each 50 ms, if `lives`.
   void run(Duration time, bool lives = true);
   [[nodiscard]] Errc ask(WriteBatch batch);
   [[nodiscard]] Errc command(Command command) { return ask(with_command(command)); }
-  /// Enabled, and its motor turns.
-  void set_moving();
+  /// Enabled, and its motor turns for so long.
+  void set_moving(Duration time = std::chrono::seconds(1));
   void cut(Cut cut);
   void mend() { rig.mend(); }
   /// A gap that no drive answers with a stop of its own: those on CANopen want a heartbeat or a guarding frame each
@@ -53,8 +47,6 @@ class GapRig {
   [[nodiscard]] bool adopted();
   /// The axis takes an enable as ever, stands, and runs when it is told to.
   void expect_usable();
-  /// A line of the log has this in it.
-  [[nodiscard]] bool told(const std::string& part);
 };
 
 }  // namespace axisgate::test

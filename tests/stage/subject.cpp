@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/obey/subject.hpp"
+#include "tests/stage/subject.hpp"
 
 #include <ostream>
 #include <stdexcept>
 
-namespace axisgate::test::obey {
+namespace axisgate::test {
 namespace {
 
 using simulated::KeyaMotorName;
@@ -267,4 +267,4 @@ std::optional<TargetObject> target_object(Subject subject) {
   return {};
 }
 
-}  // namespace axisgate::test::obey
+}  // namespace axisgate::test

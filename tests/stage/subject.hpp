@@ -10,7 +10,7 @@
 
 #include "tests/stage/gateway_stage.hpp"
 
-namespace axisgate::test::obey {
+namespace axisgate::test {
 
 enum class Subject : std::uint8_t {
   jd_serial,
@@ -149,4 +149,4 @@ struct TargetObject {
 };
 [[nodiscard]] std::optional<TargetObject> target_object(Subject subject);
 
-}  // namespace axisgate::test::obey
+}  // namespace axisgate::test
