@@ -95,6 +95,8 @@ class Plant {
   void restart_drive(Duration off = {});
   /// A fault whose cause is gone already.
   void trip_drive();
+  /// Somebody enables the drive at its keypad as soon as it does not watch the gateway any more. On CANopen.
+  bool is_enabled_by_hand_once_disarmed();
   /// A frame of another master on the CAN bus, with a standard identifier and at most 8 bytes.
   void other_master_sends(std::uint32_t id, const std::vector<std::uint8_t>& bytes);
   /// The gateway's process dies: nothing more is sent, all connections are gone. Cables, drives and motor live on.

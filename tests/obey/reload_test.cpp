@@ -154,14 +154,7 @@ TEST_P(Reload, WhatIsEnabledMeanwhileStillMissesTheGateway) {
   if (!is_cia402(GetParam()) || !minds_silence(GetParam())) return;
   plant_.ready_but_disabled();
   const ReloadEnd told = plant_.stage.begin_reload(change_timeout);
-  auto& node = plant_.stage.can_node(0);
-  constexpr simulated::ObjectKey kControlword{0x6040, 0};
-  const auto now = [&] { return plant_.stage.runtime().now().time_since_epoch(); };
-  const simulated::ObjectKey entry =
-      is_md(GetParam()) ? simulated::ObjectKey{0x6007, 0} : simulated::ObjectKey{0x1016, 1};
-  const auto armed_as = node.peek(entry, now());
-  ASSERT_TRUE(plant_.stage.run_until([&] { return node.peek(entry, now()) != armed_as; }, 1s));
-  for (const std::int64_t word : {6, 7, 15}) ASSERT_EQ(node.poke(kControlword, word, now()), 0U);
+  ASSERT_TRUE(plant_.is_enabled_by_hand_once_disarmed());
   EXPECT_NE(ended(plant_, told), GatewayStage::Reasons{});
   plant_.run(1s);
   EXPECT_TRUE(plant_.motor().enabled.value_or(false));

@@ -30,25 +30,20 @@ class Stops : public testing::TestWithParam<Subject> {
   Client& b_ = plant_.b;
 };
 
-TEST_P(Stops, OfAQuickStopWithTheIdOfTheCommandBefore) {
-  start_with_ids();
-  EXPECT_EQ(a_.command(kQuickStop, 2), kOk);
-  stopped_and_latched();
-}
-
-TEST_P(Stops, OfAHaltWithTheIdOfTheCommandBefore) {
-  start_with_ids();
-  EXPECT_EQ(a_.command(kHalt, 2), kOk);
-  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
-  plant_.run(300ms);
-  EXPECT_EQ(a_.word(shown::axis_state), kStandstill);
-}
-
-TEST_P(Stops, OfADisableWithTheIdOfTheCommandBefore) {
-  start_with_ids();
-  EXPECT_EQ(a_.command(kDisable, 2), kOk);
-  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
-  EXPECT_FALSE(plant_.motor().enabled.value_or(false));
+TEST_P(Stops, WithTheIdOfTheCommandBefore) {
+  for (const std::int64_t stop : {kHalt, kQuickStop, kDisable}) {
+    SCOPED_TRACE(stop);
+    ASSERT_EQ(b_.command(0), kOk);
+    ASSERT_EQ(b_.command(kEnable), kOk);
+    start_with_ids();
+    EXPECT_EQ(a_.command(stop, 2), kOk);
+    EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+    plant_.run(300ms);
+    if (stop != kDisable) {
+      EXPECT_EQ(a_.word(shown::axis_state), stop == kHalt ? kStandstill : kStopLatched);
+    }
+    EXPECT_TRUE(stop != kDisable || !plant_.motor().enabled.value_or(false));
+  }
 }
 
 TEST_P(Stops, OfTheSameQuickStopWithAnotherId) {
