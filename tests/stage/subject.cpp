@@ -181,26 +181,35 @@ Truth truth(GatewayStage& stage, Subject subject, const MotorPlace& place) {
 
 namespace {
 
-constexpr std::uint16_t kOvercurrent = 0x0040;  // Keya; goes with a disabling
-constexpr std::uint16_t kSupplyTooHigh = 14;
-constexpr std::uint16_t kLeadshineSupplyTooHigh = 0x3211;
-constexpr std::uint16_t kBusVoltageTooHigh = 0x0020;
+/// A supply that is too high; of a Keya an overcurrent, which goes with a disabling.
+std::uint16_t usual_cause(Subject subject) {
+  constexpr std::uint16_t kInKeya = 0x0040, kInId286pro = 14, kInLeadshine = 0x3211, kInKinco = 0x0020;
+  if (is_keya(subject)) return kInKeya;
+  if (subject == Subject::id286pro) return kInId286pro;
+  return subject == Subject::leadshine ? kInLeadshine : kInKinco;
+}
 
 }  // namespace
 
-void break_down(GatewayStage& stage, Subject subject) {
-  if (is_keya(subject)) return stage.keya(0).inject_fault(KeyaMotorName::a, kOvercurrent);
-  if (subject == Subject::id286pro) return stage.id286pro(0).inject_fault(kSupplyTooHigh);
-  if (subject == Subject::leadshine) return stage.leadshine(0).inject_fault(kLeadshineSupplyTooHigh);
-  stage.drive(0).inject_fault(1, kBusVoltageTooHigh);
+void break_down(GatewayStage& stage, Subject subject, std::optional<std::uint16_t> cause) {
+  const std::uint16_t number = cause.value_or(usual_cause(subject));
+  if (is_keya(subject)) return stage.keya(0).inject_fault(KeyaMotorName::a, number);
+  if (subject == Subject::id286pro) return stage.id286pro(0).inject_fault(number);
+  if (subject == Subject::leadshine) return stage.leadshine(0).inject_fault(number);
+  stage.drive(0).inject_fault(1, number);
 }
 
-void trip(GatewayStage& stage, Subject subject) {
-  break_down(stage, subject);
-  if (is_keya(subject)) return stage.keya(0).clear_fault_cause(KeyaMotorName::a, kOvercurrent);
+void end_cause(GatewayStage& stage, Subject subject, std::optional<std::uint16_t> cause) {
+  const std::uint16_t number = cause.value_or(usual_cause(subject));
+  if (is_keya(subject)) return stage.keya(0).clear_fault_cause(KeyaMotorName::a, number);
   if (subject == Subject::id286pro) return stage.id286pro(0).clear_fault_cause();
   if (subject == Subject::leadshine) return stage.leadshine(0).clear_fault_cause();
-  stage.drive(0).clear_fault_cause(1, kBusVoltageTooHigh);
+  stage.drive(0).clear_fault_cause(1, number);
+}
+
+void trip(GatewayStage& stage, Subject subject, std::optional<std::uint16_t> cause) {
+  break_down(stage, subject, cause);
+  end_cause(stage, subject, cause);
 }
 
 bool lack(GatewayStage& stage, Subject subject, const std::vector<ObjectPlace>& objects) {

@@ -114,8 +114,12 @@ struct MotorPlace {
 /// Of each axis of such a line, from axis 1 on.
 [[nodiscard]] std::vector<MotorPlace> motors(Subject subject, bool neighbour);
 
-/// The drive has a fault whose cause is gone already: it stays until somebody resets it.
-void trip(GatewayStage& stage, Subject subject);
+/// A fault, by the number that the simulated drive knows its cause by; none: a usual one. The cause stays.
+void break_down(GatewayStage& stage, Subject subject, std::optional<std::uint16_t> cause = {});
+/// What was injected is gone; the fault stays until somebody resets it.
+void end_cause(GatewayStage& stage, Subject subject, std::optional<std::uint16_t> cause = {});
+/// Both at once.
+void trip(GatewayStage& stage, Subject subject, std::optional<std::uint16_t> cause = {});
 
 /// An object of the drive: index and sub-index, or the register of an iD286pro.
 struct ObjectPlace {
@@ -125,9 +129,6 @@ struct ObjectPlace {
 /// From now on it has none of these, as one of another type, and refuses them; without any, it is itself again. False:
 /// on this protocol no drive refuses anything.
 bool lack(GatewayStage& stage, Subject subject, const std::vector<ObjectPlace>& objects);
-
-/// A fault whose cause stays.
-void break_down(GatewayStage& stage, Subject subject);
 
 /// A contact in the way of the torque, wired past the bus: an enable comes to nothing until it closes. Of an iD286pro
 /// the hard-wired enable switch.

@@ -17,11 +17,6 @@ constexpr ObjectKey kTemperature{0x5502, 6};
 constexpr ObjectKey kVoltageObject{0x6079, 0};
 constexpr std::string_view kEmptyAbove = "the bytes above are empty";
 
-std::size_t times_told(CanRig& rig, std::string_view words) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(rig.stage.log(), [&](const std::string& line) { return line.find(words) != line.npos; }));
-}
-
 void move_to(CanRig& rig, std::int64_t to) {
   rig.enable();
   ASSERT_EQ(rig.stage.write(1, Quantity::profile_velocity, 600'000).outcome.code, Errc::ok);
@@ -49,7 +44,7 @@ TEST_P(CanSmallStack, ADriveThatAnswersSoComesOnlineIsEnabledAndMoved) {
     rig.node().facts().lacks.insert(kVoltageObject);  // an abort in any case
     ASSERT_TRUE(rig.stage.come_online()) << name(type);
     EXPECT_EQ(rig.axis().alarms & bit(AxisAlarm::profile_mismatch), 0U);
-    EXPECT_EQ(times_told(rig, "suspect"), 0U) << "nothing timed out";
+    EXPECT_EQ(rig.times_told("suspect"), 0U) << "nothing timed out";
     move_to(rig, 100'000);
   }
 }
@@ -59,7 +54,7 @@ TEST_P(CanSmallStack, ItsTpdosAreMappedAsTheDriveReadsThemBack) {
   rig.line().faults(0).sdo.set_rate(GetParam(), 1);
   ASSERT_TRUE(rig.stage.come_online());
   ASSERT_TRUE(rig.becomes_operational());
-  EXPECT_EQ(times_told(rig, "TPDO"), 0U) << "no note of one that does not read back";
+  EXPECT_EQ(rig.times_told("TPDO"), 0U) << "no note of one that does not read back";
   rig.stage.run(3s);
   rig.mark();
   rig.stage.run(1s);
@@ -70,13 +65,13 @@ TEST(SmallStackWide, ThatIsToldOnceInABringUp) {
   CanRig rig({Subject::leadshine});
   rig.line().faults(0).sdo.set_rate(SdoFault::wide, 1);
   ASSERT_TRUE(rig.stage.come_online());
-  EXPECT_EQ(times_told(rig, kEmptyAbove), 1U);
+  EXPECT_EQ(rig.times_told(kEmptyAbove), 1U);
   rig.stage.run(5s);
-  EXPECT_EQ(times_told(rig, kEmptyAbove), 1U);
+  EXPECT_EQ(rig.times_told(kEmptyAbove), 1U);
   rig.line().restart(0, rig.stage.can_link(0).time_of(rig.stage.runtime().now()));
   ASSERT_TRUE(rig.settles([&] { return rig.axis().link_state == LinkState::setup; }));
   ASSERT_TRUE(rig.stage.come_online());
-  EXPECT_EQ(times_told(rig, kEmptyAbove), 2U);
+  EXPECT_EQ(rig.times_told(kEmptyAbove), 2U);
 }
 
 TEST(SmallStackWide, ASignedNumberBelowZeroIsTheSameWithZerosOrWithItsSignAboveIt) {
@@ -96,7 +91,7 @@ TEST(SmallStackWide, ANumberWithSomethingElseAboveItIsToldInWidthsAndNotShown) {
   CanRig rig({Subject::leadshine});
   rig.line().faults(0).sdo.set_rate(SdoFault::wide_sign, 1, kErrorObject);
   ASSERT_TRUE(rig.stage.come_online());
-  EXPECT_EQ(times_told(rig, "not used"), 0U);
+  EXPECT_EQ(rig.times_told("not used"), 0U);
   rig.stage.leadshine(0).inject_fault(0x8611);
   ASSERT_TRUE(
       rig.settles([&] { return rig.told("error_code: the drive answers 4 bytes, the profile says 2: not used"); }));
@@ -155,7 +150,7 @@ TEST(SmallStackOther, AnswersOfAnotherObjectAreToldByBothAndNeverTaken) {
   rig.online();
   rig.line().faults(0).sdo.set_rate(SdoFault::other_object, 1, kVoltageObject);
   rig.stage.run(10s);
-  EXPECT_EQ(times_told(rig, "node 1 was asked for 6079:00 and answered 6078:00"), 1U);
+  EXPECT_EQ(rig.times_told("node 1 was asked for 6079:00 and answered 6078:00"), 1U);
 }
 
 TEST(SmallStackBus, ADriveWithAnotherNumberThanTheConfigurationsIsNamed) {
@@ -165,7 +160,7 @@ TEST(SmallStackBus, ADriveWithAnotherNumberThanTheConfigurationsIsNamed) {
   rig.online();
   rig.line().restart(1, rig.stage.can_link(0).time_of(rig.stage.runtime().now()));
   rig.stage.run(5s);
-  EXPECT_EQ(times_told(rig, "node 5 is heard on this bus, and no drive of the configuration has this number"), 1U);
+  EXPECT_EQ(rig.times_told("node 5 is heard on this bus, and no drive of the configuration has this number"), 1U);
 }
 
 }  // namespace

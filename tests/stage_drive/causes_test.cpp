@@ -89,16 +89,6 @@ TEST_F(NamedBy, WhatIsHeldBackTurnsStaleByItsOwnAgeNotByThatOfTheWordBehindIt) {
   EXPECT_FALSE(image_[Quantity::error_code].valid);
 }
 
-GatewayStage::Line two_on_a_line() {
-  GatewayStage::Line line = line_of(KincoType::md, 1);
-  const GatewayStage::Line second = line_of(KincoType::md, 2);
-  line.options.wiring = simulated::Wiring::rs485;
-  line.options.reply_delay = 3ms;  // longer than the test looks away: the neighbour asks anew in time
-  line.drives.push_back(second.drives.front());
-  line.drives.back().options.station = 2;
-  return line;
-}
-
 /// A client that never lets the line rest: it writes parameters and reads objects, and as soon as one is done it asks
 /// anew. While a write waits for its statusword, a read goes.
 class Busy {
@@ -129,7 +119,8 @@ class Busy {
 
 // Whoever looks at a faulted axis must not wait for its neighbour's set-points to learn the cause.
 TEST(CauseIsRead, RightBehindTheStatuswordThatShowsTheFaultHoweverManyCommandsWait) {
-  GatewayStage stage({two_on_a_line()});
+  // The replies take longer than the test looks away: the neighbour asks anew in time.
+  GatewayStage stage({line_of_mds(2, 3ms)});
   ASSERT_TRUE(stage.come_online());
   Busy neighbour(stage, 2);
   const auto busy = [&](const auto& done) {

@@ -147,28 +147,10 @@ void DriveRig::bring_to(Situation situation, Duration stays) {
 }
 
 void DriveRig::fail_the_drive() {
-  constexpr std::uint16_t kInKinco = 0x0020, kInLeadshine = 0x2211, kInId286pro = 14, kInKeya = 0x0040;
-  const auto seen = [&] {
-    expect(stage.run_until([&] { return axis().has(AxisInput::fault); }), "no fault");
-    stage.run(200ms);
-  };
-  if (is_keya(subject_)) {
-    stage.keya(0).inject_fault(KeyaMotorName::a, kInKeya);
-    seen();
-    stage.keya(0).clear_fault_cause(KeyaMotorName::a, kInKeya);
-  } else if (subject_ == Subject::id286pro) {
-    stage.id286pro(0).inject_fault(kInId286pro);
-    seen();
-    stage.id286pro(0).clear_fault_cause();
-  } else if (subject_ == Subject::leadshine) {
-    stage.leadshine(0).inject_fault(kInLeadshine);
-    seen();
-    stage.leadshine(0).clear_fault_cause();
-  } else {
-    stage.drive(0).inject_fault(1, kInKinco);
-    seen();
-    stage.drive(0).clear_fault_cause(1, kInKinco);
-  }
+  break_down(stage, subject_);
+  expect(stage.run_until([&] { return axis().has(AxisInput::fault); }), "no fault");
+  stage.run(200ms);
+  end_cause(stage, subject_);
 }
 
 void DriveRig::hush(bool silent) {
@@ -194,12 +176,7 @@ void DriveRig::restart_the_drive() {
   stage.at_link(0, [now](auto& link) { link.line().restart(0, link.time_of(now)); });
 }
 
-std::int64_t DriveRig::position() {
-  if (is_keya(subject_)) return stage.keya(0).at(KeyaMotorName::a).count();
-  if (subject_ == Subject::id286pro) return stage.id286pro(0).position();
-  if (subject_ == Subject::leadshine) return stage.leadshine(0).position();
-  return stage.drive(0).position();
-}
+std::int64_t DriveRig::position() { return truth(stage, subject_).position; }
 
 bool DriveRig::turns() {
   const std::int64_t before = position();
@@ -304,8 +281,9 @@ bool DriveRig::has_event(EventKind kind, const std::string& part) {
                              [&](const Event& e) { return e.kind == kind && e.text.find(part) != std::string::npos; });
 }
 
-bool DriveRig::told(const std::string& part) {
-  return std::ranges::any_of(stage.log(), [&](const std::string& line) { return line.find(part) != line.npos; });
+std::size_t DriveRig::times_told(std::string_view part) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(stage.log(), [&](const std::string& line) { return line.find(part) != line.npos; }));
 }
 
 WriteBatch setpoints(std::initializer_list<Setpoint> list) { return with_command(Command::none, list); }

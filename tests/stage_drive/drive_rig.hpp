@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/stage/subject.hpp"
@@ -112,8 +113,9 @@ class DriveRig {
   [[nodiscard]] std::size_t count(std::uint32_t index, std::uint32_t data);
 
   [[nodiscard]] bool has_event(EventKind kind, const std::string& part);
-  /// A line of the log has this in it.
-  [[nodiscard]] bool told(const std::string& part);
+  /// Lines of the log that have this in them.
+  [[nodiscard]] std::size_t times_told(std::string_view part);
+  [[nodiscard]] bool told(std::string_view part) { return times_told(part) > 0; }
 
  protected:
   [[nodiscard]] std::size_t marked() const { return marked_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Design 3.4 What survives, for every drive and protocol: a fault, a drive's restart, a disable and a stop end every
-// motion for good, and an enable after them is an enable and nothing else.
+// motion for good, and an enable after them is an enable and nothing else. A halt is none.
 #include <gmock/gmock.h>
 
 #include "tests/stage_drive/drive_rig.hpp"
@@ -81,6 +81,35 @@ INSTANTIATE_TEST_SUITE_P(Table, MotionEnded, testing::Combine(testing::ValuesIn(
                          [](const auto& case_of) {
                            return name(std::get<0>(case_of.param)) + "_" + ended_name(std::get<1>(case_of.param));
                          });
+
+class HaltBeside : public testing::TestWithParam<Subject> {};
+
+// Its word may be one that enables: an MD does so on 0x010F from any disabled state.
+TEST_P(HaltBeside, ADisableOrAQuickStopNeverEnables) {
+  const auto from = [](ClientId client, Command command) {
+    WriteBatch batch = with_command(command);
+    batch.client = client;
+    return batch;
+  };
+  for (const Command other : {Command::disable, Command::quick_stop}) {
+    for (const bool halt_first : {true, false}) {
+      for (const Situation situation : {Situation::running, Situation::enabled}) {
+        SCOPED_TRACE(std::string(text(other)) + (halt_first ? " after" : " before") + " a halt, " + name(situation));
+        DriveRig rig(GetParam());
+        rig.bring_to(situation);
+        const auto one = rig.stage.begin(1, from(5, halt_first ? Command::halt : other));
+        const auto two = rig.stage.begin(1, from(6, halt_first ? other : Command::halt));
+        ASSERT_TRUE(rig.stage.run_until([&] { return one->has_value() && two->has_value(); }));
+        const auto enabled = [&] { return rig.axis().has(AxisInput::enabled); };
+        EXPECT_FALSE(enabled());
+        EXPECT_FALSE(rig.stage.run_until(enabled, 2s));
+        EXPECT_TRUE(rig.stage.run_until([&] { return !rig.turns(); }, 5s));
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, HaltBeside, testing::ValuesIn(kSubjects), named);
 
 }  // namespace
 }  // namespace axisgate::test

@@ -126,19 +126,7 @@ TEST(Link, ALossAnswersEveryBatchAtOnce) {
 }
 
 TEST(UnresponsiveDrive, CostsItsNeighbourOneTimeoutPerBackOffStep) {
-  GatewayStage::Line line;
-  line.name = "rs485";
-  line.options.wiring = simulated::Wiring::rs485;
-  line.options.reply_delay = 5ms;
-  for (const std::uint8_t station : {std::uint8_t{1}, std::uint8_t{2}}) {
-    StageDrive staged;
-    staged.options.type = KincoType::md;
-    staged.options.station = station;
-    staged.axis.number = station;
-    staged.axis.name = "m" + std::to_string(station);
-    line.drives.push_back(staged);
-  }
-  GatewayStage stage({line});
+  GatewayStage stage({line_of_mds(2, 5ms)});
   ASSERT_TRUE(stage.come_online());
   stage.link(0).line().faults(1).set_rate(DriveFault::unresponsive, 1);
   stage.run(60s);

@@ -71,12 +71,6 @@ std::vector<Readable> readable(Subject subject) {
 
 bool online(DriveRig& rig) { return rig.axis().link_state == LinkState::online; }
 
-std::size_t lines_with(DriveRig& rig, const std::string& part) {
-  const auto& log = rig.stage.log();
-  return static_cast<std::size_t>(
-      std::count_if(log.begin(), log.end(), [&](const std::string& line) { return line.find(part) != line.npos; }));
-}
-
 class MuteObject : public testing::TestWithParam<Subject> {};
 
 TEST_P(MuteObject, FromTheStartCostsItselfAloneOrIsNamed) {
@@ -95,7 +89,7 @@ TEST_P(MuteObject, FromTheStartCostsItselfAloneOrIsNamed) {
     }
     ASSERT_FALSE(came);
     // One place of a Keya holds both motors' state.
-    EXPECT_THAT(lines_with(rig, "was not answered three times in a row"), AllOf(Ge(1U), Le(2U)))
+    EXPECT_THAT(rig.times_told("was not answered three times in a row"), AllOf(Ge(1U), Le(2U)))
         << testing::PrintToString(rig.stage.log());
     EXPECT_TRUE(rig.axis().alarms & bit(AxisAlarm::profile_mismatch));
     rig.faults().mend(object.place);
@@ -148,7 +142,7 @@ TEST_P(MuteObject, ThatAMotionNeedsStopsTheMotor) {
     ASSERT_TRUE(rig.turns());
     rig.faults().spoil(object.place, {});
     EXPECT_TRUE(rig.stage.run_until([&] { return !rig.turns(); }, 15s)) << "it turns on, and nobody sees it";
-    EXPECT_GE(lines_with(rig, "is told no more, and the motion needs it"), 1U);
+    EXPECT_GE(rig.times_told("is told no more, and the motion needs it"), 1U);
     rig.faults().mend(object.place);
     EXPECT_TRUE(rig.stage.run_until([&] { return online(rig); }, 62s));
     rig.stage.run(2s);

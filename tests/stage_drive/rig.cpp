@@ -24,6 +24,17 @@ GatewayStage::Line line(KincoType type, const RigOptions& options) {
 
 std::string name(KincoType type) { return type == KincoType::jd ? "JD" : "MD"; }
 
+GatewayStage::Line line_of_mds(std::uint8_t count, simulated::Time reply_delay) {
+  GatewayStage::Line line = line_of(KincoType::md, 1);
+  for (std::uint8_t i = 2; i <= count; ++i) {
+    line.drives.push_back(line_of(KincoType::md, i).drives.front());
+    line.drives.back().options.station = i;
+  }
+  line.options.wiring = simulated::Wiring::rs485;
+  line.options.reply_delay = reply_delay;
+  return line;
+}
+
 Rig::Rig(KincoType type, const RigOptions& options) : DriveRig(subject_of(type), line(type, options)) {}
 
 }  // namespace axisgate::test

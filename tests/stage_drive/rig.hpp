@@ -17,6 +17,9 @@ struct RigOptions {
   std::optional<LeaseRules> lease{};  ///< none: leases are off
 };
 
+/// So many MDs on one RS485 line, with stations and axes from 1 on.
+[[nodiscard]] GatewayStage::Line line_of_mds(std::uint8_t count, simulated::Time reply_delay);
+
 class Rig : public DriveRig {
  public:
   explicit Rig(KincoType type, const RigOptions& options = {});

@@ -129,7 +129,7 @@ class EachStepFails : public testing::TestWithParam<std::tuple<Subject, Failure>
   template <class Act>
   static void on_each_request(DriveRig& rig, const Act& act) {
     rig.stage.at_link(0, [&act](auto& link) {
-      link.on_traffic = [&link, act](bool to_drive, const auto& what) mutable {
+      link.on_traffic = [&link, act = Act(act)](bool to_drive, const auto& what) mutable {
         if (to_drive && is_request(what)) act(link);
       };
     });

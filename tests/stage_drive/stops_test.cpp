@@ -18,19 +18,7 @@ WriteBatch of(ClientId client, WriteBatch batch) {
 }
 
 TEST(Stops, GoesNextOnTheWireBehindFullQueues) {
-  GatewayStage::Line line;
-  line.name = "rs485";
-  line.options.wiring = simulated::Wiring::rs485;
-  line.options.reply_delay = 3ms;
-  for (std::uint8_t i = 1; i <= 8; ++i) {
-    StageDrive staged;
-    staged.options.type = KincoType::md;
-    staged.options.station = i;
-    staged.axis.number = i;
-    staged.axis.name = "m" + std::to_string(i);
-    line.drives.push_back(staged);
-  }
-  GatewayStage stage({line});
+  GatewayStage stage({line_of_mds(8, 3ms)});
   ASSERT_TRUE(stage.come_online());
   ASSERT_EQ(stage.command(8, Command::enable).outcome.code, Errc::ok);
   for (int round = 0; round < 20; ++round) {
@@ -57,19 +45,7 @@ TEST(Stops, GoesNextOnTheWireBehindFullQueues) {
 }
 
 TEST(Stops, ThatRampForLongLeaveTheWireToOtherDrives) {
-  GatewayStage::Line line;
-  line.name = "rs485";
-  line.options.wiring = simulated::Wiring::rs485;
-  line.options.reply_delay = 10ms;  // longer than any pause between two looks at the start
-  for (std::uint8_t i = 1; i <= 2; ++i) {
-    StageDrive staged;
-    staged.options.type = KincoType::md;
-    staged.options.station = i;
-    staged.axis.number = i;
-    staged.axis.name = "m" + std::to_string(i);
-    line.drives.push_back(staged);
-  }
-  GatewayStage stage({line});
+  GatewayStage stage({line_of_mds(2, 10ms)});  // longer than any pause between two looks at the start
   ASSERT_TRUE(stage.come_online());
   stage.drive(0, 0).poke({0x605B, 0}, 1);
   stage.drive(0, 0).poke({0x6084, 0}, 2'000);
@@ -254,19 +230,6 @@ TEST(Stops, GoOnAfterTheirClientHasItsAnswer) {
   batch.answer_by = rig.stage.runtime().now() + 20ms;
   EXPECT_EQ(rig.ask(batch).outcome.code, Errc::timed_out);
   EXPECT_TRUE(rig.stage.run_until([&] { return !rig.motor_enabled(); }, 2s));
-}
-
-TEST(Stops, AHaltNeverEnables) {
-  // Its word on the MD is 0x010F, and an MD enables on 0x0F from any disabled state.
-  Rig rig(KincoType::md);
-  rig.bring_to(running);
-  const auto disable = rig.stage.begin(1, of(1, with_command(Command::disable)));
-  ASSERT_TRUE(rig.stage.run_until([&] { return rig.count(kControlword, 0x06) == 1; }));
-  const auto halt = rig.stage.begin(1, of(2, with_command(Command::halt)));
-  rig.stage.run(900ms);
-  EXPECT_EQ(rig.count(kControlword, 0x010F), 0U);
-  EXPECT_EQ((*halt)->outcome.code, Errc::ok);
-  EXPECT_FALSE(rig.motor_enabled());
 }
 
 TEST(Stops, AHaltOfASuspectDriveThatCouldHaveRestartedIsAQuickStop) {
