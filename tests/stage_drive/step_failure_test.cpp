@@ -142,11 +142,12 @@ class EachStepFails : public testing::TestWithParam<std::tuple<Subject, Failure>
 };
 
 void EachStepFails::expect_no_write_twice(DriveRig& rig, const Commanded& talk) {
+  if (is_keya(subject())) return;  // its frames repeat what holds
   std::map<std::tuple<int, int, std::uint32_t>, std::size_t> seen;
-  if (is_keya(subject())) return;
-  for (const WireRequest& w : rig.writes())
-    if (!is_canopen_servo(subject()) || w.index >= 0x6000)
-      ++seen[{w.index, w.sub, w.data}];  // set-up writes the others anew
+  for (const WireRequest& w : rig.writes()) {
+    const bool by_setup = is_canopen_servo(subject()) && w.index < 0x6000;  // after a restart
+    if (!by_setup) ++seen[{w.index, w.sub, w.data}];
+  }
   for (const auto& [what, times] : seen) {
     const auto& [index, sub, data] = what;
     // What set_position puts back, or a mode change invalidates; and zeros, once before a mode changes and once in it.

@@ -39,10 +39,6 @@ BatchResult StepperRig::move_to(std::int64_t position) {
   return ask(with_command(Command::move_absolute, {{Quantity::target_position, position}}));
 }
 
-BatchResult StepperRig::move_by(std::int64_t distance) {
-  return ask(with_command(Command::move_relative, {{Quantity::target_position, distance}}));
-}
-
 BatchResult StepperRig::mailbox_write(std::uint16_t address, std::uint8_t size, std::uint32_t data) {
   return object(stage, true, address, size, data);
 }

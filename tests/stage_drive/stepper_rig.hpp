@@ -27,7 +27,6 @@ class StepperRig : public DriveRig {
   void run_at(std::int64_t velocity);
   [[nodiscard]] static Errc code(const BatchResult& result) { return result.outcome.code; }
   BatchResult move_to(std::int64_t position);
-  BatchResult move_by(std::int64_t distance);
   BatchResult mailbox_write(std::uint16_t address, std::uint8_t size, std::uint32_t data);
   BatchResult mailbox_read(std::uint16_t address, std::uint8_t size);
 
