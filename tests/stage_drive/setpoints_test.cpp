@@ -149,6 +149,14 @@ TEST(TargetVelocity, ActsAtOnceOnlyWhileItRuns) {
   EXPECT_TRUE(rig.stage.run_until([&] { return rig.axis()[Quantity::velocity_actual].value > 190'000; }));
 }
 
+TEST(RelativeMove, ByAControlwordIsRefusedWhileItMoves) {
+  Rig rig(KincoType::jd);
+  rig.bring_to(moving);
+  EXPECT_EQ(rig.ask(with_controlword(0x004F)).outcome.code, Errc::ok);
+  EXPECT_EQ(rig.ask(with_controlword(0x005F)).outcome.code, Errc::busy);
+  EXPECT_EQ(rig.count(kControlword, 0x5F), 0U);
+}
+
 TEST(EnableNeverMoves, InModeThreeWithAnOldVelocity) {
   Rig rig(KincoType::jd);
   rig.online();
