@@ -81,39 +81,6 @@ TEST(Values, OfASilentDriveAreNotValidLongerThanTheirStaleTime) {
   EXPECT_GE(elapsed_ms(rig.axis().oldest_cyclic, rig.stage.runtime().now()), 300);
 }
 
-TEST(Values, OfAnOfflineAxisReadAsTheContractSays) {
-  Rig rig(KincoType::jd);
-  rig.bring_to(offline);
-  EXPECT_EQ(shown_value(rig.axis(), Quantity::statusword), 0);
-  EXPECT_EQ(shown_value(rig.axis(), Quantity::error_code), 0x8130);
-  EXPECT_EQ(shown_inputs(rig.axis()), 0);
-  EXPECT_NE(shown_value(rig.axis(), Quantity::position_actual), INT32_MIN) << "the last good number";
-}
-
-TEST(TargetReached, IsNeverThatOfTheMoveBefore) {
-  for (const KincoType type : {KincoType::jd, KincoType::md}) {
-    Rig rig(type);
-    rig.bring_to(enabled);
-    for (const std::int64_t target : {20'000, -5'000, 40'000}) {
-      const auto place = rig.stage.begin(
-          1, with_command(Command::move_absolute,
-                          {{Quantity::target_position, target}, {Quantity::profile_velocity, 900'000}}));
-      const auto reached = [&] {
-        return rig.axis().has(AxisInput::target_reached) ||
-               (shown_value(rig.axis(), Quantity::statusword) & 0x0400) != 0;
-      };
-      while (!place->has_value()) {
-        EXPECT_FALSE(reached()) << "from the acceptance until the reply";
-        rig.stage.run(1ms);
-      }
-      EXPECT_FALSE(reached());
-      ASSERT_TRUE(rig.stage.run_until(reached));
-      EXPECT_EQ(rig.axis().motion_state, MotionState::completed);
-      rig.stage.run(50ms);
-    }
-  }
-}
-
 // Bit 12 of a Kinco's controlword starts a move where bit 4 was set before (0x103F).
 TEST(TargetReached, IsNotThatOfTheMoveBeforeWhereTheMakersBitAloneStarts) {
   for (const KincoType type : {KincoType::jd, KincoType::md}) {

@@ -165,16 +165,6 @@ TEST(JogOnAnAxis, TheButtonOfAnotherClientDoesNotEndIt) {
   EXPECT_TRUE(axis.rig.turns());
 }
 
-// A panel that writes its buttons as they are asks for nothing.
-TEST(JogOnAnAxis, ALetGoButtonOfAnotherClientWhereNothingRunsIsNoFault) {
-  JoggedAxis axis;
-  for (const Command let_go : {Command::jog_end, Command::end_run}) {
-    EXPECT_EQ(axis.ask(axis.panel, with_command(let_go), false), Errc::ok);
-    EXPECT_TRUE(axis.enabled());
-  }
-  EXPECT_EQ(axis.command(axis.panel, Command::jog_forward), Errc::not_owner) << "it is the first one's axis still";
-}
-
 TEST(JogOnAnAxis, OfARunThatAFaultHasEndedIsOverAndTheHeldButtonIsToldSo) {
   JoggedAxis axis;
   EXPECT_EQ(axis.command(axis.plc, Command::jog_forward), Errc::ok);

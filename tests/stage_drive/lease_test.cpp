@@ -93,39 +93,6 @@ TEST(Lease, AReleasedRunningAxisIsStoppedUnlessSomebodyTakesIt) {
   EXPECT_FALSE(axis.rig.turns());
 }
 
-TEST(Lease, AnAxisFoundEnabledIsStoppedUnlessAClientWritesToIt) {
-  for (const bool taken : {false, true}) {
-    LeasedAxis axis(leased(), [](Rig& rig) { rig.motor().poke({0x6040, 0}, 0x0F); });
-    ASSERT_TRUE(axis.enabled());
-    EXPECT_TRUE(axis.event("found enabled, and nobody owns it"));
-    axis.rig.mark();
-    if (taken) {
-      WriteBatch heartbeat;
-      heartbeat.reclaims = true;
-      EXPECT_EQ(axis.ask(axis.panel, heartbeat), Errc::ok);
-      axis.keep(axis.panel, 4s);
-      EXPECT_TRUE(axis.rig.writes().empty());
-      EXPECT_TRUE(axis.enabled());
-    } else {
-      axis.rig.stage.run(4s);
-      EXPECT_TRUE(axis.latched());
-      EXPECT_TRUE(axis.event("nobody has taken over the enabled axis: quick stop"));
-    }
-  }
-}
-
-TEST(Lease, AnOwnersSixInABlockIsAStop) {
-  LeasedAxis axis;
-  axis.run(axis.plc);
-  WriteBatch block = setpoints({{Quantity::target_velocity, 100'000}});
-  block.controlword = 0x0006;
-  EXPECT_EQ(axis.ask(axis.panel, block), Errc::not_owner);
-  EXPECT_TRUE(axis.rig.turns());
-  EXPECT_EQ(axis.ask(axis.plc, block), Errc::ok);
-  axis.keep(axis.plc, 2s);
-  EXPECT_FALSE(axis.rig.turns());
-}
-
 // 3.5: on_expiry "acts only if the axis is enabled". The answer spoke of another client that nobody was.
 TEST(Lease, ThatRunsOutBesideAFaultResetStopsNothing) {
   constexpr std::uint16_t kTooHigh = 0x0020;  // the supply

@@ -5,8 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include "tests/stage_drive/rig.hpp"
 #include "tests/unit/drive/clients.hpp"
 
@@ -20,12 +18,7 @@ namespace axisgate::test {
 }
 
 struct LeasedAxis {
-  explicit LeasedAxis(
-      const RigOptions& options = leased(), const std::function<void(Rig&)>& before = [](Rig&) {})
-      : rig(KincoType::jd, options) {
-    before(rig);
-    rig.online();
-  }
+  explicit LeasedAxis(const RigOptions& options = leased()) : rig(KincoType::jd, options) { rig.online(); }
 
   Rig rig;
   std::shared_ptr<ClientLife> plc = client(1, "10.0.0.1");
@@ -62,7 +55,6 @@ struct LeasedAxis {
     }
   }
   bool latched() { return rig.axis().has(AxisInput::stop_latched); }
-  bool enabled() { return rig.axis().has(AxisInput::enabled); }
   bool event(const std::string& part) { return rig.has_event(EventKind::lease, part); }
 };
 

@@ -97,26 +97,6 @@ TEST(Waiting, ANewerBatchOfTheSameSetpointsSupersedesAWaitingOne) {
   EXPECT_TRUE(enable->has_value());
 }
 
-TEST(TargetPosition, IsHeldWhileAMoveRunsAndSentWithTheStart) {
-  for (const bool by_command : {true, false}) {
-    Rig rig(KincoType::jd);
-    rig.bring_to(moving);
-    ASSERT_EQ(rig.write(Quantity::target_position, 50'000).outcome.code, Errc::ok);
-    EXPECT_TRUE(rig.writes_of(kTargetPosition).empty());
-    if (by_command) {
-      ASSERT_EQ(rig.command(Command::move_absolute).outcome.code, Errc::ok);
-    } else {
-      ASSERT_EQ(rig.ask(with_controlword(0x002F)).outcome.code, Errc::ok);
-      ASSERT_EQ(rig.ask(with_controlword(0x003F)).outcome.code, Errc::ok);
-    }
-    EXPECT_EQ(rig.writes_of(kTargetPosition).size(), 1U);
-    EXPECT_EQ(rig.axis().motion_state, MotionState::active);
-    EXPECT_TRUE(rig.stage.run_until([&] { return rig.axis().motion_state == MotionState::completed; }));
-    rig.stage.run(300ms);
-    EXPECT_NEAR(rig.motor().position(), 50'000, 5);
-  }
-}
-
 TEST(TargetPosition, NeverMovesADriveThatFollowsIt) {
   Rig rig(KincoType::jd);
   rig.bring_to(enabled);
@@ -134,19 +114,6 @@ TEST(TargetPosition, NeverMovesADriveThatFollowsIt) {
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().motion_state == MotionState::completed; }));
   rig.stage.run(300ms);
   EXPECT_NEAR(rig.motor().position(), 20'000, 5);
-}
-
-TEST(TargetVelocity, ActsAtOnceOnlyWhileItRuns) {
-  Rig rig(KincoType::jd);
-  rig.bring_to(enabled);
-  ASSERT_EQ(rig.write(Quantity::target_velocity, 100'000).outcome.code, Errc::ok);
-  EXPECT_TRUE(rig.writes_of(kTargetVelocity).empty());
-  ASSERT_EQ(rig.command(Command::run_velocity).outcome.code, Errc::ok);
-  const auto writes = rig.writes_of(kTargetVelocity);
-  ASSERT_EQ(writes.size(), 2U);
-  EXPECT_EQ(writes.front().data, 0U) << "0 while the mode changes";
-  ASSERT_EQ(rig.write(Quantity::target_velocity, 200'000).outcome.code, Errc::ok);
-  EXPECT_TRUE(rig.stage.run_until([&] { return rig.axis()[Quantity::velocity_actual].value > 190'000; }));
 }
 
 TEST(RelativeMove, ByAControlwordIsRefusedWhileItMoves) {

@@ -24,20 +24,6 @@ TEST(Stepper, FollowingExternalPulsesItRefusesToBeEnabledAndSaysWhy) {
   EXPECT_FALSE(rig.axis().has(AxisInput::enabled));
 }
 
-TEST(Stepper, FoundRunningItIsAdoptedAndNothingIsWrittenToIt) {
-  StepperRig rig;
-  ASSERT_EQ(rig.motor().poke(kSpeedRegister, 200), simulated::RtuException::none);
-  ASSERT_EQ(rig.motor().poke(kControlRegister, 3), simulated::RtuException::none);
-  rig.online();
-  EXPECT_NE(rig.axis().alarms & bit(AxisAlarm::adopted_running), 0U);
-  EXPECT_TRUE(rig.axis().has(AxisInput::enabled));
-  EXPECT_EQ(rig.axis().axis_state, AxisState::continuous_motion);
-  EXPECT_EQ(rig.writes(), 0U);
-  ASSERT_EQ(rig.code(rig.command(Command::quick_stop)), Errc::ok);
-  EXPECT_TRUE(rig.stands());
-  EXPECT_EQ(rig.axis().alarms & bit(AxisAlarm::adopted_running), 0U);
-}
-
 TEST(Stepper, StopsWhenTheClientThatCommandedItsMotionIsGone) {
   StepperRig rig;
   rig.online();

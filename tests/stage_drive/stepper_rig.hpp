@@ -14,8 +14,8 @@ struct StepperOptions {
   drive::ResolveAxis axis{};
 };
 
-/// Registers (5).
-inline constexpr std::uint16_t kSpeedRegister = 307, kControlRegister = 323;
+/// A register (5).
+inline constexpr std::uint16_t kControlRegister = 323;
 
 class StepperRig : public DriveRig {
  public:

@@ -155,19 +155,6 @@ TEST(Stops, OfTheSameClientAbortItsOwnBatchAsDropped) {
   EXPECT_EQ((*stop)->outcome.code, Errc::ok);
 }
 
-TEST(Stops, ABatchThatHoldsOneStopsFirstAndWritesTheRestAfterwards) {
-  Rig rig(KincoType::md);
-  rig.bring_to(running);
-  const WriteBatch batch =
-      with_command(Command::halt, {{Quantity::target_velocity, 50'000}, {Quantity::profile_velocity, 70'000}});
-  EXPECT_EQ(rig.ask(batch).outcome.code, Errc::ok);
-  const auto writes = rig.writes();
-  ASSERT_GE(writes.size(), 2U);
-  EXPECT_EQ(writes.front().data, 0x010FU);
-  EXPECT_TRUE(rig.writes_of(kTargetVelocity).empty()) << "kept: nothing runs any more";
-  EXPECT_FALSE(rig.writes_of(0x6081).empty());
-}
-
 TEST(Stops, AControlwordBesideAStopCommandCannotUndoIt) {
   for (const Command stop : {Command::disable, Command::quick_stop, Command::halt}) {
     Rig rig(KincoType::md);
@@ -239,34 +226,6 @@ TEST(Stops, AHaltOfASuspectDriveThatCouldHaveRestartedIsAQuickStop) {
   EXPECT_EQ(rig.count(kControlword, 0x010F), 0U);
   EXPECT_EQ(rig.count(kControlword, 0x0B), 1U);
   EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched));
-}
-
-TEST(Latch, KeepsSetpointsUnsentAndParametersNot) {
-  Rig rig(KincoType::jd);
-  rig.bring_to(latched);
-  EXPECT_EQ(rig.ask(setpoints({{Quantity::target_position, 4'000},
-                               {Quantity::target_velocity, 9'000},
-                               {Quantity::profile_velocity, 250'000}}))
-                .outcome.code,
-            Errc::ok);
-  EXPECT_TRUE(rig.writes_of(kTargetPosition).empty());
-  EXPECT_TRUE(rig.writes_of(kTargetVelocity).empty());
-  EXPECT_FALSE(rig.writes_of(0x6081).empty());
-  ASSERT_EQ(rig.command(Command::enable).outcome.code, Errc::ok);
-  ASSERT_EQ(rig.command(Command::move_absolute).outcome.code, Errc::ok);
-  EXPECT_EQ(rig.object(kTargetPosition), 4'000) << "what was kept goes with the start";
-}
-
-TEST(Latch, AnEnableThatWasAcceptedBeforeTheStopDoesNotClearIt) {
-  Rig rig(KincoType::jd);
-  rig.bring_to(disabled);
-  const auto enable = rig.stage.begin(1, of(1, with_command(Command::enable)));
-  ASSERT_TRUE(rig.stage.run_until([&] { return rig.count(kControlword, 0x0F) == 1; }));
-  const auto stop = rig.stage.begin(1, of(2, with_command(Command::quick_stop)));
-  rig.stage.run(600ms);
-  EXPECT_TRUE(enable->has_value() && stop->has_value());
-  EXPECT_TRUE(rig.axis().has(AxisInput::stop_latched));
-  EXPECT_FALSE(rig.motor_enabled());
 }
 
 }  // namespace
