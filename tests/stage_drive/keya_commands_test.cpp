@@ -10,7 +10,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using testing::Each;
-using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr std::int64_t kRpm = 1'000;  // register units
@@ -53,39 +52,6 @@ TEST_P(KeyaCommands, BeforeTorqueThePositionIsWhereTheMotorStands) {
   EXPECT_TRUE(value_goes_before_torque(rig, 123'456, GetParam() == Speech::single ? kPositionValue : kValue));
   rig.run(100ms);
   EXPECT_EQ(rig.motor(0).position, 123'456);
-}
-
-TEST_P(KeyaCommands, AStartWritesItsSetPointOnce) {
-  KeyaRig rig(in_mode(3));
-  rig.online();
-  rig.enable(0);
-  rig.mark();
-  rig.run_at(0, kRpm150);
-  EXPECT_EQ(rig.writes().size(), 1U);
-  KeyaRig positions(in_mode(1));
-  positions.online();
-  positions.enable(0);
-  positions.mark();
-  ASSERT_EQ(
-      KeyaRig::code(positions.ask(0, KeyaRig::batch_of(Command::move_absolute, {{Quantity::target_position, 50'000}}))),
-      Errc::ok);
-  EXPECT_EQ(positions.writes().size(), 1U);
-}
-
-TEST_P(KeyaCommands, WhileItRunsANewSpeedActsAtOnceAndTheSameIsNotSentAgain) {
-  KeyaRig rig(in_mode(3));
-  rig.online();
-  rig.enable(0);
-  rig.run_at(0, kRpm150);
-  ASSERT_EQ(KeyaRig::code(rig.write(0, Quantity::target_velocity, -kRpm150)), Errc::ok);
-  EXPECT_EQ(rig.motor(0).value, -kRaw150);
-  KeyaRig kept({.speech = GetParam(), .keep_alive = 500ms});
-  kept.online();
-  kept.enable(0);
-  kept.run_at(0, kRpm150);
-  kept.mark();
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(KeyaRig::code(kept.write(0, Quantity::target_velocity, kRpm150)), Errc::ok);
-  EXPECT_THAT(kept.writes(), IsEmpty()) << "a scanner writes the same block for ever";
 }
 
 TEST_P(KeyaCommands, InTorqueModeARawEnableGivesTheTorqueThatWasAskedFor) {
