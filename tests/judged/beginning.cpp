@@ -30,15 +30,15 @@ ContractOptions options_of(const obey::Plant& plant, const Program& program, std
   options.lease_ms = lease.timeout / std::chrono::milliseconds(1);
   options.expiry_acts = lease.on_expiry != LeaseAction::none;
   options.only_writes_renew = lease.renew == LeaseRenewal::write;
-  options.no_halt = obey::is_kinco(subject) && !obey::is_md(subject);
+  options.no_halt = is_kinco(subject) && !is_md(subject);
   options.both_modes = program.flavour != Flavour::speeds;
-  options.by_gateway = !obey::is_cia402(subject);
-  if (obey::has_positions(subject)) options.rows.insert(row::target_position);
-  if (obey::has_speeds(subject)) options.rows.insert({row::target_velocity, row::jog_velocity});
+  options.by_gateway = !is_cia402(subject);
+  if (has_positions(subject)) options.rows.insert(row::target_position);
+  if (has_speeds(subject)) options.rows.insert({row::target_velocity, row::jog_velocity});
   options.rows.insert(row::mode);
   // It has no ramp of the client's, and comes back to where its stop was asked for.
   constexpr std::int64_t kComesBackMs = 5'000;
-  if (obey::is_keya(subject) && obey::has_positions(subject)) options.settles_ms = kComesBackMs;
+  if (is_keya(subject) && has_positions(subject)) options.settles_ms = kComesBackMs;
   return options;
 }
 
@@ -49,7 +49,7 @@ LeaseRules lease_of(const Program& program, std::uint64_t seed) {
   if (seed % 7 == 3) rules.on_expiry = LeaseAction::halt;
   if (seed % 7 == 5) rules.on_expiry = LeaseAction::disable;
   // A drive that must be told again and again stops when nobody owns it.
-  if (seed % 7 == 6 && obey::is_cia402(program.subject)) rules.on_expiry = LeaseAction::none;
+  if (seed % 7 == 6 && is_cia402(program.subject)) rules.on_expiry = LeaseAction::none;
   if (seed % 5 == 4) rules.renew = LeaseRenewal::write;
   if (seed % 4 == 2) rules.timeout = std::chrono::milliseconds(seed % 8 == 2 ? 700 : 5000);
   return rules;
@@ -58,7 +58,7 @@ LeaseRules lease_of(const Program& program, std::uint64_t seed) {
 // A Keya's moves and an iD286pro's homing have speeds that the gateway does not know.
 std::optional<std::int64_t> velocity_limit(Subject subject, std::uint64_t seed) {
   constexpr std::int64_t kLimit = 160'000;  // no program asks for more
-  const bool known = obey::is_cia402(subject) || (obey::is_keya(subject) && !obey::has_positions(subject));
+  const bool known = is_cia402(subject) || (is_keya(subject) && !has_positions(subject));
   return known && seed % 5 == 3 ? std::optional(kLimit) : std::nullopt;
 }
 
@@ -73,8 +73,8 @@ Beginning begin(obey::Plant& plant, const Program& program, std::uint64_t seed) 
   Beginning out{.options = options_of(plant, program, seed)};
   const auto fitter = plant.connection_from(obey::Plant::kHostOfFitter, obey::plain(plant.listener));
   Rows rows;
-  if (obey::has_speeds(program.subject)) rows[row::jog_velocity] = kJogSpeed;
-  if (obey::has_homing(program.subject)) rows[row::homing_method] = kHomeSwitch;
+  if (has_speeds(program.subject)) rows[row::jog_velocity] = kJogSpeed;
+  if (has_homing(program.subject)) rows[row::homing_method] = kHomeSwitch;
   for (const auto& [offset, value] : rows)
     if (!fitter->row(offset, value).ok()) throw std::runtime_error("row " + std::to_string(offset) + " was refused");
   out.world.accepted = rows;

@@ -40,7 +40,7 @@ void CableWatch::gateway_died() {
 void CableWatch::asked(int request, const Write& write) {
   constexpr std::int64_t kLadder = 0xF, kStartBit = 0x10;
   Credit credit{.request = request};
-  const bool stepper = plant_.subject == obey::Subject::id286pro;  // a run's new speed is a command anew
+  const bool stepper = plant_.subject == Subject::id286pro;  // a run's new speed is a command anew
   if (stepper && half_row(write) == row::target_velocity) ++credit.starts;
   for (std::size_t i = 0; write.coils() && i < write.words.size(); ++i) {
     if (write.words[i] == 0) continue;

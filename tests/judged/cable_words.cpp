@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tests/unit/drive/rtu_truth.hpp"
+#include "tests/stage_drive/rtu_truth.hpp"
 
 namespace axisgate::test::judged {
 namespace {
@@ -104,9 +104,8 @@ void read_controlword(Deeds& deeds, std::uint32_t word) {
 
 }  // namespace
 
-Tongue tongue_of(obey::Subject subject) {
-  using obey::Subject;
-  constexpr std::array<Tongue, obey::kSubjects.size()> kTongues{
+Tongue tongue_of(Subject subject) {
+  constexpr std::array<Tongue, kSubjects.size()> kTongues{
       Tongue::kinco,    Tongue::kinco,   Tongue::rtu,        Tongue::rtu,       Tongue::canopen,    Tongue::canopen,
       Tongue::canopen,  Tongue::rtu,     Tongue::keya_can,   Tongue::canopen,   Tongue::keya_rs232, Tongue::keya_rs485,
       Tongue::keya_can, Tongue::canopen, Tongue::keya_rs232, Tongue::keya_rs485};
@@ -188,15 +187,15 @@ std::optional<std::uint8_t> booted(Tongue tongue, const CableFrame& frame) {
   return boot ? std::optional(static_cast<std::uint8_t>(frame.can->id & kNodeBits)) : std::nullopt;
 }
 
-Deeds deeds_of(obey::Subject subject, const Request& request, bool enabled_before) {
+Deeds deeds_of(Subject subject, const Request& request, bool enabled_before) {
   Deeds deeds{.node = request.node, .enabled_after = enabled_before};
   if (!request.write) return deeds;
   constexpr std::uint32_t kControlword = 0x604000, kItsRegister = 0x310000, kSteppersControl = 323U << 8;
   constexpr std::uint32_t kEnableA = 0x200D01, kEnableB = 0x200D02, kDisableA = 0x200C01;
   constexpr std::uint32_t kCommandA = 0x607A00, kCommandB = 0x608300, kCodeOfEnable = 0x030D20;
-  if (obey::is_cia402(subject)) {
+  if (is_cia402(subject)) {
     if (request.object == kControlword || request.object == kItsRegister) read_controlword(deeds, request.value);
-  } else if (subject == obey::Subject::id286pro) {
+  } else if (subject == Subject::id286pro) {
     // Absolute and relative move, speed, both jogs, a new position, homing (iD286pro 5).
     constexpr std::array<std::uint32_t, 7> kStarts{1, 2, 3, 4, 5, 8, 12};
     deeds.starts = request.object == kSteppersControl && std::ranges::find(kStarts, request.value) != kStarts.end();

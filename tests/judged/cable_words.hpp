@@ -6,13 +6,13 @@
 #include <optional>
 #include <vector>
 
-#include "tests/obey/subject.hpp"
+#include "tests/stage/subject.hpp"
 #include "tests/stage/transcript.hpp"
 
 namespace axisgate::test::judged {
 
 enum class Tongue : std::uint8_t { kinco, rtu, canopen, keya_can, keya_rs232, keya_rs485 };
-[[nodiscard]] Tongue tongue_of(obey::Subject subject);
+[[nodiscard]] Tongue tongue_of(Subject subject);
 [[nodiscard]] constexpr bool on_can(Tongue t) { return t == Tongue::canopen || t == Tongue::keya_can; }
 
 namespace sdo {
@@ -53,6 +53,6 @@ struct Deeds {
   bool enabled_after = false;
 };
 /// `enabled_before`: what the request to this node before it, as far as it told, had left.
-[[nodiscard]] Deeds deeds_of(obey::Subject subject, const Request& request, bool enabled_before);
+[[nodiscard]] Deeds deeds_of(Subject subject, const Request& request, bool enabled_before);
 
 }  // namespace axisgate::test::judged

@@ -34,14 +34,13 @@ struct Case {
 };
 
 std::string name(const Case& tested) {
-  return obey::name(tested.subject) + (tested.weather == Weather::calm ? "Calm" : "Rough") +
-         (tested.leases ? "Leases" : "");
+  return name(tested.subject) + (tested.weather == Weather::calm ? "Calm" : "Rough") + (tested.leases ? "Leases" : "");
 }
 void PrintTo(const Case& tested, std::ostream* out) { *out << name(tested); }
 
 std::vector<Case> cases() {
   std::vector<Case> out;
-  for (const Subject subject : obey::kSubjects)
+  for (const Subject subject : kSubjects)
     for (const Weather weather : {Weather::calm, Weather::rough})
       for (const bool leases : {false, true}) out.push_back({subject, weather, leases});
   return out;

@@ -17,13 +17,13 @@ constexpr int kShare = 50;
 Neighbours::Neighbours(obey::Plant& plant, bool neighbour, bool other_bus, Violated violated)
     : plant_(plant), violated_(std::move(violated)), other_bus_(other_bus) {
   AxisNumber axis = 0;
-  for (const obey::MotorPlace& place : obey::motors(plant.subject, neighbour))
+  for (const MotorPlace& place : motors(plant.subject, neighbour))
     if (++axis > 1) motors_.push_back({axis, place, truth(plant.stage, plant.subject, place).position});
 }
 
 void Neighbours::look(bool line_is_whole) {
   for (const Motor& motor : motors_) {
-    const obey::Truth truth = obey::truth(plant_.stage, plant_.subject, motor.place);
+    const Truth truth = test::truth(plant_.stage, plant_.subject, motor.place);
     const std::string name = "the motor of axis " + std::to_string(motor.axis);
     if (truth.velocity != 0 || truth.position != motor.position) violated_(name + " moves, and nobody commands it");
     if (truth.enabled.value_or(false)) violated_(name + " is enabled, and nobody commands it");

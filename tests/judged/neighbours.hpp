@@ -24,7 +24,7 @@ class Neighbours {
  private:
   struct Motor {
     AxisNumber axis;
-    obey::MotorPlace place;
+    MotorPlace place;
     std::int64_t position;
     Instant looked_at{};
     Instant mute_at{};     ///< until then axis 1's drive was heard

@@ -51,7 +51,7 @@ Nemesis Nemesis::common(const Nemesis& other) const {
   return out;
 }
 
-Nemesis draw_nemesis(obey::Subject subject, std::uint64_t seed) {
+Nemesis draw_nemesis(Subject subject, std::uint64_t seed) {
   constexpr std::array kRates{0.02, 0.1, 0.3, 1.0};  // the last one: a drive that always does it
   constexpr std::array<std::int64_t, 5> kLateMs{20, 60, 150, 400, 900};
   constexpr std::uint64_t kApart = 64, kKinds = 5;

@@ -35,7 +35,7 @@ struct Nemesis {
 };
 
 /// Of the seed alone.
-[[nodiscard]] Nemesis draw_nemesis(obey::Subject subject, std::uint64_t seed);
+[[nodiscard]] Nemesis draw_nemesis(Subject subject, std::uint64_t seed);
 [[nodiscard]] std::string text(const Nemesis& nemesis);
 
 /// So often each has struck, by steps and by the nemesis.

@@ -49,7 +49,7 @@ PlantOptions Play::options_of(const Program& program, std::uint64_t seed) {
 }
 
 std::string Play::stamp() {
-  const obey::Truth truth = plant_.motor();
+  const Truth truth = plant_.motor();
   return std::to_string(now_ms()) + " ms, at " + std::to_string(truth.position) +
          (truth.velocity != 0 ? " turning at " + std::to_string(truth.velocity) : "") +
          (truth.enabled ? *truth.enabled ? "" : " (off)" : "") + (truth.faulted ? " (faulted)" : "") +
@@ -70,7 +70,7 @@ void Play::begin() {
   beginning.options.strengths = kStrengths.at(seed_ % kStrengths.size());
   writers_.emplace(program_, plant_.profile_rows(), beginning.parameters, beginning.commands);
   began_ = plant_.stage.runtime().now();
-  const obey::Truth truth = plant_.motor();
+  const Truth truth = plant_.motor();
   contract_.emplace(beginning.options, beginning.world);
   const Sight sight{0, truth.position, truth.velocity, truth.enabled, truth.faulted};
   seen_.add(sight);
@@ -79,7 +79,7 @@ void Play::begin() {
 
 Outcome Play::run() {
   begin();
-  if (program_.flavour != Flavour::both && obey::has_positions(program_.subject) && obey::has_speeds(program_.subject))
+  if (program_.flavour != Flavour::both && has_positions(program_.subject) && has_speeds(program_.subject))
     send(0, one(row::mode, program_.flavour == Flavour::moves ? 1 : kVelocityMode), false);
   for (const Step& step : program_.steps) {
     if (over()) break;
@@ -105,7 +105,7 @@ Outcome Play::run() {
 }
 
 void Play::look() {
-  const obey::Truth truth = plant_.motor();
+  const Truth truth = plant_.motor();
   const Sight sight{now_ms(), truth.position, truth.velocity, truth.enabled, truth.faulted};
   seen_.add(sight);
   if (!contract_->see(sight))

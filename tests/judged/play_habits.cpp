@@ -39,7 +39,7 @@ void Play::send_crossed(const Step& step) {
 void Play::hold_button(const Step& step) {
   constexpr std::int64_t kAgainMs = 200;
   constexpr std::uint8_t kOtherToo = 3, kBothAtOnce = 4;  // of Step::id
-  if (!obey::has_speeds(program_.subject)) return;
+  if (!has_speeds(program_.subject)) return;
   const std::uint16_t number = step.number % 2 == 0 ? coil::jog_forward : coil::jog_reverse;
   const std::uint16_t other = step.number % 2 == 0 ? coil::jog_reverse : coil::jog_forward;
   const bool both = step.id == kBothAtOnce;
@@ -84,7 +84,7 @@ void Play::use_tool(const Step& step) {
   constexpr std::array<std::int64_t, 4> kBetween{0, 50, 300, 1200};
   constexpr std::uint8_t kEachAnew = 3;  // of Step::id
   constexpr std::uint8_t kHomes = 20;    // of Step::number, and more
-  if (step.number >= kHomes && obey::has_homing(program_.subject)) return home_again(step);
+  if (step.number >= kHomes && has_homing(program_.subject)) return home_again(step);
   const auto anew = [&] {
     if (step.id >= kEachAnew) replace(step.client, false);
   };
@@ -163,7 +163,7 @@ void Play::take_away(const Step& step) {
 void Play::press_out_of_sight(const Step& step) {
   constexpr std::uint8_t kStarted = 2, kHeld = 4;  // of Step::id
   const std::uint16_t button = step.number % 2 == 0 ? coil::jog_forward : coil::jog_reverse;
-  const bool jogs = step.id == kHeld && obey::has_speeds(program_.subject);
+  const bool jogs = step.id == kHeld && has_speeds(program_.subject);
   if (jogs) {
     send(step.client, one_coil(button, false), false);
     if (step.speed % 2 == 1) return jog_unanswered(step, button);
@@ -277,7 +277,7 @@ void Play::kill_dds(const Step& step) {
 void Play::jog_by_dds(const Step& step) {
   constexpr std::int64_t kAgainMs = 200;
   constexpr std::uint8_t kOtherToo = 3;  // of Step::id
-  if (!obey::has_speeds(program_.subject)) return;
+  if (!has_speeds(program_.subject)) return;
   const std::size_t client = kModbus + step.client;
   const auto say = [&](std::int64_t command) {
     Rows rows{{row::command, command}};
@@ -309,7 +309,7 @@ void Play::write_halves(const Step& step) {
   half(whole.first, step.on);
   pass(kBetween.at(step.id));
   if (step.number % 4 == 1) send(step.client, one(row::heartbeat, step.number), step.at_once);
-  const bool both = obey::has_positions(program_.subject) && obey::has_speeds(program_.subject);
+  const bool both = has_positions(program_.subject) && has_speeds(program_.subject);
   if (step.number % 4 == 2 && both)
     half(whole.first == row::target_position ? row::target_velocity : row::target_position, !step.on);
   half(whole.first, !step.on);

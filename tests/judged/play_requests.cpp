@@ -197,7 +197,7 @@ Shown Play::shown_by(std::vector<std::uint16_t> words) const {
   return {.words = std::move(words),
           .low_word_first = plant_.listener.low_word_first,
           .float_numbers = plant_.listener.float_numbers,
-          .statusword_tells = obey::is_cia402(program_.subject)};
+          .statusword_tells = is_cia402(program_.subject)};
 }
 
 // 3.2: what is shown as valid was true at its age.
@@ -227,7 +227,7 @@ void Play::read(std::size_t client) {
 // 3.1: 43/13 reads any object of any drive.
 void Play::look_up(std::size_t client) {
   if (over() || !clients_.connected(client)) return;
-  const obey::ObjectPlace place = obey::readable_object(program_.subject);
+  const ObjectPlace place = readable_object(program_.subject);
   obey::Client& modbus = clients_.modbus(client);
   const bool well = !contract_->in_trouble();
   contract_->asked(client);
@@ -248,7 +248,7 @@ void Play::look_up(std::size_t client) {
     if (!expected.contains(answer->exception)) violated("an object was not told");
     return;
   }
-  if (!obey::is_cia402(program_.subject)) return;
+  if (!is_cia402(program_.subject)) return;
   constexpr int kStateBits = 0x6F, kOperationEnabled = 0x27;
   const bool enabled = answer->words.size() == 2 && (answer->words[0] & kStateBits) == kOperationEnabled;
   if (answer->words.size() != 2 || !seen_.was_enabled(enabled, now_ms() - asked_ms))

@@ -63,8 +63,8 @@ constexpr std::array<const char*, 45> kDeeds{
 }  // namespace
 
 Flavour flavour_of(Subject subject, std::uint64_t seed) {
-  if (!obey::has_positions(subject)) return Flavour::speeds;
-  if (!obey::has_speeds(subject)) return Flavour::moves;
+  if (!has_positions(subject)) return Flavour::speeds;
+  if (!has_speeds(subject)) return Flavour::moves;
   return static_cast<Flavour>(seed % 3);
 }
 

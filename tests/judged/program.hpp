@@ -11,11 +11,9 @@
 
 #include "tests/judged/nemesis.hpp"
 #include "tests/model/write.hpp"
-#include "tests/obey/subject.hpp"
+#include "tests/stage/subject.hpp"
 
 namespace axisgate::test::judged {
-
-using obey::Subject;
 
 /// What a run is about: a raw mode belongs to moves or to speeds.
 enum class Flavour : std::uint8_t { moves, speeds, both };

@@ -13,7 +13,7 @@
 
 #include "tests/judged/cable_words.hpp"
 #include "tests/obey/plant.hpp"
-#include "tests/unit/drive/rtu_truth.hpp"
+#include "tests/stage_drive/rtu_truth.hpp"
 
 namespace axisgate::test::judged {
 

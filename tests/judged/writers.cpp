@@ -51,8 +51,8 @@ Write Writers::registers(const Step& step) {
   const auto pick = [&](std::uint16_t offset, const auto& list, std::uint8_t index, bool has) {
     if (index < list.size() || !writer.rows.contains(offset)) writer.rows[offset] = has ? list[index % list.size()] : 0;
   };
-  pick(row::target_position, kPositions, step.position, obey::has_positions(subject_));
-  pick(row::target_velocity, kSpeeds, step.speed, obey::has_speeds(subject_));
+  pick(row::target_position, kPositions, step.position, has_positions(subject_));
+  pick(row::target_velocity, kSpeeds, step.speed, has_speeds(subject_));
   Rows rows = writer.rows;
   if (step.client == 0) rows.insert(profile_.begin(), profile_.end());
   if (step.number % 2 == 0 && flavour_ != Flavour::both)
@@ -117,9 +117,9 @@ Write Writers::write_of(const Step& step) {
       Rows rows;
       rows[row::command] = start_command(step);
       if (step.number == kReleases && leases_) rows[row::command] = kRelease;
-      if (step.position < kPositions.size() && obey::has_positions(subject_))
+      if (step.position < kPositions.size() && has_positions(subject_))
         rows[row::target_position] = kPositions[step.position];
-      if (step.speed < kSpeeds.size() && obey::has_speeds(subject_)) rows[row::target_velocity] = kSpeeds[step.speed];
+      if (step.speed < kSpeeds.size() && has_speeds(subject_)) rows[row::target_velocity] = kSpeeds[step.speed];
       if (step.length == kWithMode && flavour_ != Flavour::both)
         rows[row::mode] = flavour_ == Flavour::moves ? kPositionMode : kVelocityMode;
       if (rows[row::command] == kSetPosition)
@@ -130,7 +130,7 @@ Write Writers::write_of(const Step& step) {
     }
     case Deed::object: {
       constexpr std::uint16_t kLast = 85;
-      const auto target = obey::target_object(subject_);
+      const auto target = target_object(subject_);
       if (!target) return one(row::command, kHalt);
       return block(row::object_request, kLast,
                    {{row::object_request, 2},
@@ -159,7 +159,7 @@ Write Writers::write_of(const Step& step) {
       if (flavour_ == Flavour::speeds && (number == coil::start_absolute || number == coil::start_relative))
         number = coil::run_velocity;
       if (flavour_ == Flavour::moves && number == coil::run_velocity) number = coil::start_absolute;
-      if (step.number == kHomeCoil && obey::has_homing(subject_)) number = coil::home;
+      if (step.number == kHomeCoil && has_homing(subject_)) number = coil::home;
       return one_coil(number, step.on, step.number >= 16 ? fc::write_coils : fc::write_coil);
     }
     case Deed::start_coils: {

@@ -37,23 +37,7 @@ class Causes : public testing::TestWithParam<Subject> {
     plant_.emplace(GetParam());
     plant_->ready();
   }
-  /// The cause is gone again at once; the fault stays.
-  void trip(const Cause& cause) {
-    GatewayStage& stage = plant_->stage;
-    if (is_keya(GetParam())) {
-      stage.keya(0).inject_fault(simulated::KeyaMotorName::a, cause.as_injected);
-      stage.keya(0).clear_fault_cause(simulated::KeyaMotorName::a, cause.as_injected);
-    } else if (GetParam() == Subject::id286pro) {
-      stage.id286pro(0).inject_fault(cause.as_injected);
-      stage.id286pro(0).clear_fault_cause();
-    } else if (GetParam() == Subject::leadshine) {
-      stage.leadshine(0).inject_fault(cause.as_injected);
-      stage.leadshine(0).clear_fault_cause();
-    } else {
-      stage.drive(0).inject_fault(1, cause.as_injected);
-      stage.drive(0).clear_fault_cause(1, cause.as_injected);
-    }
-  }
+  void trip(const Cause& cause) { test::trip(plant_->stage, GetParam(), cause.as_injected); }
   const AxisImage& axis() { return plant_->stage.axis(1); }
   /// Runs until the fault is shown, and looks at every step on the way. Tells what was wrong in one; empty: nothing.
   std::string wrong_until_shown(Duration limit = 3s) {

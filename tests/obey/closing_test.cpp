@@ -16,9 +16,7 @@ class Closing : public testing::TestWithParam<Subject> {
  protected:
   void start_endless() {
     plant_.ready();
-    ASSERT_EQ(plant_.set_endless(plant_.a), kOk);
-    ASSERT_EQ(plant_.a.command(plant_.endless_command()), kOk);
-    ASSERT_TRUE(plant_.turns_within(1s));
+    ASSERT_TRUE(plant_.start_endless(plant_.a));
   }
   void begin_closing() {
     closed_ = false;
@@ -189,14 +187,7 @@ TEST_P(Closing, WhatIsEnabledMeanwhileStillMissesTheGateway) {
   if (!is_cia402(GetParam()) || !minds_silence(GetParam())) return;
   plant_.ready_but_disabled();
   begin_closing();
-  auto& node = plant_.stage.can_node(0);
-  constexpr simulated::ObjectKey kControlword{0x6040, 0};
-  const auto now = [&] { return plant_.stage.runtime().now().time_since_epoch(); };
-  const simulated::ObjectKey entry =
-      is_md(GetParam()) ? simulated::ObjectKey{0x6007, 0} : simulated::ObjectKey{0x1016, 1};
-  const auto armed_as = node.peek(entry, now());
-  ASSERT_TRUE(plant_.stage.run_until([&] { return node.peek(entry, now()) != armed_as; }, 1s));
-  for (const std::int64_t word : {6, 7, 15}) ASSERT_EQ(node.poke(kControlword, word, now()), 0U);
+  ASSERT_TRUE(plant_.is_enabled_by_hand_once_disarmed());
   ASSERT_TRUE(closes());
   EXPECT_TRUE(plant_.logged("it will stop as if the gateway had died"));
   plant_.crash_gateway();

@@ -15,16 +15,6 @@ using namespace std::chrono_literals;
 class Coils : public testing::TestWithParam<Subject> {
  protected:
   Coils() { plant_.ready(); }
-  /// Of an iD286pro the gateway's gate, for its bus cannot disable it.
-  [[nodiscard]] bool enabled() {
-    return plant_.motor().enabled.value_or((plant_.a.word(shown::statusword) & 0x6F) == 0x27);
-  }
-  /// The one that starts an endless motion: a level where the drive has speeds.
-  void run_by_command(Client& client) {
-    ASSERT_EQ(plant_.set_endless(client), kOk);
-    ASSERT_EQ(client.command(plant_.endless_command()), kOk);
-    ASSERT_TRUE(plant_.keeps_turning());
-  }
   Plant plant_{GetParam()};
   Client& a_ = plant_.a;
   Client& b_ = plant_.b;
@@ -32,9 +22,9 @@ class Coils : public testing::TestWithParam<Subject> {
 
 TEST_P(Coils, EnableOnAnEmptyMemoryDoesSoWhereNothingIsLatched) {
   ASSERT_EQ(b_.coil(coil::enable, false), kOk);
-  ASSERT_FALSE(enabled());
+  ASSERT_FALSE(plant_.enabled());
   EXPECT_EQ(a_.coil(coil::enable, true), kOk);
-  EXPECT_TRUE(enabled());
+  EXPECT_TRUE(plant_.enabled());
 }
 
 TEST_P(Coils, EnableOnAnEmptyMemoryDoesNotClearAStopLatch) {
@@ -45,39 +35,39 @@ TEST_P(Coils, EnableOnAnEmptyMemoryDoesNotClearAStopLatch) {
   EXPECT_EQ(a_.word(shown::axis_state), kStopLatched);
   EXPECT_EQ(a_.coil(coil::enable, false), kOk);
   EXPECT_EQ(a_.coil(coil::enable, true), kOk);
-  EXPECT_TRUE(enabled());
+  EXPECT_TRUE(plant_.enabled());
 }
 
 TEST_P(Coils, EnableHeldOverAStopAsksForNothing) {
   ASSERT_EQ(a_.coil(coil::enable, false), kOk);
   ASSERT_EQ(a_.coil(coil::enable, true), kOk);
   ASSERT_EQ(b_.coil(coil::enable, false), kOk);
-  ASSERT_FALSE(enabled());
+  ASSERT_FALSE(plant_.enabled());
   plant_.run(1500ms);  // rearm_ms never applies to levels
   EXPECT_EQ(a_.coil(coil::enable, true), kNotNow);
   EXPECT_EQ(a_.result(), kNotNew);
-  EXPECT_FALSE(enabled());
+  EXPECT_FALSE(plant_.enabled());
 }
 
 TEST_P(Coils, EnableInABlockOnAnEmptyMemoryIsOnlyRemembered) {
   ASSERT_EQ(b_.coil(coil::enable, false), kOk);
   EXPECT_EQ(a_.write(coil_block(coil::enable, {1, 0})), kOk);
-  EXPECT_FALSE(enabled());
+  EXPECT_FALSE(plant_.enabled());
   EXPECT_EQ(a_.result(), kNotNew);
 }
 
 TEST_P(Coils, EnableZeroAloneAlwaysDisables) {
-  ASSERT_TRUE(enabled());
+  ASSERT_TRUE(plant_.enabled());
   EXPECT_EQ(b_.coil(coil::enable, false), kOk);
-  EXPECT_FALSE(enabled());
+  EXPECT_FALSE(plant_.enabled());
   ASSERT_EQ(a_.command(kEnable), kOk);
   EXPECT_EQ(b_.coil(coil::enable, false), kOk);
-  EXPECT_FALSE(enabled());
+  EXPECT_FALSE(plant_.enabled());
 }
 
 TEST_P(Coils, EnableZeroInABlockOnAnEmptyMemoryIsOnlyRemembered) {
   EXPECT_EQ(b_.write(coil_block(coil::enable, {0, 0})), kOk);
-  EXPECT_TRUE(enabled());
+  EXPECT_TRUE(plant_.enabled());
 }
 
 class Levels : public testing::TestWithParam<Subject> {

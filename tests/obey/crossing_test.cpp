@@ -74,9 +74,7 @@ TEST_P(Crossing, AStartBetweenTwoHaltsEndsWithTheSecond) {
       SCOPED_TRACE(std::to_string(first / 1ms) + " ms, " + std::to_string(second / 1ms) + " ms");
       ready();
       sent_.clear();
-      ASSERT_EQ(plant_->set_endless(plant_->a), kOk);
-      ASSERT_EQ(plant_->a.command(plant_->endless_command()), kOk);
-      ASSERT_TRUE(plant_->turns_within(1s));
+      ASSERT_TRUE(plant_->start_endless(plant_->a));
       send(plant_->b, one(row::command, kHalt));
       plant_->run(first);
       send(plant_->a, one(row::command, 0));
@@ -264,9 +262,7 @@ TEST_P(CrossingWithDisable, AnEnableBehindADisablingControlwordIsDoneOrNotAnswer
 TEST_P(CrossingLadder, TheHaltBitHaltsWhateverTheDriveKnowsOfIt) {
   ready();
   Client& a = plant_->a;
-  ASSERT_EQ(plant_->set_endless(a), kOk);
-  ASSERT_EQ(a.command(plant_->endless_command()), kOk);
-  ASSERT_TRUE(plant_->turns_within(1s));
+  ASSERT_TRUE(plant_->start_endless(a));
   EXPECT_EQ(a.row(row::controlword, 0x010F), kOk);
   EXPECT_TRUE(plant_->comes_to_stand()) << plant_->velocity();
   EXPECT_NE(a.word(shown::motion_state), 1) << "it is over";

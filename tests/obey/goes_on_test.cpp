@@ -27,11 +27,6 @@ class GoesOn : public testing::TestWithParam<Subject> {
     ASSERT_EQ(plant_->a.coil(coil::jog_forward, true), kOk);
     ASSERT_TRUE(plant_->reaches(kButtonSpeed, 400ms)) << plant_->velocity();
   }
-  void start_endless() {
-    ASSERT_EQ(plant_->set_endless(plant_->a), kOk);
-    ASSERT_EQ(plant_->a.command(plant_->endless_command()), kOk);
-    ASSERT_TRUE(plant_->turns_within(1s));
-  }
   [[nodiscard]] bool comes_back(Client& client) {
     constexpr std::uint16_t kLinkState = 18, kOnline = 2;
     return plant_->stage.run_until([&] { return client.word(kLinkState) == kOnline; }, 10s);
@@ -191,7 +186,7 @@ TEST_P(GoesOn, StartsAreAcceptedOfWhatShowsEnabled) {
   for (const bool gateway_too : {false, true}) {
     SCOPED_TRACE(gateway_too ? "a new gateway" : "the link");
     ready();
-    start_endless();
+    ASSERT_TRUE(plant_->start_endless(plant_->a));
     gateway_too ? lose_gateway() : lose_link();
     ASSERT_TRUE(shows_enabled());
     EXPECT_EQ(plant_->set_endless(plant_->a), kOk);
@@ -205,7 +200,7 @@ TEST_P(GoesOn, StartsAreAcceptedOfWhatShowsEnabled) {
 
 TEST_P(GoesOn, AHaltMakesNoStartAcceptable) {
   ready();
-  start_endless();
+  ASSERT_TRUE(plant_->start_endless(plant_->a));
   lose_link();
   const bool before = plant_->b.command(plant_->endless_command()).ok();
   ASSERT_EQ(plant_->a.command(kHalt), kOk);

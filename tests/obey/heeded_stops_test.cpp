@@ -48,9 +48,7 @@ class Unheeded : public testing::TestWithParam<Subject> {
  protected:
   void runs() {
     plant_.ready();
-    ASSERT_EQ(plant_.set_endless(a_), kOk);
-    ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
-    ASSERT_TRUE(plant_.keeps_turning());
+    ASSERT_TRUE(plant_.start_endless(a_));
   }
   void is_owed_until_it_is_heeded() {
     plant_.run(5s);

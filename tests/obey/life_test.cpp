@@ -12,15 +12,10 @@ using namespace std::chrono_literals;
 
 class Life : public testing::TestWithParam<Subject> {
  protected:
-  void start(Plant& plant, Client& client) {
-    ASSERT_EQ(plant.set_endless(client), kOk);
-    ASSERT_EQ(client.command(plant.endless_command()), kOk);
-    ASSERT_TRUE(plant.turns_within(1s));
-  }
   /// Its motor runs, its connection ends, and there is another one of it.
   void comes_back(Plant& plant) {
     plant.ready();
-    start(plant, plant.a);
+    ASSERT_TRUE(plant.start_endless(plant.a));
     plant.a.disconnect();
     plant.run(800ms);
     plant.a.connect();
@@ -68,7 +63,7 @@ TEST_P(Life, IsShownByWhatAsksWhileTheAxisIsDisabled) {
 TEST_P(Life, IsShownByReadsWhileTheAxisIsEnabled) {
   Plant plant(GetParam(), with_leases());
   plant.ready();
-  start(plant, plant.a);
+  ASSERT_TRUE(plant.start_endless(plant.a));
   for (int i = 0; i < 30; ++i) {
     (void)plant.a.word(shown::position);
     plant.run(100ms);
@@ -80,7 +75,7 @@ TEST_P(Life, IsShownByReadsWhileTheAxisIsEnabled) {
 TEST_P(Life, OfAnAddressIsNotShownByReads) {
   Plant plant(GetParam(), with_leases(true));
   plant.ready();
-  start(plant, plant.a);
+  ASSERT_TRUE(plant.start_endless(plant.a));
   const auto monitor = plant.connection_from(Plant::kHostOfA);
   for (int i = 0; i < 40; ++i) {
     (void)monitor->word(shown::position);
@@ -94,7 +89,7 @@ TEST_P(Life, OfAnAddressIsNotShownByObjectsThatAreRead) {
   constexpr std::uint16_t kDeviceName = 0x1008;
   Plant plant(GetParam(), with_leases(true));
   plant.ready();
-  start(plant, plant.a);
+  ASSERT_TRUE(plant.start_endless(plant.a));
   for (int i = 0; i < 5; ++i) {
     plant.run(500ms);
     plant.a.ask_for_object(kDeviceName, 0);
@@ -105,7 +100,7 @@ TEST_P(Life, OfAnAddressIsNotShownByObjectsThatAreRead) {
 TEST_P(Life, OfAnAddressIsShownByWrites) {
   Plant plant(GetParam(), with_leases(true));
   plant.ready();
-  start(plant, plant.a);
+  ASSERT_TRUE(plant.start_endless(plant.a));
   plant.scan(plant.a, scanned(plant), 4s);
   EXPECT_TRUE(plant.velocity() != 0);
   EXPECT_EQ(plant.a.word(shown::owner), kMe);
@@ -114,7 +109,7 @@ TEST_P(Life, OfAnAddressIsShownByWrites) {
 TEST_P(Life, OfASilentOwnerIsNotEndedByAnotherConnectionOfItsAddress) {
   Plant plant(GetParam(), with_leases());
   plant.ready();
-  start(plant, plant.a);
+  ASSERT_TRUE(plant.start_endless(plant.a));
   const auto other = plant.connection_from(Plant::kHostOfA);
   plant.run(1500ms);  // more than half of the timeout
   EXPECT_EQ(plant.set_endless(*other), kNotNow);
@@ -153,7 +148,7 @@ TEST_P(Life, OfAnOrphanIsNotTakenByAProgramOfItsAddressThatWasThereBefore) {
   const auto before = plant.connection_from(Plant::kHostOfA);
   before->connect();
   plant.run(100ms);
-  start(plant, plant.a);
+  ASSERT_TRUE(plant.start_endless(plant.a));
   plant.a.disconnect();
   plant.run(300ms);
   EXPECT_EQ(before->row(row::heartbeat, 1), kOk) << "what asks for nothing is refused to nobody";
@@ -168,7 +163,7 @@ TEST_P(Life, OfAnOrphanIsNotTakenByAProgramOfItsAddressThatWasThereBefore) {
 TEST_P(Life, OfAnOrphanIsNotTakenByTheGatewaysHeartbeat) {
   Plant plant(GetParam(), with_leases());
   plant.ready();
-  start(plant, plant.a);
+  ASSERT_TRUE(plant.start_endless(plant.a));
   plant.a.disconnect();
   const auto monitor = plant.connection_from(Plant::kHostOfA);
   monitor->connect();
@@ -193,7 +188,7 @@ TEST_P(Life, OfAnOrphanGoesOnWithTheFirstBlockOfItsReturnThoughThatIsOnlyRemembe
 TEST_P(Life, OfAnOrphanIsNotTakenByAnotherAddress) {
   Plant plant(GetParam(), with_leases());
   plant.ready();
-  start(plant, plant.a);
+  ASSERT_TRUE(plant.start_endless(plant.a));
   plant.a.disconnect();
   plant.run(500ms);
   EXPECT_EQ(plant.set_endless(plant.b), kNotNow);
@@ -205,7 +200,7 @@ TEST_P(Life, OfAnOrphanIsNotTakenByAnotherAddress) {
 TEST_P(Life, OfAnotherConnectionOfTheAddressEndsByCommandFourteenWithoutRank) {
   Plant plant(GetParam(), with_leases());
   plant.ready();
-  start(plant, plant.a);
+  ASSERT_TRUE(plant.start_endless(plant.a));
   const auto other = plant.connection_from(Plant::kHostOfA);
   EXPECT_EQ(other->command(kTakeOver), kOk);
   EXPECT_EQ(other->word(shown::owner), kMe);
@@ -216,7 +211,7 @@ TEST_P(Life, OfAnotherConnectionOfTheAddressEndsByCommandFourteenWithoutRank) {
 TEST_P(Life, OfAnotherAddressDoesNotEndByCommandFourteenWithoutRank) {
   Plant plant(GetParam(), with_leases());
   plant.ready();
-  start(plant, plant.a);
+  ASSERT_TRUE(plant.start_endless(plant.a));
   EXPECT_EQ(plant.b.command(kTakeOver), kNotNow);
   EXPECT_EQ(plant.b.word(shown::owner), kAnother);
   EXPECT_NE(plant.velocity(), 0);

@@ -124,9 +124,7 @@ class Disobeyed : public NotReached {
  protected:
   void says_so_and_is_owed_on(std::int64_t stop) {
     plant_.ready();
-    ASSERT_EQ(plant_.set_endless(a_), kOk);
-    ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
-    ASSERT_TRUE(plant_.keeps_turning());
+    ASSERT_TRUE(plant_.start_endless(a_));
     numb(plant_.stage, GetParam(), true);
     fails(stop);
     plant_.run(8s);
@@ -189,9 +187,7 @@ class Ignored : public NotReached {
  protected:
   void runs() {
     plant_.ready();
-    ASSERT_EQ(plant_.set_endless(a_), kOk);
-    ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
-    ASSERT_TRUE(plant_.keeps_turning());
+    ASSERT_TRUE(plant_.start_endless(a_));
   }
   /// Told 11, and owed on until the drive obeys.
   void says_so_and_is_owed_on(const Write& stop) {

@@ -21,6 +21,16 @@ DriveFault fault_of(Strike how) {
 
 }  // namespace
 
+bool Plant::is_enabled_by_hand_once_disarmed() {
+  auto& node = stage.can_node(0);
+  const auto now = [this] { return stage.runtime().now().time_since_epoch(); };
+  const simulated::ObjectKey entry = is_md(subject) ? simulated::ObjectKey{0x6007, 0} : simulated::ObjectKey{0x1016, 1};
+  const auto armed_as = node.peek(entry, now());
+  bool done = stage.run_until([&] { return node.peek(entry, now()) != armed_as; }, std::chrono::seconds(1));
+  for (const std::int64_t word : {6, 7, 15}) done = done && node.poke({0x6040, 0}, word, now()) == 0U;
+  return done;
+}
+
 void Plant::other_master_sends(std::uint32_t id, const std::vector<std::uint8_t>& bytes) {
   auto& link = stage.can_link(0);
   simulated::BusFrame frame;

@@ -32,9 +32,7 @@ const std::vector<Silence> kSilences{
 
 void turn(Plant& plant) {
   plant.ready();
-  ASSERT_EQ(plant.set_endless(plant.a), kOk);
-  ASSERT_EQ(plant.a.command(plant.endless_command()), kOk);
-  ASSERT_TRUE(plant.turns_within(1s));
+  ASSERT_TRUE(plant.start_endless(plant.a));
 }
 
 bool comes_back(Plant& plant) {

@@ -107,6 +107,15 @@ Answer Plant::set_endless(Client& client) {
   return client.row(target.begin()->first, target.begin()->second);
 }
 
+bool Plant::start_endless(Client& client) {
+  return set_endless(client).ok() && client.command(endless_command()).ok() && turns_within(std::chrono::seconds(1));
+}
+
+bool Plant::enabled() {
+  constexpr std::uint16_t kEnabled = 0x27, kStateBits = 0x6F;
+  return motor().enabled.value_or((fitter_.word(shown::statusword) & kStateBits) == kEnabled);
+}
+
 bool Plant::turns_within(Duration limit) {
   return stage.run_until([&] { return velocity() != 0; }, limit);
 }

@@ -11,7 +11,7 @@
 
 #include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
 #include "tests/obey/client.hpp"
-#include "tests/obey/subject.hpp"
+#include "tests/stage/subject.hpp"
 
 namespace axisgate::test::obey {
 
@@ -95,6 +95,8 @@ class Plant {
   void restart_drive(Duration off = {});
   /// A fault whose cause is gone already.
   void trip_drive();
+  /// Somebody enables the drive at its keypad as soon as it does not watch the gateway any more. On CANopen.
+  bool is_enabled_by_hand_once_disarmed();
   /// A frame of another master on the CAN bus, with a standard identifier and at most 8 bytes.
   void other_master_sends(std::uint32_t id, const std::vector<std::uint8_t>& bytes);
   /// The gateway's process dies: nothing more is sent, all connections are gone. Cables, drives and motor live on.
@@ -117,6 +119,8 @@ class Plant {
   [[nodiscard]] Truth motor() { return truth(stage, subject); }
   [[nodiscard]] std::int64_t position() { return motor().position; }
   [[nodiscard]] std::int64_t velocity() { return motor().velocity; }
+  /// Of an iD286pro, whose bus cannot disable it, the gateway's gate.
+  [[nodiscard]] bool enabled();
   [[nodiscard]] bool stands();  ///< and has for 100 ms
   /// Waits until it stands, then tells where. `limit`: of the wait.
   std::int64_t comes_to_rest_at(Duration limit = std::chrono::seconds(30));
@@ -132,6 +136,8 @@ class Plant {
   [[nodiscard]] std::int64_t endless_command() const { return has_speeds(subject) ? 8 : 6; }
   [[nodiscard]] Rows endless_target() const;
   Answer set_endless(Client& client);
+  /// Its target, its command, and it turns.
+  bool start_endless(Client& client);
   /// The rows 48 to 52 that the drive has and ready() set: for blocks that cover them.
   [[nodiscard]] Rows profile_rows();
 

@@ -122,12 +122,6 @@ class Mismatch : public testing::TestWithParam<Lacking> {
              : stage_is_serial(GetParam().subject) ? stage.link(0).sent.size()
                                                    : stage.rtu_link(0).sent.size();
   }
-  void start_again() {
-    plant_->crash_gateway();
-    plant_->run(1500ms);
-    plant_->start_gateway();
-    plant_->a.connect();
-  }
   std::optional<Plant> plant_;
   std::size_t begun_ = 0;
 };

@@ -15,34 +15,97 @@ using namespace std::chrono_literals;
 
 constexpr std::int64_t kTorqueMode = 4, kSomeTorque = 200;  // 20 % of rated
 
+/// What a raw mode follows: a row, and two of its values.
+struct Followed {
+  std::int64_t mode;
+  std::uint16_t row, last;
+  std::int64_t value, other;
+};
+constexpr Followed kByVelocity{kVelocityMode, row::target_velocity, row::target_velocity + 1, kSpeed, kOtherSpeed};
+constexpr Followed kByTorque{kTorqueMode, row::target_torque, row::target_torque, kSomeTorque, kSomeTorque};
+
+class RawMode : public testing::TestWithParam<std::tuple<Subject, Followed>> {
+ protected:
+  RawMode() {
+    plant_.ready_but_disabled();
+    // Not every drive has it, and without it a torque ends at the drive's own.
+    if (of_.mode == kTorqueMode) plant_.a.row(row::max_velocity, 300'000);
+  }
+  Answer target(std::int64_t value) { return plant_.a.row(of_.row, value); }
+  /// A scanner's block from 40 on, three times.
+  void scan(std::int64_t word, std::int64_t value) {
+    const Rows rows{{row::controlword, word}, {row::mode, of_.mode}, {of_.row, value}};
+    plant_.scan(plant_.a, block(row::controlword, of_.last, rows), 150ms);
+  }
+  bool follows(std::int64_t value) {
+    if (value == 0) return plant_.comes_to_stand(5s);
+    return of_.mode == kTorqueMode ? plant_.keeps_turning() : plant_.reaches(value);
+  }
+  const Followed of_ = std::get<Followed>(GetParam());
+  Plant plant_{std::get<Subject>(GetParam())};
+};
+
+TEST_P(RawMode, FollowsItsTargetAndStandsAtZero) {
+  ASSERT_EQ(plant_.a.row(row::mode, of_.mode), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, 6), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, 7), kOk);
+  ASSERT_EQ(target(of_.value), kOk);
+  ASSERT_EQ(plant_.a.row(row::controlword, 15), kOk);
+  ASSERT_TRUE(follows(of_.value)) << plant_.velocity();
+  EXPECT_EQ(target(0), kOk);
+  EXPECT_TRUE(follows(0)) << plant_.velocity();
+  EXPECT_EQ(of_.last == of_.row ? plant_.a.word(of_.row) : plant_.a.wide(of_.row), 0);
+  EXPECT_EQ(target(of_.other), kOk);
+  EXPECT_TRUE(follows(of_.other)) << plant_.velocity();
+}
+
+TEST_P(RawMode, EnabledWithTargetZeroStartsWithTheNextTarget) {
+  ASSERT_EQ(plant_.a.row(row::mode, of_.mode), kOk);
+  ASSERT_EQ(target(0), kOk);
+  for (const std::int64_t word : {6, 7, 15}) ASSERT_EQ(plant_.a.row(row::controlword, word), kOk) << word;
+  plant_.run(500ms);
+  ASSERT_TRUE(plant_.stands());
+  EXPECT_EQ(target(of_.value), kOk);
+  EXPECT_TRUE(follows(of_.value)) << plant_.velocity();
+}
+
+TEST_P(RawMode, ScannedInABlockDoesTheSame) {
+  for (const std::int64_t word : {0, 6, 7}) scan(word, 0);
+  for (const std::int64_t value : {of_.value, std::int64_t{0}, of_.other}) {
+    scan(15, value);
+    EXPECT_TRUE(follows(value)) << plant_.velocity() << " instead of " << value;
+  }
+  scan(6, of_.other);
+  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+}
+
+TEST_P(RawMode, ScannedWithTargetZeroStartsWithTheNextTarget) {
+  for (const std::int64_t word : {0, 6, 7, 15}) scan(word, 0);
+  ASSERT_TRUE(plant_.stands());
+  scan(15, of_.value);
+  EXPECT_TRUE(follows(of_.value)) << plant_.velocity();
+}
+
+TEST_P(RawMode, StartsAgainAndAgainWithABlockThatIsTheSameButForItsControlword) {
+  scan(0, of_.value);
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    SCOPED_TRACE(cycle);
+    scan(6, of_.value);
+    EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+    scan(7, of_.value);
+    scan(15, of_.value);
+    EXPECT_TRUE(follows(of_.value)) << plant_.velocity();
+  }
+}
+
 class RawVelocity : public testing::TestWithParam<Subject> {
  protected:
   RawVelocity() { plant_.ready_but_disabled(); }
   void enable_raw() {
     for (const std::int64_t word : {6, 7, 15}) ASSERT_EQ(plant_.a.row(row::controlword, word), kOk) << word;
   }
-  /// A scanner's block 40..45, three times.
-  void scan(std::int64_t word, std::int64_t velocity) {
-    const Write request = block(
-        row::controlword, 45, {{row::controlword, word}, {row::mode, kVelocityMode}, {row::target_velocity, velocity}});
-    plant_.scan(plant_.a, request, 150ms);
-  }
   Plant plant_{GetParam()};
 };
-
-TEST_P(RawVelocity, RunsAtTheVelocityAndStandsAtZero) {
-  ASSERT_EQ(plant_.a.row(row::mode, kVelocityMode), kOk);
-  ASSERT_EQ(plant_.a.row(row::controlword, 6), kOk);
-  ASSERT_EQ(plant_.a.row(row::controlword, 7), kOk);
-  ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
-  ASSERT_EQ(plant_.a.row(row::controlword, 15), kOk);
-  ASSERT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
-  EXPECT_EQ(plant_.a.row(row::target_velocity, 0), kOk);
-  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
-  EXPECT_EQ(plant_.a.wide(row::target_velocity), 0);
-  EXPECT_EQ(plant_.a.row(row::target_velocity, kOtherSpeed), kOk);
-  EXPECT_TRUE(plant_.reaches(kOtherSpeed)) << plant_.velocity();
-}
 
 TEST_P(RawVelocity, IsEndedByCoil7ThatIsLetGoBeforeItHasBegun) {
   ASSERT_EQ(plant_.a.row(row::mode, kVelocityMode), kOk);
@@ -56,16 +119,6 @@ TEST_P(RawVelocity, IsEndedByCoil7ThatIsLetGoBeforeItHasBegun) {
   EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
   plant_.run(1s);
   EXPECT_EQ(plant_.velocity(), 0);
-}
-
-TEST_P(RawVelocity, EnabledWithTargetZeroStartsWithTheNextVelocity) {
-  ASSERT_EQ(plant_.a.row(row::mode, kVelocityMode), kOk);
-  ASSERT_EQ(plant_.a.row(row::target_velocity, 0), kOk);
-  enable_raw();
-  ASSERT_TRUE(plant_.stands());
-  plant_.run(500ms);
-  EXPECT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
-  EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
 }
 
 constexpr std::int64_t kContinuousMotion = 3;
@@ -100,39 +153,6 @@ TEST_P(ShownRawVelocity, IsARunBeforeTheSampledVelocitySaysSo) {
   EXPECT_EQ(plant_.a.word(shown::axis_state), kContinuousMotion);
   EXPECT_EQ(plant_.a.command(kRelative), kNotNow);
   EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
-}
-
-TEST_P(RawVelocity, ScannedInABlockDoesTheSame) {
-  scan(0, 0);
-  scan(6, 0);
-  scan(7, 0);
-  scan(15, kSpeed);
-  EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
-  scan(15, 0);
-  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
-  scan(15, kOtherSpeed);
-  EXPECT_TRUE(plant_.reaches(kOtherSpeed)) << plant_.velocity();
-  scan(6, kOtherSpeed);
-  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
-}
-
-TEST_P(RawVelocity, ScannedWithTargetZeroStartsWithTheNextVelocity) {
-  for (const std::int64_t word : {0, 6, 7, 15}) scan(word, 0);
-  ASSERT_TRUE(plant_.stands());
-  scan(15, kSpeed);
-  EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
-}
-
-TEST_P(RawVelocity, StartsAgainAndAgainWithABlockThatIsTheSameButForItsControlword) {
-  scan(0, kSpeed);
-  for (int cycle = 0; cycle < 3; ++cycle) {
-    SCOPED_TRACE(cycle);
-    scan(6, kSpeed);
-    EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
-    scan(7, kSpeed);
-    scan(15, kSpeed);
-    EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
-  }
 }
 
 /// Its motion was ended, and a target is there that nobody has asked a run for.
@@ -241,60 +261,17 @@ TEST_P(RawVelocityOfAnother, IsNotRunByAWordOfTheNextOwner) {
   EXPECT_TRUE(plant.stands()) << plant.velocity();
 }
 
-class RawTorque : public testing::TestWithParam<Subject> {
- protected:
-  RawTorque() {
-    plant_.ready_but_disabled();
-    plant_.a.row(row::max_velocity,
-                 300'000);  // not every drive has it, and without it a torque ends at the drive's own
-  }
-  Plant plant_{GetParam()};
-};
-
-TEST_P(RawTorque, TurnsTheMotorAndLetsItGoAtZero) {
-  ASSERT_EQ(plant_.a.row(row::mode, kTorqueMode), kOk);
-  ASSERT_EQ(plant_.a.row(row::controlword, 6), kOk);
-  ASSERT_EQ(plant_.a.row(row::controlword, 7), kOk);
-  ASSERT_EQ(plant_.a.row(row::target_torque, kSomeTorque), kOk);
-  ASSERT_EQ(plant_.a.row(row::controlword, 15), kOk);
-  ASSERT_TRUE(plant_.keeps_turning());
-  EXPECT_EQ(plant_.a.row(row::target_torque, 0), kOk);
-  EXPECT_TRUE(plant_.comes_to_stand(5s)) << plant_.velocity();
-  EXPECT_EQ(plant_.a.word(row::target_torque), 0);
-  EXPECT_EQ(plant_.a.row(row::target_torque, kSomeTorque), kOk);
-  EXPECT_TRUE(plant_.keeps_turning());
-}
-
-TEST_P(RawTorque, EnabledWithTargetZeroStartsWithTheNextTorque) {
-  ASSERT_EQ(plant_.a.row(row::mode, kTorqueMode), kOk);
-  for (const std::int64_t word : {6, 7, 15}) ASSERT_EQ(plant_.a.row(row::controlword, word), kOk) << word;
-  plant_.run(500ms);
-  ASSERT_TRUE(plant_.stands());
-  EXPECT_EQ(plant_.a.row(row::target_torque, kSomeTorque), kOk);
-  EXPECT_TRUE(plant_.keeps_turning());
-}
-
-TEST_P(RawTorque, ScannedInABlockDoesTheSame) {
-  const auto scan = [&](std::int64_t word, std::int64_t torque) {
-    plant_.scan(plant_.a,
-                block(row::controlword, row::target_torque,
-                      {{row::controlword, word}, {row::mode, kTorqueMode}, {row::target_torque, torque}}),
-                150ms);
-  };
-  for (const std::int64_t word : {0, 6, 7}) scan(word, 0);
-  scan(15, kSomeTorque);
-  EXPECT_TRUE(plant_.keeps_turning());
-  scan(15, 0);
-  EXPECT_TRUE(plant_.comes_to_stand(5s)) << plant_.velocity();
-  scan(15, kSomeTorque);
-  EXPECT_TRUE(plant_.keeps_turning());
-}
-
 INSTANTIATE_TEST_SUITE_P(Every, ShownRawVelocity, testing::ValuesIn(subjects(is_cia402)), named);
 INSTANTIATE_TEST_SUITE_P(Every, RawVelocityEnded, testing::ValuesIn(subjects(has_speeds)), named);
 INSTANTIATE_TEST_SUITE_P(Every, RawVelocityOfAnother, testing::ValuesIn(subjects(has_speeds)), named);
 INSTANTIATE_TEST_SUITE_P(Every, RawVelocity, testing::ValuesIn(subjects(has_speeds)), named);
-INSTANTIATE_TEST_SUITE_P(Every, RawTorque, testing::ValuesIn(subjects(has_torque)), named);
+constexpr auto named_by_subject = [](const auto& tested) { return name(std::get<Subject>(tested.param)); };
+INSTANTIATE_TEST_SUITE_P(Velocity, RawMode,
+                         testing::Combine(testing::ValuesIn(subjects(has_speeds)), testing::Values(kByVelocity)),
+                         named_by_subject);
+INSTANTIATE_TEST_SUITE_P(Torque, RawMode,
+                         testing::Combine(testing::ValuesIn(subjects(has_torque)), testing::Values(kByTorque)),
+                         named_by_subject);
 
 }  // namespace
 }  // namespace axisgate::test::obey

@@ -40,9 +40,7 @@ TEST_P(RefusedModes, AreToldByTheFirstRowThatIsBeyondTheDrive) {
 }
 
 TEST_P(RefusedModes, BesideAStopAreToldAndTheAxisStops) {
-  ASSERT_EQ(plant_.set_endless(a_), kOk);
-  ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
-  ASSERT_TRUE(plant_.keeps_turning());
+  ASSERT_TRUE(plant_.start_endless(a_));
   expect_refused(block(row::mode, row::command, {{row::mode, kNoDrivesMode}, {row::command, kQuickStop}}), row::mode);
   EXPECT_TRUE(plant_.comes_to_stand());
 }
@@ -50,9 +48,7 @@ TEST_P(RefusedModes, BesideAStopAreToldAndTheAxisStops) {
 // The lowest number of its type is how a row reads that has no value: a program that copies what it has read writes it.
 TEST_P(RefusedNumbers, ThatMeanNoValueBesideAStopAreToldAndTheAxisStops) {
   constexpr std::int64_t kNoValue = std::numeric_limits<std::int32_t>::min();
-  ASSERT_EQ(plant_.set_endless(a_), kOk);
-  ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
-  ASSERT_TRUE(plant_.keeps_turning());
+  ASSERT_TRUE(plant_.start_endless(a_));
   const std::uint16_t target = has_speeds(GetParam()) ? row::target_velocity : row::target_position;
   Rows rows = plant_.profile_rows();
   rows[target] = kNoValue;

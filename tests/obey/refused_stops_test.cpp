@@ -15,11 +15,6 @@ class RefusedStops : public testing::TestWithParam<Subject> {
     a_.be(Role::operator_);
     a_.connect();
   }
-  void start() {
-    ASSERT_EQ(plant_.set_endless(a_), kOk);
-    ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
-    ASSERT_TRUE(plant_.keeps_turning());
-  }
   void expect_stop(const Write& write, std::uint8_t exception, std::uint32_t row) {
     SCOPED_TRACE(text(write));
     EXPECT_EQ(a_.write(write), exception);
@@ -33,7 +28,7 @@ class RefusedStops : public testing::TestWithParam<Subject> {
 };
 
 TEST_P(RefusedStops, BesideHalfOfARow) {
-  start();
+  ASSERT_TRUE(plant_.start_endless(a_));
   expect_stop(block(row::command - 1, row::command, {{row::command, kQuickStop}}), kNoSuchRow,
               row::profile_deceleration);
 }
@@ -42,7 +37,7 @@ TEST_P(RefusedStops, BesideAReservedCoil) {
   constexpr std::uint16_t kReserved = 11;
   std::vector<std::uint16_t> coils(kReserved + 1, 0);
   coils[coil::enable] = coils[coil::quick_stop] = coils[kReserved] = 1;
-  start();
+  ASSERT_TRUE(plant_.start_endless(a_));
   expect_stop(coil_block(0, coils), kNoSuchRow, kReserved);
 }
 
@@ -50,7 +45,7 @@ class RefusedStopsOfOperators : public RefusedStops {};
 
 TEST_P(RefusedStopsOfOperators, BesideARowOfAnEngineer) {
   Rows rows{{row::command, kQuickStop}, {row::quick_stop_deceleration, 12'345}};
-  start();
+  ASSERT_TRUE(plant_.start_endless(a_));
   expect_stop(block(row::command, row::quick_stop_deceleration + 1, rows), 1, row::quick_stop_deceleration);
 }
 

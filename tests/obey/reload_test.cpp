@@ -55,9 +55,7 @@ class Reload : public testing::TestWithParam<Subject> {
  protected:
   void start_endless() {
     plant_.ready();
-    ASSERT_EQ(plant_.set_endless(plant_.a), kOk);
-    ASSERT_EQ(plant_.a.command(plant_.endless_command()), kOk);
-    ASSERT_TRUE(plant_.turns_within(1s));
+    ASSERT_TRUE(plant_.start_endless(plant_.a));
   }
   /// Some have torque at all times: nobody can tell that they are disabled.
   [[nodiscard]] bool can_be_disabled() {
@@ -156,14 +154,7 @@ TEST_P(Reload, WhatIsEnabledMeanwhileStillMissesTheGateway) {
   if (!is_cia402(GetParam()) || !minds_silence(GetParam())) return;
   plant_.ready_but_disabled();
   const ReloadEnd told = plant_.stage.begin_reload(change_timeout);
-  auto& node = plant_.stage.can_node(0);
-  constexpr simulated::ObjectKey kControlword{0x6040, 0};
-  const auto now = [&] { return plant_.stage.runtime().now().time_since_epoch(); };
-  const simulated::ObjectKey entry =
-      is_md(GetParam()) ? simulated::ObjectKey{0x6007, 0} : simulated::ObjectKey{0x1016, 1};
-  const auto armed_as = node.peek(entry, now());
-  ASSERT_TRUE(plant_.stage.run_until([&] { return node.peek(entry, now()) != armed_as; }, 1s));
-  for (const std::int64_t word : {6, 7, 15}) ASSERT_EQ(node.poke(kControlword, word, now()), 0U);
+  ASSERT_TRUE(plant_.is_enabled_by_hand_once_disarmed());
   EXPECT_NE(ended(plant_, told), GatewayStage::Reasons{});
   plant_.run(1s);
   EXPECT_TRUE(plant_.motor().enabled.value_or(false));

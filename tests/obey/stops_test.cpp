@@ -30,25 +30,20 @@ class Stops : public testing::TestWithParam<Subject> {
   Client& b_ = plant_.b;
 };
 
-TEST_P(Stops, OfAQuickStopWithTheIdOfTheCommandBefore) {
-  start_with_ids();
-  EXPECT_EQ(a_.command(kQuickStop, 2), kOk);
-  stopped_and_latched();
-}
-
-TEST_P(Stops, OfAHaltWithTheIdOfTheCommandBefore) {
-  start_with_ids();
-  EXPECT_EQ(a_.command(kHalt, 2), kOk);
-  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
-  plant_.run(300ms);
-  EXPECT_EQ(a_.word(shown::axis_state), kStandstill);
-}
-
-TEST_P(Stops, OfADisableWithTheIdOfTheCommandBefore) {
-  start_with_ids();
-  EXPECT_EQ(a_.command(kDisable, 2), kOk);
-  EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
-  EXPECT_FALSE(plant_.motor().enabled.value_or(false));
+TEST_P(Stops, WithTheIdOfTheCommandBefore) {
+  for (const std::int64_t stop : {kHalt, kQuickStop, kDisable}) {
+    SCOPED_TRACE(stop);
+    ASSERT_EQ(b_.command(0), kOk);
+    ASSERT_EQ(b_.command(kEnable), kOk);
+    start_with_ids();
+    EXPECT_EQ(a_.command(stop, 2), kOk);
+    EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
+    plant_.run(300ms);
+    if (stop != kDisable) {
+      EXPECT_EQ(a_.word(shown::axis_state), stop == kHalt ? kStandstill : kStopLatched);
+    }
+    EXPECT_TRUE(stop != kDisable || !plant_.motor().enabled.value_or(false));
+  }
 }
 
 TEST_P(Stops, OfTheSameQuickStopWithAnotherId) {
@@ -56,9 +51,7 @@ TEST_P(Stops, OfTheSameQuickStopWithAnotherId) {
   ASSERT_EQ(a_.command(kQuickStop, 3), kOk);
   ASSERT_TRUE(plant_.comes_to_stand());
   ASSERT_EQ(b_.command(kEnable), kOk);
-  ASSERT_EQ(plant_.set_endless(b_), kOk);
-  ASSERT_EQ(b_.command(plant_.endless_command()), kOk);
-  ASSERT_TRUE(plant_.keeps_turning());
+  ASSERT_TRUE(plant_.start_endless(b_));
   EXPECT_EQ(a_.command(kQuickStop, 4), kOk);
   stopped_and_latched();
 }
@@ -68,9 +61,7 @@ TEST_P(Stops, ThatAScannerRepeatsDoNotStopWhatComesLater) {
   ASSERT_EQ(a_.command(kQuickStop, 3), kOk);
   ASSERT_TRUE(plant_.comes_to_stand());
   ASSERT_EQ(b_.command(kEnable), kOk);
-  ASSERT_EQ(plant_.set_endless(b_), kOk);
-  ASSERT_EQ(b_.command(plant_.endless_command()), kOk);
-  ASSERT_TRUE(plant_.turns_within(1s));
+  ASSERT_TRUE(plant_.start_endless(b_));
   plant_.scan(a_, block(row::command, row::command_id, {{row::command, kQuickStop}, {row::command_id, 3}}), 500ms);
   EXPECT_TRUE(plant_.keeps_turning());
 }
@@ -92,9 +83,7 @@ TEST_P(Stops, OfAClientThatHasWrittenNothingBefore) {
     SCOPED_TRACE(way);
     ASSERT_EQ(a_.command(0), kOk);
     ASSERT_EQ(a_.command(kEnable), kOk);
-    ASSERT_EQ(plant_.set_endless(a_), kOk);
-    ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
-    ASSERT_TRUE(plant_.turns_within(1s));
+    ASSERT_TRUE(plant_.start_endless(a_));
     plant_.run(200ms);
     const auto stranger = plant_.connection_from(host++);
     EXPECT_EQ(stranger->write(write), kOk);
@@ -135,9 +124,7 @@ TEST_P(Stops, AlwaysInASingleWrite) {
       ASSERT_EQ(a_.command(0), kOk);
       ASSERT_EQ(a_.command(kEnable), kOk);
       ASSERT_EQ(a_.coil(coil::halt, false), kOk);
-      ASSERT_EQ(plant_.set_endless(a_), kOk);
-      ASSERT_EQ(a_.command(plant_.endless_command()), kOk);
-      ASSERT_TRUE(plant_.turns_within(1s));
+      ASSERT_TRUE(plant_.start_endless(a_));
       EXPECT_EQ(b_.write(way), kOk);
       EXPECT_TRUE(plant_.comes_to_stand()) << "time " << time << ": " << plant_.velocity();
     }

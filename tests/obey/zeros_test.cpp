@@ -18,12 +18,6 @@ const Write kFewerZeros = block(row::controlword, row::command, {});
 class Zeros : public testing::TestWithParam<Subject> {
  protected:
   Zeros() { plant_.ready(); }
-  [[nodiscard]] bool enabled() { return plant_.motor().enabled.value_or((b_.word(shown::statusword) & 0x6F) == 0x27); }
-  void start(Client& client) {
-    ASSERT_EQ(plant_.set_endless(client), kOk);
-    ASSERT_EQ(client.command(plant_.endless_command()), kOk);
-    ASSERT_TRUE(plant_.keeps_turning());
-  }
   Plant plant_{GetParam(), with_leases()};
   Client& a_ = plant_.a;
   Client& b_ = plant_.b;
@@ -37,12 +31,12 @@ TEST_P(Zeros, OfAWholeBlockAskForNothingAndClaimNothing) {
       EXPECT_EQ(a_.word(shown::owner), kNobody);
     }
   }
-  EXPECT_TRUE(enabled());
+  EXPECT_TRUE(plant_.enabled());
   EXPECT_EQ(plant_.position(), 0);
 }
 
 TEST_P(Zeros, OfAWholeBlockDisturbNoOwner) {
-  start(a_);
+  ASSERT_TRUE(plant_.start_endless(a_));
   for (int i = 0; i < 5; ++i) {
     EXPECT_EQ(b_.write(kZeros), kOk);
     EXPECT_EQ(b_.word(shown::owner), kAnother);
@@ -54,10 +48,10 @@ TEST_P(Zeros, OfAWholeBlockDisturbNoOwner) {
 
 TEST_P(Zeros, InTheControlwordAfterAnotherValueAreAStop) {
   ASSERT_EQ(a_.row(row::controlword, 15), kOk);
-  start(a_);
+  ASSERT_TRUE(plant_.start_endless(a_));
   EXPECT_EQ(a_.write(kZeros), kOk);
   EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
-  EXPECT_FALSE(enabled());
+  EXPECT_FALSE(plant_.enabled());
 }
 
 /// The owner's target_velocity 0 is another matter.
@@ -70,7 +64,7 @@ TEST_P(ZerosInAMove, AreOnlyRememberedWhereTheControlwordWasNeverWritten) {
   ASSERT_EQ(a_.command(kMove), kOk);
   plant_.run(200ms);
   EXPECT_EQ(a_.write(kZeros), kOk);
-  EXPECT_TRUE(enabled());
+  EXPECT_TRUE(plant_.enabled());
   const std::int64_t at = plant_.comes_to_rest_at();
   EXPECT_LE(std::abs(at - kWithinASecond), kClose) << at;
 }
@@ -122,9 +116,6 @@ TEST_P(Zeros, BesideACommandThatActsLeaveItsProfileAsItIs) {
 class ZeroSpeed : public testing::TestWithParam<Subject> {
  protected:
   ZeroSpeed() { plant_.ready(); }
-  [[nodiscard]] bool enabled() {
-    return plant_.motor().enabled.value_or((plant_.b.word(shown::statusword) & 0x6F) == 0x27);
-  }
   void run() {
     ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
     ASSERT_EQ(plant_.a.command(kRun), kOk);
@@ -137,7 +128,7 @@ TEST_P(ZeroSpeed, OfTheOwnersWholeBlockActsWhileARunIsOn) {
   run();
   EXPECT_EQ(plant_.a.write(kZeros), kOk);
   EXPECT_TRUE(plant_.comes_to_stand(1500ms)) << plant_.velocity();
-  EXPECT_TRUE(enabled());
+  EXPECT_TRUE(plant_.enabled());
 }
 
 TEST_P(ZeroSpeed, OfTheOwnersWholeBlockActsOnARunThatStillWaits) {
@@ -147,7 +138,7 @@ TEST_P(ZeroSpeed, OfTheOwnersWholeBlockActsOnARunThatStillWaits) {
   EXPECT_TRUE(plant_.comes_to_stand(1500ms)) << plant_.velocity();
   plant_.run(1s);
   EXPECT_EQ(plant_.velocity(), 0);
-  EXPECT_TRUE(enabled());
+  EXPECT_TRUE(plant_.enabled());
 }
 
 TEST_P(ZeroSpeed, OfAWholeBlockOfItsOwnerThatHasConnectedAnewActs) {
@@ -156,7 +147,7 @@ TEST_P(ZeroSpeed, OfAWholeBlockOfItsOwnerThatHasConnectedAnewActs) {
   plant_.a.connect();
   EXPECT_EQ(plant_.a.write(kZeros), kOk);
   EXPECT_TRUE(plant_.comes_to_stand(1500ms)) << plant_.velocity();
-  EXPECT_TRUE(enabled());
+  EXPECT_TRUE(plant_.enabled());
 }
 
 TEST_P(ZeroSpeed, OfAnotherClientsWholeBlockDoesNot) {
@@ -176,7 +167,7 @@ TEST_P(ZeroSpeed, OfARawModeIsAStopByItsControlword) {
   ASSERT_TRUE(plant_.keeps_turning());
   EXPECT_EQ(plant_.a.write(kZeros), kOk);
   EXPECT_TRUE(plant_.comes_to_stand()) << plant_.velocity();
-  EXPECT_FALSE(enabled());
+  EXPECT_FALSE(plant_.enabled());
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Zeros, testing::ValuesIn(kSubjects), named);

@@ -10,7 +10,7 @@ namespace axisgate::drive {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr Duration kTimeout = 60s;
+constexpr Duration kHomingTimeout = 60s;
 
 struct Stage {
   Motion motion{std::chrono::milliseconds(300)};
@@ -26,7 +26,7 @@ struct Stage {
   void see(Duration later = 1ms) {
     facts.at += later;
     ++facts.statusword_exchange;
-    motion.observe(facts, kTimeout);
+    motion.observe(facts, kHomingTimeout);
   }
   void start(MotionKind kind) { motion.start(kind, 5, facts.at, facts.statusword_exchange); }
 };
@@ -35,7 +35,7 @@ TEST(MotionRules, AMoveEndsWhenTheDriveSaysSoAfterItsStart) {
   Stage s;
   s.facts.target_reached = true;
   s.start(MotionKind::discrete);
-  s.motion.observe(s.facts, kTimeout);
+  s.motion.observe(s.facts, kHomingTimeout);
   EXPECT_EQ(s.motion.state(), MotionState::active) << "that was the move before";
   s.facts.target_reached = false;
   s.see();
@@ -237,8 +237,8 @@ TEST(MotionRules, HomingEndsByReferenceByErrorOrByTime) {
   s.facts.homing_failed = false;
   s.start(MotionKind::homing);
   s.see();
-  EXPECT_LE(s.motion.deadline(), s.facts.at + kTimeout);
-  s.see(kTimeout);
+  EXPECT_LE(s.motion.deadline(), s.facts.at + kHomingTimeout);
+  s.see(kHomingTimeout);
   EXPECT_EQ(s.motion.state(), MotionState::failed);
   EXPECT_TRUE(s.motion.take_homing_timeout());
   EXPECT_FALSE(s.motion.take_homing_timeout()) << "once";
