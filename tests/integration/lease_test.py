@@ -30,9 +30,9 @@ class OwnersGone(Machine):
                 self.assertEqual(Axis(owner, number).get("owner"), ME)
                 self.assertNotEqual(self.speed(number), 0, f"axis {number}")
             time.sleep(1.5 * self.lease["timeout_ms"] / 1000 / 20)
+        before = time.monotonic()
         for client in gone:
             client.gateway()
-        before = time.monotonic()
         for leave in (gone[0].close, gone[1].reset, gone[2].fall_silent):
             leave()
         standing = {}
