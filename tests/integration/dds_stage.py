@@ -78,12 +78,6 @@ class Peer(Program):
         self.process.stdin.write(" ".join(map(str, words)) + "\n")
         self.process.stdin.flush()
 
-    def until_written(self):
-        """All that it was told to write has left it."""
-        word = f"place_{self.now()}"
-        self.say("tell", word)
-        self.wait("told", word)
-
     def all(self, on, topic, look=lambda told: True, since=0):
         return [told for told in self.told[since:] if told["on"] == on and told["topic"] == topic and look(told)]
 

@@ -47,8 +47,6 @@ class CanLinkSim final : public can::CanLink {
   void restart(std::size_t drive);
   /// Whoever held it has died: what it sent is on its way, what it has not taken is gone. start() takes it up again.
   void let_go();
-  /// As if the system had dropped so many received frames before they were taken.
-  void lose_in(std::uint32_t frames) { trouble_.lost_in += frames; }
 
   struct Sent {
     Instant at;

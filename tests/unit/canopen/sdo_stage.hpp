@@ -47,10 +47,6 @@ class SdoStage : public CanopenWireStage {
     while (result && result->more && ++exchanges < kMaxExchanges) result = exchange(next_of(what));
     return result;
   }
-  [[nodiscard]] std::size_t sent_count(Byte command) const {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(link->sent, [&](const CanFrame& f) { return f.id == 0x601 && f.data[0] == command; }));
-  }
 
   SdoServer server;
   std::function<bool(ByteRow&)> spoil;  ///< false: the reply is lost

@@ -59,13 +59,6 @@ class ManualRuntime final : public Runtime {
   void stall(Duration time) { now_ += time; }
   /// What is due now, without moving the clock: a turn of the event loop.
   void run_due() { advance_to(now_); }
-  /// Jumps to the next deadline and fires it; false where no timer is armed.
-  bool advance_to_next() {
-    const Instant next = next_deadline();
-    if (next == kNever) return false;
-    advance_to(next > now_ ? next : now_);
-    return true;
-  }
 
  private:
   struct ManualTimer final : Timer {
