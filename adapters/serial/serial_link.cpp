@@ -103,7 +103,10 @@ void SerialLink::send(Bytes bytes) {
 
 void SerialLink::write() {
   Error error;
-  const std::size_t written = port_.write_some(asio::buffer(unsent_), error);
+  std::size_t written = 0;
+  do {
+    written = port_.write_some(asio::buffer(unsent_), error);
+  } while (error == asio::error::interrupted);  // by a signal (SIGHUP reloads): the line is there
   unsent_.erase(unsent_.begin(), unsent_.begin() + static_cast<std::ptrdiff_t>(written));
   if (error && error != asio::error::would_block) {
     lose_later(device_and(error));

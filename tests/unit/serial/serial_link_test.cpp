@@ -2,6 +2,9 @@
 // Up, bytes, loss and return, on a pty; the clock moves by hand, so "at once" and "after a second" can be told apart.
 #include "tests/unit/serial/serial_link_stage.hpp"
 
+#include <signal.h>
+#include <sys/time.h>
+
 namespace axisgate::test {
 namespace {
 
@@ -46,6 +49,48 @@ TEST_F(SerialLinkTest, a_send_larger_than_the_kernel_takes_is_finished_in_order)
   }));
   EXPECT_EQ(got, sent);
   EXPECT_THAT(diary.told, ElementsAre("up"));
+}
+
+/// Signals all the time, as one that reloads may come at any.
+class Signals {
+ public:
+  Signals() {
+    struct sigaction counted {};
+    counted.sa_handler = [](int) {};
+    ::sigaction(SIGALRM, &counted, &before_);
+    const itimerval often{{0, 20}, {0, 20}};
+    ::setitimer(ITIMER_REAL, &often, nullptr);
+  }
+  Signals(const Signals&) = delete;
+  Signals& operator=(const Signals&) = delete;
+  ~Signals() {
+    const itimerval never{};
+    ::setitimer(ITIMER_REAL, &never, nullptr);
+    ::sigaction(SIGALRM, &before_, nullptr);
+  }
+
+ private:
+  struct sigaction before_ {};
+};
+
+TEST_F(SerialLinkTest, a_signal_in_the_middle_of_a_send_loses_neither_the_line_nor_a_byte) {
+  Pty pty;
+  start_at(pty.device());
+  std::string sent, got;
+  const Signals signals;
+  for (int i = 0; i < 5'000 && diary.told.size() == 1; ++i) {
+    const std::string part = fmt::format("{:05}", i);
+    link->send(bytes_of(part));
+    sent += part;
+    got += pty.read();
+    if (i % 100 == 0) turn();
+  }
+  ASSERT_THAT(diary.told, ElementsAre("up"));
+  EXPECT_TRUE(await([&] {
+    got += pty.read();
+    return got.size() == sent.size();
+  }));
+  EXPECT_EQ(got, sent);
 }
 
 TEST_F(SerialLinkTest, a_port_that_takes_nothing_is_opened_anew) {
